@@ -1,0 +1,23 @@
+# Eigen and nlohmann-json are headers only. The system's packages are preferred; where they
+# are missing, the Python wheels `cmeel-eigen` and `nlohmann-json` carry the same headers.
+add_library(snowshed_headers INTERFACE)
+
+find_package(Python COMPONENTS Interpreter QUIET)
+set(snowshed_site_packages "")
+if(Python_Interpreter_FOUND)
+  execute_process(
+    COMMAND ${Python_EXECUTABLE} -c "import sys; print(';'.join(p for p in sys.path if p.endswith('-packages')))"
+    OUTPUT_VARIABLE snowshed_site_packages OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+
+find_path(SNOWSHED_EIGEN_DIR Eigen/Core
+  PATHS ${snowshed_site_packages} PATH_SUFFIXES eigen3 include/eigen3 cmeel.prefix/include/eigen3)
+find_path(SNOWSHED_JSON_DIR nlohmann/json.hpp
+  PATHS ${snowshed_site_packages} PATH_SUFFIXES include nlohmann_json/include)
+foreach(header EIGEN JSON)
+  if(NOT SNOWSHED_${header}_DIR)
+    message(FATAL_ERROR "${header} headers not found: install libeigen3-dev and nlohmann-json3-dev, "
+      "or `pip install cmeel-eigen nlohmann-json`")
+  endif()
+  target_include_directories(snowshed_headers SYSTEM INTERFACE ${SNOWSHED_${header}_DIR})
+endforeach()

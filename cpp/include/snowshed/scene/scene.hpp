@@ -1,0 +1,166 @@
+// What is to be simulated, as plain data in SI units. One JSON form reads and
+// writes exactly these fields (scene_json.hpp); nothing here computes anything.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snowshed/support/vec.hpp"
+
+namespace snowshed {
+
+inline constexpr int scene_version = 1;
+
+enum class Precision { float32, float64 };
+enum class SnowModel { cam_clay, elastic };
+enum class Transfer { flip, apic };
+enum class Basis { quadratic, cubic };
+enum class Condition { sticky, slip, separate };
+enum class SeedPattern { regular, jittered, poisson };
+enum class Between { carry, reseed };
+
+/// Cohesive Modified Cam-Clay snow (Gaume et al. 2018; thesis 1.2.5-1.2.7).
+/// Defaults: the calibrated snow of Table 4.3.1.
+struct Snow {
+  SnowModel model = SnowModel::cam_clay;
+  double density = 210.0;                     // kg/m3
+  double youngs_modulus = 1.0e6;              // Pa
+  double poissons_ratio = 0.3;                // -
+  double critical_state_slope = 0.5;          // M, -
+  double preconsolidation_pressure = 7.0e3;   // p0, Pa, initial value
+  double cohesion = 0.2;                      // beta, -
+  double hardening_factor = 0.1;              // xi, -
+};
+
+/// A solid. `type` selects which of the other fields count.
+struct ShapeSpec {
+  std::string type;       // plane box sphere cylinder capsule plate mesh grid union difference transform
+  Vec3 center = Vec3::Zero();           // box, sphere; a point on a plane; middle of a plate's face
+  Vec3 size = Vec3::Zero();             // box: edge lengths (y is unbounded in 2D)
+  Vec3 normal = Vec3::UnitZ();          // plane, plate: outward normal
+  Vec3 from = Vec3::Zero();             // cylinder, capsule: ends of the axis
+  Vec3 to = Vec3::Zero();
+  double radius = 0.0;                  // sphere, cylinder, capsule
+  double length = 0.0;                  // plate: along the slope
+  double width = 0.0;                   // plate: across (ignored in 2D)
+  double thickness = 0.0;               // plate: below its face
+  std::string file;                     // mesh (.stl .obj .ply), grid (.npy)
+  double scale = 1.0;                   // mesh: file units to metres
+  Vec3 origin = Vec3::Zero();           // grid: position of the first sample
+  double spacing = 0.0;                 // grid: metres between samples
+  Vec3 translate = Vec3::Zero();        // transform: applied after the rotation
+  Vec3 axis = Vec3::UnitY();            // transform: rotation axis
+  double angle = 0.0;                   // transform: degrees
+  std::vector<ShapeSpec> shapes;        // union, difference (first minus the rest), transform (one)
+};
+
+/// Prescribed rigid motion of an obstacle between `start` and `end`.
+struct MotionSpec {
+  Vec3 velocity = Vec3::Zero();          // m/s
+  Vec3 angular_velocity = Vec3::Zero();  // rad/s, about `pivot`
+  Vec3 pivot = Vec3::Zero();             // m, moves with the velocity
+  double start = 0.0;                    // s
+  double end = 1.0e9;                    // s
+};
+
+/// Something snow collides with.
+struct ObstacleSpec {
+  std::string name;
+  ShapeSpec shape;
+  Condition condition = Condition::separate;
+  double friction = 0.3;  // Coulomb coefficient; unused when sticky
+  std::optional<MotionSpec> motion;
+};
+
+/// A body of snow that appears at the start of event `event` (1 is the first;
+/// 0: at the start of every event).
+struct BodySpec {
+  ShapeSpec shape;
+  Vec3 velocity = Vec3::Zero();  // m/s
+  int event = 1;
+};
+
+/// The panel of Figure 3.1.1: x points down the slide direction, z up, the origin of x is
+/// the panel's centre; the lower edge stands `height` above the ground.
+struct Panel {
+  double height = 0.0;     // m
+  double length = 0.0;     // m, along the slope
+  double width = 0.0;      // m, 3D only
+  double tilt = 40.0;      // degrees from horizontal
+  double thickness = 0.0;  // m, below the sliding face
+  Condition condition = Condition::slip;
+  double friction = 0.3;
+};
+
+/// The slab on the panel that slides off in every event.
+struct Slab {
+  double thickness = 0.0;  // m
+  double length = 0.0;     // m; 0: as long as the panel
+  double width = 0.0;      // m; 0: two thirds of the panel's width
+};
+
+/// An inclined plane through the origin; positive tilt falls in the slide direction.
+struct Ground {
+  double tilt = 0.0;  // degrees
+  Condition condition = Condition::sticky;
+  double friction = 0.3;
+};
+
+struct Seeding {
+  double particles_per_voxel = 0.0;  // 0: 6 in 2D, 8 in 3D
+  SeedPattern pattern = SeedPattern::poisson;
+  std::uint64_t seed = 1;
+  bool allow_sparse = false;  // fewer than 4 (2D) or 6 (3D) per voxel
+};
+
+struct Numerics {
+  double dx = 0.01;  // m, grid and voxel size
+  Precision precision = Precision::float32;
+  Transfer transfer = Transfer::flip;
+  double flip_ratio = 0.99;
+  Basis basis = Basis::quadratic;
+  double step_factor = 0.9;    // of the stable time step
+  double strain_limit = 0.2;   // largest |dt grad v| a step may impose on a particle
+  int threads = 0;             // 0: all
+};
+
+/// When an event ends.
+struct Events {
+  int count = 1;
+  Between between = Between::carry;
+  double max_time = 10.0;     // s, per event
+  double rest_speed = 0.02;   // m/s
+  double rest_time = 0.05;    // s
+};
+
+struct Output {
+  double snapshot_interval = 0.0;    // s between particle snapshots; 0: only at the end of an event
+  bool energy = false;               // energy books
+  double checkpoint_interval = 60.0; // s of wall time between checkpoints; 0: none
+};
+
+struct Domain {
+  Vec3 min, max;
+};
+
+struct Scene {
+  int dimension = 3;
+  std::string title;
+  double gravity = 9.81;  // m/s2, along -z
+  Snow snow;
+  std::optional<Panel> panel;
+  std::optional<Slab> slab;
+  std::optional<Ground> ground;
+  std::vector<ObstacleSpec> obstacles;
+  std::vector<BodySpec> bodies;
+  std::optional<Domain> domain;  // its sides are sticky walls; none: unbounded
+  Seeding seeding;
+  Numerics numerics;
+  Events events;
+  Output output;
+};
+
+}  // namespace snowshed
