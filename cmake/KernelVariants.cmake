@@ -20,7 +20,7 @@ function(snowshed_add_kernels target)
     target_include_directories(${kernels} PRIVATE cpp/include cpp/src)
     target_link_libraries(${kernels} PRIVATE snowshed_headers)
     target_compile_definitions(${kernels} PRIVATE SNOWSHED_KERNEL_VARIANT=${variant})
-    target_compile_options(${kernels} PRIVATE
+    target_compile_options(${kernels} PRIVATE -Wno-ignored-attributes
       -O3 -fno-math-errno -fno-trapping-math -Wall -Wextra -Wno-psabi ${SNOWSHED_KERNEL_FLAGS_${variant}})
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${kernels}>)
     target_compile_definitions(${target} PRIVATE SNOWSHED_HAS_KERNELS_${variant})

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "snowshed/support/vec.hpp"
 
@@ -10,6 +11,14 @@ namespace snowshed {
 /// Axis-aligned bounds; infinite where a shape is unbounded.
 struct Bounds {
   Vec3 min, max;
+};
+
+/// A box in any orientation. The columns of `axes` are its right-handed unit edge directions;
+/// `half` holds half its edge lengths, metres (infinite along y in two-dimensional scenes).
+struct OrientedBox {
+  Vec3 center;
+  Mat3 axes;
+  Vec3 half;
 };
 
 /// A solid given by its signed distance. Immutable and safe to share between threads.
@@ -29,6 +38,9 @@ class LevelSet {
   /// Greatest depth below the surface, metres (infinite for a half-space).
   /// Contact uses it to recognise bodies thinner than the grid can see.
   virtual double inradius() const = 0;
+
+  /// The solid itself where it is a box: lets seeding tile it exactly.
+  virtual std::optional<OrientedBox> oriented_box() const { return std::nullopt; }
 };
 
 using Shape = std::shared_ptr<const LevelSet>;

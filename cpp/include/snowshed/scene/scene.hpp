@@ -8,53 +8,46 @@
 #include <string>
 #include <vector>
 
+#include "snowshed/scene/options.hpp"
 #include "snowshed/support/vec.hpp"
 
 namespace snowshed {
 
 inline constexpr int scene_version = 1;
 
-enum class Precision { float32, float64 };
-enum class SnowModel { cam_clay, elastic };
-enum class Transfer { flip, apic };
-enum class Basis { quadratic, cubic };
-enum class Condition { sticky, slip, separate };
-enum class SeedPattern { regular, jittered, poisson };
-enum class Between { carry, reseed };
-
 /// Cohesive Modified Cam-Clay snow (Gaume et al. 2018; thesis 1.2.5-1.2.7).
 /// Defaults: the calibrated snow of Table 4.3.1.
 struct Snow {
   SnowModel model = SnowModel::cam_clay;
-  double density = 210.0;                     // kg/m3
-  double youngs_modulus = 1.0e6;              // Pa
-  double poissons_ratio = 0.3;                // -
-  double critical_state_slope = 0.5;          // M, -
-  double preconsolidation_pressure = 7.0e3;   // p0, Pa, initial value
-  double cohesion = 0.2;                      // beta, -
-  double hardening_factor = 0.1;              // xi, -
+  double density = 210.0;                    // kg/m3
+  double youngs_modulus = 1.0e6;             // Pa
+  double poissons_ratio = 0.3;               // -
+  double critical_state_slope = 0.5;         // M, -
+  double preconsolidation_pressure = 7.0e3;  // p0, Pa, initial value
+  double cohesion = 0.2;                     // beta, -
+  double hardening_factor = 0.1;             // xi, -
 };
 
 /// A solid. `type` selects which of the other fields count.
 struct ShapeSpec {
-  std::string type;       // plane box sphere cylinder capsule plate mesh grid union difference transform
-  Vec3 center = Vec3::Zero();           // box, sphere; a point on a plane; middle of a plate's face
-  Vec3 size = Vec3::Zero();             // box: edge lengths (y is unbounded in 2D)
-  Vec3 normal = Vec3::UnitZ();          // plane, plate: outward normal
-  Vec3 from = Vec3::Zero();             // cylinder, capsule: ends of the axis
+  std::string type;  // plane box sphere cylinder capsule plate mesh grid union difference transform
+  Vec3 center = Vec3::Zero();   // box, sphere; a point on a plane; middle of a plate's face
+  Vec3 size = Vec3::Zero();     // box: edge lengths (y is unbounded in 2D)
+  Vec3 normal = Vec3::UnitZ();  // plane, plate: outward normal
+  Vec3 from = Vec3::Zero();     // cylinder, capsule: ends of the axis
   Vec3 to = Vec3::Zero();
-  double radius = 0.0;                  // sphere, cylinder, capsule
-  double length = 0.0;                  // plate: along the slope
-  double width = 0.0;                   // plate: across (ignored in 2D)
-  double thickness = 0.0;               // plate: below its face
-  std::string file;                     // mesh (.stl .obj .ply), grid (.npy)
-  double scale = 1.0;                   // mesh: file units to metres
-  Vec3 origin = Vec3::Zero();           // grid: position of the first sample
-  double spacing = 0.0;                 // grid: metres between samples
-  Vec3 translate = Vec3::Zero();        // transform: applied after the rotation
-  Vec3 axis = Vec3::UnitY();            // transform: rotation axis
-  double angle = 0.0;                   // transform: degrees
-  std::vector<ShapeSpec> shapes;        // union, difference (first minus the rest), transform (one)
+  double radius = 0.0;            // sphere, cylinder, capsule
+  double length = 0.0;            // plate: along the slope
+  double width = 0.0;             // plate: across (ignored in 2D)
+  double thickness = 0.0;         // plate: below its face
+  std::string file;               // mesh (.stl .obj .ply), grid (.npy)
+  double scale = 1.0;             // mesh: file units to metres
+  Vec3 origin = Vec3::Zero();     // grid: position of the first sample
+  double spacing = 0.0;           // grid: metres between samples
+  Vec3 translate = Vec3::Zero();  // transform: applied after the rotation
+  Vec3 axis = Vec3::UnitY();      // transform: rotation axis
+  double angle = 0.0;             // transform: degrees
+  std::vector<ShapeSpec> shapes;  // union, difference (first minus the rest), transform (one)
 };
 
 /// Prescribed rigid motion of an obstacle between `start` and `end`.
@@ -122,28 +115,29 @@ struct Numerics {
   Transfer transfer = Transfer::flip;
   double flip_ratio = 0.99;
   Basis basis = Basis::quadratic;
-  double step_factor = 0.9;    // of the stable time step
-  double strain_limit = 0.2;   // largest |dt grad v| a step may impose on a particle
-  int threads = 0;             // 0: all
+  double step_factor = 0.9;   // of the stable time step
+  double strain_limit = 0.2;  // largest |dt grad v| a step may impose on a particle
+  int threads = 0;            // 0: all
 };
 
 /// When an event ends.
 struct Events {
   int count = 1;
   Between between = Between::carry;
-  double max_time = 10.0;     // s, per event
-  double rest_speed = 0.02;   // m/s
-  double rest_time = 0.05;    // s
+  double max_time = 10.0;    // s, per event
+  double rest_speed = 0.02;  // m/s
+  double rest_time = 0.05;   // s
 };
 
 struct Output {
-  double snapshot_interval = 0.0;    // s between particle snapshots; 0: only at the end of an event
-  bool energy = false;               // energy books
-  double checkpoint_interval = 60.0; // s of wall time between checkpoints; 0: none
+  double snapshot_interval = 0.0;  // s between particle snapshots; 0: only at the end of an event
+  bool energy = false;             // energy books
+  double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };
 
 struct Domain {
-  Vec3 min, max;
+  Vec3 min = Vec3::Zero();  // m
+  Vec3 max = Vec3::Zero();
 };
 
 struct Scene {

@@ -1,0 +1,51 @@
+// Axis-aligned bounds, with infinite sides allowed.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "snowshed/geometry/level_set.hpp"
+
+namespace snowshed {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+inline Bounds unbounded() { return {Vec3::Constant(-infinity), Vec3::Constant(infinity)}; }
+
+/// Bounds of nothing: uniting with them changes nothing.
+inline Bounds no_bounds() { return {Vec3::Constant(infinity), Vec3::Constant(-infinity)}; }
+
+inline Bounds unite(const Bounds& a, const Bounds& b) {
+  return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
+}
+
+inline Bounds expanded(const Bounds& bounds, double margin) {
+  return {bounds.min.array() - margin, bounds.max.array() + margin};
+}
+
+/// Bounds of `rotation * x + translation` for x within `bounds`.
+inline Bounds moved(const Bounds& bounds, const Mat3& rotation, const Vec3& translation) {
+  Bounds result{translation, translation};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      const double r = rotation(row, column);
+      // Rounding in a rotation (cos 90 deg = 6e-17) must not spread an infinite side.
+      if (std::abs(r) < 1e-15) continue;
+      const double a = r * bounds.min[column], b = r * bounds.max[column];
+      result.min[row] += std::min(a, b);
+      result.max[row] += std::max(a, b);
+    }
+  return result;
+}
+
+/// Whether the bounds are finite along every axis the scene has (x and z in 2D).
+inline bool is_finite(const Bounds& bounds, int dimension) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == 1 && dimension == 2) continue;
+    if (!std::isfinite(bounds.min[axis]) || !std::isfinite(bounds.max[axis])) return false;
+  }
+  return true;
+}
+
+}  // namespace snowshed

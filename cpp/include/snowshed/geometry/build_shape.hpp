@@ -1,0 +1,24 @@
+// From the description of a solid in a scene to the solid.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "snowshed/geometry/level_set.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// How deep unions, differences and transforms may nest.
+inline constexpr int max_shape_depth = 32;
+
+/// The solid that `spec` describes, for a scene of `dimension` 2 or 3. Files are sought
+/// relative to `base_dir`. In 2D boxes and plates are unbounded along y, and every point and
+/// direction must lie in the plane y = 0.
+///
+/// Throws InputError with the JSON path (`json_path` + "/radius") of a bad value, or with
+/// the file and place of bad mesh or grid data.
+Shape build_shape(const ShapeSpec& spec, int dimension, const std::string& json_path,
+                  const std::filesystem::path& base_dir);
+
+}  // namespace snowshed

@@ -1,0 +1,30 @@
+// From a cloud of particles to a solid.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/geometry/level_set.hpp"
+
+namespace snowshed {
+
+/// The radius to give particles seeded `per_voxel` to a voxel, metres: three eighths of their
+/// mean spacing. Of the radii tried it keeps the volume best (within 1.5 % for slabs and domes
+/// in 2D and 3D, poisson or jittered), and the outline within 0.2 voxels at each end.
+double particle_radius(int dimension, double voxel, double per_voxel);
+
+/// The solid that a cloud of particles fills: the "VDB from particles" of the thesis on a
+/// plain grid of half the voxel size. `voxel` and `radius` in metres.
+///
+/// The union of balls of `radius` is closed (dilated, then eroded) by one voxel. Closing
+/// fills the gaps between particles, which are narrower than two voxels at 4 or more particles
+/// per voxel, but does not move the outline, which stays `radius` beyond the outermost
+/// particles, nor fills valleys wider than about two voxels. Heights and lengths thus exceed
+/// those of the particle centres by `radius` at each end.
+/// Single particles apart from the rest are too small for the grid and vanish.
+///
+/// Throws InputError if there are no points, if all of them vanish, if a point is not finite,
+/// or if the cloud's bounds need too large a grid.
+Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, double voxel,
+                             double radius);
+
+}  // namespace snowshed

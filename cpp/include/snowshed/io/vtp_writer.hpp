@@ -1,0 +1,29 @@
+// Particle snapshots as VTK PolyData (.vtp), which ParaView and VisIt open.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace snowshed {
+
+/// A quantity at each point: `components` consecutive values a point.
+struct PointArray {
+  std::string name;
+  int components = 1;
+  std::variant<std::vector<float>, std::vector<double>, std::vector<std::int32_t>,
+               std::vector<std::uint16_t>, std::vector<std::uint8_t>>
+      values;
+};
+
+/// Writes each point (metres) as a vertex, atomically. FileError where that fails;
+/// std::invalid_argument if an array's length is not `components` times the number of points.
+void write_vtp(const std::filesystem::path& path, const std::vector<std::array<float, 3>>& points,
+               const std::vector<PointArray>& arrays);
+void write_vtp(const std::filesystem::path& path, const std::vector<std::array<double, 3>>& points,
+               const std::vector<PointArray>& arrays);
+
+}  // namespace snowshed

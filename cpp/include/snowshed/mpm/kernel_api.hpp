@@ -1,0 +1,136 @@
+// What the solver and the kernels agree on: raw views, and one table of functions per combination
+// of features. The kernels are compiled once for each instruction set (cmake/KernelVariants.cmake),
+// so nothing here depends on one.
+#pragma once
+
+#include <cstdint>
+
+#include "snowshed/scene/options.hpp"
+
+namespace snowshed {
+
+/// Nodes along one edge of a grid block.
+template <int D>
+inline constexpr int block_edge = D == 3 ? 4 : 8;
+
+template <int D>
+inline constexpr int block_nodes = D == 3 ? 64 : 64;
+
+/// Values per node, one 256-bit load in single precision.
+/// Sums:       mass, momentum (3), force (3), unused.
+/// Velocities: new velocity (3), unused, then its change over the step (FLIP) or itself (APIC).
+inline constexpr int node_values = 8;
+
+/// Nodes that a particle touches along one direction.
+constexpr int support(Basis basis) { return basis == Basis::quadratic ? 3 : 4; }
+
+/// Distance, in cells, from a particle's lowest node to the particle, less its fraction.
+constexpr double base_offset(Basis basis) { return basis == Basis::quadratic ? 0.5 : 1.0; }
+
+/// Edge of a block's tile: its own nodes, those its particles reach beyond, and one more on
+/// either side so that particles may stray by a cell before they must be sorted again.
+template <int D>
+constexpr int tile_edge(Basis basis) {
+  return block_edge<D> + support(basis) + 1;
+}
+template <int D>
+constexpr int tile_nodes(Basis basis) {
+  const int n = tile_edge<D>(basis);
+  return D == 3 ? n * n * n : n * n;
+}
+
+template <int D>
+inline constexpr int neighbour_count = D == 3 ? 27 : 9;
+
+/// Particle arrays, structure of arrays. `cell` is the position in cells relative to the block's
+/// first node, less base_offset, so that its integer part is the lowest node touched.
+template <class T>
+struct ParticleView {
+  T* cell[3];
+  T* velocity[3];
+  T* affine[9];   // APIC only: C, row by row, 1/s
+  T* strain[6];   // b - I, b the elastic left Cauchy-Green tensor
+  T* plastic;     // volumetric plastic strain; plastic laws only
+  T* mass;
+};
+
+/// Constants of the material, in double; kernels derive theirs.
+struct MaterialConstants {
+  double youngs_modulus, poissons_ratio, critical_state_slope, cohesion, hardening_factor;
+};
+
+template <class T>
+struct StepParameters {
+  T dt, dx, gravity, flip_ratio, specific_volume;  // specific volume: initial, m3/kg
+  MaterialConstants material;
+};
+
+/// What a kernel reports of one block of particles.
+struct BlockStats {
+  double speed_squared = 0;  // largest, of velocity and of motion, m2/s2
+  double strain = 0;         // largest |dt grad v| component
+  bool escaped = false;      // a particle left the tile: the sums are not valid, sort first
+  bool bad = false;          // a particle's state is not finite
+  double kinetic = 0, elastic = 0, plastic = 0;  // J; with energy books only
+};
+
+/// What a kernel reports of one block of nodes.
+struct NodeStats {
+  double low[3], high[3];  // range of the new velocities; low > high where there is no snow
+  double kinetic_before = 0, kinetic_after = 0;  // of the grid, J; before forces, after contact
+  double friction = 0, sticking = 0, impact = 0; // taken by contact, J
+};
+
+/// A node that an obstacle constrains.
+template <class T>
+struct Contact {
+  std::int32_t node;
+  std::int32_t obstacle;
+  T normal[3];
+  T velocity[3];  // of the obstacle at the node
+  T debt;         // pull already taken, not yet paid back by push: see contact.hpp
+  T next_debt;
+  bool holds;     // SLIP: no separation here
+};
+
+struct ContactLaw {
+  Condition condition;
+  double friction;
+};
+
+template <class T>
+struct Kernels {
+  /// Sums of a block's particles onto its tile, from their present state.
+  void (*scatter)(const StepParameters<T>&, const ParticleView<T>&, int first, int count, T* tile,
+                  BlockStats&);
+  /// One step of a block's particles from the velocities of the 3^D blocks around, and their sums
+  /// for the next step.
+  void (*advance)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
+                  const T* const* velocities, T* tile, BlockStats&);
+  /// Only the largest |dt grad v| that `advance` would impose.
+  void (*probe)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
+                const T* const* velocities, BlockStats&);
+  /// Adds the tiles of the 3^D particle blocks around (null: none) to a block's node sums.
+  void (*gather)(const T* const* tiles, T* sums);
+  /// Node velocities from the sums: forces, gravity, contact.
+  void (*update)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
+                 int contact_count, const ContactLaw*, NodeStats&);
+};
+
+struct KernelChoice {
+  int dimension;
+  Transfer transfer;
+  Basis basis;
+  SnowModel model;
+  bool energy;
+};
+
+/// The best build of the chosen kernels for this machine.
+template <class T>
+Kernels<T> select_kernels(const KernelChoice&);
+
+/// "avx512", "avx2" or "baseline": what select_kernels uses here. The environment variable
+/// SNOWSHED_KERNELS forces one.
+const char* kernel_variant();
+
+}  // namespace snowshed

@@ -1,0 +1,90 @@
+// The particles: structure of arrays, sorted by grid block.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "snowshed/mpm/kernel_api.hpp"
+#include "snowshed/support/aligned_vector.hpp"
+
+namespace snowshed {
+
+/// State of all particles in D dimensions. Arrays that a scene does not need stay empty.
+template <class T, int D>
+struct Particles {
+  static constexpr int strain_size = D * (D + 1) / 2;
+
+  std::array<AlignedVector<T>, D> cell;      // in cells, relative to the block (ParticleView)
+  std::array<AlignedVector<T>, D> velocity;  // m/s
+  std::array<AlignedVector<T>, D * D> affine;           // APIC only, 1/s
+  std::array<AlignedVector<T>, strain_size> strain;     // b - I
+  AlignedVector<T> plastic;                             // plastic laws only
+  AlignedVector<T> mass;                                // kg (per metre of width in 2D)
+  AlignedVector<std::uint32_t> id;
+  AlignedVector<std::uint16_t> event;                   // in which each was released
+
+  bool has_affine = false, has_plastic = false;
+
+  std::size_t size() const { return mass.size(); }
+
+  /// Calls f(name, array) for every array in use: the one list of what a particle is.
+  template <class F>
+  void for_each_array(F f) {
+    each(*this, f);
+  }
+  template <class F>
+  void for_each_array(F f) const {
+    each(*this, f);
+  }
+
+  void resize(std::size_t n) {
+    for_each_array([n](const char*, auto& array) { array.resize(n); });
+  }
+
+  ParticleView<T> view() {
+    ParticleView<T> v{};
+    for (int d = 0; d < D; ++d) {
+      v.cell[d] = cell[d].data();
+      v.velocity[d] = velocity[d].data();
+    }
+    for (int k = 0; k < strain_size; ++k) v.strain[k] = strain[k].data();
+    for (int k = 0; k < D * D; ++k) v.affine[k] = affine[k].data();
+    v.plastic = plastic.data();
+    v.mass = mass.data();
+    return v;
+  }
+
+  /// Rearranges: the new particle i is the old particle order[i].
+  void permute(const std::vector<std::uint32_t>& order) {
+    for_each_array([&order](const char*, auto& array) {
+      std::remove_reference_t<decltype(array)> sorted;
+      sorted.resize(order.size());
+#pragma omp parallel for schedule(static)
+      for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(order.size()); ++i) sorted[i] = array[order[i]];
+      array.swap(sorted);
+    });
+  }
+
+ private:
+  template <class Self, class F>
+  static void each(Self& self, F& f) {
+    static constexpr const char* axis[] = {"0", "1", "2", "3", "4", "5", "6", "7", "8"};
+    const auto all = [&f](const char* name, auto& arrays) {
+      for (std::size_t k = 0; k < arrays.size(); ++k)
+        f((std::string(name) + axis[k]).c_str(), arrays[k]);
+    };
+    all("cell", self.cell);
+    all("velocity", self.velocity);
+    if (self.has_affine) all("affine", self.affine);
+    all("strain", self.strain);
+    if (self.has_plastic) f("plastic", self.plastic);
+    f("mass", self.mass);
+    f("id", self.id);
+    f("event", self.event);
+  }
+};
+
+}  // namespace snowshed

@@ -1,0 +1,91 @@
+// The MPM solver: one explicit step at a time. The abstract class hides dimension and precision,
+// which are chosen once, in `make_solver`.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "snowshed/mpm/contact.hpp"
+#include "snowshed/mpm/energy.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+class BinaryWriter;
+class BinaryReader;
+
+struct SolverOptions {
+  int dimension = 3;
+  double gravity = 9.81;  // m/s2, along -z
+  Snow snow;
+  Numerics numerics;
+  bool energy = false;  // keep energy books
+};
+
+/// Particles to add: equal masses, one velocity.
+struct ParticleBatch {
+  std::vector<Vec3> positions;  // m
+  Vec3 velocity = Vec3::Zero(); // m/s
+  double mass = 0;              // kg each (per metre of width in 2D)
+  int event = 1;
+};
+
+/// A copy of the particles for the outside, in double, ordered by id.
+struct ParticleState {
+  std::vector<Vec3> positions, velocities;  // m, m/s
+  std::vector<double> masses;               // kg
+  std::vector<double> volume_ratios;        // current over initial volume
+  std::vector<double> plastic_strains;      // volumetric, compaction negative
+  std::vector<double> pressures;            // Kirchhoff, Pa, compression positive
+  std::vector<std::uint32_t> ids;
+  std::vector<std::uint16_t> events;
+};
+
+/// How much the snow moves.
+struct MotionSummary {
+  double mass = 0;         // kg
+  double rms_speed = 0;    // m/s
+  double moving_mass = 0;  // kg faster than the given speed
+};
+
+/// Counters since the solver was made.
+struct StepCounters {
+  std::int64_t steps = 0, rejected = 0, sorts = 0, particle_updates = 0;
+  double smallest_dt = 0;  // s
+};
+
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  virtual void add(const ParticleBatch&) = 0;
+  virtual void clear() = 0;  ///< removes all particles
+
+  /// One step. Throws SimulationError when it cannot go on; the particles are then as they were
+  /// before the step, except after "not finite".
+  virtual void step() = 0;
+
+  /// Whether the state is only the particles, so that a checkpoint taken now resumes to the same
+  /// bits. True before every sort: at least once in `steps_between_sorts` steps.
+  virtual bool at_safe_point() const = 0;
+
+  virtual std::size_t size() const = 0;
+  virtual double time() const = 0;       ///< s
+  virtual double time_step() const = 0;  ///< s, of the last step
+  virtual const StepCounters& counters() const = 0;
+  virtual ParticleState state() const = 0;
+  virtual MotionSummary motion(double speed) const = 0;
+  virtual EnergyBooks energy() const = 0;
+  virtual std::size_t bytes() const = 0;  ///< held by particles and grid
+
+  virtual void save(BinaryWriter&) const = 0;
+  virtual void load(const BinaryReader&) = 0;
+};
+
+inline constexpr int steps_between_sorts = 64;
+
+std::unique_ptr<Solver> make_solver(const SolverOptions&, std::vector<Obstacle>);
+
+}  // namespace snowshed

@@ -1,0 +1,39 @@
+// What a scene will cost, by arithmetic alone: nothing is seeded or simulated.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// Estimates, in double because an absurd scene may ask for more than an integer holds.
+struct Forecast {
+  std::vector<double> particles;  // new in each event
+  double total_particles = 0.0;   // sum over the events, what the last one carries
+  double wave_speed = 0.0;        // m/s, elastic, of the initial snow
+  double time_step = 0.0;         // s
+  bool slides = false;            // gravity overcomes the panel's friction
+  double slide_time = 0.0;        // s, until the slab's rear leaves the panel
+  double fall_time = 0.0;         // s, of that rear or the last body; infinite if it never lands
+  double event_time = 0.0;        // s, sliding, falling and settling; at most events.max_time
+  double steps = 0.0;             // all events
+  double bytes = 0.0;             // peak memory, particles and grid
+};
+
+/// `particles_per_event` replaces the estimate from the volumes, for snow whose volume the scene
+/// does not tell (meshes and grids) or that has been seeded already.
+Forecast forecast(const Scene& scene, std::optional<double> particles_per_event = std::nullopt);
+
+/// Largest stable time step of explicit MPM with quadratic B-splines, times step_factor:
+///   dt = step_factor * 2 dx / sqrt(6 (d lambda + 2 mu) / rho0),
+/// lambda and mu the Lame parameters, d the dimension. Cubic splines are smoother and stable too.
+double stable_time_step(const Scene& scene);
+
+/// Throws InputError naming both numbers when `bytes` exceeds `available`; by default the memory
+/// of the machine, or of the container where it has less.
+void check_memory(double bytes);
+void check_memory(double bytes, double available);
+
+}  // namespace snowshed

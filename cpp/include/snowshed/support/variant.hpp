@@ -1,0 +1,17 @@
+// Code that the kernels share lives in a namespace named after the instruction set it is
+// compiled for, so that the linker never mixes an AVX-512 copy of an inline function into the
+// build for older machines. Everywhere else it is simply `snowshed`.
+#pragma once
+
+#ifndef SNOWSHED_KERNEL_VARIANT
+#define SNOWSHED_KERNEL_VARIANT host
+#endif
+
+#define SNOWSHED_VARIANT_BEGIN   \
+  namespace snowshed {           \
+  inline namespace SNOWSHED_KERNEL_VARIANT {
+#define SNOWSHED_VARIANT_END \
+  }                          \
+  }
+
+#define SNOWSHED_INLINE inline __attribute__((always_inline))

@@ -1,0 +1,142 @@
+#include "snowshed/geometry/combine.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "snowshed/geometry/bounds.hpp"
+
+namespace snowshed {
+namespace {
+
+/// The operand with the smallest distance, and that distance.
+std::pair<const LevelSet*, double> nearest(const std::vector<Shape>& shapes, const Vec3& x) {
+  const LevelSet* best = nullptr;
+  double smallest = infinity;
+  for (const Shape& shape : shapes) {
+    const double d = shape->distance(x);
+    if (best && d >= smallest) continue;
+    best = shape.get();
+    smallest = d;
+  }
+  return {best, smallest};
+}
+
+class Union final : public LevelSet {
+ public:
+  explicit Union(std::vector<Shape> shapes) : shapes_(std::move(shapes)) {}
+  double distance(const Vec3& x) const override { return nearest(shapes_, x).second; }
+  Vec3 normal(const Vec3& x) const override { return nearest(shapes_, x).first->normal(x); }
+
+  Bounds bounds() const override {
+    Bounds result = no_bounds();
+    for (const Shape& shape : shapes_) result = snowshed::unite(result, shape->bounds());
+    return result;
+  }
+
+  double inradius() const override {
+    double result = 0;
+    for (const Shape& shape : shapes_) result = std::max(result, shape->inradius());
+    return result;
+  }
+
+ private:
+  std::vector<Shape> shapes_;
+};
+
+class Difference final : public LevelSet {
+ public:
+  Difference(Shape first, std::vector<Shape> others)
+      : first_(std::move(first)), others_(std::move(others)) {}
+
+  double distance(const Vec3& x) const override {
+    return std::max(first_->distance(x), -nearest(others_, x).second);
+  }
+
+  Vec3 normal(const Vec3& x) const override {
+    const auto [hole, depth] = nearest(others_, x);
+    return first_->distance(x) >= -depth ? first_->normal(x) : Vec3(-hole->normal(x));
+  }
+
+  Bounds bounds() const override { return first_->bounds(); }
+  double inradius() const override { return first_->inradius(); }
+
+ private:
+  Shape first_;
+  std::vector<Shape> others_;
+};
+
+class Transformed final : public LevelSet {
+ public:
+  Transformed(Shape shape, const Mat3& rotation, const Vec3& translation)
+      : shape_(std::move(shape)), rotation_(rotation), translation_(translation) {}
+
+  double distance(const Vec3& x) const override { return shape_->distance(local(x)); }
+  Vec3 normal(const Vec3& x) const override { return rotation_ * shape_->normal(local(x)); }
+  Bounds bounds() const override { return moved(shape_->bounds(), rotation_, translation_); }
+  double inradius() const override { return shape_->inradius(); }
+
+  std::optional<OrientedBox> oriented_box() const override {
+    auto box = shape_->oriented_box();
+    if (!box) return box;
+    return OrientedBox{rotation_ * box->center + translation_, rotation_ * box->axes, box->half};
+  }
+
+ private:
+  Vec3 local(const Vec3& x) const { return rotation_.transpose() * (x - translation_); }
+
+  Shape shape_;
+  Mat3 rotation_;
+  Vec3 translation_;
+};
+
+class Dilated final : public LevelSet {
+ public:
+  Dilated(Shape shape, double offset) : shape_(std::move(shape)), offset_(offset) {}
+  double distance(const Vec3& x) const override { return shape_->distance(x) - offset_; }
+  Vec3 normal(const Vec3& x) const override { return shape_->normal(x); }
+  Bounds bounds() const override { return expanded(shape_->bounds(), offset_); }
+  double inradius() const override { return shape_->inradius() + offset_; }
+
+ private:
+  Shape shape_;
+  double offset_;
+};
+
+class CrossSection final : public LevelSet {
+ public:
+  explicit CrossSection(Shape shape) : shape_(std::move(shape)) {}
+  double distance(const Vec3& x) const override { return shape_->distance(x); }
+
+  Vec3 normal(const Vec3& x) const override {
+    Vec3 n = shape_->normal(x);
+    n.y() = 0;
+    const double length = n.norm();
+    return length > 1e-6 ? Vec3(n / length) : Vec3::UnitZ();
+  }
+
+  Bounds bounds() const override { return shape_->bounds(); }
+  double inradius() const override { return shape_->inradius(); }
+
+ private:
+  Shape shape_;
+};
+
+}  // namespace
+
+Shape unite(std::vector<Shape> shapes) { return std::make_shared<Union>(std::move(shapes)); }
+
+Shape subtract(Shape first, std::vector<Shape> others) {
+  return std::make_shared<Difference>(std::move(first), std::move(others));
+}
+
+Shape transform(Shape shape, const Mat3& rotation, const Vec3& translation) {
+  return std::make_shared<Transformed>(std::move(shape), rotation, translation);
+}
+
+Shape dilate(Shape shape, double offset) {
+  return std::make_shared<Dilated>(std::move(shape), offset);
+}
+
+Shape cross_section(Shape shape) { return std::make_shared<CrossSection>(std::move(shape)); }
+
+}  // namespace snowshed

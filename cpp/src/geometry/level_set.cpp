@@ -1,0 +1,30 @@
+#include "snowshed/geometry/level_set.hpp"
+
+#include <algorithm>
+
+namespace snowshed {
+namespace {
+
+template <class Difference>
+Vec3 gradient(Difference difference, double step) {
+  Vec3 result;
+  for (int axis = 0; axis < 3; ++axis) result[axis] = difference(step * Vec3::Unit(axis)) / step;
+  return result;
+}
+
+}  // namespace
+
+Vec3 LevelSet::normal(const Vec3& x) const {
+  // A distance has gradient norm 1 except on the medial axis, where the central difference
+  // shrinks, or vanishes by symmetry; one-sided differences then pick one of the nearest points.
+  constexpr double smallest_trusted = 0.1;
+  const double step = 1e-6 * std::max(1.0, x.cwiseAbs().maxCoeff());
+  const auto central = [&](const Vec3& h) { return (distance(x + h) - distance(x - h)) / 2; };
+  const auto forward = [&](const Vec3& h) { return distance(x + h) - distance(x); };
+  Vec3 result = gradient(central, step);
+  if (!(result.norm() > smallest_trusted)) result = gradient(forward, step);
+  if (!(result.norm() > smallest_trusted)) return Vec3::UnitZ();
+  return result.normalized();
+}
+
+}  // namespace snowshed

@@ -1,0 +1,39 @@
+// The grid's arrays: a tile of sums for each block with particles, and for each grid block the
+// gathered sums and the velocities.
+#pragma once
+
+#include "snowshed/mpm/block_layout.hpp"
+#include "snowshed/support/aligned_vector.hpp"
+
+namespace snowshed {
+
+template <class T, int D>
+struct Grid {
+  int tile_size;  // values per tile
+  AlignedVector<T> tiles, sums, velocities;
+  std::vector<BlockStats> block_stats;  // per particle block
+  std::vector<NodeStats> node_stats;    // per grid block
+
+  static constexpr int block_size = block_nodes<D> * node_values;
+
+  explicit Grid(Basis basis) : tile_size(tile_nodes<D>(basis) * node_values) {}
+
+  void resize(const BlockLayout<D>& layout) {
+    const std::size_t blocks = layout.particle_blocks.size(), nodes = layout.grid_blocks.size();
+    tiles.resize(blocks * tile_size);
+    sums.resize(nodes * block_size);
+    velocities.resize(nodes * block_size);
+    block_stats.resize(blocks);
+    node_stats.resize(nodes);
+  }
+
+  T* tile(std::size_t block) { return tiles.data() + block * tile_size; }
+  T* sum(std::size_t block) { return sums.data() + block * block_size; }
+  T* velocity(std::size_t block) { return velocities.data() + block * block_size; }
+
+  std::size_t bytes() const {
+    return (tiles.capacity() + sums.capacity() + velocities.capacity()) * sizeof(T);
+  }
+};
+
+}  // namespace snowshed

@@ -1,0 +1,368 @@
+// The particle side of a step. Thesis 1.2.2: transfer to the grid (1.2.10, 1.2.23), forces (1.2.13
+// in Kirchhoff form), elastic trial (1.2.14), return mapping, transfer back (1.2.24-1.2.26).
+//
+// `advance` takes a particle through a whole step and straight on to the sums of the next one, so
+// that its state is read and written once.
+#pragma once
+
+#include "mpm/kernels/chunk.hpp"
+#include "mpm/kernels/tile.hpp"
+#include "snowshed/material/cam_clay.hpp"
+#include "snowshed/material/elastic.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+template <class T>
+CamClay<T> make_material(const MaterialConstants& m, int dimension, CamClay<T>*) {
+  return CamClay<T>::from(m.youngs_modulus, m.poissons_ratio, m.critical_state_slope, m.cohesion,
+                          m.hardening_factor, dimension);
+}
+template <class T>
+Elastic<T> make_material(const MaterialConstants& m, int dimension, Elastic<T>*) {
+  return {Elasticity<T>::from(m.youngs_modulus, m.poissons_ratio, dimension)};
+}
+
+template <class T, int D, Transfer transfer, Basis basis, class Material, bool energy>
+struct ParticleKernels {
+  using V = Lanes<T>;
+  using Tensor = Sym<V, D>;
+  static constexpr int W = lane_count<T>;
+  static constexpr int S = support(basis);
+  static constexpr int N = tile_edge<D>(basis);
+  static constexpr bool apic = transfer == Transfer::apic;
+  /// APIC's inertia D_p = dx^2/4 (quadratic) or dx^2/3 (cubic), inverse, per cell squared.
+  static constexpr T apic_scale = basis == Basis::quadratic ? T(4) : T(3);
+
+  const StepParameters<T>& step;
+  const ParticleView<T>& p;
+  const Material material;
+  BlockStats& stats;
+
+  ParticleKernels(const StepParameters<T>& s, const ParticleView<T>& v, BlockStats& b)
+      : step(s),
+        p(v),
+        material(make_material<T>(s.material, D, static_cast<Material*>(nullptr))),
+        stats(b) {}
+
+  /// One chunk's state in registers.
+  struct State {
+    V cell[D], velocity[D], affine[apic ? D * D : 1], plastic, mass;
+    Tensor strain;
+  };
+
+  SNOWSHED_INLINE void read(State& s, int at, int n) const {
+    for (int d = 0; d < D; ++d) {
+      s.cell[d] = load(p.cell[d] + at, n);
+      s.velocity[d] = load(p.velocity[d] + at, n);
+    }
+    for (int k = 0; k < Tensor::size; ++k) s.strain.c[k] = load(p.strain[k] + at, n);
+    if constexpr (apic)
+      for (int k = 0; k < D * D; ++k) s.affine[k] = load(p.affine[k] + at, n);
+    if constexpr (Material::plastic) s.plastic = load(p.plastic + at, n);
+    s.mass = load(p.mass + at, n);
+  }
+
+  SNOWSHED_INLINE void write(const State& s, int at, int n) const {
+    for (int d = 0; d < D; ++d) {
+      store(p.cell[d] + at, s.cell[d], n);
+      store(p.velocity[d] + at, s.velocity[d], n);
+    }
+    for (int k = 0; k < Tensor::size; ++k) store(p.strain[k] + at, s.strain.c[k], n);
+    if constexpr (apic)
+      for (int k = 0; k < D * D; ++k) store(p.affine[k] + at, s.affine[k], n);
+    if constexpr (Material::plastic) store(p.plastic + at, s.plastic, n);
+  }
+
+  // --- grid to particles ------------------------------------------------------------------
+
+  SNOWSHED_INLINE static auto gradient_only(const Stencil<T, D, basis>& stencil, int l) {
+    return [&stencil, l](int d, int k) { return stencil.gradient[d][k][l]; };
+  }
+  /// APIC: the first four values of a node meet the derivative, the others the arm.
+  SNOWSHED_INLINE static auto gradient_then_arm(const Stencil<T, D, basis>& stencil, int l) {
+    return [&stencil, l](int d, int k) {
+      const T g = stencil.gradient[d][k][l];
+      const T a = stencil.weight[d][k][l] * stencil.arm(d, k, l);
+      return Node<T>{g, g, g, g, a, a, a, a};
+    };
+  }
+  SNOWSHED_INLINE static auto arm_then_gradient(const Stencil<T, D, basis>& stencil, int l) {
+    return [&stencil, l](int d, int k) {
+      const T g = stencil.gradient[d][k][l];
+      const T a = stencil.weight[d][k][l] * stencil.arm(d, k, l);
+      return Node<T>{a, a, a, a, g, g, g, g};
+    };
+  }
+
+  /// Everything the grid tells a chunk.
+  struct Motion {
+    V pic[D], change[D], gradient[D][D];  // gradient[i][j] = dt d v_i / d x_j
+    V affine[apic ? D * D : 1];
+  };
+
+  SNOWSHED_INLINE void interpolate(const Stencil<T, D, basis>& stencil, const T* tile, int n,
+                                   Motion& m) const {
+    constexpr int row = (1 + D) * node_values;
+    alignas(64) T raw[W][row];
+    for (int l = 0; l < n; ++l) {
+      NodeSums<T, D> sums;
+      if constexpr (apic)
+        sums = collect(stencil, l, tile, gradient_then_arm(stencil, l));
+      else
+        sums = collect(stencil, l, tile, gradient_only(stencil, l));
+      std::memcpy(raw[l], &sums, sizeof sums);
+    }
+    for (int l = n; l < W; ++l) std::memcpy(raw[l], raw[0], sizeof raw[0]);
+    const auto column = [&raw](int c) {
+      V v;
+      for (int l = 0; l < W; ++l) v[l] = raw[l][c];
+      return v;
+    };
+    const T per_step = step.dt / step.dx;
+    for (int i = 0; i < D; ++i) {
+      m.pic[i] = column(i);
+      if constexpr (!apic) m.change[i] = column(4 + i);
+      for (int j = 0; j < D; ++j) {
+        m.gradient[i][j] = column(node_values * (1 + j) + i) * per_step;
+        if constexpr (apic)
+          m.affine[i * D + j] = column(node_values * (1 + j) + 4 + i) * (apic_scale / step.dx);
+      }
+    }
+  }
+
+  SNOWSHED_INLINE V largest_gradient(const Motion& m) const {
+    V r = abs(m.gradient[0][0]);
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) r = max(r, abs(m.gradient[i][j]));
+    return r;
+  }
+
+  // --- the particle's own step ------------------------------------------------------------
+
+  SNOWSHED_INLINE void move(State& s, const Motion& m) const {
+    for (int d = 0; d < D; ++d) {
+      s.cell[d] += m.pic[d] * (step.dt / step.dx);
+      if constexpr (apic)
+        s.velocity[d] = m.pic[d];
+      else  // (1.2.26)
+        s.velocity[d] = m.pic[d] + step.flip_ratio * (s.velocity[d] + m.change[d] - m.pic[d]);
+    }
+    if constexpr (apic)
+      for (int k = 0; k < D * D; ++k) s.affine[k] = m.affine[k];
+  }
+
+  /// b <- (I + G) b (I + G)^T with G = dt grad v (1.2.14), on b - I: with H = G b,
+  /// a <- a + H + H^T + H G^T.
+  SNOWSHED_INLINE void stretch(State& s, const Motion& m) const {
+    V h[D][D];
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) {
+        V sum = m.gradient[i][j];
+        for (int k = 0; k < D; ++k) sum += m.gradient[i][k] * s.strain(k, j);
+        h[i][j] = sum;
+      }
+    for (int i = 0; i < D; ++i)
+      for (int j = i; j < D; ++j) {
+        V sum = h[i][j] + h[j][i];
+        for (int k = 0; k < D; ++k) sum += h[i][k] * m.gradient[j][k];
+        s.strain(i, j) += sum;
+      }
+  }
+
+  /// Kirchhoff stress of the present elastic strain; for plastic laws after bringing the strain
+  /// back to the yield surface, unless `committed` says that it is there already.
+  SNOWSHED_INLINE Tensor stress(State& s, int n, bool committed) const {
+    const auto& el = material.elastic;
+    Tensor e = hencky_strain(s.strain);
+    const V volumetric = trace(e);
+    const V third = volumetric * (T(1) / T(D));
+    Tensor dev = e;
+    for (int k = 0; k < D; ++k) dev.c[k] -= third;
+    V p_now = -el.bulk * volumetric;
+    V shear_scale = broadcast<V>(T(2) * el.mu);
+    if constexpr (Material::plastic || energy) {
+      const V q_trial = sqrt(V(T(6) * norm_squared(dev))) * el.mu;  // q = sqrt(3/2 s:s)
+      PQ<V> pq{p_now, q_trial};
+      if constexpr (Material::plastic) {
+        if (!committed && material.return_map(pq, s.plastic)) {
+          const auto sheared = q_trial > T(0);
+          const V keep = select(sheared, V(pq.q / select(sheared, q_trial, broadcast<V>(T(1)))),
+                                broadcast<V>(T(1)));
+          const V new_third = pq.p * (T(-1) / (el.bulk * T(D)));
+          for (int k = 0; k < Tensor::size; ++k) e.c[k] = keep * dev.c[k];
+          for (int k = 0; k < D; ++k) e.c[k] += new_third;
+          const Tensor returned = cauchy_green_minus_identity(e);
+          const auto changed = (pq.p != p_now) | (pq.q != q_trial);
+          for (int k = 0; k < Tensor::size; ++k)
+            s.strain.c[k] = select(changed, returned.c[k], s.strain.c[k]);
+          shear_scale *= keep;
+        }
+      }
+      if constexpr (energy) book(PQ<V>{p_now, q_trial}, pq, s.mass, n);
+      p_now = pq.p;
+    }
+    Tensor tau;
+    for (int k = 0; k < Tensor::size; ++k) tau.c[k] = shear_scale * dev.c[k];
+    for (int k = 0; k < D; ++k) tau.c[k] -= p_now;
+    return tau;
+  }
+
+  /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, before and after the return.
+  void book(const PQ<V>& trial, const PQ<V>& now, const V& mass, int n) const {
+    const auto& el = material.elastic;
+    for (int l = 0; l < n; ++l) {
+      const double volume = double(mass[l]) * double(step.specific_volume);
+      const auto density = [&el](double p, double q) {
+        return p * p / (2 * double(el.bulk)) + q * q / (6 * double(el.mu));
+      };
+      const double after = volume * density(now.p[l], now.q[l]);
+      stats.elastic += after;
+      stats.plastic += volume * density(trial.p[l], trial.q[l]) - after;
+    }
+  }
+
+  void book_motion(const State& s, int n) const {
+    for (int l = 0; l < n; ++l) {
+      double v2 = 0;
+      for (int d = 0; d < D; ++d) v2 += double(s.velocity[d][l]) * double(s.velocity[d][l]);
+      if constexpr (apic) {
+        const double inertia = double(step.dx) * double(step.dx) / double(apic_scale);
+        for (int k = 0; k < D * D; ++k)
+          v2 += inertia * double(s.affine[k][l]) * double(s.affine[k][l]);
+      }
+      stats.kinetic += 0.5 * double(s.mass[l]) * v2;
+    }
+  }
+
+  // --- particles to grid ------------------------------------------------------------------
+
+  /// Adds a chunk to the tile: mass, momentum, and the force -V0 tau grad w (1.2.13).
+  SNOWSHED_INLINE void scatter_chunk(const Stencil<T, D, basis>& stencil, const State& s,
+                                     const Tensor& tau, int n, T* tile) const {
+    V momentum[D], force[D][D], shear[D][D];
+    const V force_scale = s.mass * (-step.specific_volume / step.dx);
+    for (int i = 0; i < D; ++i) {
+      momentum[i] = s.mass * s.velocity[i];
+      for (int j = 0; j < D; ++j) {
+        force[i][j] = force_scale * tau(i, j);
+        if constexpr (apic) shear[i][j] = s.mass * s.affine[i * D + j] * step.dx;
+      }
+    }
+    for (int l = 0; l < n; ++l) {
+      NodeSums<T, D> a{};
+      a.value[0] = s.mass[l];
+      for (int i = 0; i < D; ++i) {
+        a.value[1 + i] = momentum[i][l];
+        for (int j = 0; j < D; ++j) {
+          a.along[j][4 + i] = force[i][j][l];
+          if constexpr (apic) a.along[j][1 + i] = shear[i][j][l];
+        }
+      }
+      if constexpr (apic)
+        deposit(stencil, l, a, tile, arm_then_gradient(stencil, l));
+      else
+        deposit(stencil, l, a, tile, gradient_only(stencil, l));
+    }
+  }
+
+  // --- blocks -----------------------------------------------------------------------------
+
+  void scatter_block(int first, int count, T* tile) const {
+    for (int at = first; at < first + count; at += W) {
+      const int n = first + count - at < W ? first + count - at : W;
+      State s;
+      read(s, at, n);
+      Stencil<T, D, basis> stencil;
+      stencil.place(s.cell, n);
+      if (!stencil.inside) {
+        stats.escaped = true;
+        continue;
+      }
+      const Tensor tau = stress(s, n, true);
+      scatter_chunk(stencil, s, tau, n, tile);
+      if constexpr (energy) book_motion(s, n);
+    }
+  }
+
+  void advance_block(int first, int count, const T* velocities, T* tile) const {
+    V speed = broadcast<V>(T(0)), strain = speed;
+    for (int at = first; at < first + count; at += W) {
+      const int n = first + count - at < W ? first + count - at : W;
+      State s;
+      read(s, at, n);
+      Stencil<T, D, basis> stencil;
+      stencil.place(s.cell, n);
+      Motion m;
+      interpolate(stencil, velocities, n, m);
+      move(s, m);
+      stretch(s, m);
+      const Tensor tau = stress(s, n, false);
+      write(s, at, n);
+
+      V v2 = s.velocity[0] * s.velocity[0], u2 = m.pic[0] * m.pic[0];
+      for (int d = 1; d < D; ++d) {
+        v2 += s.velocity[d] * s.velocity[d];
+        u2 += m.pic[d] * m.pic[d];
+      }
+      speed = max(speed, max(v2, u2));
+      strain = max(strain, largest_gradient(m));
+      if (any(v2 + trace(tau) - (v2 + trace(tau)) != T(0))) stats.bad = true;  // not finite
+      if constexpr (energy) book_motion(s, n);
+
+      stencil.place(s.cell, n);
+      if (stencil.inside)
+        scatter_chunk(stencil, s, tau, n, tile);
+      else
+        stats.escaped = true;
+    }
+    stats.speed_squared = double(largest(speed));
+    stats.strain = double(largest(strain));
+  }
+
+  void probe_block(int first, int count, const T* velocities) const {
+    V strain = broadcast<V>(T(0));
+    for (int at = first; at < first + count; at += W) {
+      const int n = first + count - at < W ? first + count - at : W;
+      V cell[D];
+      for (int d = 0; d < D; ++d) cell[d] = load(p.cell[d] + at, n);
+      Stencil<T, D, basis> stencil;
+      stencil.place(cell, n);
+      Motion m;
+      interpolate(stencil, velocities, n, m);
+      strain = max(strain, largest_gradient(m));
+    }
+    stats.strain = double(largest(strain));
+  }
+
+  // --- entries of the table ---------------------------------------------------------------
+
+  static constexpr int tile_size = tile_nodes<D>(basis) * node_values;
+
+  static void load_velocities(const T* const* blocks, T* tile) {
+    for_each_shared_row<D, basis>([&](int neighbour, int from, int to, int length) {
+      std::memcpy(tile + to * node_values, blocks[neighbour] + from * node_values,
+                  length * node_values * sizeof(T));
+    });
+  }
+
+  static void scatter(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
+                      T* tile, BlockStats& stats) {
+    std::memset(tile, 0, tile_size * sizeof(T));
+    ParticleKernels(step, p, stats).scatter_block(first, count, tile);
+  }
+  static void advance(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
+                      const T* const* velocities, T* tile, BlockStats& stats) {
+    alignas(64) T around[tile_size];
+    load_velocities(velocities, around);
+    std::memset(tile, 0, tile_size * sizeof(T));
+    ParticleKernels(step, p, stats).advance_block(first, count, around, tile);
+  }
+  static void probe(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
+                    const T* const* velocities, BlockStats& stats) {
+    alignas(64) T around[tile_size];
+    load_velocities(velocities, around);
+    ParticleKernels(step, p, stats).probe_block(first, count, around);
+  }
+};
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,42 @@
+// From a choice of features to the functions compiled for exactly them.
+#pragma once
+
+#include "mpm/kernels/node_kernels.hpp"
+#include "mpm/kernels/particle_kernels.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+template <class T, int D, Transfer transfer, Basis basis, class Material, bool energy>
+Kernels<T> kernels_for() {
+  using P = ParticleKernels<T, D, transfer, basis, Material, energy>;
+  using G = NodeKernels<T, D, basis, transfer == Transfer::flip, energy>;
+  return {&P::scatter, &P::advance, &P::probe, &G::gather, &G::update};
+}
+
+template <class T, int D, Transfer transfer, Basis basis, class Material>
+Kernels<T> with_energy(const KernelChoice& c) {
+  return c.energy ? kernels_for<T, D, transfer, basis, Material, true>()
+                  : kernels_for<T, D, transfer, basis, Material, false>();
+}
+template <class T, int D, Transfer transfer, Basis basis>
+Kernels<T> with_material(const KernelChoice& c) {
+  return c.model == SnowModel::cam_clay ? with_energy<T, D, transfer, basis, CamClay<T>>(c)
+                                        : with_energy<T, D, transfer, basis, Elastic<T>>(c);
+}
+template <class T, int D, Transfer transfer>
+Kernels<T> with_basis(const KernelChoice& c) {
+  return c.basis == Basis::quadratic ? with_material<T, D, transfer, Basis::quadratic>(c)
+                                     : with_material<T, D, transfer, Basis::cubic>(c);
+}
+template <class T, int D>
+Kernels<T> table(const KernelChoice& c) {
+  return c.transfer == Transfer::flip ? with_basis<T, D, Transfer::flip>(c)
+                                      : with_basis<T, D, Transfer::apic>(c);
+}
+
+Kernels<float> float_2d(const KernelChoice&);
+Kernels<float> float_3d(const KernelChoice&);
+Kernels<double> double_2d(const KernelChoice&);
+Kernels<double> double_3d(const KernelChoice&);
+
+SNOWSHED_VARIANT_END

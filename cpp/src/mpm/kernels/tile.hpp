@@ -1,0 +1,49 @@
+// Where the nodes of a block's tile come from: the ranges that a tile shares with each of the
+// 3^D blocks around it. Written once for two and three dimensions.
+#pragma once
+
+#include "snowshed/mpm/kernel_api.hpp"
+#include "snowshed/support/variant.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// Along one direction: the nodes [begin, end) of the block at `offset` (-1, 0, 1) that the tile
+/// covers; node n is the tile's node n + shift.
+template <int D, Basis basis>
+struct Overlap {
+  int begin, end, shift;
+  constexpr explicit Overlap(int offset)
+      : begin(offset < 0 ? block_edge<D> - 1 : 0),
+        end(offset > 0 ? support(basis) : block_edge<D>),
+        shift(offset * block_edge<D> + 1) {}
+};
+
+/// Calls row(neighbour, block_node, tile_node, length) for each run of consecutive nodes.
+template <int D, Basis basis, class Row>
+SNOWSHED_INLINE void for_each_shared_row(Row row) {
+  constexpr int B = block_edge<D>, N = tile_edge<D>(basis);
+  int neighbour = 0;
+  for (int ox = -1; ox <= 1; ++ox) {
+    const Overlap<D, basis> x(ox);
+    if constexpr (D == 3) {
+      for (int oy = -1; oy <= 1; ++oy) {
+        const Overlap<D, basis> y(oy);
+        for (int oz = -1; oz <= 1; ++oz, ++neighbour) {
+          const Overlap<D, basis> z(oz);
+          for (int i = x.begin; i < x.end; ++i)
+            for (int j = y.begin; j < y.end; ++j)
+              row(neighbour, (i * B + j) * B + z.begin,
+                  ((i + x.shift) * N + j + y.shift) * N + z.begin + z.shift, z.end - z.begin);
+        }
+      }
+    } else {
+      for (int oz = -1; oz <= 1; ++oz, ++neighbour) {
+        const Overlap<D, basis> z(oz);
+        for (int i = x.begin; i < x.end; ++i)
+          row(neighbour, i * B + z.begin, (i + x.shift) * N + z.begin + z.shift, z.end - z.begin);
+      }
+    }
+  }
+}
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,411 @@
+#include "snowshed/mpm/solver.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "mpm/solver_of.hpp"
+#include "snowshed/geometry/bounds.hpp"
+#include "snowshed/mpm/time_step.hpp"
+#include "snowshed/support/error.hpp"
+
+namespace snowshed {
+
+template <class T, int D>
+SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obstacles)
+    : options_(options),
+      kernels_(select_kernels<T>({D, options.numerics.transfer, options.numerics.basis,
+                                  options.snow.model, options.energy})),
+      threads_(options.numerics.threads > 0 ? options.numerics.threads : omp_get_num_procs()),
+      elastic_limit_(elastic_time_step(options.snow.youngs_modulus, options.snow.poissons_ratio,
+                                       options.snow.density, D, options.numerics.dx,
+                                       options.numerics.basis)),
+      contacts_(std::move(obstacles), options.numerics.dx),
+      grid_(options.numerics.basis) {
+  particles_.has_affine = options.numerics.transfer == Transfer::apic;
+  particles_.has_plastic = options.snow.model == SnowModel::cam_clay;
+  counters_.smallest_dt = elastic_limit_;
+}
+
+template <class T, int D>
+StepParameters<T> SolverOf<T, D>::parameters(double dt) const {
+  const Snow& s = options_.snow;
+  return {T(dt),
+          T(options_.numerics.dx),
+          T(options_.gravity),
+          T(options_.numerics.flip_ratio),
+          T(1 / s.density),
+          {s.youngs_modulus, s.poissons_ratio, s.critical_state_slope, s.cohesion,
+           s.hardening_factor}};
+}
+
+template <class T, int D>
+double SolverOf<T, D>::initial_plastic_strain() const {
+  const Snow& s = options_.snow;
+  return CamClay<double>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
+                               s.cohesion, s.hardening_factor, D)
+      .initial_plastic_strain(s.preconsolidation_pressure);
+}
+
+template <class T, int D>
+void SolverOf<T, D>::add(const ParticleBatch& batch) {
+  const std::size_t old = particles_.size();
+  std::vector<BlockKey> blocks = blocks_of_particles(layout_);
+  particles_.resize(old + batch.positions.size());
+  particles_.for_each_array([old](const char*, auto& array) {
+    using Value = typename std::remove_reference_t<decltype(array)>::value_type;
+    std::fill(array.begin() + std::ptrdiff_t(old), array.end(), Value(0));
+  });
+  const VecD<D> velocity = section<D>(batch.velocity);
+  const T plastic = particles_.has_plastic ? T(initial_plastic_strain()) : T(0);
+  for (std::size_t i = 0; i < batch.positions.size(); ++i) {
+    const auto place = Placement<D>::of(section<D>(batch.positions[i]), options_.numerics.dx,
+                                        options_.numerics.basis);
+    blocks.push_back(block_key<D>(place.block));
+    for (int d = 0; d < D; ++d) {
+      particles_.cell[d][old + i] = T(place.cell[d]);
+      particles_.velocity[d][old + i] = T(velocity[d]);
+    }
+    if (particles_.has_plastic) particles_.plastic[old + i] = plastic;
+    particles_.mass[old + i] = T(batch.mass);
+    particles_.id[old + i] = next_id_++;
+    particles_.event[old + i] = std::uint16_t(batch.event);
+  }
+  sort_particles(particles_, std::move(blocks), layout_);
+  contacts_.relocate(layout_.grid_blocks, time_);
+  grid_.resize(layout_);
+  tiles_valid_ = false;
+  speed_ = std::max(speed_, velocity.norm());
+  if (options_.energy) {
+    const double before = books_.stored();
+    books_.gravitational = gravitational_energy();
+    books_.kinetic = kinetic_energy();
+    books_.elastic = elastic_energy();
+    books_.added += books_.stored() - before;
+  }
+}
+
+template <class T, int D>
+void SolverOf<T, D>::clear() {
+  particles_.resize(0);
+  sort_particles(particles_, {}, layout_);
+  contacts_.relocate(layout_.grid_blocks, time_);
+  grid_.resize(layout_);
+  tiles_valid_ = false;
+  if (options_.energy) {
+    books_.added -= books_.stored();
+    books_.kinetic = books_.gravitational = books_.elastic = 0;
+  }
+}
+
+template <class T, int D>
+void SolverOf<T, D>::step() {
+  if (particles_.size() == 0) throw SimulationError("there is no snow to simulate");
+  if (!tiles_valid_) {
+    sort();
+    scatter();
+  }
+  gather();
+  dt_ = update_within_limits(
+      next_time_step(elastic_limit_, speed_, options_.numerics.dx, options_.numerics.step_factor));
+  advance(dt_);
+  time_ += dt_;
+  ++counters_.steps;
+  counters_.particle_updates += std::int64_t(particles_.size());
+  counters_.smallest_dt = std::min(counters_.smallest_dt, dt_);
+  if (++since_sort_ >= steps_between_sorts) tiles_valid_ = false;
+}
+
+template <class T, int D>
+void SolverOf<T, D>::sort() {
+  if (sort_particles(particles_, blocks_of_particles(layout_), layout_)) {
+    contacts_.relocate(layout_.grid_blocks, time_);
+    grid_.resize(layout_);
+  }
+  since_sort_ = 0;
+  ++counters_.sorts;
+}
+
+template <class T, int D>
+void SolverOf<T, D>::scatter() {
+  const ParticleView<T> view = particles_.view();
+  const StepParameters<T> step = parameters(dt_);
+  const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+  for (std::ptrdiff_t b = 0; b < n; ++b) {
+    BlockStats stats;
+    kernels_.scatter(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
+                     grid_.tile(b), stats);
+  }
+  tiles_valid_ = true;
+}
+
+template <class T, int D>
+void SolverOf<T, D>::gather() {
+  contacts_.follow(time_);
+  const std::ptrdiff_t n = std::ptrdiff_t(layout_.grid_blocks.size());
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads_)
+  for (std::ptrdiff_t g = 0; g < n; ++g) {
+    contacts_.commit(g);
+    const T* tiles[neighbour_count<D>];
+    for (int k = 0; k < neighbour_count<D>; ++k) {
+      const std::int32_t block = layout_.around_nodes[g][k];
+      tiles[k] = block < 0 ? nullptr : grid_.tile(block);
+    }
+    kernels_.gather(tiles, grid_.sum(g));
+  }
+}
+
+template <class T, int D>
+void SolverOf<T, D>::update(double dt) {
+  const StepParameters<T> step = parameters(dt);
+  const std::ptrdiff_t n = std::ptrdiff_t(layout_.grid_blocks.size());
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads_)
+  for (std::ptrdiff_t g = 0; g < n; ++g) {
+    grid_.node_stats[g] = {};
+    kernels_.update(step, grid_.sum(g), grid_.velocity(g), contacts_.of_block(g),
+                    contacts_.count(g), contacts_.laws().data(), grid_.node_stats[g]);
+  }
+}
+
+/// A step that would strain a particle beyond the limit is not taken: the grid's sums do not
+/// depend on dt, so only the node velocities are computed again with a smaller one.
+template <class T, int D>
+double SolverOf<T, D>::update_within_limits(double dt) {
+  const double limit = options_.numerics.strain_limit;
+  while (true) {
+    update(dt);
+    const double strain = largest_strain() * dt;
+    if (strain <= limit) return dt;
+    ++counters_.rejected;
+    if (!(std::isfinite(strain) && dt > 1e-7 * elastic_limit_)) {
+      std::ostringstream message;
+      message << "the time step fell to " << dt << " s at t = " << time_
+              << " s: the snow would strain by " << strain << " in one step (limit " << limit
+              << "); try a smaller numerics.step_factor";
+      throw SimulationError(message.str());
+    }
+    dt *= std::min(0.5, 0.8 * limit / strain);
+  }
+}
+
+/// The largest velocity gradient (1/s) the particles will see. B-spline derivatives average nodal
+/// differences, so the range of the nodal velocities around a block bounds it; only where that
+/// bound is too large are the particles themselves asked.
+template <class T, int D>
+double SolverOf<T, D>::largest_strain() {
+  const double dx = options_.numerics.dx;
+  const double rate_limit = options_.numerics.strain_limit /
+                            next_time_step(elastic_limit_, 0.0, dx, options_.numerics.step_factor);
+  const StepParameters<T> unit = parameters(1.0);
+  const ParticleView<T> view = particles_.view();
+  const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
+  double largest = 0;
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads_) reduction(max : largest)
+  for (std::ptrdiff_t b = 0; b < n; ++b) {
+    double bound = 0;
+    for (int d = 0; d < D; ++d) {
+      double low = infinity, high = -infinity;
+      for (std::int32_t g : layout_.around_particles[b]) {
+        low = std::min(low, grid_.node_stats[g].low[d]);
+        high = std::max(high, grid_.node_stats[g].high[d]);
+      }
+      bound = std::max(bound, (high - low) / dx);  // no snow: negative
+    }
+    if (!(bound <= rate_limit)) {
+      const T* velocities[neighbour_count<D>];
+      for (int k = 0; k < neighbour_count<D>; ++k)
+        velocities[k] = grid_.velocity(layout_.around_particles[b][k]);
+      BlockStats stats;
+      kernels_.probe(unit, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
+                     velocities, stats);
+      bound = std::isfinite(stats.strain) ? stats.strain : infinity;
+    }
+    largest = std::max(largest, bound);
+  }
+  return largest;
+}
+
+template <class T, int D>
+void SolverOf<T, D>::advance(double dt) {
+  const StepParameters<T> step = parameters(dt);
+  const ParticleView<T> view = particles_.view();
+  const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+  for (std::ptrdiff_t b = 0; b < n; ++b) {
+    const T* velocities[neighbour_count<D>];
+    for (int k = 0; k < neighbour_count<D>; ++k)
+      velocities[k] = grid_.velocity(layout_.around_particles[b][k]);
+    grid_.block_stats[b] = {};
+    kernels_.advance(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
+                     velocities, grid_.tile(b), grid_.block_stats[b]);
+  }
+  reduce_blocks();
+}
+
+template <class T, int D>
+void SolverOf<T, D>::reduce_blocks() {
+  double speed_squared = 0;
+  bool bad = false;
+  for (const BlockStats& s : grid_.block_stats) {
+    speed_squared = std::max(speed_squared, s.speed_squared);
+    bad = bad || s.bad;
+    if (s.escaped) tiles_valid_ = false;
+  }
+  speed_ = std::sqrt(speed_squared);
+  if (bad || !std::isfinite(speed_)) {
+    std::ostringstream message;
+    message << "a particle's state is no longer finite at t = " << time_
+            << " s; try a smaller numerics.step_factor or double precision";
+    throw SimulationError(message.str());
+  }
+  if (options_.energy) book_step();
+}
+
+// --- energy ---------------------------------------------------------------------------------
+
+template <class T, int D>
+void SolverOf<T, D>::book_step() {
+  double kinetic = 0, elastic = 0, plastic = 0;
+  for (const BlockStats& s : grid_.block_stats) {
+    kinetic += s.kinetic;
+    elastic += s.elastic;
+    plastic += s.plastic;
+  }
+  double before = 0, after = 0;
+  for (const NodeStats& s : grid_.node_stats) {
+    before += s.kinetic_before;
+    after += s.kinetic_after;
+    books_.friction += s.friction;
+    books_.sticking += s.sticking;
+    books_.impact += s.impact;
+  }
+  // What particles to grid and grid to particles took.
+  books_.transfer += (books_.kinetic - before) + (after - kinetic);
+  books_.plastic += plastic;
+  books_.kinetic = kinetic;
+  books_.elastic = elastic;
+}
+
+template <class T, int D>
+double SolverOf<T, D>::gravitational_energy() const {
+  double sum = 0;
+  for (std::size_t b = 0; b < layout_.particle_blocks.size(); ++b)
+    for (std::int32_t i = layout_.first[b]; i < layout_.first[b + 1]; ++i)
+      sum += double(particles_.mass[i]) *
+             position_of(particles_, std::size_t(i), layout_.particle_blocks[b],
+                         options_.numerics.dx, options_.numerics.basis)[D - 1];
+  return sum * options_.gravity;
+}
+
+template <class T, int D>
+double SolverOf<T, D>::kinetic_energy() const {
+  const double inertia = options_.numerics.dx * options_.numerics.dx /
+                         (options_.numerics.basis == Basis::quadratic ? 4.0 : 3.0);
+  double sum = 0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    double v2 = 0;
+    for (const auto& v : particles_.velocity) v2 += double(v[i]) * double(v[i]);
+    if (particles_.has_affine)
+      for (const auto& c : particles_.affine) v2 += inertia * double(c[i]) * double(c[i]);
+    sum += 0.5 * double(particles_.mass[i]) * v2;
+  }
+  return sum;
+}
+
+template <class T, int D>
+double SolverOf<T, D>::elastic_energy() const {
+  const auto el = Elasticity<double>::from(options_.snow.youngs_modulus,
+                                           options_.snow.poissons_ratio, D);
+  double sum = 0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Sym<double, D> a;
+    for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.strain[k][i]);
+    const Sym<double, D> e = hencky_strain(a);
+    const double volumetric = trace(e);
+    sum += double(particles_.mass[i]) / options_.snow.density *
+           (el.mu * norm_squared(e) + 0.5 * el.lambda * volumetric * volumetric);  // (1.2.5)
+  }
+  return sum;
+}
+
+template <class T, int D>
+EnergyBooks SolverOf<T, D>::energy() const {
+  EnergyBooks books = books_;
+  books.gravitational = gravitational_energy();
+  return books;
+}
+
+// --- for the outside ------------------------------------------------------------------------
+
+template <class T, int D>
+ParticleState SolverOf<T, D>::state() const {
+  const std::size_t n = particles_.size();
+  std::vector<std::size_t> at(n);  // by id: particles keep their places whatever the sort does
+  std::vector<BlockKey> blocks = blocks_of_particles(layout_);
+  for (std::size_t i = 0; i < n; ++i) at[i] = i;
+  std::sort(at.begin(), at.end(),
+            [this](std::size_t a, std::size_t b) { return particles_.id[a] < particles_.id[b]; });
+  const auto el = Elasticity<double>::from(options_.snow.youngs_modulus,
+                                           options_.snow.poissons_ratio, D);
+  const double initial = particles_.has_plastic ? initial_plastic_strain() : 0.0;
+  ParticleState s;
+  s.positions.reserve(n);
+  for (std::size_t i : at) {
+    s.positions.push_back(embed(position_of(particles_, i, blocks[i], options_.numerics.dx,
+                                            options_.numerics.basis)));
+    VecD<D> v;
+    for (int d = 0; d < D; ++d) v[d] = double(particles_.velocity[d][i]);
+    s.velocities.push_back(embed(v));
+    Sym<double, D> a;
+    for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.strain[k][i]);
+    const double elastic_volume = trace(hencky_strain(a));
+    const double plastic = particles_.has_plastic ? double(particles_.plastic[i]) : 0.0;
+    s.masses.push_back(double(particles_.mass[i]));
+    s.plastic_strains.push_back(plastic);
+    s.volume_ratios.push_back(std::exp(elastic_volume + plastic - initial));
+    s.pressures.push_back(-el.bulk * elastic_volume);
+    s.ids.push_back(particles_.id[i]);
+    s.events.push_back(particles_.event[i]);
+  }
+  return s;
+}
+
+template <class T, int D>
+MotionSummary SolverOf<T, D>::motion(double speed) const {
+  MotionSummary m;
+  double twice_kinetic = 0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    double v2 = 0;
+    for (const auto& v : particles_.velocity) v2 += double(v[i]) * double(v[i]);
+    const double mass = double(particles_.mass[i]);
+    m.mass += mass;
+    twice_kinetic += mass * v2;
+    if (v2 > speed * speed) m.moving_mass += mass;
+  }
+  m.rms_speed = m.mass > 0 ? std::sqrt(twice_kinetic / m.mass) : 0;
+  return m;
+}
+
+template <class T, int D>
+std::size_t SolverOf<T, D>::bytes() const {
+  std::size_t total = grid_.bytes();
+  particles_.for_each_array([&total](const char*, const auto& array) {
+    total += array.capacity() * sizeof(array[0]);
+  });
+  return total;
+}
+
+std::unique_ptr<Solver> make_solver(const SolverOptions& options, std::vector<Obstacle> obstacles) {
+  const bool single = options.numerics.precision == Precision::float32;
+  if (options.dimension == 2) {
+    if (single) return std::make_unique<SolverOf<float, 2>>(options, std::move(obstacles));
+    return std::make_unique<SolverOf<double, 2>>(options, std::move(obstacles));
+  }
+  if (single) return std::make_unique<SolverOf<float, 3>>(options, std::move(obstacles));
+  return std::make_unique<SolverOf<double, 3>>(options, std::move(obstacles));
+}
+
+}  // namespace snowshed

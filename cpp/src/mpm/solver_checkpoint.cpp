@@ -1,0 +1,92 @@
+// Saving and restoring a solver. Called at safe points, where the grid holds nothing that the
+// particles and the contacts' debts do not determine.
+#include "mpm/solver_of.hpp"
+#include "snowshed/io/binary_archive.hpp"
+#include "snowshed/support/error.hpp"
+
+namespace snowshed {
+
+template <class T, int D>
+void SolverOf<T, D>::save(BinaryWriter& out) const {
+  particles_.for_each_array([&out](const char* name, const auto& array) {
+    out.add(std::string("particles/") + name, array);
+  });
+  out.add("blocks/keys", layout_.particle_blocks);
+  out.add("blocks/first", layout_.first);
+
+  std::vector<std::uint64_t> block;
+  std::vector<std::int32_t> node, obstacle;
+  std::vector<double> amount;
+  for (const auto& d : contacts_.debts()) {
+    block.push_back(d.block);
+    node.push_back(d.node);
+    obstacle.push_back(d.obstacle);
+    amount.push_back(d.amount);
+  }
+  out.add("debts/block", std::move(block));
+  out.add("debts/node", std::move(node));
+  out.add("debts/obstacle", std::move(obstacle));
+  out.add("debts/amount", std::move(amount));
+
+  const EnergyBooks& b = books_;
+  out.add("energy", std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic, b.friction,
+                                        b.sticking, b.impact, b.transfer, b.added});
+  out.add("clock", std::vector<double>{time_, dt_, speed_, counters_.smallest_dt});
+  out.add("counters",
+          std::vector<std::int64_t>{counters_.steps, counters_.rejected, counters_.sorts,
+                                    counters_.particle_updates, std::int64_t(next_id_)});
+}
+
+template <class T, int D>
+void SolverOf<T, D>::load(const BinaryReader& in) {
+  const std::size_t n = in.view<T>("particles/mass").size;
+  particles_.resize(n);
+  particles_.for_each_array([&in, n](const char* name, auto& array) {
+    using Value = typename std::remove_reference_t<decltype(array)>::value_type;
+    const auto values = in.get<Value>(std::string("particles/") + name, n);
+    std::copy(values.begin(), values.end(), array.begin());
+  });
+  auto keys = in.get<std::uint64_t>("blocks/keys");
+  auto first = in.get<std::int32_t>("blocks/first", keys.size() + 1);
+  bool ordered = first.front() == 0 && std::size_t(first.back()) == n;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    ordered = ordered && first[i] <= first[i + 1] && (i == 0 || keys[i - 1] < keys[i]);
+  if (!ordered) throw InputError(in.path().string(), "the blocks of particles are not in order");
+  layout_ = {};
+  layout_.assign(std::move(keys), std::move(first));
+
+  const auto clock = in.get<double>("clock", 4);
+  time_ = clock[0];
+  dt_ = clock[1];
+  speed_ = clock[2];
+  counters_.smallest_dt = clock[3];
+  const auto counts = in.get<std::int64_t>("counters", 5);
+  counters_.steps = counts[0];
+  counters_.rejected = counts[1];
+  counters_.sorts = counts[2];
+  counters_.particle_updates = counts[3];
+  next_id_ = std::uint32_t(counts[4]);
+  const auto e = in.get<double>("energy", 9);
+  books_ = {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8]};
+
+  contacts_.relocate({}, time_);
+  contacts_.relocate(layout_.grid_blocks, time_);
+  const auto block = in.get<std::uint64_t>("debts/block");
+  const auto node = in.get<std::int32_t>("debts/node", block.size());
+  const auto obstacle = in.get<std::int32_t>("debts/obstacle", block.size());
+  const auto amount = in.get<double>("debts/amount", block.size());
+  std::vector<typename Contacts<T, D>::Debt> debts;
+  for (std::size_t i = 0; i < block.size(); ++i)
+    debts.push_back({block[i], node[i], obstacle[i], amount[i]});
+  contacts_.restore(debts);
+  grid_.resize(layout_);
+  tiles_valid_ = false;
+  since_sort_ = 0;
+}
+
+template class SolverOf<float, 2>;
+template class SolverOf<float, 3>;
+template class SolverOf<double, 2>;
+template class SolverOf<double, 3>;
+
+}  // namespace snowshed

@@ -1,0 +1,69 @@
+// The solver for one precision and dimension.
+#pragma once
+
+#include <atomic>
+
+#include "mpm/grid.hpp"
+#include "snowshed/material/cam_clay.hpp"
+#include "snowshed/material/sym_tensor.hpp"
+#include "snowshed/mpm/particle_sort.hpp"
+#include "snowshed/mpm/solver.hpp"
+
+namespace snowshed {
+
+template <class T, int D>
+class SolverOf final : public Solver {
+ public:
+  SolverOf(const SolverOptions& options, std::vector<Obstacle> obstacles);
+
+  void add(const ParticleBatch&) override;
+  void clear() override;
+  void step() override;
+  bool at_safe_point() const override { return !tiles_valid_; }
+  std::size_t size() const override { return particles_.size(); }
+  double time() const override { return time_; }
+  double time_step() const override { return dt_; }
+  const StepCounters& counters() const override { return counters_; }
+  ParticleState state() const override;
+  MotionSummary motion(double speed) const override;
+  EnergyBooks energy() const override;
+  std::size_t bytes() const override;
+  void save(BinaryWriter&) const override;
+  void load(const BinaryReader&) override;
+
+ private:
+  // The phases of a step.
+  void sort();
+  void scatter();
+  void gather();
+  double update_within_limits(double dt);  ///< returns the dt accepted
+  void update(double dt);
+  double largest_strain();  ///< largest |dt grad v| any particle would take
+  void advance(double dt);
+
+  StepParameters<T> parameters(double dt) const;
+  void reduce_blocks();
+  void book_step();
+  double gravitational_energy() const;
+  double elastic_energy() const;
+  double kinetic_energy() const;
+  double initial_plastic_strain() const;
+
+  SolverOptions options_;
+  Kernels<T> kernels_;
+  int threads_;
+  double elastic_limit_;  // s
+  Particles<T, D> particles_;
+  BlockLayout<D> layout_;
+  Contacts<T, D> contacts_;
+  Grid<T, D> grid_;
+
+  double time_ = 0, dt_ = 0, speed_ = 0;  // speed: of the fastest particle
+  bool tiles_valid_ = false;
+  int since_sort_ = 0;
+  std::uint32_t next_id_ = 0;
+  StepCounters counters_;
+  EnergyBooks books_;
+};
+
+}  // namespace snowshed

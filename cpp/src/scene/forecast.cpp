@@ -1,0 +1,156 @@
+#include "snowshed/scene/forecast.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/scene_json.hpp"
+#include "snowshed/scene/shape_measure.hpp"
+#include "snowshed/support/error.hpp"
+#include "snowshed/support/memory.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Memory of the solver. A particle holds position, velocity, deformation gradient, affine
+/// matrix, volume, mass, plastic strain and sorting keys; a grid node mass, momentum and force,
+/// in blocks that are only partly filled.
+struct Storage {
+  double bytes_per_particle, bytes_per_voxel;
+};
+
+constexpr Storage storage(int dimension, Precision precision) {
+  const bool single = precision == Precision::float32;
+  if (dimension == 2) return single ? Storage{90.0, 32.0} : Storage{180.0, 64.0};
+  return single ? Storage{150.0, 48.0} : Storage{300.0, 96.0};
+}
+
+/// Grid voxels in use for each voxel of snow: the splines reach beyond it, and it spreads.
+constexpr double grid_spread = 4.0;
+
+/// From the last impact to rest.
+constexpr double settling_time = 0.5;  // s
+
+struct Lame {
+  double lambda, mu;
+};
+
+Lame lame(const Snow& snow) {
+  const double e = snow.youngs_modulus, nu = snow.poissons_ratio;
+  return {e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu))};
+}
+
+double snow_volume(const Scene& scene, int event) {
+  double volume = 0.0;
+  for (const auto& body : assemble_bodies(scene, event))
+    volume += shape_volume(body.shape, scene.dimension).value_or(0.0);
+  return volume;
+}
+
+/// Mean acceleration down the panel, from gravity less friction.
+double slide_acceleration(const Scene& scene) {
+  if (scene.panel->condition == Condition::sticky) return 0.0;
+  const PanelFrame frame = panel_frame(scene);
+  const double sine = -frame.slope.z(), cosine = frame.normal.z();
+  return std::max(0.0, scene.gravity * (sine - scene.panel->friction * cosine));
+}
+
+/// Time to fall `height` (measured vertically) with a downward velocity relative to the ground.
+double fall_duration(double height, double downward, double gravity) {
+  if (height <= 0.0) return 0.0;
+  const double root = std::sqrt(downward * downward + 2.0 * gravity * height);
+  return downward + root > 0.0 ? 2.0 * height / (downward + root)  // no cancellation
+                               : std::numeric_limits<double>::infinity();
+}
+
+/// How fast a velocity brings a point nearer to the ground below it; the height is linear.
+double approach(const Scene& scene, const Vec3& velocity) {
+  return -height_above_ground(scene, velocity);
+}
+
+/// The slab's rear slides off the lower edge and falls freely.
+void add_slab(const Scene& scene, Forecast& forecast) {
+  const PanelFrame frame = panel_frame(scene);
+  const double distance = (scene.panel->length + scene.slab->length) / 2.0;
+  const double acceleration = slide_acceleration(scene);
+  forecast.slides = acceleration > 0.0;
+  if (!forecast.slides) return;
+  forecast.slide_time = std::sqrt(2.0 * distance / acceleration);
+  const Vec3 velocity = acceleration * forecast.slide_time * frame.slope;
+  forecast.fall_time = fall_duration(scene.panel->height, approach(scene, velocity), scene.gravity);
+}
+
+double longest_body_fall(const Scene& scene) {
+  double longest = 0.0;
+  for (const auto& body : scene.bodies) {
+    const auto bounds = shape_bounds(body.shape);
+    if (!bounds) continue;
+    const double height = height_above_ground(scene, bounds->center());
+    longest =
+        std::max(longest, fall_duration(height, approach(scene, body.velocity), scene.gravity));
+  }
+  return longest;
+}
+
+void add_times(const Scene& scene, Forecast& forecast) {
+  if (scene.slab) add_slab(scene, forecast);
+  const double bodies = longest_body_fall(scene);
+  const double slab = forecast.slide_time + forecast.fall_time;
+  if (bodies > slab) forecast.fall_time = bodies;
+  forecast.event_time = std::min(std::max(slab, bodies) + settling_time, scene.events.max_time);
+}
+
+void add_particles(const Scene& scene, std::optional<double> given, Forecast& forecast) {
+  const double voxel = std::pow(scene.numerics.dx, scene.dimension);
+  for (int event = 1; event <= scene.events.count; ++event) {
+    const double voxels = given ? 0.0 : snow_volume(scene, event) / voxel;
+    forecast.particles.push_back(
+        given.value_or(std::round(voxels * scene.seeding.particles_per_voxel)));
+    forecast.total_particles += forecast.particles.back();
+  }
+}
+
+std::string gigabytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g GB", bytes / 1e9);
+  return text;
+}
+
+}  // namespace
+
+double stable_time_step(const Scene& scene) {
+  const auto [lambda, mu] = lame(scene.snow);
+  const double stiffness = scene.dimension * lambda + 2.0 * mu;
+  return scene.numerics.step_factor * 2.0 * scene.numerics.dx /
+         std::sqrt(6.0 * stiffness / scene.snow.density);
+}
+
+Forecast forecast(const Scene& given, std::optional<double> particles_per_event) {
+  const Scene scene = resolve(given);
+  Forecast forecast;
+  const auto [lambda, mu] = lame(scene.snow);
+  forecast.wave_speed = std::sqrt((lambda + 2.0 * mu) / scene.snow.density);
+  forecast.time_step = stable_time_step(scene);
+  add_particles(scene, particles_per_event, forecast);
+  add_times(scene, forecast);
+  forecast.steps = scene.events.count * std::ceil(forecast.event_time / forecast.time_step);
+  const auto [per_particle, per_voxel] = storage(scene.dimension, scene.numerics.precision);
+  const double voxels = grid_spread * forecast.total_particles / scene.seeding.particles_per_voxel;
+  forecast.bytes = per_particle * forecast.total_particles + per_voxel * voxels;
+  return forecast;
+}
+
+void check_memory(double bytes, double available) {
+  if (bytes > available)
+    throw InputError("/", "needs " + gigabytes(bytes) + " of memory, of which there are " +
+                              gigabytes(available) + "; give fewer particles or a larger dx");
+}
+
+void check_memory(double bytes) {
+  check_memory(bytes, static_cast<double>(physical_memory_bytes()));
+}
+
+}  // namespace snowshed

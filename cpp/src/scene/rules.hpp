@@ -1,0 +1,11 @@
+// Rules between several fields of a scene.
+#pragma once
+
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// Throws InputError at the first field at odds with another. Expects each field in its range.
+void check_rules(const Scene& scene);
+
+}  // namespace snowshed

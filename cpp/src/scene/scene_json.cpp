@@ -1,0 +1,83 @@
+#include "snowshed/scene/scene_json.hpp"
+
+#include <fstream>
+
+#include "scene/json_text.hpp"
+#include "scene/reader.hpp"
+#include "scene/rules.hpp"
+#include "scene/writer.hpp"
+
+namespace snowshed {
+namespace {
+
+/// At most one byte more than is allowed, whatever the file is.
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  char block[1 << 16];
+  while (stream && text.size() <= max_text_bytes) {
+    stream.read(block, sizeof block);
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.eof() && text.size() <= max_text_bytes)
+    throw InputError(file.string(), "cannot be read");
+  return text;
+}
+
+void look_in(const std::filesystem::path& folder, ShapeSpec& shape) {
+  if (!shape.file.empty()) shape.file = (folder / shape.file).string();  // absolute ones stay
+  for (auto& part : shape.shapes) look_in(folder, part);
+}
+
+InputError naming_file(const InputError& error, const std::string& file) {
+  if (error.where().rfind(file, 0) == 0) return error;
+  const std::string message = error.what();
+  return InputError(error.where(), message.substr(error.where().size() + 2) + " [in " + file + "]");
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& name) {
+  Scene scene;
+  Reader::read(parse_json(text, name), "", scene.dimension, scene);
+  check_rules(scene);
+  return scene;
+}
+
+Scene load_scene(const std::filesystem::path& file) {
+  try {
+    Scene scene = parse_scene(read_text(file), file.string());
+    const auto folder = std::filesystem::absolute(file).parent_path();
+    for (auto& obstacle : scene.obstacles) look_in(folder, obstacle.shape);
+    for (auto& body : scene.bodies) look_in(folder, body.shape);
+    return scene;
+  } catch (const InputError& error) {
+    throw naming_file(error, file.string());
+  }
+}
+
+std::string write_scene(const Scene& scene) {
+  validate(scene);
+  Scene copy = scene;  // visitors see members they may write to
+  return pretty(Writer::write(copy, copy.dimension));
+}
+
+void validate(const Scene& scene) {
+  Scene copy = scene;
+  Checker checker("", copy.dimension);
+  describe(checker, copy);
+  check_rules(scene);
+}
+
+Scene resolve(Scene scene) {
+  if (scene.slab && scene.panel) {
+    if (scene.slab->length == 0.0) scene.slab->length = scene.panel->length;
+    // Snow must not spill over the sides: the panel is 1.5 times as wide (Table 3.2.1).
+    if (scene.slab->width == 0.0) scene.slab->width = scene.panel->width * 2.0 / 3.0;
+  }
+  if (scene.seeding.particles_per_voxel == 0.0)
+    scene.seeding.particles_per_voxel = scene.dimension == 2 ? 6.0 : 8.0;
+  return scene;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,117 @@
+// Valid scenes with every field at random.
+#pragma once
+
+#include <cmath>
+#include <random>
+
+#include "scene/describe.hpp"
+
+namespace snowshed {
+
+/// Visitor that gives every field a value its range allows.
+class Randomizer {
+ public:
+  Randomizer(std::mt19937_64& random, int dimension, int depth = 0)
+      : random_(random), dimension_(dimension), depth_(depth) {}
+
+  void version(const char*, int, const char*) {}
+  void number(const char*, double& value, const char*, const Range& range, const char*) {
+    value = draw(range);
+  }
+  void integer(const char*, int& value, const Range& range, const char*) {
+    value = std::uniform_int_distribution<int>(int(range.min), int(range.max))(random_);
+  }
+  void integer(const char*, std::uint64_t& value, const Range&, const char*) { value = random_(); }
+  void flag(const char*, bool& value, const char*) { value = chance(0.5); }
+  void text(const char*, std::string& value, const char*) {
+    value = "Name \"\\\n\t\x01 \xc3\xa9 \xf0\x9f\x8f\x94 / ~ " + std::to_string(random_());
+  }
+  void file(const char*, std::string& value, const char*) { value = "meshes/roof of 1.stl"; }
+  template <class E>
+  void choice(const char*, E& value, const char*) {
+    const auto& list = EnumNames<E>::list;
+    value = list[random_() % std::size(list)].value;
+  }
+  void vector(const char*, Vec3& value, const char*, const Range& range, const char*) {
+    value = {draw(range), dimension_ == 3 ? draw(range) : 0.0, draw(range)};
+  }
+  void direction(const char*, Vec3& value, const char*) {
+    vector("", value, "", between(0.1, 1.0), "");
+  }
+  void axis(const char*, Vec3& value, const char* doc) {
+    if (dimension_ == 3) direction("", value, doc);
+  }
+  void spin(const char*, Vec3& value, const char*, const Range& range, const char*) {
+    value = {0.0, draw(range), 0.0};
+    if (dimension_ == 3) vector("", value, "", range, "");
+  }
+  template <class T>
+  void object(const char*, T& value, Need, const char*) {
+    fill(value);
+  }
+  template <class T>
+  void optional(const char*, std::optional<T>& value, const char*) {
+    if (chance(0.7)) fill(value.emplace());
+  }
+  template <class T>
+  void list(const char*, std::vector<T>& items, const Range& count, const char*) {
+    items.resize(std::size_t(std::min(count.max, count.min + double(random_() % 3))));
+    for (auto& item : items) fill(item);
+  }
+  void variants(const char*, std::string& type, const char*) {
+    static const std::vector<const char*> solid = {"box",   "sphere", "cylinder", "capsule",
+                                                   "plate", "mesh",   "grid"};
+    static const std::vector<const char*> nested = {"union", "difference", "transform"};
+    const auto& kinds = depth_ < 4 && chance(0.3) ? nested : solid;
+    type_ = type = kinds[random_() % kinds.size()];
+  }
+  bool variant(const char* name, const char*) { return type_ == name; }
+  void end_variants() {}
+
+ private:
+  template <class T>
+  void fill(T& value) {
+    Randomizer deeper(random_, dimension_, depth_ + 1);
+    describe(deeper, value);
+  }
+  bool chance(double p) { return std::uniform_real_distribution<>()(random_) < p; }
+  double draw(const Range& range) {
+    const double low = std::max(range.min, -1e3), high = std::min(range.max, low + 1e4);
+    double value = std::uniform_real_distribution<>(low, high)(random_);
+    if (chance(0.1) && range.contains(1.0 / 3.0)) value = 1.0 / 3.0;
+    if (chance(0.1) && range.contains(1e-308)) value = 1e-308;
+    if (chance(0.1) && range.contains(low)) value = low;
+    return range.contains(value) ? value : 0.5 * (low + high);
+  }
+
+  std::mt19937_64& random_;
+  int dimension_, depth_;
+  std::string type_;
+};
+
+/// Its fields are independent of each other, so what the rules between them demand is mended.
+inline Scene random_scene(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  Scene scene;
+  const int dimension = seed % 2 ? 3 : 2;
+  Randomizer randomizer(random, dimension);
+  describe(randomizer, scene);
+  scene.dimension = dimension;
+  scene.domain.reset();
+  scene.seeding.allow_sparse = true;
+  scene.events.rest_time = std::min(scene.events.rest_time, scene.events.max_time);
+  if (!scene.panel) scene.slab.reset();
+  if (scene.panel && scene.ground) scene.ground->tilt = std::min(scene.ground->tilt, 0.0);
+  if (scene.slab) {
+    scene.slab->length = std::min(scene.slab->length, scene.panel->length);
+    scene.slab->width = std::min(scene.slab->width, scene.panel->width);
+  }
+  if (!scene.slab) describe(randomizer, scene.bodies.emplace_back());
+  for (auto& body : scene.bodies) body.event = std::min(body.event, scene.events.count);
+  for (auto& obstacle : scene.obstacles)
+    if (obstacle.motion)
+      obstacle.motion->end = std::max(obstacle.motion->start, obstacle.motion->end);
+  return scene;
+}
+
+}  // namespace snowshed

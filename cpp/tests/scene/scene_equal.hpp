@@ -1,0 +1,75 @@
+// Exact equality of scenes, independent of how they are described: a member added to one of the
+// structs does not compile here until it is compared too.
+#pragma once
+
+#include <algorithm>
+#include <tuple>
+
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+inline auto tied(const Snow& s) {
+  auto& [a, b, c, d, e, f, g, h] = s;
+  return std::tie(a, b, c, d, e, f, g, h);
+}
+inline auto tied(const ShapeSpec& s) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
+}
+inline auto tied(const MotionSpec& s) {
+  auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto tied(const ObstacleSpec& s) {
+  auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto tied(const BodySpec& s) {
+  auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
+inline auto tied(const Panel& s) {
+  auto& [a, b, c, d, e, f, g] = s;
+  return std::tie(a, b, c, d, e, f, g);
+}
+inline auto tied(const Slab& s) {
+  auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
+inline auto tied(const Ground& s) {
+  auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
+inline auto tied(const Seeding& s) {
+  auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
+}
+inline auto tied(const Numerics& s) {
+  auto& [a, b, c, d, e, f, g, h] = s;
+  return std::tie(a, b, c, d, e, f, g, h);
+}
+inline auto tied(const Events& s) {
+  auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto tied(const Output& s) {
+  auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
+inline auto tied(const Domain& s) {
+  auto& [a, b] = s;
+  return std::tie(a, b);
+}
+inline auto tied(const Scene& s) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
+}
+
+// Found by argument-dependent lookup from std::tuple, std::optional and std::vector.
+template <class T, class = decltype(tied(std::declval<const T&>()))>
+bool operator==(const T& a, const T& b) {
+  return tied(a) == tied(b);
+}
+
+}  // namespace snowshed

@@ -1,0 +1,229 @@
+#include "snowshed/scene/scene_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scene/random_scene.hpp"
+#include "scene/scene_equal.hpp"
+#include "snowshed/support/error.hpp"
+
+namespace snowshed {
+namespace {
+
+const char* const smallest = R"({"snowshed": 1, "bodies": [
+  {"shape": {"type": "box", "center": [1, 2, 3], "size": [0.1, 0.2, 0.3]}}]})";
+
+TEST(SceneJson, RandomScenesComeBackExactly) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const Scene scene = random_scene(seed);
+    const std::string text = write_scene(scene);
+    const Scene back = parse_scene(text);
+    ASSERT_TRUE(back == scene) << "seed " << seed << "\n" << text;
+    ASSERT_EQ(write_scene(back), text);
+  }
+}
+
+TEST(SceneJson, MissingKeysTakeTheMembersDefaults) {
+  Scene expected;
+  BodySpec& body = expected.bodies.emplace_back();
+  body.shape.type = "box";
+  body.shape.center = {1, 2, 3};
+  body.shape.size = {0.1, 0.2, 0.3};
+  EXPECT_TRUE(parse_scene(smallest) == expected);
+}
+
+TEST(SceneJson, EveryFieldIsRead) {
+  const Scene scene = parse_scene(R"({
+    "snowshed": 1, "dimension": 3, "title": "all", "gravity": 1.62,
+    "snow": {"model": "elastic", "density": 300, "youngs_modulus": 2e6, "poissons_ratio": 0.2,
+             "critical_state_slope": 0.6, "preconsolidation_pressure": 8000, "cohesion": 0.3,
+             "hardening_factor": 1},
+    "panel": {"height": 0.5, "length": 2, "width": 1.5, "tilt": 35, "thickness": 0.04,
+              "condition": "separate", "friction": 0.1},
+    "slab": {"thickness": 0.05, "length": 1.5, "width": 1},
+    "ground": {"tilt": -5, "condition": "slip", "friction": 0.4},
+    "obstacles": [{"name": "post", "condition": "sticky", "friction": 0.6,
+      "shape": {"type": "cylinder", "from": [1, 2, 0], "to": [1, 2, 3], "radius": 0.1},
+      "motion": {"velocity": [1, 2, 3], "angular_velocity": [4, 5, 6], "pivot": [7, 8, 9],
+                 "start": 0.5, "end": 1.5}}],
+    "bodies": [{"event": 2, "velocity": [0, 0, -1],
+      "shape": {"type": "transform", "axis": [0, 0, 1], "angle": 30, "translate": [0, 0, 1],
+                "shapes": [{"type": "sphere", "center": [1, 0, 0], "radius": 0.2}]}}],
+    "domain": {"min": [-5, -4, -3], "max": [6, 5, 4]},
+    "seeding": {"particles_per_voxel": 3, "pattern": "regular", "seed": 18446744073709551615,
+                "allow_sparse": true},
+    "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "flip_ratio": 0.5,
+                 "basis": "cubic", "step_factor": 0.3, "strain_limit": 0.1, "threads": 3},
+    "events": {"count": 4, "between": "reseed", "max_time": 3, "rest_speed": 0.1,
+               "rest_time": 0.2},
+    "output": {"snapshot_interval": 0.25, "energy": true, "checkpoint_interval": 30}})");
+  EXPECT_EQ(scene.title, "all");
+  EXPECT_EQ(scene.gravity, 1.62);
+  EXPECT_TRUE(scene.snow == (Snow{SnowModel::elastic, 300, 2e6, 0.2, 0.6, 8000, 0.3, 1}));
+  EXPECT_TRUE(*scene.panel == (Panel{0.5, 2, 1.5, 35, 0.04, Condition::separate, 0.1}));
+  EXPECT_TRUE(*scene.slab == (Slab{0.05, 1.5, 1}));
+  EXPECT_TRUE(*scene.ground == (Ground{-5, Condition::slip, 0.4}));
+  EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
+  EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
+  EXPECT_TRUE(scene.numerics ==
+              (Numerics{0.02, Precision::float64, Transfer::apic, 0.5, Basis::cubic, 0.3, 0.1, 3}));
+  EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
+  EXPECT_TRUE(scene.output == (Output{0.25, true, 30}));
+
+  ASSERT_EQ(scene.obstacles.size(), 1u);
+  const ObstacleSpec& post = scene.obstacles[0];
+  EXPECT_EQ(post.name, "post");
+  EXPECT_EQ(post.condition, Condition::sticky);
+  EXPECT_EQ(post.friction, 0.6);
+  EXPECT_EQ(post.shape.from, Vec3(1, 2, 0));
+  EXPECT_EQ(post.shape.to, Vec3(1, 2, 3));
+  EXPECT_EQ(post.shape.radius, 0.1);
+  EXPECT_TRUE(*post.motion == (MotionSpec{Vec3(1, 2, 3), Vec3(4, 5, 6), Vec3(7, 8, 9), 0.5, 1.5}));
+
+  ASSERT_EQ(scene.bodies.size(), 1u);
+  const BodySpec& body = scene.bodies[0];
+  EXPECT_EQ(body.event, 2);
+  EXPECT_EQ(body.velocity, Vec3(0, 0, -1));
+  EXPECT_EQ(body.shape.axis, Vec3(0, 0, 1));
+  EXPECT_EQ(body.shape.angle, 30);
+  EXPECT_EQ(body.shape.translate, Vec3(0, 0, 1));
+  EXPECT_EQ(body.shape.shapes.at(0).center, Vec3(1, 0, 0));
+}
+
+TEST(SceneJson, VectorsOfAPlaneSceneHaveTwoEntries) {
+  const Scene scene = parse_scene(R"({"snowshed": 1, "dimension": 2,
+    "obstacles": [{"shape": {"type": "plane", "center": [1, 2], "normal": [3, 4]},
+                   "motion": {"angular_velocity": 5}}],
+    "bodies": [{"velocity": [6, 7], "shape": {"type": "sphere", "radius": 1}}]})");
+  EXPECT_EQ(scene.obstacles[0].shape.center, Vec3(1, 0, 2));
+  EXPECT_EQ(scene.obstacles[0].shape.normal, Vec3(3, 0, 4));
+  EXPECT_EQ(scene.obstacles[0].motion->angular_velocity, Vec3(0, 5, 0));
+  EXPECT_EQ(scene.bodies[0].velocity, Vec3(6, 0, 7));
+}
+
+TEST(SceneJson, OrderOfKeysDoesNotMatter) {
+  const Scene scene = parse_scene(R"({"bodies": [{"shape":
+    {"size": [1, 2], "center": [3, 4], "type": "box"}}], "dimension": 2, "snowshed": 1})");
+  EXPECT_EQ(scene.bodies[0].shape.size, Vec3(1, 0, 2));
+}
+
+TEST(SceneJson, WholeNumbersMayCarryAPoint) {
+  const Scene scene = parse_scene(R"({"snowshed": 1, "dimension": 2.0, "seeding": {"seed": 5.0},
+    "bodies": [{"shape": {"type": "sphere", "radius": 1}}]})");
+  EXPECT_EQ(scene.dimension, 2);
+  EXPECT_EQ(scene.seeding.seed, 5u);
+}
+
+TEST(SceneJson, OnlyTheKeysOfAShapesTypeAreWritten) {
+  const auto json = nlohmann::json::parse(write_scene(parse_scene(smallest)));
+  const auto shape = json.at("bodies").at(0).at("shape");
+  EXPECT_EQ(shape, nlohmann::json::parse(
+                       R"({"type": "box", "center": [1.0, 2.0, 3.0], "size": [0.1, 0.2, 0.3]})"));
+  EXPECT_FALSE(json.contains("panel"));
+  EXPECT_EQ(json.at("snow").at("density"), 210.0);
+  EXPECT_EQ(json.at("numerics").at("precision"), "float");
+}
+
+TEST(SceneJson, NumbersSurviveToTheLastBit) {
+  Scene scene = parse_scene(smallest);
+  for (const double number : {0.1, 1.0 / 3.0, 5e-324, 2.2250738585072014e-308, 999.99999999999989,
+                              0.1 + 0.2, std::nextafter(1.0, 2.0)}) {
+    scene.gravity = number;
+    EXPECT_EQ(parse_scene(write_scene(scene)).gravity, number);
+  }
+  scene.bodies[0].shape.center.x() = -0.0;
+  EXPECT_TRUE(std::signbit(parse_scene(write_scene(scene)).bodies[0].shape.center.x()));
+}
+
+TEST(SceneJson, AnInvalidSceneIsNotWritten) {
+  Scene scene = parse_scene(smallest);
+  scene.snow.density = std::nan("");
+  EXPECT_THROW(write_scene(scene), InputError);
+  scene = parse_scene(smallest);
+  scene.title = "\xff";
+  EXPECT_THROW(write_scene(scene), InputError);
+}
+
+TEST(SceneJson, ResolveFollowsPanelAndDimension) {
+  Scene scene;
+  scene.panel.emplace().length = 3.0;
+  scene.panel->width = 1.5;
+  scene.slab.emplace().thickness = 0.1;
+  EXPECT_EQ(resolve(scene).slab->length, 3.0);
+  EXPECT_EQ(resolve(scene).slab->width, 1.0);
+  EXPECT_EQ(resolve(scene).seeding.particles_per_voxel, 8.0);
+  scene.dimension = 2;
+  EXPECT_EQ(resolve(scene).seeding.particles_per_voxel, 6.0);
+  scene.slab->length = 2.0;
+  scene.slab->width = 0.5;
+  scene.seeding.particles_per_voxel = 9.0;
+  EXPECT_TRUE(resolve(scene) == scene);
+}
+
+class SceneFile : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path save(const std::string& text) const {
+    std::ofstream(folder_ / "scene.json") << text;
+    return folder_ / "scene.json";
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("snowshed_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(SceneFile, LoadsWhatParses) {
+  EXPECT_TRUE(load_scene(save(smallest)) == parse_scene(smallest));
+}
+
+TEST_F(SceneFile, MeshesLieBesideTheScene) {
+  const Scene scene = load_scene(save(R"({"snowshed": 1,
+    "bodies": [{"shape": {"type": "union", "shapes": [{"type": "mesh", "file": "a/b.stl"}]}}],
+    "obstacles": [{"shape": {"type": "grid", "file": "/abs.npy", "spacing": 1}}]})"));
+  EXPECT_EQ(scene.bodies[0].shape.shapes[0].file,
+            (std::filesystem::absolute(folder_) / "a/b.stl").string());
+  EXPECT_EQ(scene.obstacles[0].shape.file, "/abs.npy");
+}
+
+TEST_F(SceneFile, ErrorsNameTheFile) {
+  const auto file = save("{\n \"snowshed\": 1,\n \"snow\": {\"density\": -1}}");
+  try {
+    load_scene(file);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where(), "/snow/density");
+    EXPECT_EQ(error.what(),
+              "/snow/density: -1 is outside the allowed range (0 < value <= 1000 "
+              "kg/m3) [in " +
+                  file.string() + "]");
+  }
+}
+
+TEST_F(SceneFile, SyntaxErrorsNameFileLineAndColumn) {
+  const auto file = save("{\n \"snowshed\": 1,\n \"title\": oops}");
+  try {
+    load_scene(file);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where(), file.string() + ":3:11");
+  }
+}
+
+TEST_F(SceneFile, WhatCannotBeReadIsNamed) {
+  for (const auto& path : {folder_ / "absent.json", folder_}) {
+    try {
+      load_scene(path);
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.where(), path.string());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snowshed
