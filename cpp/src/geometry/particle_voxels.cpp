@@ -143,7 +143,8 @@ std::vector<Vec3> zero_crossings(const NearestSeed& grid, const std::vector<floa
       if (!grid.contains(next)) continue;
       const double b = values[grid.at(next)];
       if ((a < 0) == (b < 0)) continue;
-      crossings.push_back(grid.position(n) + a / (a - b) * (grid.position(next) - grid.position(n)));
+      const Vec3 from = grid.position(n), to = grid.position(next);
+      crossings.push_back(from + a / (a - b) * (to - from));
     }
   });
   return crossings;

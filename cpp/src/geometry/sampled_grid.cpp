@@ -40,6 +40,7 @@ void check_counts(const GridSamples& s, const std::string& where) {
       throw InputError(where, std::to_string(n) + " samples along axis " + std::to_string(axis) +
                                   "; at least 2 are needed");
     total *= n;
+    if (total > s.values.size()) break;  // before it overflows
   }
   if (total != s.values.size()) throw InputError(where, "the counts do not fit the values");
 }

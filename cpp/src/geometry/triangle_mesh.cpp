@@ -28,20 +28,6 @@ std::string describe(const Vec3& v) {
   return text.str();
 }
 
-void check_numbers(const TriangleMesh& mesh, const std::string& where) {
-  if (mesh.triangles.empty()) throw InputError(where, "the mesh has no triangles");
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!(mesh.vertices[v].cwiseAbs().maxCoeff() <= largest_coordinate) ||
-        !mesh.vertices[v].allFinite())
-      throw InputError(where, "vertex " + std::to_string(v) + " " + describe(mesh.vertices[v]) +
-                                  "; allowed: finite coordinates up to 1e9 m");
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t v : triangle)
-      if (v >= mesh.vertices.size())
-        throw InputError(where, "a triangle uses vertex " + std::to_string(v) + " of " +
-                                    std::to_string(mesh.vertices.size()));
-}
-
 void check_closed(const TriangleMesh& mesh, const std::string& where) {
   std::vector<DirectedEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -58,12 +44,27 @@ void check_closed(const TriangleMesh& mesh, const std::string& where) {
     if (e > 0 && edges[e] == edges[e - 1])
       fail(edges[e], "is used twice in the same direction: neighbouring triangles must turn the "
                      "same way, and no more than two may share an edge");
-    if (!std::binary_search(edges.begin(), edges.end(), DirectedEdge{edges[e].to, edges[e].from}))
-      fail(edges[e], "belongs to one triangle only: the surface must be closed");
   }
+  for (const DirectedEdge& edge : edges)
+    if (!std::binary_search(edges.begin(), edges.end(), DirectedEdge{edge.to, edge.from}))
+      fail(edge, "belongs to one triangle only: the surface must be closed");
 }
 
 }  // namespace
+
+void require_valid_numbers(const TriangleMesh& mesh, const std::string& where) {
+  if (mesh.triangles.empty()) throw InputError(where, "the mesh has no triangles");
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (!(mesh.vertices[v].cwiseAbs().maxCoeff() <= largest_coordinate) ||
+        !mesh.vertices[v].allFinite())
+      throw InputError(where, "vertex " + std::to_string(v) + " " + describe(mesh.vertices[v]) +
+                                  "; allowed: finite coordinates up to 1e9 m");
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle)
+      if (v >= mesh.vertices.size())
+        throw InputError(where, "a triangle uses vertex " + std::to_string(v) + " of " +
+                                    std::to_string(mesh.vertices.size()));
+}
 
 void merge_identical_vertices(TriangleMesh& mesh) {
   const std::vector<Vec3>& v = mesh.vertices;
@@ -102,7 +103,7 @@ double enclosed_volume(const TriangleMesh& mesh) {
 }
 
 void require_solid(TriangleMesh& mesh, const std::string& where) {
-  check_numbers(mesh, where);
+  require_valid_numbers(mesh, where);
   check_closed(mesh, where);
   Vec3 low = mesh.vertices[mesh.triangles.front()[0]], high = low;
   for (const Triangle& t : mesh.triangles)

@@ -103,7 +103,7 @@ void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double t
 template <class T, int D>
 void Contacts<T, D>::follow(double time) {
   if (!any_motion_) return;
-  const std::vector<Debt> owed = debts();
+  const std::vector<Press> stored = pressed();
   std::vector<Contact<T>> all;
   std::vector<std::size_t> first{0};
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -114,29 +114,29 @@ void Contacts<T, D>::follow(double time) {
   }
   contacts_ = std::move(all);
   first_ = std::move(first);
-  restore(owed);
+  restore(stored);
 }
 
 template <class T, int D>
-std::vector<typename Contacts<T, D>::Debt> Contacts<T, D>::debts() const {
-  std::vector<Debt> owed;
+std::vector<typename Contacts<T, D>::Press> Contacts<T, D>::pressed() const {
+  std::vector<Press> stored;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
-      if (contacts_[i].next_debt > T(0))
-        owed.push_back({blocks_[b], contacts_[i].node, contacts_[i].obstacle,
-                        double(contacts_[i].next_debt)});
-  return owed;
+      if (contacts_[i].next_press > T(0))
+        stored.push_back({blocks_[b], contacts_[i].node, contacts_[i].obstacle,
+                        double(contacts_[i].next_press)});
+  return stored;
 }
 
 template <class T, int D>
-void Contacts<T, D>::restore(const std::vector<Debt>& owed) {
-  for (const Debt& d : owed) {
+void Contacts<T, D>::restore(const std::vector<Press>& stored) {
+  for (const Press& d : stored) {
     const auto at = std::lower_bound(blocks_.begin(), blocks_.end(), d.block);
     if (at == blocks_.end() || *at != d.block) continue;
     const std::size_t b = std::size_t(at - blocks_.begin());
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
       if (contacts_[i].node == d.node && contacts_[i].obstacle == d.obstacle)
-        contacts_[i].debt = contacts_[i].next_debt = T(d.amount);
+        contacts_[i].press = contacts_[i].next_press = T(d.amount);
   }
 }
 

@@ -12,6 +12,13 @@
 #include "snowshed/support/error.hpp"
 
 namespace snowshed {
+namespace {
+
+/// Memory of the contacts' friction, in elastic time steps: longer than the vibration of a slab a
+/// few cells thick, shorter than the time snow takes to slide over a cell.
+constexpr double friction_memory = 40;
+
+}  // namespace
 
 template <class T, int D>
 SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obstacles)
@@ -37,6 +44,7 @@ StepParameters<T> SolverOf<T, D>::parameters(double dt) const {
           T(options_.gravity),
           T(options_.numerics.flip_ratio),
           T(1 / s.density),
+          T(std::min(1.0, dt / (friction_memory * elastic_limit_))),
           {s.youngs_modulus, s.poissons_ratio, s.critical_state_slope, s.cohesion,
            s.hardening_factor}};
 }

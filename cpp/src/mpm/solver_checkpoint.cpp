@@ -1,5 +1,5 @@
 // Saving and restoring a solver. Called at safe points, where the grid holds nothing that the
-// particles and the contacts' debts do not determine.
+// particles and the contacts' stored impulses do not determine.
 #include "mpm/solver_of.hpp"
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/support/error.hpp"
@@ -17,16 +17,16 @@ void SolverOf<T, D>::save(BinaryWriter& out) const {
   std::vector<std::uint64_t> block;
   std::vector<std::int32_t> node, obstacle;
   std::vector<double> amount;
-  for (const auto& d : contacts_.debts()) {
+  for (const auto& d : contacts_.pressed()) {
     block.push_back(d.block);
     node.push_back(d.node);
     obstacle.push_back(d.obstacle);
     amount.push_back(d.amount);
   }
-  out.add("debts/block", std::move(block));
-  out.add("debts/node", std::move(node));
-  out.add("debts/obstacle", std::move(obstacle));
-  out.add("debts/amount", std::move(amount));
+  out.add("pressed/block", std::move(block));
+  out.add("pressed/node", std::move(node));
+  out.add("pressed/obstacle", std::move(obstacle));
+  out.add("pressed/amount", std::move(amount));
 
   const EnergyBooks& b = books_;
   out.add("energy", std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic, b.friction,
@@ -71,14 +71,14 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
 
   contacts_.relocate({}, time_);
   contacts_.relocate(layout_.grid_blocks, time_);
-  const auto block = in.get<std::uint64_t>("debts/block");
-  const auto node = in.get<std::int32_t>("debts/node", block.size());
-  const auto obstacle = in.get<std::int32_t>("debts/obstacle", block.size());
-  const auto amount = in.get<double>("debts/amount", block.size());
-  std::vector<typename Contacts<T, D>::Debt> debts;
+  const auto block = in.get<std::uint64_t>("pressed/block");
+  const auto node = in.get<std::int32_t>("pressed/node", block.size());
+  const auto obstacle = in.get<std::int32_t>("pressed/obstacle", block.size());
+  const auto amount = in.get<double>("pressed/amount", block.size());
+  std::vector<typename Contacts<T, D>::Press> stored;
   for (std::size_t i = 0; i < block.size(); ++i)
-    debts.push_back({block[i], node[i], obstacle[i], amount[i]});
-  contacts_.restore(debts);
+    stored.push_back({block[i], node[i], obstacle[i], amount[i]});
+  contacts_.restore(stored);
   grid_.resize(layout_);
   tiles_valid_ = false;
   since_sort_ = 0;

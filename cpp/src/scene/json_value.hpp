@@ -12,6 +12,7 @@
 #include "scene/wording.hpp"
 #include "snowshed/scene/enum_names.hpp"
 #include "snowshed/support/error.hpp"
+#include "snowshed/support/vec.hpp"
 
 namespace snowshed {
 

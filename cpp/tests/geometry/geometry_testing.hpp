@@ -38,9 +38,10 @@ inline void expect_normal_is_gradient(const LevelSet& shape, double half, double
   for (int n = 0; n < samples; ++n) {
     const Vec3 x = random_point(random, half);
     Vec3 gradient;
-    for (int i = 0; i < 3; ++i)
-      gradient[i] = (shape.distance(x + h * Vec3::Unit(i)) - shape.distance(x - h * Vec3::Unit(i))) /
-                    (2 * h);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 step = h * Vec3::Unit(i);
+      gradient[i] = (shape.distance(x + step) - shape.distance(x - step)) / (2 * h);
+    }
     ASSERT_NEAR(shape.normal(x).norm(), 1.0, 1e-9);
     off += (gradient - shape.normal(x)).norm() > tolerance;
   }

@@ -138,6 +138,7 @@ TEST(Forecast, AbsurdScenesAreForecastAndRefused) {
 TEST(Forecast, MemoryErrorsNameBothNumbers) {
   EXPECT_NO_THROW(check_memory(4e9, 4e9));
   EXPECT_NO_THROW(check_memory(1e6));
+  EXPECT_THROW(check_memory(4.001e9, 4e9), InputError);
   try {
     check_memory(3.21e10, 1.6e10);
     FAIL();

@@ -10,9 +10,9 @@ namespace snowshed {
 /// a bounding volume hierarchy, the sign with angle-weighted pseudo-normals (Baerentzen &
 /// Aanaes 2005, "Signed distance computation using the angle weighted pseudonormal").
 ///
-/// The inradius is that of the largest ball found that touches the surface from inside at the
-/// centroid of one of up to 2000 triangles: a lower bound, and exact for solids of constant
-/// thickness.
+/// The inradius is estimated: of the balls that touch the surface from inside at the centroids
+/// of about 200 triangles the largest is moved to where it is locally deepest. A lower bound,
+/// close for compact solids and exact for those of constant thickness.
 Shape make_mesh(TriangleMesh mesh);
 
 }  // namespace snowshed

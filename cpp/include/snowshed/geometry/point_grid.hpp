@@ -24,7 +24,8 @@ class PointGrid {
       for (std::int64_t j = -y_reach_; j <= y_reach_; ++j)
         for (std::int64_t k = -1; k <= 1; ++k) {
           const Range& range = table_[slot_of(key({cell.x + i, cell.y + j, cell.z + k}))];
-          for (std::uint32_t n = range.begin; n < range.end; ++n) visit(sorted_[n].index, sorted_[n].point);
+          for (std::uint32_t n = range.begin; n < range.end; ++n)
+            visit(sorted_[n].index, sorted_[n].point);
         }
   }
 

@@ -1,10 +1,11 @@
 // Collision objects on the grid: which nodes an obstacle constrains, and how.
 //
 // The conditions are the thesis's (1.2.3). Two things are ours:
-// - Friction acts on the net normal impulse (see NodeKernels::apply): each constrained node keeps
-//   the pull it has taken as a debt, so the contacts have a memory that outlives a step.
-// - SLIP holds snow down only where gravity presses it on: on the underside of a panel and over
-//   its edges it lets go, as SEPARATE does, so that snow never hangs from a panel's back.
+// - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
+//   contacts have a memory that outlives a step.
+// - SLIP holds snow down only where gravity presses it on, and only against a pull that is
+//   shorter-lived than the push before it. On the underside of a panel it lets go, as SEPARATE
+//   does, so that snow never hangs from a panel's back.
 #pragma once
 
 #include <optional>
@@ -47,20 +48,20 @@ class Contacts {
   Contact<T>* of_block(std::size_t block) { return contacts_.data() + first_[block]; }
   int count(std::size_t block) const { return int(first_[block + 1] - first_[block]); }
 
-  /// Makes the debts of the step just taken the present ones.
+  /// Makes the stored impulses of the step just taken the present ones.
   void commit(std::size_t block) {
     for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
-      contacts_[i].debt = contacts_[i].next_debt;
+      contacts_[i].press = contacts_[i].next_press;
   }
 
-  /// The contacts with a debt, for checkpoints: block, node, obstacle, debt.
-  struct Debt {
+  /// A contact with stored impulse (N s), for checkpoints.
+  struct Press {
     BlockKey block;
     std::int32_t node, obstacle;
     double amount;
   };
-  std::vector<Debt> debts() const;
-  void restore(const std::vector<Debt>& debts);
+  std::vector<Press> pressed() const;
+  void restore(const std::vector<Press>& pressed);
 
  private:
   void find_block(BlockKey block, double time, bool moving, std::vector<Contact<T>>& found) const;

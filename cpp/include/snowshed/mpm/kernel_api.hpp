@@ -61,7 +61,9 @@ struct MaterialConstants {
 
 template <class T>
 struct StepParameters {
-  T dt, dx, gravity, flip_ratio, specific_volume;  // specific volume: initial, m3/kg
+  T dt, dx, gravity, flip_ratio;
+  T specific_volume;  // initial, m3/kg
+  T friction_rate;    // dt over the friction memory, see NodeKernels::apply
   MaterialConstants material;
 };
 
@@ -88,8 +90,8 @@ struct Contact {
   std::int32_t obstacle;
   T normal[3];
   T velocity[3];  // of the obstacle at the node
-  T debt;         // pull already taken, not yet paid back by push: see contact.hpp
-  T next_debt;
+  T press;        // stored normal impulse, N s, that friction has yet to be charged for
+  T next_press;   // the same after the step being tried
   bool holds;     // SLIP: no separation here
 };
 

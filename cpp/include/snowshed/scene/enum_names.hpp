@@ -1,7 +1,7 @@
 // The words that stand for the scene's enumerations, in JSON and in messages.
 #pragma once
 
-#include "snowshed/scene/scene.hpp"
+#include "snowshed/scene/options.hpp"
 
 namespace snowshed {
 

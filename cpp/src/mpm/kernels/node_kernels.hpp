@@ -40,12 +40,10 @@ struct NodeKernels {
     }
     for (int c = 0; c < contact_count; ++c) {
       Contact<T>& contact = contacts[c];
-      Node<T>& node = out[contact.node];
-      const T mass = in[contact.node][0];
-      if (mass > T(0))
-        apply(contact, laws[contact.obstacle], mass, node, stats);
+      if (in[contact.node][0] > T(0))
+        apply(step, contact, laws[contact.obstacle], in[contact.node], out[contact.node], stats);
       else
-        contact.next_debt = 0;
+        contact.next_press = 0;
     }
     finish(in, out, stats);
   }
@@ -82,48 +80,67 @@ struct NodeKernels {
     }
   }
 
-  static double kinetic(const Node<T>& v, T mass) {
-    double sum = 0;
-    for (int d = 0; d < D; ++d) sum += double(v[d]) * double(v[d]);
-    return 0.5 * double(mass) * sum;
+  /// Energy that an impulse took from a node whose velocity went from `before` to `after` over the
+  /// step: minus its work at the mean velocity.
+  static double taken(const T (&impulse)[D], const T (&before)[D], const T (&after)[D]) {
+    double work = 0;
+    for (int d = 0; d < D; ++d)
+      work += 0.5 * double(impulse[d]) * (double(before[d]) + double(after[d]));
+    return -work;
   }
 
-  /// STICKY, SLIP, SEPARATE (thesis 1.2.3). Coulomb friction acts on the net normal impulse: a
-  /// SLIP node that had to pull remembers the pull as a debt, and friction is charged only for
-  /// push beyond it. Charging every push instead (the usual rule) overestimates the friction of
-  /// a slab that vibrates on its panel, up to holding it where it should slide.
-  static void apply(Contact<T>& c, const ContactLaw& law, T mass, Node<T>& node, NodeStats& stats) {
-    c.next_debt = c.debt;
-    const double before = energy ? kinetic(node, mass) : 0;
+  static void book(const Node<T>& sum, const T (&free)[D], const T (&pressed)[D],
+                   const T (&after)[D], double& normal_part, double& tangential_part) {
+    T before[D], normal[D], tangential[D];
+    for (int d = 0; d < D; ++d) {
+      before[d] = sum[1 + d] / sum[0];
+      normal[d] = sum[0] * (pressed[d] - free[d]);
+      tangential[d] = sum[0] * (after[d] - pressed[d]);
+    }
+    normal_part += taken(normal, before, after);
+    tangential_part += taken(tangential, before, after);
+  }
+
+  /// STICKY, SLIP, SEPARATE (thesis 1.2.3), with Coulomb friction on the running mean of the net
+  /// normal impulse. Each contact has a store of normal impulse: what presses on the obstacle
+  /// fills it, pull empties it, and it drains at the rate 1/(friction memory); friction is charged
+  /// for what drains. Over time every newton-second of net push is charged once. Charging each
+  /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates
+  /// on its panel (SLIP cancels the pulls but forgets them), up to holding it where it should
+  /// slide. Pull beyond the store is let go, so that SLIP does not glue.
+  static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
+                    const Node<T>& sum, Node<T>& node, NodeStats& stats) {
+    const T mass = sum[0];
+    T free[D], pressed[D], after[D];
+    T normal_speed = 0;
+    for (int d = 0; d < D; ++d) {
+      free[d] = node[d];
+      normal_speed += (free[d] - c.velocity[d]) * c.normal[d];
+    }
     if (law.condition == Condition::sticky) {
-      for (int d = 0; d < D; ++d) node[d] = c.velocity[d];
-      if constexpr (energy) stats.sticking += before - kinetic(node, mass);
+      for (int d = 0; d < D; ++d) node[d] = pressed[d] = after[d] = c.velocity[d];
+      if constexpr (energy) book(sum, free, pressed, after, stats.sticking, stats.sticking);
       return;
     }
-    T relative[D], normal_speed = 0;
+    const T drained = c.press * step.friction_rate;
+    const T left = c.press - drained;
+    const T least_push = c.holds ? -left : T(0);
+    T push = -mass * normal_speed;
+    if (push < least_push) push = least_push;
+    c.next_press = left + push;
+
+    T slip[D], slip_squared = 0;
+    const T along = normal_speed + push / mass;  // normal speed that remains
     for (int d = 0; d < D; ++d) {
-      relative[d] = node[d] - c.velocity[d];
-      normal_speed += relative[d] * c.normal[d];
+      pressed[d] = free[d] + push / mass * c.normal[d];
+      slip[d] = pressed[d] - c.velocity[d] - along * c.normal[d];
+      slip_squared += slip[d] * slip[d];
     }
-    if (normal_speed >= T(0) && !c.holds) return;
-    const T push = -mass * normal_speed;
-    const T unpaid = c.debt - push;
-    c.next_debt = c.holds && unpaid > T(0) ? unpaid : T(0);
-    const T charged = unpaid < T(0) ? -unpaid : T(0);
-    T tangential = 0;
-    for (int d = 0; d < D; ++d) {
-      relative[d] -= normal_speed * c.normal[d];
-      tangential += relative[d] * relative[d];
-    }
-    const double between = energy ? before - 0.5 * double(mass) * double(normal_speed) * double(normal_speed) : 0;
-    tangential = std::sqrt(tangential);
-    const T loss = T(law.friction) * charged;
-    const T keep = tangential * mass > loss ? T(1) - loss / (tangential * mass) : T(0);
-    for (int d = 0; d < D; ++d) node[d] = c.velocity[d] + relative[d] * keep;
-    if constexpr (energy) {
-      stats.impact += before - between;
-      stats.friction += between - kinetic(node, mass);
-    }
+    const T slip_impulse = mass * std::sqrt(slip_squared);
+    const T friction = T(law.friction) * drained;
+    const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
+    for (int d = 0; d < D; ++d) node[d] = after[d] = pressed[d] - lost * slip[d];
+    if constexpr (energy) book(sum, free, pressed, after, stats.impact, stats.friction);
   }
 };
 

@@ -1,0 +1,133 @@
+# Every target sets up what it needs. A machine must bring a C++17 compiler, make and
+# Python >= 3.9 with its headers; the rest comes from the system where it is there, else from
+# wheels into .venv.
+#
+# One CMake tree (build/release) serves the Python package, the tests and the benchmarks, so
+# the core is compiled once. The files named .venv/.* mark what has been done.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+TREE := build/release
+DEMO := demo-results
+CLANG_FORMAT := 23.1.5
+
+# Several tools must find cmake and ninja, which may be in .venv alone.
+export PATH := $(CURDIR)/$(BIN):$(PATH)
+
+PIP := $(BIN)/python -m pip --disable-pip-version-check install
+# Long work shows itself: what the compiler does, out of all that pip has to say.
+COMPILER_LINES := '/^ *\[[0-9]+\/[0-9]+\]|warning:|error/ { print; fflush() }'
+
+SHELL := bash
+.SHELLFLAGS := -eu -o pipefail -c
+
+CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/include cpp/src -type f)
+CPP_FILES = $(shell find cpp -name '*.[ch]pp')
+PYTHON_FOLDERS = $(wildcard python tests tools examples benchmarks lua_compat)
+
+.PHONY: help build demo test test-cpp test-py bench docs format lint tidy clean
+.NOTPARALLEL:
+
+help:
+	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
+	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
+	@echo "make test      all tests (test-cpp, test-py: one half)"
+	@echo "make bench     speed of the kernels and of whole steps"
+	@echo "make docs      the documentation as HTML"
+	@echo "make format    format all sources"
+	@echo "make lint      check format, style and types (tidy: clang-tidy, slow)"
+	@echo "make clean     remove $(VENV) and build"
+
+# --- build ---------------------------------------------------------------------------------
+
+build: $(VENV)/.installed
+
+$(VENV)/.created: tools/make_venv.sh
+	sh tools/make_venv.sh $(PYTHON) $(VENV)
+	touch $@
+
+$(VENV)/.build-tools: $(VENV)/.created pyproject.toml tools/build_requirements.py
+	sh tools/provide_python_headers.sh $(BIN)/python
+	$(PIP) --quiet "pip>=22"
+	$(BIN)/python tools/build_requirements.py > $(VENV)/requirements.txt
+	$(PIP) --quiet --requirement $(VENV)/requirements.txt
+	touch $@
+
+# Editable: changes of Python files count at once, changes of C++ files after `make build`.
+$(VENV)/.installed: $(VENV)/.build-tools $(CORE)
+	@echo "Building snowshed in $(TREE)"
+	@mkdir -p build
+	@$(PIP) --verbose --no-build-isolation \
+	  --config-settings=build-dir=$(TREE) \
+	  --config-settings=build.targets="_core;snowshed-run" \
+	  --editable . 2>&1 | tee build/install.log | awk $(COMPILER_LINES) || { cat build/install.log; exit 1; }
+	touch $@
+
+# --- run -----------------------------------------------------------------------------------
+
+demo: build
+	rm -rf $(DEMO)
+	$(BIN)/snowshed panel --preset lab-50 --friction 0.3 -o $(DEMO)
+	@echo "Pictures:"
+	@ls $(DEMO)/*.png
+
+# --- test ----------------------------------------------------------------------------------
+
+# Turns an option of the tree on; where that fails, the tree must stay good for `make build`.
+enable = cmake -S . -B $(TREE) -D$(1)=ON > build/configure.log \
+  || { cat build/configure.log; cmake -S . -B $(TREE) -D$(1)=OFF > /dev/null; exit 1; }
+
+test: test-cpp test-py
+
+test-cpp: build
+	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+	@$(call enable,SNOWSHED_BUILD_TESTS)
+	cmake --build $(TREE) --target snowshed_tests
+	ctest --test-dir $(TREE) --output-on-failure
+
+test-py: build $(VENV)/.dev-tools
+	$(BIN)/python -m pytest
+
+bench: build
+	@sh tools/provide_header.sh benchmark/benchmark.h libbenchmark-dev || echo "Fetching Google Benchmark instead."
+	@$(call enable,SNOWSHED_BUILD_BENCH)
+	cmake --build $(TREE) --target snowshed_bench
+	$(TREE)/snowshed_bench
+
+# --- documentation and style ---------------------------------------------------------------
+
+docs: build $(VENV)/.docs-tools
+	$(BIN)/sphinx-build -W --keep-going -b html docs build/docs
+	@echo "Open build/docs/index.html"
+
+format: $(VENV)/.cpp-tools $(VENV)/.dev-tools
+	$(BIN)/clang-format -i $(CPP_FILES)
+	$(BIN)/ruff check --fix $(PYTHON_FOLDERS)
+	$(BIN)/ruff format $(PYTHON_FOLDERS)
+
+lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools
+	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
+	$(BIN)/ruff check $(PYTHON_FOLDERS)
+	$(BIN)/ruff format --check $(PYTHON_FOLDERS)
+	$(BIN)/mypy python/snowshed
+
+tidy: build $(VENV)/.cpp-tools
+	sh tools/tidy.sh $(TREE)
+
+# The extra "dev" of pyproject.toml; snowshed itself is there already and stays as it is.
+$(VENV)/.dev-tools: $(VENV)/.installed pyproject.toml
+	$(PIP) --quiet "snowshed[dev]"
+	touch $@
+
+# Another version of clang-format would format everything anew.
+$(VENV)/.cpp-tools: $(VENV)/.created
+	$(PIP) --quiet "clang-format==$(CLANG_FORMAT)" clang-tidy
+	touch $@
+
+$(VENV)/.docs-tools: $(VENV)/.created
+	$(PIP) --quiet sphinx myst-parser furo
+	touch $@
+
+clean:
+	rm -rf $(VENV) build

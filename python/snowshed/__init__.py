@@ -1,0 +1,64 @@
+"""snowshed: snow that slides off solar panels, simulated with the material point method.
+
+A scene is set value by value and run event after event; the stack below the panel is measured.
+
+Examples
+--------
+>>> scene = Scene.preset("lab-50").set("snow.density", 250)
+>>> scene.panel.tilt
+50.0
+"""
+
+from snowshed._core import InputError, SimulationError
+from snowshed._core import version as __version__
+from snowshed.compare import dimension_ratio
+from snowshed.events import Progress, run_events
+from snowshed.interrupt import Interrupted
+from snowshed.parts import (
+    Body,
+    Domain,
+    Events,
+    Ground,
+    Motion,
+    Numerics,
+    Obstacle,
+    Output,
+    Panel,
+    Seeding,
+    Slab,
+    Snow,
+)
+from snowshed.results import read_events
+from snowshed.scene import InitialisedScene, Scene
+from snowshed.shape import Shape
+from snowshed.stack import Extent, StackMeasure, level, measure_stack
+
+__all__ = [
+    "Body",
+    "Domain",
+    "Events",
+    "Extent",
+    "Ground",
+    "InitialisedScene",
+    "InputError",
+    "Interrupted",
+    "Motion",
+    "Numerics",
+    "Obstacle",
+    "Output",
+    "Panel",
+    "Progress",
+    "Scene",
+    "Seeding",
+    "Shape",
+    "SimulationError",
+    "Slab",
+    "Snow",
+    "StackMeasure",
+    "__version__",
+    "dimension_ratio",
+    "level",
+    "measure_stack",
+    "read_events",
+    "run_events",
+]

@@ -1,0 +1,11 @@
+"""Names for the array types used throughout."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Booleans = NDArray[np.bool_]
+AnyIntegers = NDArray[np.integer[Any]]

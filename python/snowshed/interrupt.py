@@ -1,0 +1,61 @@
+"""Interrupts that wait for a safe point instead of breaking off in the middle."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import Optional
+
+
+class Interrupted(KeyboardInterrupt):
+    """A run was interrupted and left a checkpoint in `folder`."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        super().__init__(f"interrupted; go on with: {resume_command(folder)}")
+
+
+def resume_command(folder: Path) -> str:
+    """Return the command that goes on with an interrupted run."""
+    return f"snowshed run {folder / 'scene.json'} -o {folder} --resume"
+
+
+@dataclass
+class InterruptRequest:
+    """Whether an interrupt has been asked for."""
+
+    requested: bool = False
+
+
+@contextmanager
+def deferred_interrupts() -> Iterator[InterruptRequest]:
+    """Turn Ctrl-C (SIGINT) and SIGTERM into a request; a second one acts at once.
+
+    Outside the main thread, which alone may handle signals, nothing is changed.
+    """
+    request = InterruptRequest()
+    if threading.current_thread() is not threading.main_thread():
+        yield request
+        return
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.getsignal(number) for number in signals}
+
+    def restore() -> None:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+    def note(number: int, frame: Optional[FrameType]) -> None:
+        request.requested = True
+        restore()
+
+    for number in signals:
+        signal.signal(number, note)
+    try:
+        yield request
+    finally:
+        restore()

@@ -1,0 +1,27 @@
+"""Scenes small enough to run within a second or two."""
+
+from pathlib import Path
+
+import pytest
+
+from snowshed import Scene, run_events
+
+
+def tiny_scene(**values: object) -> Scene:
+    """The lab's 50 degree scene in 2D on a coarse grid: two events of about a hundred particles."""
+    scene = Scene.preset("lab-50").update({"dimension": 2, "numerics": {"dx": 0.02}})
+    scene.update({"events": {"count": 2, "max_time": 1.0}, "seeding.particles_per_voxel": 8})
+    return scene.update(values)
+
+
+@pytest.fixture
+def tiny() -> Scene:
+    return tiny_scene()
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The results folder of a tiny scene, run to its end."""
+    folder = tmp_path_factory.mktemp("finished") / "results"
+    run_events(tiny_scene(**{"output.energy": True}), folder)
+    return folder

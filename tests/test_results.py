@@ -1,0 +1,90 @@
+import pytest
+
+from snowshed import InputError
+from snowshed.atomic import replacing, write_text
+from snowshed.results import EVENT_COLUMNS, Results, check_empty, read_events
+from snowshed.tables import Table
+
+
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "old")
+    with pytest.raises(RuntimeError), replacing(path) as beside:
+        beside.write_text("half")
+        raise RuntimeError
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_old_file_stands_until_the_new_one_is_whole(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "old")
+    with replacing(path) as beside:
+        beside.write_text("new")
+        assert path.read_text() == "old"
+        assert beside.suffix == path.suffix
+    assert path.read_text() == "new"
+
+
+def test_table_goes_on_where_it_stopped(tmp_path):
+    path = tmp_path / "t.csv"
+    Table(path, ("event", "x")).add([{"event": i, "x": i / 3} for i in (1, 2, 3)])
+    again = Table(path, ("event", "x"))
+    again.keep_through(2)
+    again.add([{"event": 3, "x": 1.0}])
+    whole = Table(tmp_path / "u.csv", ("event", "x"))
+    whole.add([{"event": i, "x": x} for i, x in ((1, 1 / 3), (2, 2 / 3), (3, 1.0))])
+    assert path.read_bytes() == whole.path.read_bytes()
+    assert again.total("x") == pytest.approx(2.0)
+
+
+def test_nan_is_an_empty_cell(tmp_path):
+    table = Table(tmp_path / "t.csv", ("event", "x"))
+    table.add([{"event": 1, "x": float("nan")}])
+    assert table.path.read_text() == "event,x\n1,\n"
+
+
+def test_folder_must_be_empty(tmp_path):
+    check_empty(tmp_path)
+    check_empty(tmp_path / "new")
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="not empty"):
+        check_empty(tmp_path)
+    with pytest.raises(InputError, match="not a folder"):
+        check_empty(tmp_path / "file")
+
+
+def test_reopen_refuses_another_scene(tmp_path, tiny):
+    Results.create(tmp_path, tiny.initialise())
+    with pytest.raises(InputError, match="/panel/tilt"):
+        Results.reopen(tmp_path, tiny.set("panel.tilt", 55).initialise())
+    with pytest.raises(InputError, match="nothing to resume"):
+        Results.reopen(tmp_path / "new", tiny.initialise())
+
+
+def test_columns_of_the_events_table(finished):
+    table = read_events(finished)
+    assert list(table.columns) == list(EVENT_COLUMNS)
+    assert list(EVENT_COLUMNS[:16]) == [
+        "event",
+        "height_m",
+        "length_m",
+        "head_m",
+        "tail_m",
+        "width_m",
+        "volume_m3",
+        "density_kg_m3",
+        "on_panel_kg",
+        "detached_kg",
+        "body_height_m",
+        "body_length_m",
+        "mass_kg",
+        "sim_time_s",
+        "steps",
+        "wall_s",
+    ]
+
+
+def test_no_results(tmp_path):
+    with pytest.raises(InputError, match="no results"):
+        read_events(tmp_path)

@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+from piles import ball, cone, triangle
+
+from snowshed import level, measure_stack
+
+
+def measure(positions, *, dimension=2, density=200.0, mass=0.001, dx=0.02, **options):
+    ones = np.ones(len(positions))
+    return measure_stack(
+        positions, mass * ones, density * ones, dimension=dimension, dx=dx, **options
+    )
+
+
+def tilt(positions, degrees):
+    """Lay level snow on ground that falls in +x."""
+    psi = np.radians(degrees)
+    down, up = np.array([np.cos(psi), 0, -np.sin(psi)]), np.array([np.sin(psi), 0, np.cos(psi)])
+    x, y, z = positions.T
+    return np.outer(x, down) + np.outer(y, [0, 1, 0]) + np.outer(z, up)
+
+
+def test_ridge():
+    """1.5 % of a triangle at either end: sqrt(0.03) of half the base; the shell loses a cell."""
+    base, height = 1.0, 0.3
+    stack = measure(triangle(base, height))
+    length = base * (1 - np.sqrt(0.03))
+    assert stack.height == pytest.approx(height, rel=0.03)
+    assert length - 2 * length / 30 <= stack.length <= length + 0.002
+    assert stack.tail - stack.head == pytest.approx(stack.length)
+    assert stack.head == pytest.approx(-stack.tail, abs=length / 30)
+    assert stack.crest == pytest.approx(0.0, abs=0.03)
+    assert stack.width == 1.0
+
+
+def test_cone():
+    """97 % of a cone's volume lies within 0.894 of its radius: 3 s^2 - 2 s^3 = 0.97."""
+    stack = measure(cone(0.5, 0.3), dimension=3)
+    assert stack.height == pytest.approx(0.3, rel=0.05)
+    assert stack.length == pytest.approx(2 * 0.894 * 0.5, abs=0.035)
+    assert stack.width == pytest.approx(stack.length, abs=0.03)
+    assert stack.crest == pytest.approx(0.0, abs=0.03)
+
+
+def test_mass_volume_and_density():
+    pile = triangle(1.0, 0.3, count=1000)
+    densities = np.where(np.arange(1000) < 500, 100.0, 300.0)
+    stack = measure_stack(pile, np.full(1000, 0.3), densities, dimension=2, dx=0.1)
+    assert stack.mass == pytest.approx(300)
+    assert stack.volume == pytest.approx(2.0)
+    assert stack.density == pytest.approx(150)
+
+
+def test_a_roller_counts_for_the_stack_but_not_for_its_body():
+    ridge, roller = triangle(1.0, 0.3), ball((4.0, 0, 0.05), 0.05, 3000)
+    alone, together = measure(ridge), measure(np.vstack([ridge, roller]))
+    assert together.length > 4
+    assert together.body.length == pytest.approx(alone.length, abs=0.01)
+    assert together.body.height == pytest.approx(alone.height)
+    assert together.detached_mass == pytest.approx(3.0)
+    assert together.mass == pytest.approx(43.0)
+
+
+def test_snow_on_the_panel_is_set_aside():
+    ridge, slab = triangle(1.0, 0.3), ball((-1.0, 0, 1.0), 0.1, 500)
+    together = np.vstack([ridge, slab])
+    on_panel = np.arange(len(together)) >= len(ridge)
+    stack, alone = measure(together, exclude=on_panel), measure(ridge)
+    assert stack.on_panel_mass == pytest.approx(0.5)
+    assert (stack.height, stack.length, stack.mass) == (alone.height, alone.length, alone.mass)
+
+
+@pytest.mark.parametrize("degrees", [-20, 5, 30])
+def test_tilted_ground_does_not_change_the_measure(degrees):
+    pile = triangle(1.0, 0.3, count=5000) + [0.7, 0, 0]
+    flat = measure(pile)
+    sloped = measure(tilt(pile, degrees), ground_tilt_deg=degrees)
+    for name in ("height", "length", "head", "tail", "crest", "mass", "detached_mass"):
+        assert getattr(sloped, name) == pytest.approx(getattr(flat, name), abs=1e-9), name
+    assert np.allclose(sloped.outline, flat.outline)
+
+
+def test_level_turns_the_ground_normal_upright():
+    psi = np.radians(25)
+    normal = np.array([[np.sin(psi), 0, np.cos(psi)]])
+    assert np.allclose(level(normal, 25), [[0, 0, 1]])
+    points = np.random.default_rng(1).normal(size=(10, 3))
+    assert np.allclose(level(level(points, 25), -25), points)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_no_snow(dimension):
+    stack = measure(np.zeros((0, 3)), dimension=dimension)
+    assert (stack.height, stack.length, stack.mass, stack.body.height) == (0, 0, 0, 0)
+    assert np.isnan(stack.head) and np.isnan(stack.density)
+    assert stack.outline.shape == (0, 2)
+
+
+def test_all_snow_on_the_panel():
+    stack = measure(triangle(1.0, 0.3, count=100), exclude=np.ones(100, dtype=bool))
+    assert stack.mass == 0
+    assert stack.on_panel_mass == pytest.approx(0.1)
+
+
+def test_input_is_left_alone():
+    pile = triangle(1.0, 0.3, count=100) + [0, 1, 0]
+    before = pile.copy()
+    measure(pile)
+    assert np.array_equal(pile, before)

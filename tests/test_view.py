@@ -1,0 +1,77 @@
+import json
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from piles import triangle
+
+from snowshed import StackMeasure, measure_stack, read_events
+from snowshed.view import growth_figure, save, stack_figure
+
+
+class Snow:
+    """What the pictures ask of a simulation."""
+
+    dimension = 2
+
+    def __init__(self, positions, tilt=0.0, panel=True):
+        self._positions = positions
+        self.ground_tilt_deg = tilt
+        self._panel = panel
+
+    def positions(self):
+        return self._positions
+
+    def events(self):
+        return 1 + np.arange(len(self._positions)) % 3
+
+    def panel_frame(self):
+        frame = {"center": [0, 0, 1], "normal": [0.6, 0, 0.8], "slope": [0.8, 0, -0.6]}
+        return {**frame, "length": 1.0, "width": 1.0} if self._panel else None
+
+
+def coloured(path) -> float:
+    """Return the share of a picture's pixels that are not white."""
+    return float((imread(path)[..., :3].min(axis=-1) < 0.9).mean())
+
+
+@pytest.mark.parametrize("name", ["stack.png", "growth.png"])
+def test_a_run_draws_its_pictures(finished, name):
+    assert coloured(finished / name) > 0.005
+
+
+@pytest.mark.parametrize("panel", [True, False])
+@pytest.mark.parametrize("tilt", [0.0, 15.0])
+def test_stack_picture_shows_panel_and_stack_to_scale(tmp_path, panel, tilt):
+    pile = triangle(1.0, 0.3, count=2000) + [1.5, 0, 0]
+    ones = np.ones(len(pile))
+    stack = measure_stack(pile, ones, ones, dimension=2, dx=0.05)
+    figure = stack_figure(Snow(pile, tilt, panel), stack)
+    axes = figure.axes[0]
+    assert axes.get_aspect() == 1
+    low, high = axes.get_xlim()
+    assert low < (-0.4 if panel else 0.0) and high > 1.9
+    labels = " ".join(text.get_text() for text in axes.texts)
+    assert f"height {stack.height:.3f} m" in labels and f"length {stack.length:.3f} m" in labels
+    save(figure, tmp_path / "stack.png")
+    assert coloured(tmp_path / "stack.png") > 0.02
+
+
+def test_pictures_without_snow(tmp_path):
+    save(stack_figure(Snow(np.zeros((0, 3))), StackMeasure()), tmp_path / "stack.png")
+    assert (tmp_path / "stack.png").exists()
+
+
+def test_growth_shows_stack_and_body(finished):
+    figure = growth_figure(read_events(finished))
+    assert [axes.get_title(loc="left") for axes in figure.axes] == [
+        "height, m",
+        "length, m",
+        "head, m",
+        "tail, m",
+    ]
+    assert all(len(axes.lines) == 2 for axes in figure.axes)
+
+
+def test_the_scene_beside_the_pictures_is_complete(finished):
+    assert json.loads((finished / "scene.json").read_text())["snowshed"] == 1
