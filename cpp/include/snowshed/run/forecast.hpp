@@ -26,9 +26,7 @@ struct Forecast {
 /// does not tell (meshes and grids) or that has been seeded already.
 Forecast forecast(const Scene& scene, std::optional<double> particles_per_event = std::nullopt);
 
-/// Largest stable time step of explicit MPM with quadratic B-splines, times step_factor:
-///   dt = step_factor * 2 dx / sqrt(6 (d lambda + 2 mu) / rho0),
-/// lambda and mu the Lame parameters, d the dimension. Cubic splines are smoother and stable too.
+/// The first time step of a scene at rest (mpm/time_step.hpp), s.
 double stable_time_step(const Scene& scene);
 
 /// Throws InputError naming both numbers when `bytes` exceeds `available`; by default the memory

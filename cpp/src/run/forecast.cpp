@@ -1,4 +1,4 @@
-#include "snowshed/scene/forecast.hpp"
+#include "snowshed/run/forecast.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "snowshed/material/elasticity.hpp"
+#include "snowshed/mpm/time_step.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/shape_measure.hpp"
@@ -33,15 +35,6 @@ constexpr double grid_spread = 4.0;
 
 /// From the last impact to rest.
 constexpr double settling_time = 0.5;  // s
-
-struct Lame {
-  double lambda, mu;
-};
-
-Lame lame(const Snow& snow) {
-  const double e = snow.youngs_modulus, nu = snow.poissons_ratio;
-  return {e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu))};
-}
 
 double snow_volume(const Scene& scene, int event) {
   double volume = 0.0;
@@ -122,17 +115,18 @@ std::string gigabytes(double bytes) {
 }  // namespace
 
 double stable_time_step(const Scene& scene) {
-  const auto [lambda, mu] = lame(scene.snow);
-  const double stiffness = scene.dimension * lambda + 2.0 * mu;
-  return scene.numerics.step_factor * 2.0 * scene.numerics.dx /
-         std::sqrt(6.0 * stiffness / scene.snow.density);
+  const double limit =
+      elastic_time_step(scene.snow.youngs_modulus, scene.snow.poissons_ratio, scene.snow.density,
+                        scene.dimension, scene.numerics.dx, scene.numerics.basis);
+  return next_time_step(limit, 0.0, scene.numerics.dx, scene.numerics.step_factor);
 }
 
 Forecast forecast(const Scene& given, std::optional<double> particles_per_event) {
   const Scene scene = resolve(given);
   Forecast forecast;
-  const auto [lambda, mu] = lame(scene.snow);
-  forecast.wave_speed = std::sqrt((lambda + 2.0 * mu) / scene.snow.density);
+  const auto elastic =
+      Elasticity<double>::from(scene.snow.youngs_modulus, scene.snow.poissons_ratio, 3);
+  forecast.wave_speed = std::sqrt((elastic.lambda + 2.0 * elastic.mu) / scene.snow.density);
   forecast.time_step = stable_time_step(scene);
   add_particles(scene, particles_per_event, forecast);
   add_times(scene, forecast);

@@ -1,4 +1,4 @@
-#include "snowshed/scene/forecast.hpp"
+#include "snowshed/run/forecast.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,56 @@
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "snowshed/run/plan.hpp"
+#include "snowshed/scene/presets.hpp"
+#include "snowshed/scene/scene_json.hpp"
+
+namespace py = pybind11;
+
+namespace snowshed {
+namespace {
+
+/// Of a scene that is all presets, the "snow" part.
+std::string snow_json(const Snow& snow) {
+  Scene scene = preset_scene("lab-50");
+  scene.snow = snow;
+  const auto json = py::module_::import("json");
+  return json.attr("dumps")(json.attr("loads")(write_scene(scene))["snow"]).cast<std::string>();
+}
+
+py::dict plan_dict(const std::string& text, const std::string& base_dir) {
+  const Scene scene = parse_scene(text);
+  const Plan p = plan(scene, base_dir);
+  const int events = scene.events.count;
+  py::dict d;
+  d["used"] = p.used;
+  d["left_out"] = p.left_out;
+  d["particles_per_event"] =
+      std::int64_t(p.cost.particles.empty() ? 0.0 : p.cost.particles.front());
+  d["particles_total"] = std::int64_t(p.cost.total_particles);
+  d["memory_bytes"] = std::int64_t(p.cost.bytes);
+  d["time_step_s"] = p.cost.time_step;
+  d["steps_per_event"] = std::int64_t(p.cost.steps / events);
+  d["expected_wall_s"] = p.wall_time;
+  d["updates_per_s"] = p.updates_per_s;
+  d["threads"] = p.threads;
+  d["kernels"] = p.kernels;
+  d["scalar"] = scene.numerics.precision == Precision::float32 ? "float" : "double";
+  return d;
+}
+
+}  // namespace
+
+void bind_scene(py::module_& m) {
+  using namespace py::literals;
+  m.def(
+      "parse_scene",
+      [](const std::string& text, const std::string&) { return write_scene(resolve(parse_scene(text))); },
+      "text"_a, "base_dir"_a = ".", "The complete, validated JSON of a scene.");
+  m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
+  m.def("preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);
+  m.def("snow_preset", [](const std::string& name) { return snow_json(preset_snow(name)); }, "name"_a);
+  m.def("plan", &plan_dict, "scene_json"_a, "base_dir"_a = ".");
+}
+
+}  // namespace snowshed

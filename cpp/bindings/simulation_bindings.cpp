@@ -1,0 +1,161 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "snowshed/run/simulation.hpp"
+#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/scene_json.hpp"
+
+namespace py = pybind11;
+
+namespace snowshed {
+namespace {
+
+py::array_t<double> rows(const std::vector<Vec3>& vectors) {
+  py::array_t<double> a({py::ssize_t(vectors.size()), py::ssize_t(3)});
+  auto out = a.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < a.shape(0); ++i)
+    for (int k = 0; k < 3; ++k) out(i, k) = vectors[std::size_t(i)][k];
+  return a;
+}
+
+template <class To, class From>
+py::array_t<To> column(const std::vector<From>& values) {
+  py::array_t<To> a(py::ssize_t(values.size()));
+  auto out = a.template mutable_unchecked<1>();
+  for (py::ssize_t i = 0; i < a.shape(0); ++i) out(i) = To(values[std::size_t(i)]);
+  return a;
+}
+
+py::object vector(const Vec3& v) { return py::make_tuple(v[0], v[1], v[2]); }
+
+py::object begin_event(Simulation& sim) {
+  const auto r = sim.begin_event();
+  if (!r) return py::none();
+  py::dict d;
+  d["mass_before_kg"] = r->mass_before;
+  d["mass_after_kg"] = r->mass_after;
+  d["particles_before"] = r->particles_before;
+  d["particles_after"] = r->particles_after;
+  d["positions_before"] = rows(r->positions_before);
+  d["positions_after"] = rows(r->positions_after);
+  d["masses_before"] = column<double>(r->masses_before);
+  d["masses_after"] = column<double>(r->masses_after);
+  return d;
+}
+
+/// The callback answers True (go on), False (interrupted) or "checkpoint".
+std::string run(Simulation& sim, const py::function& callback, double interval) {
+  std::string reason = "interrupted";
+  const auto observer = [&](const RunReport& r) {
+    py::gil_scoped_acquire gil;
+    py::dict d;
+    d["time_s"] = r.time;
+    d["steps"] = r.steps;
+    d["dt_s"] = r.time_step;
+    d["rms_speed"] = r.rms_speed;
+    d["particles"] = r.particles;
+    d["updates_per_s"] = r.updates_per_s;
+    d["progress"] = r.progress;
+    const py::object answer = callback(d);
+    if (py::isinstance<py::str>(answer)) {
+      reason = answer.cast<std::string>();
+      return false;
+    }
+    return answer.cast<bool>();
+  };
+  RunEnd end;
+  {
+    py::gil_scoped_release release;
+    end = sim.run(observer, interval);
+  }
+  if (end == RunEnd::rest) return "rest";
+  if (end == RunEnd::time_limit) return "time_limit";
+  return reason;
+}
+
+py::dict energy(const Simulation& sim) {
+  const EnergyBooks e = sim.solver().energy();
+  py::dict d;
+  d["kinetic_j"] = e.kinetic;
+  d["gravitational_j"] = e.gravitational;
+  d["elastic_j"] = e.elastic;
+  d["plastic_j"] = e.plastic;
+  d["friction_j"] = e.friction;
+  d["sticking_j"] = e.sticking;
+  d["impact_j"] = e.impact;
+  d["transfer_j"] = e.transfer;
+  d["added_j"] = e.added;
+  d["residual_j"] = e.residual();
+  return d;
+}
+
+py::object frame(const Simulation& sim) {
+  if (!sim.scene().panel) return py::none();
+  const PanelFrame f = panel_frame(sim.scene());
+  py::dict d;
+  d["center"] = vector(f.center);
+  d["normal"] = vector(f.normal);
+  d["slope"] = vector(f.slope);
+  d["length"] = f.length;
+  d["width"] = f.width;
+  return d;
+}
+
+py::array_t<double> densities(const Simulation& sim) {
+  std::vector<double> density = sim.solver().state().volume_ratios;
+  for (double& d : density) d = sim.scene().snow.density / d;
+  return column<double>(density);
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& m) {
+  using namespace py::literals;
+  py::class_<Simulation>(m, "Simulation")
+      .def(py::init([](const std::string& json, const std::string& base_dir) {
+             return std::make_unique<Simulation>(parse_scene(json), base_dir);
+           }),
+           "scene_json"_a, "base_dir"_a = ".")
+      .def_static("load", [](const std::string& path) { return Simulation::load(path); }, "path"_a)
+      .def("save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a)
+      .def("begin_event", &begin_event)
+      .def("run", &run, "callback"_a, "interval_s"_a = 0.5)
+      .def("set_snapshots",
+           [](Simulation& s, const std::string& dir, double interval) {
+             s.write_snapshots(dir, interval);
+           },
+           "dir"_a, "interval_s"_a)
+      .def("write_vtk", [](const Simulation& s, const std::string& path) { s.write_vtp(path); },
+           "path"_a)
+      .def("energy", &energy)
+      .def("panel_frame", &frame)
+      .def("positions", [](const Simulation& s) { return rows(s.solver().state().positions); })
+      .def("velocities", [](const Simulation& s) { return rows(s.solver().state().velocities); })
+      .def("masses", [](const Simulation& s) { return column<double>(s.solver().state().masses); })
+      .def("events", [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })
+      .def("density", &densities)
+      .def("on_panel",
+           [](const Simulation& s) { return column<bool>(s.on_panel(s.solver().state())); })
+      .def_property_readonly("event", &Simulation::event)
+      .def_property_readonly("event_running", &Simulation::event_running)
+      .def_property_readonly("time_s", &Simulation::event_time)
+      .def_property_readonly("total_steps",
+                             [](const Simulation& s) { return s.solver().counters().steps; })
+      .def_property_readonly("rejected_steps",
+                             [](const Simulation& s) { return s.solver().counters().rejected; })
+      .def_property_readonly(
+          "particle_updates",
+          [](const Simulation& s) { return s.solver().counters().particle_updates; })
+      .def_property_readonly("particle_count", [](const Simulation& s) { return s.solver().size(); })
+      .def_property_readonly("time_step_s",
+                             [](const Simulation& s) { return s.solver().time_step(); })
+      .def_property_readonly("scene", [](const Simulation& s) { return write_scene(s.scene()); })
+      .def_property_readonly("threads", &Simulation::threads)
+      .def_property_readonly("dimension", [](const Simulation& s) { return s.scene().dimension; })
+      .def_property_readonly("ground_tilt_deg", [](const Simulation& s) {
+        return s.scene().ground ? s.scene().ground->tilt : 0.0;
+      });
+}
+
+}  // namespace snowshed

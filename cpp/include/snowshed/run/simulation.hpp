@@ -1,0 +1,97 @@
+// A scene being simulated: one slide-off event after another onto what lies there already.
+// This is what Python and snowshed-run drive; the loop over events is theirs.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snowshed/mpm/solver.hpp"
+#include "snowshed/run/rest_detector.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+class SnapshotSeries;
+
+/// How `Simulation::run` came back.
+enum class RunEnd { rest, time_limit, paused };
+
+/// What an observer is told while an event runs.
+struct RunReport {
+  double time = 0;        // s, in this event
+  double time_step = 0;   // s
+  double rms_speed = 0;   // m/s
+  double progress = 0;    // estimated part of the event that is done, 0 to 1
+  double updates_per_s = 0;
+  std::int64_t steps = 0;
+  std::size_t particles = 0;
+};
+
+/// The conversion of the stack between events with between = "reseed".
+struct Reseeding {
+  std::size_t particles_before, particles_after;
+  double mass_before, mass_after;                          // kg
+  std::vector<Vec3> positions_before, positions_after;     // m
+  std::vector<double> masses_before, masses_after;
+};
+
+class Simulation {
+ public:
+  /// Builds obstacles and checks that the scene fits into memory; seeds nothing yet. Relative
+  /// file names are looked for in `base_dir`. Throws InputError.
+  explicit Simulation(const Scene& scene, const std::filesystem::path& base_dir = ".");
+  ~Simulation();
+
+  /// Lays the next event's snow: the slab on the panel (above what remained there) and the
+  /// scene's bodies. With between = "reseed", from the second event on the stack is first turned
+  /// into a solid and seeded afresh at rest, in its initial state, with its mass.
+  std::optional<Reseeding> begin_event();
+
+  /// Runs the present event until the snow rests, the time limit, or `observer`, called every
+  /// `interval` seconds of wall time, returns false; then it goes on to the next safe point, so
+  /// that a checkpoint resumes to the same bits, and returns `paused`. Call again to go on.
+  RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
+
+  /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
+  void write_snapshots(const std::filesystem::path& folder, double interval);
+
+  void save(const std::filesystem::path& checkpoint) const;
+  /// Throws InputError where the file is not a sound checkpoint.
+  static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint);
+
+  const Scene& scene() const { return scene_; }
+  const Solver& solver() const { return *solver_; }
+  int event() const { return event_; }
+  bool event_running() const { return running_; }
+  double event_time() const { return solver_->time() - event_start_; }
+  int threads() const;
+
+  /// For each of the state's particles, whether it lies on the panel.
+  std::vector<bool> on_panel(const ParticleState&) const;
+
+  /// One .vtp with all particles and their quantities.
+  void write_vtp(const std::filesystem::path&) const;
+
+ private:
+  double lift_of_next_slab(const ParticleState&) const;
+  double lay(const BodySpec&, int index, int event);
+  Reseeding reseed_stack();
+  RunReport report(double rms_speed) const;
+
+  Scene scene_;
+  std::filesystem::path base_dir_;
+  std::unique_ptr<Solver> solver_;
+  std::unique_ptr<SnapshotSeries> snapshots_;
+  RestDetector rest_;
+  int event_ = 0;
+  bool running_ = false;
+  double event_start_ = 0;  // s
+  double event_mass_ = 0;   // kg, laid by the present event
+  double expected_time_ = 0;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,78 @@
+#include "snowshed/run/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/run/simulation.hpp"
+#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/enum_names.hpp"
+#include "snowshed/scene/scene_json.hpp"
+#include "snowshed/support/timer.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double measured_particles = 50000;
+
+void list_features(const Scene& s, Plan& plan) {
+  const auto feature = [&plan](bool used, const std::string& name) {
+    (used ? plan.used : plan.left_out).push_back(name);
+  };
+  feature(s.dimension == 3, "third dimension");
+  feature(s.numerics.precision == Precision::float64, "double precision");
+  feature(s.snow.model == SnowModel::cam_clay, "plasticity and hardening (Cam-Clay)");
+  feature(s.numerics.transfer == Transfer::apic, "APIC affine velocities");
+  feature(s.numerics.basis == Basis::cubic, "cubic B-splines");
+  bool conditions[3] = {s.domain.has_value(), false, false}, moving = false;
+  for (const ObstacleSpec& o : assemble_obstacles(s)) {
+    conditions[int(o.condition)] = true;
+    moving = moving || o.motion.has_value();
+  }
+  for (Condition c : {Condition::sticky, Condition::slip, Condition::separate})
+    feature(conditions[int(c)], std::string(name_of(c)) + " contact");
+  feature(moving, "moving obstacles");
+  feature(s.domain.has_value(), "domain walls");
+  feature(s.events.between == Between::reseed && s.events.count > 1, "reseeding between events");
+  feature(s.output.energy, "energy books");
+  feature(s.output.snapshot_interval > 0, "snapshots during events");
+}
+
+/// Particle updates per second on this machine, on the scene with fewer particles.
+double measured_speed(Scene scene, const std::filesystem::path& base_dir, const Forecast& cost) {
+  const double n = cost.particles.empty() ? 0.0 : cost.particles.front();
+  if (n > measured_particles)
+    scene.numerics.dx *= std::pow(n / measured_particles, 1.0 / scene.dimension);
+  scene.seeding.pattern = SeedPattern::jittered;  // seeds fast
+  Simulation sim(scene, base_dir);
+  sim.begin_event();
+  Stopwatch clock;
+  double best = 0;
+  const auto observer = [&](const RunReport& r) {
+    best = std::max(best, r.updates_per_s);
+    return clock.seconds() < 0.3;
+  };
+  sim.run(observer, 0.05);
+  return best;
+}
+
+}  // namespace
+
+Plan plan(const Scene& given, const std::filesystem::path& base_dir) {
+  const Scene scene = resolve(given);
+  Plan p;
+  list_features(scene, p);
+  p.cost = forecast(scene);
+  check_memory(p.cost.bytes);
+  p.kernels = kernel_variant();
+  p.threads = Simulation(scene, base_dir).threads();
+  p.updates_per_s = measured_speed(scene, base_dir, p.cost);
+  const double steps_per_event = p.cost.steps / std::max(1, scene.events.count);
+  double present = 0;
+  for (double particles : p.cost.particles) {
+    present += particles;
+    p.wall_time += steps_per_event * present / std::max(p.updates_per_s, 1.0);
+  }
+  return p;
+}
+
+}  // namespace snowshed
