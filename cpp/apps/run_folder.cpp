@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/pvd_series.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/support/error.hpp"
@@ -83,6 +84,8 @@ class FolderRun {
     std::snprintf(name, sizeof name, "event_%03d.vtp", sim_->event());
     fs::create_directories(folder_ / "particles");
     sim_->write_vtp(folder_ / "particles" / name);
+    PvdSeries::reopen(folder_ / "particles.pvd", sim_->event())
+        .append(sim_->event(), std::string("particles/") + name);
     checkpoint();
     if (!quiet_)
       std::fprintf(stderr, "\revent %d  %s after %.3f s of snow time%30s\n", sim_->event(),
@@ -101,6 +104,8 @@ bool run_into_folder(const Scene& scene, const fs::path& folder, bool resume, bo
                      const std::function<bool()>& go_on) {
   std::unique_ptr<Simulation> sim;
   if (resume) {
+    if (!fs::is_regular_file(folder / "checkpoint.bin"))
+      throw InputError(folder.string(), "nothing to resume; it holds no checkpoint.bin");
     sim = Simulation::load(folder / "checkpoint.bin");
     if (write_scene(sim->scene()) != write_scene(resolve(scene)))
       throw InputError(folder.string(), "was made by another scene");

@@ -45,8 +45,11 @@ void bind_scene(py::module_& m) {
   using namespace py::literals;
   m.def(
       "parse_scene",
-      [](const std::string& text, const std::string&) { return write_scene(resolve(parse_scene(text))); },
-      "text"_a, "base_dir"_a = ".", "The complete, validated JSON of a scene.");
+      [](const std::string& text, const std::string& base_dir) {
+        return write_scene(resolve(look_in(base_dir, parse_scene(text))));
+      },
+      "text"_a, "base_dir"_a = ".",
+      "The complete, validated JSON of a scene; files it names are found from base_dir.");
   m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
   m.def("preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);
   m.def("snow_preset", [](const std::string& name) { return snow_json(preset_snow(name)); }, "name"_a);

@@ -33,14 +33,12 @@ py::object begin_event(Simulation& sim) {
   const auto r = sim.begin_event();
   if (!r) return py::none();
   py::dict d;
-  d["mass_before_kg"] = r->mass_before;
-  d["mass_after_kg"] = r->mass_after;
-  d["particles_before"] = r->particles_before;
-  d["particles_after"] = r->particles_after;
-  d["positions_before"] = rows(r->positions_before);
-  d["positions_after"] = rows(r->positions_after);
-  d["masses_before"] = column<double>(r->masses_before);
-  d["masses_after"] = column<double>(r->masses_after);
+  for (const auto& [when, cloud] : {std::pair("before", &r->before), {"after", &r->after}}) {
+    const std::string suffix = std::string("_") + when;
+    d[("positions" + suffix).c_str()] = rows(cloud->positions);
+    d[("masses" + suffix).c_str()] = column<double>(cloud->masses);
+    d[("on_panel" + suffix).c_str()] = column<bool>(cloud->on_panel);
+  }
   return d;
 }
 
@@ -136,7 +134,7 @@ void bind_simulation(py::module_& m) {
       .def("events", [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })
       .def("density", &densities)
       .def("on_panel",
-           [](const Simulation& s) { return column<bool>(s.on_panel(s.solver().state())); })
+           [](const Simulation& s) { return column<bool>(s.on_panel(s.solver().state().positions)); })
       .def_property_readonly("event", &Simulation::event)
       .def_property_readonly("event_running", &Simulation::event_running)
       .def_property_readonly("time_s", &Simulation::event_time)

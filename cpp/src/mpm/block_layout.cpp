@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "snowshed/support/parallel.hpp"
+
 namespace snowshed {
 namespace {
 
@@ -25,16 +27,17 @@ std::int32_t find(const std::vector<BlockKey>& sorted, BlockKey key) {
 }  // namespace
 
 template <int D>
-bool BlockLayout<D>::assign(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts) {
+bool BlockLayout<D>::assign(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
+                            int threads) {
   first = std::move(starts);
   if (blocks == particle_blocks) return false;
   particle_blocks = std::move(blocks);
-  connect();
+  connect(threads);
   return true;
 }
 
 template <int D>
-void BlockLayout<D>::connect() {
+void BlockLayout<D>::connect(int threads) {
   grid_blocks.clear();
   grid_blocks.reserve(particle_blocks.size() * 4);
   for (BlockKey key : particle_blocks)
@@ -44,16 +47,16 @@ void BlockLayout<D>::connect() {
 
   around_particles.resize(particle_blocks.size());
   around_nodes.resize(grid_blocks.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(particle_blocks.size()); ++i)
+  parallel_for(std::ptrdiff_t(particle_blocks.size()), threads, 64, [this](std::ptrdiff_t i) {
     for_each_neighbour<D>(particle_blocks[i], [this, i](int n, BlockKey k) {
       around_particles[i][n] = find(grid_blocks, k);
     });
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(grid_blocks.size()); ++i)
+  });
+  parallel_for(std::ptrdiff_t(grid_blocks.size()), threads, 64, [this](std::ptrdiff_t i) {
     for_each_neighbour<D>(grid_blocks[i], [this, i](int n, BlockKey k) {
       around_nodes[i][n] = find(particle_blocks, k);
     });
+  });
 }
 
 template struct BlockLayout<2>;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "snowshed/geometry/combine.hpp"
+#include "snowshed/support/parallel.hpp"
 
 namespace snowshed {
 
@@ -77,11 +78,11 @@ void Contacts<T, D>::find_block(BlockKey key, double time, bool moving,
 }
 
 template <class T, int D>
-void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double time) {
+void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double time,
+                              int threads) {
   const std::ptrdiff_t n = std::ptrdiff_t(grid_blocks.size());
   std::vector<std::vector<Contact<T>>> found(grid_blocks.size());
-#pragma omp parallel for schedule(dynamic, 8)
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
+  parallel_for(n, threads, 8, [&](std::ptrdiff_t i) {
     const auto old = std::lower_bound(blocks_.begin(), blocks_.end(), grid_blocks[i]);
     if (old != blocks_.end() && *old == grid_blocks[i]) {
       const std::size_t b = std::size_t(old - blocks_.begin());
@@ -90,7 +91,7 @@ void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double t
       find_block(grid_blocks[i], time, false, found[i]);
       if (any_motion_) find_block(grid_blocks[i], time, true, found[i]);
     }
-  }
+  });
   blocks_ = grid_blocks;
   first_.assign(1, 0);
   contacts_.clear();

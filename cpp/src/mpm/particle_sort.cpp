@@ -6,6 +6,7 @@
 #include <string>
 
 #include "snowshed/support/error.hpp"
+#include "snowshed/support/parallel.hpp"
 
 namespace snowshed {
 
@@ -49,12 +50,13 @@ bool rebase(Particles<T, D>& particles, std::size_t i, BlockKey& block) {
 /// Stable counting sort of the particles by block.
 std::vector<std::uint32_t> order_by_block(const std::vector<BlockKey>& blocks,
                                           const std::vector<BlockKey>& unique,
-                                          std::vector<std::int32_t>& first) {
+                                          std::vector<std::int32_t>& first, int threads) {
   const std::ptrdiff_t n = std::ptrdiff_t(blocks.size());
   std::vector<std::uint32_t> slot(blocks.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t i = 0; i < n; ++i)
-    slot[i] = std::uint32_t(std::lower_bound(unique.begin(), unique.end(), blocks[i]) - unique.begin());
+  parallel_for_each(n, threads, [&](std::ptrdiff_t i) {
+    slot[i] = std::uint32_t(std::lower_bound(unique.begin(), unique.end(), blocks[i]) -
+                            unique.begin());
+  });
   first.assign(unique.size() + 1, 0);
   for (std::uint32_t s : slot) ++first[s + 1];
   for (std::size_t b = 0; b < unique.size(); ++b) first[b + 1] += first[b];
@@ -78,19 +80,19 @@ std::vector<BlockKey> unique_blocks(const std::vector<BlockKey>& blocks) {
 
 template <class T, int D>
 bool sort_particles(Particles<T, D>& particles, std::vector<BlockKey> blocks,
-                    BlockLayout<D>& layout) {
+                    BlockLayout<D>& layout, int threads) {
   std::atomic<std::int64_t> lost{-1};
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(blocks.size()); ++i)
+  parallel_for_each(std::ptrdiff_t(blocks.size()), threads, [&](std::ptrdiff_t i) {
     if (!rebase(particles, std::size_t(i), blocks[i])) lost = i;
+  });
   if (lost >= 0)
     throw SimulationError("particle " + std::to_string(particles.id[std::size_t(lost)]) +
                           " has left the addressable grid or is not finite");
   std::vector<BlockKey> unique = unique_blocks(blocks);
   std::vector<std::int32_t> first;
-  const std::vector<std::uint32_t> order = order_by_block(blocks, unique, first);
-  if (!std::is_sorted(order.begin(), order.end())) particles.permute(order);
-  return layout.assign(std::move(unique), std::move(first));
+  const std::vector<std::uint32_t> order = order_by_block(blocks, unique, first, threads);
+  if (!std::is_sorted(order.begin(), order.end())) particles.permute(order, threads);
+  return layout.assign(std::move(unique), std::move(first), threads);
 }
 
 template <int D>
@@ -104,10 +106,10 @@ std::vector<BlockKey> blocks_of_particles(const BlockLayout<D>& layout) {
 
 template struct Placement<2>;
 template struct Placement<3>;
-template bool sort_particles(Particles<float, 2>&, std::vector<BlockKey>, BlockLayout<2>&);
-template bool sort_particles(Particles<float, 3>&, std::vector<BlockKey>, BlockLayout<3>&);
-template bool sort_particles(Particles<double, 2>&, std::vector<BlockKey>, BlockLayout<2>&);
-template bool sort_particles(Particles<double, 3>&, std::vector<BlockKey>, BlockLayout<3>&);
+template bool sort_particles(Particles<float, 2>&, std::vector<BlockKey>, BlockLayout<2>&, int);
+template bool sort_particles(Particles<float, 3>&, std::vector<BlockKey>, BlockLayout<3>&, int);
+template bool sort_particles(Particles<double, 2>&, std::vector<BlockKey>, BlockLayout<2>&, int);
+template bool sort_particles(Particles<double, 3>&, std::vector<BlockKey>, BlockLayout<3>&, int);
 template std::vector<BlockKey> blocks_of_particles(const BlockLayout<2>&);
 template std::vector<BlockKey> blocks_of_particles(const BlockLayout<3>&);
 

@@ -1,7 +1,5 @@
 #include "snowshed/mpm/solver.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -10,6 +8,7 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/mpm/time_step.hpp"
 #include "snowshed/support/error.hpp"
+#include "snowshed/support/parallel.hpp"
 
 namespace snowshed {
 namespace {
@@ -81,8 +80,8 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
     particles_.id[old + i] = next_id_++;
     particles_.event[old + i] = std::uint16_t(batch.event);
   }
-  sort_particles(particles_, std::move(blocks), layout_);
-  contacts_.relocate(layout_.grid_blocks, time_);
+  sort_particles(particles_, std::move(blocks), layout_, threads_);
+  contacts_.relocate(layout_.grid_blocks, time_, threads_);
   grid_.resize(layout_);
   tiles_valid_ = false;
   speed_ = std::max(speed_, velocity.norm());
@@ -98,8 +97,8 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
 template <class T, int D>
 void SolverOf<T, D>::clear() {
   particles_.resize(0);
-  sort_particles(particles_, {}, layout_);
-  contacts_.relocate(layout_.grid_blocks, time_);
+  sort_particles(particles_, {}, layout_, threads_);
+  contacts_.relocate(layout_.grid_blocks, time_, threads_);
   grid_.resize(layout_);
   tiles_valid_ = false;
   if (options_.energy) {
@@ -115,7 +114,6 @@ void SolverOf<T, D>::step() {
     sort();
     scatter();
   }
-  gather();
   dt_ = update_within_limits(
       next_time_step(elastic_limit_, speed_, options_.numerics.dx, options_.numerics.step_factor));
   advance(dt_);
@@ -128,8 +126,8 @@ void SolverOf<T, D>::step() {
 
 template <class T, int D>
 void SolverOf<T, D>::sort() {
-  if (sort_particles(particles_, blocks_of_particles(layout_), layout_)) {
-    contacts_.relocate(layout_.grid_blocks, time_);
+  if (sort_particles(particles_, blocks_of_particles(layout_), layout_, threads_)) {
+    contacts_.relocate(layout_.grid_blocks, time_, threads_);
     grid_.resize(layout_);
   }
   since_sort_ = 0;
@@ -141,21 +139,21 @@ void SolverOf<T, D>::scatter() {
   const ParticleView<T> view = particles_.view();
   const StepParameters<T> step = parameters(dt_);
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-  for (std::ptrdiff_t b = 0; b < n; ++b) {
+  parallel_for(n, threads_, 1, [&](std::ptrdiff_t b) {
     BlockStats stats;
     kernels_.scatter(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
                      grid_.tile(b), stats);
-  }
+  });
   tiles_valid_ = true;
 }
 
+/// First half of a step: the node sums, and at once the node velocities for a step of dt.
 template <class T, int D>
-void SolverOf<T, D>::gather() {
+void SolverOf<T, D>::gather_and_update(double dt) {
   contacts_.follow(time_);
+  const StepParameters<T> step = parameters(dt);
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.grid_blocks.size());
-#pragma omp parallel for schedule(dynamic, 4) num_threads(threads_)
-  for (std::ptrdiff_t g = 0; g < n; ++g) {
+  parallel_for(n, threads_, 8, [&](std::ptrdiff_t g) {
     contacts_.commit(g);
     const T* tiles[neighbour_count<D>];
     for (int k = 0; k < neighbour_count<D>; ++k) {
@@ -163,19 +161,22 @@ void SolverOf<T, D>::gather() {
       tiles[k] = block < 0 ? nullptr : grid_.tile(block);
     }
     kernels_.gather(tiles, grid_.sum(g));
-  }
+    update_block(step, g);
+  });
 }
 
 template <class T, int D>
 void SolverOf<T, D>::update(double dt) {
   const StepParameters<T> step = parameters(dt);
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.grid_blocks.size());
-#pragma omp parallel for schedule(dynamic, 4) num_threads(threads_)
-  for (std::ptrdiff_t g = 0; g < n; ++g) {
-    grid_.node_stats[g] = {};
-    kernels_.update(step, grid_.sum(g), grid_.velocity(g), contacts_.of_block(g),
-                    contacts_.count(g), contacts_.laws().data(), grid_.node_stats[g]);
-  }
+  parallel_for(n, threads_, 8, [&](std::ptrdiff_t g) { update_block(step, g); });
+}
+
+template <class T, int D>
+void SolverOf<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t g) {
+  grid_.node_stats[g] = {};
+  kernels_.update(step, grid_.sum(g), grid_.velocity(g), contacts_.of_block(g), contacts_.count(g),
+                  contacts_.laws().data(), grid_.node_stats[g]);
 }
 
 /// A step that would strain a particle beyond the limit is not taken: the grid's sums do not
@@ -183,8 +184,8 @@ void SolverOf<T, D>::update(double dt) {
 template <class T, int D>
 double SolverOf<T, D>::update_within_limits(double dt) {
   const double limit = options_.numerics.strain_limit;
+  gather_and_update(dt);
   while (true) {
-    update(dt);
     const double strain = largest_strain() * dt;
     if (strain <= limit) return dt;
     ++counters_.rejected;
@@ -196,6 +197,7 @@ double SolverOf<T, D>::update_within_limits(double dt) {
       throw SimulationError(message.str());
     }
     dt *= std::min(0.5, 0.8 * limit / strain);
+    update(dt);
   }
 }
 
@@ -210,9 +212,8 @@ double SolverOf<T, D>::largest_strain() {
   const StepParameters<T> unit = parameters(1.0);
   const ParticleView<T> view = particles_.view();
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
-  double largest = 0;
-#pragma omp parallel for schedule(dynamic, 4) num_threads(threads_) reduction(max : largest)
-  for (std::ptrdiff_t b = 0; b < n; ++b) {
+  block_strain_.resize(layout_.particle_blocks.size());
+  parallel_for(n, threads_, 256, [&](std::ptrdiff_t b) {
     double bound = 0;
     for (int d = 0; d < D; ++d) {
       double low = infinity, high = -infinity;
@@ -231,9 +232,9 @@ double SolverOf<T, D>::largest_strain() {
                      velocities, stats);
       bound = std::isfinite(stats.strain) ? stats.strain : infinity;
     }
-    largest = std::max(largest, bound);
-  }
-  return largest;
+    block_strain_[b] = bound;
+  });
+  return *std::max_element(block_strain_.begin(), block_strain_.end());
 }
 
 template <class T, int D>
@@ -241,15 +242,14 @@ void SolverOf<T, D>::advance(double dt) {
   const StepParameters<T> step = parameters(dt);
   const ParticleView<T> view = particles_.view();
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-  for (std::ptrdiff_t b = 0; b < n; ++b) {
+  parallel_for(n, threads_, 1, [&](std::ptrdiff_t b) {
     const T* velocities[neighbour_count<D>];
     for (int k = 0; k < neighbour_count<D>; ++k)
       velocities[k] = grid_.velocity(layout_.around_particles[b][k]);
     grid_.block_stats[b] = {};
     kernels_.advance(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
                      velocities, grid_.tile(b), grid_.block_stats[b]);
-  }
+  });
   reduce_blocks();
 }
 

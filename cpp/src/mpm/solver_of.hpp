@@ -1,8 +1,6 @@
 // The solver for one precision and dimension.
 #pragma once
 
-#include <atomic>
-
 #include "mpm/grid.hpp"
 #include "snowshed/material/cam_clay.hpp"
 #include "snowshed/material/sym_tensor.hpp"
@@ -35,9 +33,10 @@ class SolverOf final : public Solver {
   // The phases of a step.
   void sort();
   void scatter();
-  void gather();
   double update_within_limits(double dt);  ///< returns the dt accepted
+  void gather_and_update(double dt);
   void update(double dt);
+  void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
   double largest_strain();  ///< largest |dt grad v| any particle would take
   void advance(double dt);
 
@@ -57,6 +56,7 @@ class SolverOf final : public Solver {
   BlockLayout<D> layout_;
   Contacts<T, D> contacts_;
   Grid<T, D> grid_;
+  std::vector<double> block_strain_;  // 1/s, of the step being tried
 
   double time_ = 0, dt_ = 0, speed_ = 0;  // speed: of the fastest particle
   bool tiles_valid_ = false;

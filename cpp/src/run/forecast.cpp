@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "snowshed/material/elasticity.hpp"
@@ -96,14 +97,13 @@ void add_times(const Scene& scene, Forecast& forecast) {
   forecast.event_time = std::min(std::max(slab, bodies) + settling_time, scene.events.max_time);
 }
 
-void add_particles(const Scene& scene, std::optional<double> given, Forecast& forecast) {
+std::vector<double> count_particles(const Scene& scene) {
+  std::vector<double> counts;
   const double voxel = std::pow(scene.numerics.dx, scene.dimension);
-  for (int event = 1; event <= scene.events.count; ++event) {
-    const double voxels = given ? 0.0 : snow_volume(scene, event) / voxel;
-    forecast.particles.push_back(
-        given.value_or(std::round(voxels * scene.seeding.particles_per_voxel)));
-    forecast.total_particles += forecast.particles.back();
-  }
+  for (int event = 1; event <= scene.events.count; ++event)
+    counts.push_back(
+        std::round(snow_volume(scene, event) / voxel * scene.seeding.particles_per_voxel));
+  return counts;
 }
 
 std::string gigabytes(double bytes) {
@@ -121,14 +121,19 @@ double stable_time_step(const Scene& scene) {
   return next_time_step(limit, 0.0, scene.numerics.dx, scene.numerics.step_factor);
 }
 
-Forecast forecast(const Scene& given, std::optional<double> particles_per_event) {
+Forecast forecast(const Scene& scene) {
+  return forecast(scene, count_particles(resolve(scene)));
+}
+
+Forecast forecast(const Scene& given, std::vector<double> particles) {
   const Scene scene = resolve(given);
   Forecast forecast;
+  forecast.total_particles = std::accumulate(particles.begin(), particles.end(), 0.0);
+  forecast.particles = std::move(particles);
   const auto elastic =
       Elasticity<double>::from(scene.snow.youngs_modulus, scene.snow.poissons_ratio, 3);
   forecast.wave_speed = std::sqrt((elastic.lambda + 2.0 * elastic.mu) / scene.snow.density);
   forecast.time_step = stable_time_step(scene);
-  add_particles(scene, particles_per_event, forecast);
   add_times(scene, forecast);
   forecast.steps = scene.events.count * std::ceil(forecast.event_time / forecast.time_step);
   const auto [per_particle, per_voxel] = storage(scene.dimension, scene.numerics.precision);

@@ -61,10 +61,10 @@ Plan plan(const Scene& given, const std::filesystem::path& base_dir) {
   const Scene scene = resolve(given);
   Plan p;
   list_features(scene, p);
-  p.cost = forecast(scene);
-  check_memory(p.cost.bytes);
+  const Simulation sim(scene, base_dir);
+  p.cost = sim.cost();
+  p.threads = sim.threads();
   p.kernels = kernel_variant();
-  p.threads = Simulation(scene, base_dir).threads();
   p.updates_per_s = measured_speed(scene, base_dir, p.cost);
   const double steps_per_event = p.cost.steps / std::max(1, scene.events.count);
   double present = 0;

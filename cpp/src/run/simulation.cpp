@@ -4,17 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
 
 #include "run/snapshot_series.hpp"
 #include "snowshed/geometry/build_shape.hpp"
 #include "snowshed/geometry/combine.hpp"
 #include "snowshed/geometry/particle_voxels.hpp"
+#include "snowshed/geometry/point_grid.hpp"
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/geometry/seeding.hpp"
 #include "snowshed/geometry/voxel_set.hpp"
 #include "snowshed/run/forecast.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/scene_json.hpp"
+#include "snowshed/scene/shape_measure.hpp"
 #include "snowshed/support/error.hpp"
 #include "snowshed/support/timer.hpp"
 
@@ -52,6 +57,69 @@ std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem:
   return obstacles;
 }
 
+/// Points sorted by the event of the particle nearest to each, all of them within `reach` of one.
+std::map<int, std::vector<Vec3>> by_nearest_event(const std::vector<Vec3>& points,
+                                                  const ParticleState& particles, double reach) {
+  const PointGrid grid(particles.positions, reach);
+  std::map<int, std::vector<Vec3>> sorted;
+  for (const Vec3& x : points) {
+    int event = particles.events.back();
+    double nearest = std::numeric_limits<double>::infinity();
+    grid.for_each_near(x, [&](std::size_t i, const Vec3& y) {
+      const double distance = (x - y).squaredNorm();
+      if (distance >= nearest) return;
+      nearest = distance;
+      event = particles.events[i];
+    });
+    sorted[event].push_back(x);
+  }
+  return sorted;
+}
+
+/// Geometry knows no scene; gives its errors the place in it.
+template <class Action>
+auto naming(const std::string& path, Action action) {
+  try {
+    return action();
+  } catch (const InputError& error) {
+    if (!error.where().empty() && error.where().front() == '/') throw;
+    throw InputError(path, error.what());
+  }
+}
+
+std::string body_path(std::size_t i) { return "/bodies/" + std::to_string(i) + "/shape"; }
+
+/// Where in the scene the bodies of `assemble_bodies` stand.
+std::vector<std::string> body_paths(const Scene& scene, int event) {
+  std::vector<std::string> paths;
+  if (scene.slab) paths.push_back("/slab");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (scene.bodies[i].event == 0 || scene.bodies[i].event == event)
+      paths.push_back(body_path(i));
+  return paths;
+}
+
+/// New particles in each event. Meshes and grids, of which the scene does not tell the volume,
+/// are measured, coarsely; that they can be read shows before anything is run.
+std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir) {
+  std::vector<double> counts = forecast(scene).particles;
+  const double dx = scene.numerics.dx;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const BodySpec& body = scene.bodies[i];
+    if (shape_volume(body.shape, scene.dimension)) continue;
+    const double volume = naming(body_path(i), [&] {
+      const Shape shape = build_shape(body.shape, scene.dimension, body_path(i), base_dir);
+      const Vec3 size = shape->bounds().max - shape->bounds().min;
+      return measure(*shape, scene.dimension, std::max(dx, size.maxCoeff() / 64));
+    });
+    const double count =
+        std::round(volume / std::pow(dx, scene.dimension) * scene.seeding.particles_per_voxel);
+    for (int event = 1; event <= scene.events.count; ++event)
+      if (body.event == 0 || body.event == event) counts[std::size_t(event - 1)] += count;
+  }
+  return counts;
+}
+
 SolverOptions solver_options(const Scene& scene) {
   SolverOptions o;
   o.dimension = scene.dimension;
@@ -67,10 +135,9 @@ SolverOptions solver_options(const Scene& scene) {
 Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir)
     : scene_(resolve(scene)),
       base_dir_(base_dir),
+      cost_(forecast(scene_, count_particles(scene_, base_dir))),
       rest_(scene.events.rest_speed, scene.events.rest_time) {
-  const Forecast cost = forecast(scene_);
-  check_memory(cost.bytes);
-  expected_time_ = cost.event_time;
+  check_memory(cost_.bytes);
   solver_ = make_solver(solver_options(scene_), build_obstacles(scene_, base_dir_));
 }
 
@@ -87,8 +154,10 @@ std::optional<Reseeding> Simulation::begin_event() {
   const double lift = event_ > 0 ? lift_of_next_slab(solver_->state()) : 0.0;
   const auto bodies = assemble_bodies(scene_, event_ + 1, lift);
   event_mass_ = 0;
+  const auto paths = body_paths(scene_, event_ + 1);
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    event_mass_ += lay(bodies[i], int(i), event_ + 1);
+    event_mass_ += lay(bodies[i], paths[i],
+                       scene_.seeding.seed + 1000003u * std::uint64_t(event_ + 1) + i);
   ++event_;
   running_ = true;
   event_start_ = solver_->time();
@@ -97,34 +166,28 @@ std::optional<Reseeding> Simulation::begin_event() {
 }
 
 /// Seeds a body of snow; returns its mass.
-double Simulation::lay(const BodySpec& body, int index, int event) {
-  const Seeding& s = scene_.seeding;
-  const bool slab = scene_.slab && index == 0;
-  const std::string path =
-      slab ? "/slab" : "/bodies/" + std::to_string(index - (scene_.slab ? 1 : 0)) + "/shape";
-  try {
+double Simulation::lay(const BodySpec& body, const std::string& path, std::uint64_t seed) {
+  return naming(path, [&] {
     const Shape shape = build_shape(body.shape, scene_.dimension, path, base_dir_);
     ParticleBatch batch;
-    batch.positions = seed(*shape, scene_.dimension, scene_.numerics.dx, s.particles_per_voxel,
-                           s.pattern, s.seed + 1000003u * std::uint64_t(event) + index);
+    batch.positions =
+        snowshed::seed(*shape, scene_.dimension, scene_.numerics.dx,
+                       scene_.seeding.particles_per_voxel, scene_.seeding.pattern, seed);
     const double mass =
         scene_.snow.density * measure(*shape, scene_.dimension, scene_.numerics.dx);
     batch.mass = mass / double(batch.positions.size());
     batch.velocity = body.velocity;
-    batch.event = event;
+    batch.event = event_ + 1;
     solver_->add(batch);
     return mass;
-  } catch (const InputError& error) {
-    if (!error.where().empty() && error.where().front() == '/') throw;
-    throw InputError(path, error.what());
-  }
+  });
 }
 
 /// Later slabs lie on the snow that stayed on the panel; stray grains do not count.
 double Simulation::lift_of_next_slab(const ParticleState& state) const {
   if (!scene_.panel || !scene_.slab) return 0.0;
   const PanelFrame frame = panel_frame(scene_);
-  const std::vector<bool> there = on_panel(state);
+  const std::vector<bool> there = on_panel(state.positions);
   double mass = 0, top = 0;
   for (std::size_t i = 0; i < there.size(); ++i) {
     if (!there[i]) continue;
@@ -134,8 +197,8 @@ double Simulation::lift_of_next_slab(const ParticleState& state) const {
   return mass > 0.02 * event_mass_ ? top + 0.5 * scene_.numerics.dx : 0.0;
 }
 
-std::vector<bool> Simulation::on_panel(const ParticleState& state) const {
-  std::vector<bool> there(state.positions.size(), false);
+std::vector<bool> Simulation::on_panel(const std::vector<Vec3>& positions) const {
+  std::vector<bool> there(positions.size(), false);
   if (!scene_.panel) return there;
   const PanelFrame frame = panel_frame(scene_);
   const double dx = scene_.numerics.dx;
@@ -143,7 +206,7 @@ std::vector<bool> Simulation::on_panel(const ParticleState& state) const {
   const double height =
       2 * dx + (scene_.slab ? scene_.slab->thickness : 0.0) * std::max(event_, 1);
   for (std::size_t i = 0; i < there.size(); ++i) {
-    const Vec3 x = state.positions[i] - frame.center;
+    const Vec3 x = positions[i] - frame.center;
     const double above = frame.normal.dot(x);
     there[i] = above > -dx && above < height && std::abs(frame.slope.dot(x)) < 0.5 * frame.length &&
                (scene_.dimension == 2 || std::abs(x.y()) < 0.5 * frame.width);
@@ -153,30 +216,28 @@ std::vector<bool> Simulation::on_panel(const ParticleState& state) const {
 
 /// The thesis's way between events (A.3.5): the stack as a solid, filled anew. The snow that
 /// stayed on the panel is converted along with it, so nothing is lost.
-Reseeding Simulation::reseed_stack() {
-  const ParticleState old = solver_->state();
+Reseeding Simulation::reseed_stack() try {
+  ParticleState old = solver_->state();
   const Seeding& s = scene_.seeding;
   const double dx = scene_.numerics.dx;
   const Shape solid = particles_to_level_set(
       old.positions, scene_.dimension, dx,
       particle_radius(scene_.dimension, dx, s.particles_per_voxel));
-  ParticleBatch batch;
-  batch.positions = seed(*solid, scene_.dimension, dx, s.particles_per_voxel, s.pattern,
+  Reseeding::Cloud after;
+  after.positions = seed(*solid, scene_.dimension, dx, s.particles_per_voxel, s.pattern,
                          s.seed + 1000003u * std::uint64_t(event_) + 500000u);
-  double mass = 0;
-  for (double m : old.masses) mass += m;
-  batch.mass = mass / double(batch.positions.size());
-  batch.event = event_;
+  const double mass = std::accumulate(old.masses.begin(), old.masses.end(), 0.0);
+  after.masses.assign(after.positions.size(), mass / double(after.positions.size()));
+  after.on_panel = on_panel(after.positions);
+
   solver_->clear();
-  solver_->add(batch);
-  return {old.positions.size(),
-          batch.positions.size(),
-          mass,
-          batch.mass * double(batch.positions.size()),
-          old.positions,
-          batch.positions,
-          old.masses,
-          std::vector<double>(batch.positions.size(), batch.mass)};
+  for (auto& [event, positions] : by_nearest_event(after.positions, old, 1.5 * dx))
+    solver_->add({std::move(positions), Vec3::Zero(), after.masses.front(), event});
+  Reseeding::Cloud before{std::move(old.positions), std::move(old.masses), {}};
+  before.on_panel = on_panel(before.positions);
+  return {std::move(before), std::move(after)};
+} catch (const InputError& error) {
+  throw SimulationError(std::string("cannot reseed the stack: ") + error.what());
 }
 
 RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, double interval) {
@@ -214,7 +275,7 @@ RunReport Simulation::report(double rms_speed) const {
   r.rms_speed = rms_speed;
   r.steps = solver_->counters().steps;
   r.particles = solver_->size();
-  r.progress = std::min(0.99, r.time / std::max(expected_time_, 1e-9));
+  r.progress = std::min(0.99, r.time / std::max(cost_.event_time, 1e-9));
   return r;
 }
 

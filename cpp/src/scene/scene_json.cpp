@@ -25,7 +25,8 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 void look_in(const std::filesystem::path& folder, ShapeSpec& shape) {
-  if (!shape.file.empty()) shape.file = (folder / shape.file).string();  // absolute ones stay
+  if (!shape.file.empty())  // absolute ones stay
+    shape.file = (folder / shape.file).lexically_normal().string();
   for (auto& part : shape.shapes) look_in(folder, part);
 }
 
@@ -44,13 +45,16 @@ Scene parse_scene(const std::string& text, const std::string& name) {
   return scene;
 }
 
+Scene look_in(const std::filesystem::path& folder, Scene scene) {
+  const auto absolute = std::filesystem::absolute(folder.empty() ? "." : folder);
+  for (auto& obstacle : scene.obstacles) look_in(absolute, obstacle.shape);
+  for (auto& body : scene.bodies) look_in(absolute, body.shape);
+  return scene;
+}
+
 Scene load_scene(const std::filesystem::path& file) {
   try {
-    Scene scene = parse_scene(read_text(file), file.string());
-    const auto folder = std::filesystem::absolute(file).parent_path();
-    for (auto& obstacle : scene.obstacles) look_in(folder, obstacle.shape);
-    for (auto& body : scene.bodies) look_in(folder, body.shape);
-    return scene;
+    return look_in(file.parent_path(), parse_scene(read_text(file), file.string()));
   } catch (const InputError& error) {
     throw naming_file(error, file.string());
   }

@@ -37,7 +37,7 @@ TEST(Forecast, ParticlesFollowTheBodiesOfEachEvent) {
   body.shape.type = "box";
   body.shape.size = {0.1, 0, 0.1};
   EXPECT_EQ(forecast(scene).particles, (std::vector<double>{6000, 6600}));
-  EXPECT_EQ(forecast(scene, 1234.0).particles, (std::vector<double>{1234, 1234}));
+  EXPECT_EQ(forecast(scene, {1234, 12}).total_particles, 1246.0);
 }
 
 TEST(Forecast, TimeStepOfTheCalibratedSnow) {

@@ -53,10 +53,10 @@ struct BlockLayout {
   std::vector<Neighbours> around_nodes;
 
   /// Sets the particle blocks; the rest follows. Returns whether the blocks changed at all.
-  bool assign(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts);
+  bool assign(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts, int threads);
 
  private:
-  void connect();
+  void connect(int threads);
 };
 
 }  // namespace snowshed

@@ -40,7 +40,7 @@ class Contacts {
   bool any_motion() const { return any_motion_; }
 
   /// Finds the constrained nodes of new grid blocks; blocks that stay keep theirs.
-  void relocate(const std::vector<BlockKey>& grid_blocks, double time);
+  void relocate(const std::vector<BlockKey>& grid_blocks, double time, int threads = 1);
 
   /// Follows moving obstacles to `time`. Nothing to do where none moves.
   void follow(double time);

@@ -78,7 +78,7 @@ struct BlockStats {
 
 /// What a kernel reports of one block of nodes.
 struct NodeStats {
-  double low[3], high[3];  // range of the new velocities; low > high where there is no snow
+  double low[3], high[3];  // bounds of the new velocities; low > high: no snow here
   double kinetic_before = 0, kinetic_after = 0;  // of the grid, J; before forces, after contact
   double friction = 0, sticking = 0, impact = 0; // taken by contact, J
 };

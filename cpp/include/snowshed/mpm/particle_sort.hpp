@@ -32,7 +32,8 @@ VecD<D> position_of(const Particles<T, D>& particles, std::size_t i, BlockKey bl
 /// the set of blocks changed. Throws SimulationError where one has left the addressable grid
 /// (2^20 blocks to each side) or is not finite.
 template <class T, int D>
-bool sort_particles(Particles<T, D>& particles, std::vector<BlockKey> blocks, BlockLayout<D>&);
+bool sort_particles(Particles<T, D>& particles, std::vector<BlockKey> blocks, BlockLayout<D>&,
+                    int threads);
 
 /// The block of each particle as the layout has it.
 template <int D>

@@ -9,6 +9,7 @@
 
 #include "snowshed/mpm/kernel_api.hpp"
 #include "snowshed/support/aligned_vector.hpp"
+#include "snowshed/support/parallel.hpp"
 
 namespace snowshed {
 
@@ -58,12 +59,12 @@ struct Particles {
   }
 
   /// Rearranges: the new particle i is the old particle order[i].
-  void permute(const std::vector<std::uint32_t>& order) {
-    for_each_array([&order](const char*, auto& array) {
+  void permute(const std::vector<std::uint32_t>& order, int threads) {
+    for_each_array([&order, threads](const char*, auto& array) {
       std::remove_reference_t<decltype(array)> sorted;
       sorted.resize(order.size());
-#pragma omp parallel for schedule(static)
-      for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(order.size()); ++i) sorted[i] = array[order[i]];
+      parallel_for_each(std::ptrdiff_t(order.size()), threads,
+                        [&](std::ptrdiff_t i) { sorted[i] = array[order[i]]; });
       array.swap(sorted);
     });
   }

@@ -1,7 +1,6 @@
 // What a scene will cost, by arithmetic alone: nothing is seeded or simulated.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "snowshed/scene/scene.hpp"
@@ -22,9 +21,10 @@ struct Forecast {
   double bytes = 0.0;             // peak memory, particles and grid
 };
 
-/// `particles_per_event` replaces the estimate from the volumes, for snow whose volume the scene
-/// does not tell (meshes and grids) or that has been seeded already.
-Forecast forecast(const Scene& scene, std::optional<double> particles_per_event = std::nullopt);
+/// `particles`, new in each event, replace the estimate from the volumes, which leaves out snow
+/// whose volume the scene does not tell (meshes and grids).
+Forecast forecast(const Scene& scene);
+Forecast forecast(const Scene& scene, std::vector<double> particles);
 
 /// The first time step of a scene at rest (mpm/time_step.hpp), s.
 double stable_time_step(const Scene& scene);

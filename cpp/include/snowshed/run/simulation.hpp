@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "snowshed/mpm/solver.hpp"
+#include "snowshed/run/forecast.hpp"
 #include "snowshed/run/rest_detector.hpp"
 #include "snowshed/scene/scene.hpp"
 
@@ -33,22 +34,26 @@ struct RunReport {
 
 /// The conversion of the stack between events with between = "reseed".
 struct Reseeding {
-  std::size_t particles_before, particles_after;
-  double mass_before, mass_after;                          // kg
-  std::vector<Vec3> positions_before, positions_after;     // m
-  std::vector<double> masses_before, masses_after;
+  struct Cloud {
+    std::vector<Vec3> positions;  // m
+    std::vector<double> masses;   // kg
+    std::vector<bool> on_panel;
+  };
+  Cloud before, after;
 };
 
 class Simulation {
  public:
-  /// Builds obstacles and checks that the scene fits into memory; seeds nothing yet. Relative
-  /// file names are looked for in `base_dir`. Throws InputError.
+  /// Builds obstacles, reads all files and checks that the scene fits into memory; seeds nothing
+  /// yet. Relative file names are looked for in `base_dir`. Throws InputError.
   explicit Simulation(const Scene& scene, const std::filesystem::path& base_dir = ".");
   ~Simulation();
 
   /// Lays the next event's snow: the slab on the panel (above what remained there) and the
   /// scene's bodies. With between = "reseed", from the second event on the stack is first turned
-  /// into a solid and seeded afresh at rest, in its initial state, with its mass.
+  /// into a solid and seeded afresh at rest, in its initial state, with its mass; the event of a
+  /// new particle is that of the old one nearest to it. Throws InputError where the snow of this
+  /// event cannot be seeded, SimulationError where the stack cannot be converted.
   std::optional<Reseeding> begin_event();
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
@@ -64,26 +69,28 @@ class Simulation {
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint);
 
   const Scene& scene() const { return scene_; }
+  const Forecast& cost() const { return cost_; }
   const Solver& solver() const { return *solver_; }
   int event() const { return event_; }
   bool event_running() const { return running_; }
   double event_time() const { return solver_->time() - event_start_; }
   int threads() const;
 
-  /// For each of the state's particles, whether it lies on the panel.
-  std::vector<bool> on_panel(const ParticleState&) const;
+  /// For each position, whether it is that of snow on the panel.
+  std::vector<bool> on_panel(const std::vector<Vec3>& positions) const;
 
   /// One .vtp with all particles and their quantities.
   void write_vtp(const std::filesystem::path&) const;
 
  private:
   double lift_of_next_slab(const ParticleState&) const;
-  double lay(const BodySpec&, int index, int event);
+  double lay(const BodySpec&, const std::string& path, std::uint64_t seed);
   Reseeding reseed_stack();
   RunReport report(double rms_speed) const;
 
   Scene scene_;
   std::filesystem::path base_dir_;
+  Forecast cost_;
   std::unique_ptr<Solver> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   RestDetector rest_;
@@ -91,7 +98,6 @@ class Simulation {
   bool running_ = false;
   double event_start_ = 0;  // s
   double event_mass_ = 0;   // kg, laid by the present event
-  double expected_time_ = 0;
 };
 
 }  // namespace snowshed

@@ -14,6 +14,9 @@ namespace snowshed {
 /// is not JSON. The text need not be trusted: its size, depth and number of values are limited.
 Scene parse_scene(const std::string& text, const std::string& name = "scene");
 
+/// The scene with absolute names of mesh and grid files; relative ones are taken to be in `folder`.
+Scene look_in(const std::filesystem::path& folder, Scene scene);
+
 /// `parse_scene` on a file; errors name it. Mesh and grid files given by a relative path are
 /// looked for beside the scene file, so the result does not depend on the working directory.
 Scene load_scene(const std::filesystem::path& file);

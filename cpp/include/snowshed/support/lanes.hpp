@@ -1,5 +1,5 @@
-// A SIMD register's worth of values, by the compiler's vector extension: `Lanes<float>` holds
-// 16 floats, `Lanes<double>` 8 doubles. Arithmetic and comparison work as on scalars; a
+// A SIMD register's worth of values, by the compiler's vector extension: with AVX-512
+// `Lanes<float>` holds 16 floats, `Lanes<double>` 8 doubles. Arithmetic and comparison work as on scalars; a
 // comparison gives a mask for `select`. Functions written for `V` accept a plain float or double
 // too, which is how the material laws are tested.
 #pragma once
@@ -14,7 +14,13 @@
 
 SNOWSHED_VARIANT_BEGIN
 
+#if defined(__AVX512F__)
 inline constexpr int lane_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int lane_bytes = 32;
+#else
+inline constexpr int lane_bytes = 16;
+#endif
 
 template <class T>
 struct LaneTypes;

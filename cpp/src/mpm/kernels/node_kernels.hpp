@@ -13,7 +13,7 @@ struct NodeKernels {
   static void gather(const T* const* tiles, T* sums) {
     std::memset(sums, 0, block_nodes<D> * node_values * sizeof(T));
     Node<T>* out = reinterpret_cast<Node<T>*>(sums);
-    for_each_shared_row<D, basis>([&](int neighbour, int node, int tile_node, int length) {
+    for_each_shared_row<D, basis>([&](int neighbour, int node, int tile_node, auto length) {
       // Seen from the particle block this block is the neighbour on the opposite side.
       const T* tile = tiles[neighbour_count<D> - 1 - neighbour];
       if (!tile) return;
@@ -29,54 +29,60 @@ struct NodeKernels {
     Node<T>* out = reinterpret_cast<Node<T>*>(velocities);
     Node<T> gravity{};
     gravity[D - 1] = -step.dt * step.gravity;
-    for (int k = 0; k < block_nodes<D>; ++k) {
-      const Node<T> sum = in[k];
-      const T inverse = sum[0] > T(0) ? T(1) / sum[0] : T(0);
-      Node<T> node = {(sum[1] + step.dt * sum[4]) * inverse,
-                      (sum[2] + step.dt * sum[5]) * inverse,
-                      (sum[3] + step.dt * sum[6]) * inverse, 0, 0, 0, 0, 0};
-      if (sum[0] > T(0)) node += gravity;
-      out[k] = node;
-    }
-    for (int c = 0; c < contact_count; ++c) {
-      Contact<T>& contact = contacts[c];
-      if (in[contact.node][0] > T(0))
-        apply(step, contact, laws[contact.obstacle], in[contact.node], out[contact.node], stats);
-      else
-        contact.next_press = 0;
-    }
-    finish(in, out, stats);
-  }
-
- private:
-  /// Second half of each node: what the particles' velocities take from it; and the bounds.
-  static void finish(const Node<T>* in, Node<T>* out, NodeStats& stats) {
-    T low[D], high[D];
-    for (int d = 0; d < D; ++d) {
-      low[d] = std::numeric_limits<T>::max();
-      high[d] = -low[d];
-    }
+    Node<T> low = std::numeric_limits<T>::max() - Node<T>{}, high = -low;
     for (int k = 0; k < block_nodes<D>; ++k) {
       const T mass = in[k][0];
-      Node<T> node = out[k];
-      const T inverse = mass > T(0) ? T(1) / mass : T(0);
-      for (int d = 0; d < D; ++d) node[4 + d] = flip ? node[d] - in[k][1 + d] * inverse : node[d];
-      out[k] = node;
-      if (!(mass > T(0))) continue;
-      for (int d = 0; d < D; ++d) {
-        low[d] = node[d] < low[d] ? node[d] : low[d];
-        high[d] = node[d] > high[d] ? node[d] : high[d];
+      if (!(mass > T(0))) {
+        out[k] = Node<T>{};
+        continue;
       }
-      if constexpr (energy) {
-        for (int d = 0; d < D; ++d) {
-          stats.kinetic_before += 0.5 * double(in[k][1 + d]) * double(in[k][1 + d]) / double(mass);
-          stats.kinetic_after += 0.5 * double(mass) * double(node[d]) * double(node[d]);
-        }
+      const Node<T> old = velocity(in[k]);
+      const Node<T> now = old + force(in[k]) * (step.dt / mass) + gravity;
+      out[k] = with_second_half(now, old);
+      low = now < low ? now : low;
+      high = now > high ? now : high;
+    }
+    for (int c = 0; c < contact_count; ++c) {
+      const Node<T>& sum = in[contacts[c].node];
+      if (sum[0] > T(0)) {
+        Node<T> node = out[contacts[c].node];
+        apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
+        out[contacts[c].node] = with_second_half(node, velocity(sum));
+        low = node < low ? node : low;
+        high = node > high ? node : high;
+      } else {
+        contacts[c].next_press = 0;
       }
     }
     for (int d = 0; d < D; ++d) {
       stats.low[d] = double(low[d]);
       stats.high[d] = double(high[d]);
+    }
+    if constexpr (energy) book_kinetic(in, out, stats);
+  }
+
+ private:
+  /// Velocity before the step, in the first three values (the fourth is zero).
+  static SNOWSHED_INLINE Node<T> velocity(const Node<T>& sum) {
+    return __builtin_shufflevector(sum, sum, 1, 2, 3, 7, 7, 7, 7, 7) / sum[0];
+  }
+  static SNOWSHED_INLINE Node<T> force(const Node<T>& sum) {
+    return __builtin_shufflevector(sum, sum, 4, 5, 6, 7, 7, 7, 7, 7);
+  }
+  /// What the particles' velocities take from the node goes into its second half.
+  static SNOWSHED_INLINE Node<T> with_second_half(const Node<T>& now, const Node<T>& old) {
+    const Node<T> second = flip ? Node<T>(now - old) : now;
+    return __builtin_shufflevector(now, second, 0, 1, 2, 3, 8, 9, 10, 11);
+  }
+
+  static void book_kinetic(const Node<T>* in, const Node<T>* out, NodeStats& stats) {
+    for (int k = 0; k < block_nodes<D>; ++k) {
+      const double mass = double(in[k][0]);
+      if (!(mass > 0)) continue;
+      for (int d = 0; d < D; ++d) {
+        stats.kinetic_before += 0.5 * double(in[k][1 + d]) * double(in[k][1 + d]) / mass;
+        stats.kinetic_after += 0.5 * mass * double(out[k][d]) * double(out[k][d]);
+      }
     }
   }
 

@@ -249,13 +249,21 @@ struct ParticleKernels {
       }
     }
     for (int l = 0; l < n; ++l) {
-      NodeSums<T, D> a{};
-      a.value[0] = s.mass[l];
-      for (int i = 0; i < D; ++i) {
-        a.value[1 + i] = momentum[i][l];
-        for (int j = 0; j < D; ++j) {
-          a.along[j][4 + i] = force[i][j][l];
-          if constexpr (apic) a.along[j][1 + i] = shear[i][j][l];
+      // Built from scalars, not element by element: that would go through memory and stall.
+      const auto entry = [l](const V& v) { return v[l]; };
+      NodeSums<T, D> a;
+      if constexpr (D == 2)
+        a.value = Node<T>{entry(s.mass), entry(momentum[0]), entry(momentum[1]), 0, 0, 0, 0, 0};
+      else
+        a.value = Node<T>{entry(s.mass), entry(momentum[0]), entry(momentum[1]), entry(momentum[2]),
+                          0, 0, 0, 0};
+      for (int j = 0; j < D; ++j) {
+        const T f0 = force[0][j][l], f1 = force[1][j][l], f2 = D == 3 ? force[D - 1][j][l] : T(0);
+        if constexpr (apic) {
+          const T s0 = shear[0][j][l], s1 = shear[1][j][l], s2 = D == 3 ? shear[D - 1][j][l] : T(0);
+          a.along[j] = Node<T>{0, s0, s1, s2, f0, f1, f2, 0};
+        } else {
+          a.along[j] = Node<T>{0, 0, 0, 0, f0, f1, f2, 0};
         }
       }
       if constexpr (apic)
@@ -339,7 +347,7 @@ struct ParticleKernels {
   static constexpr int tile_size = tile_nodes<D>(basis) * node_values;
 
   static void load_velocities(const T* const* blocks, T* tile) {
-    for_each_shared_row<D, basis>([&](int neighbour, int from, int to, int length) {
+    for_each_shared_row<D, basis>([&](int neighbour, int from, int to, auto length) {
       std::memcpy(tile + to * node_values, blocks[neighbour] + from * node_values,
                   length * node_values * sizeof(T));
     });
