@@ -50,6 +50,9 @@ void bind_scene(py::module_& m) {
       },
       "text"_a, "base_dir"_a = ".",
       "The complete, validated JSON of a scene; files it names are found from base_dir.");
+  m.def(
+      "load_scene", [](const std::string& path) { return write_scene(resolve(load_scene(path))); },
+      "path"_a, "The same of a file; files it names are found beside it.");
   m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
   m.def("preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);
   m.def("snow_preset", [](const std::string& name) { return snow_json(preset_snow(name)); }, "name"_a);

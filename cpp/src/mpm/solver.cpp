@@ -17,6 +17,9 @@ namespace {
 /// few cells thick, shorter than the time snow takes to slide over a cell.
 constexpr double friction_memory = 40;
 
+/// Fewer particles than this are not worth waking another thread for, twice a step.
+constexpr int particles_per_thread = 2000;
+
 }  // namespace
 
 template <class T, int D>
@@ -24,7 +27,7 @@ SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obs
     : options_(options),
       kernels_(select_kernels<T>({D, options.numerics.transfer, options.numerics.basis,
                                   options.snow.model, options.energy})),
-      threads_(options.numerics.threads > 0 ? options.numerics.threads : omp_get_num_procs()),
+      max_threads_(options.numerics.threads > 0 ? options.numerics.threads : omp_get_num_procs()),
       elastic_limit_(elastic_time_step(options.snow.youngs_modulus, options.snow.poissons_ratio,
                                        options.snow.density, D, options.numerics.dx,
                                        options.numerics.basis)),
@@ -49,11 +52,9 @@ StepParameters<T> SolverOf<T, D>::parameters(double dt) const {
 }
 
 template <class T, int D>
-double SolverOf<T, D>::initial_plastic_strain() const {
-  const Snow& s = options_.snow;
-  return CamClay<double>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
-                               s.cohesion, s.hardening_factor, D)
-      .initial_plastic_strain(s.preconsolidation_pressure);
+int SolverOf<T, D>::threads() const {
+  const auto worth = std::int64_t(particles_.size()) / particles_per_thread + 1;
+  return int(std::min<std::int64_t>(max_threads_, worth));
 }
 
 template <class T, int D>
@@ -80,8 +81,8 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
     particles_.id[old + i] = next_id_++;
     particles_.event[old + i] = std::uint16_t(batch.event);
   }
-  sort_particles(particles_, std::move(blocks), layout_, threads_);
-  contacts_.relocate(layout_.grid_blocks, time_, threads_);
+  sort_particles(particles_, std::move(blocks), layout_, threads());
+  contacts_.relocate(layout_.grid_blocks, time_, threads());
   grid_.resize(layout_);
   tiles_valid_ = false;
   speed_ = std::max(speed_, velocity.norm());
@@ -97,8 +98,8 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
 template <class T, int D>
 void SolverOf<T, D>::clear() {
   particles_.resize(0);
-  sort_particles(particles_, {}, layout_, threads_);
-  contacts_.relocate(layout_.grid_blocks, time_, threads_);
+  sort_particles(particles_, {}, layout_, threads());
+  contacts_.relocate(layout_.grid_blocks, time_, threads());
   grid_.resize(layout_);
   tiles_valid_ = false;
   if (options_.energy) {
@@ -126,8 +127,8 @@ void SolverOf<T, D>::step() {
 
 template <class T, int D>
 void SolverOf<T, D>::sort() {
-  if (sort_particles(particles_, blocks_of_particles(layout_), layout_, threads_)) {
-    contacts_.relocate(layout_.grid_blocks, time_, threads_);
+  if (sort_particles(particles_, blocks_of_particles(layout_), layout_, threads())) {
+    contacts_.relocate(layout_.grid_blocks, time_, threads());
     grid_.resize(layout_);
   }
   since_sort_ = 0;
@@ -139,7 +140,7 @@ void SolverOf<T, D>::scatter() {
   const ParticleView<T> view = particles_.view();
   const StepParameters<T> step = parameters(dt_);
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
-  parallel_for(n, threads_, 1, [&](std::ptrdiff_t b) {
+  parallel_for(n, threads(), 1, [&](std::ptrdiff_t b) {
     BlockStats stats;
     kernels_.scatter(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
                      grid_.tile(b), stats);
@@ -153,7 +154,7 @@ void SolverOf<T, D>::gather_and_update(double dt) {
   contacts_.follow(time_);
   const StepParameters<T> step = parameters(dt);
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.grid_blocks.size());
-  parallel_for(n, threads_, 8, [&](std::ptrdiff_t g) {
+  parallel_for(n, threads(), 8, [&](std::ptrdiff_t g) {
     contacts_.commit(g);
     const T* tiles[neighbour_count<D>];
     for (int k = 0; k < neighbour_count<D>; ++k) {
@@ -169,7 +170,7 @@ template <class T, int D>
 void SolverOf<T, D>::update(double dt) {
   const StepParameters<T> step = parameters(dt);
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.grid_blocks.size());
-  parallel_for(n, threads_, 8, [&](std::ptrdiff_t g) { update_block(step, g); });
+  parallel_for(n, threads(), 8, [&](std::ptrdiff_t g) { update_block(step, g); });
 }
 
 template <class T, int D>
@@ -213,7 +214,7 @@ double SolverOf<T, D>::largest_strain() {
   const ParticleView<T> view = particles_.view();
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
   block_strain_.resize(layout_.particle_blocks.size());
-  parallel_for(n, threads_, 256, [&](std::ptrdiff_t b) {
+  parallel_for(n, threads(), 256, [&](std::ptrdiff_t b) {
     double bound = 0;
     for (int d = 0; d < D; ++d) {
       double low = infinity, high = -infinity;
@@ -242,7 +243,7 @@ void SolverOf<T, D>::advance(double dt) {
   const StepParameters<T> step = parameters(dt);
   const ParticleView<T> view = particles_.view();
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
-  parallel_for(n, threads_, 1, [&](std::ptrdiff_t b) {
+  parallel_for(n, threads(), 1, [&](std::ptrdiff_t b) {
     const T* velocities[neighbour_count<D>];
     for (int k = 0; k < neighbour_count<D>; ++k)
       velocities[k] = grid_.velocity(layout_.around_particles[b][k]);
@@ -272,139 +273,10 @@ void SolverOf<T, D>::reduce_blocks() {
   if (options_.energy) book_step();
 }
 
-// --- energy ---------------------------------------------------------------------------------
-
-template <class T, int D>
-void SolverOf<T, D>::book_step() {
-  double kinetic = 0, elastic = 0, plastic = 0;
-  for (const BlockStats& s : grid_.block_stats) {
-    kinetic += s.kinetic;
-    elastic += s.elastic;
-    plastic += s.plastic;
-  }
-  double before = 0, after = 0;
-  for (const NodeStats& s : grid_.node_stats) {
-    before += s.kinetic_before;
-    after += s.kinetic_after;
-    books_.friction += s.friction;
-    books_.sticking += s.sticking;
-    books_.impact += s.impact;
-  }
-  // What particles to grid and grid to particles took.
-  books_.transfer += (books_.kinetic - before) + (after - kinetic);
-  books_.plastic += plastic;
-  books_.kinetic = kinetic;
-  books_.elastic = elastic;
-}
-
-template <class T, int D>
-double SolverOf<T, D>::gravitational_energy() const {
-  double sum = 0;
-  for (std::size_t b = 0; b < layout_.particle_blocks.size(); ++b)
-    for (std::int32_t i = layout_.first[b]; i < layout_.first[b + 1]; ++i)
-      sum += double(particles_.mass[i]) *
-             position_of(particles_, std::size_t(i), layout_.particle_blocks[b],
-                         options_.numerics.dx, options_.numerics.basis)[D - 1];
-  return sum * options_.gravity;
-}
-
-template <class T, int D>
-double SolverOf<T, D>::kinetic_energy() const {
-  const double inertia = options_.numerics.dx * options_.numerics.dx /
-                         (options_.numerics.basis == Basis::quadratic ? 4.0 : 3.0);
-  double sum = 0;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    double v2 = 0;
-    for (const auto& v : particles_.velocity) v2 += double(v[i]) * double(v[i]);
-    if (particles_.has_affine)
-      for (const auto& c : particles_.affine) v2 += inertia * double(c[i]) * double(c[i]);
-    sum += 0.5 * double(particles_.mass[i]) * v2;
-  }
-  return sum;
-}
-
-template <class T, int D>
-double SolverOf<T, D>::elastic_energy() const {
-  const auto el = Elasticity<double>::from(options_.snow.youngs_modulus,
-                                           options_.snow.poissons_ratio, D);
-  double sum = 0;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    Sym<double, D> a;
-    for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.strain[k][i]);
-    const Sym<double, D> e = hencky_strain(a);
-    const double volumetric = trace(e);
-    sum += double(particles_.mass[i]) / options_.snow.density *
-           (el.mu * norm_squared(e) + 0.5 * el.lambda * volumetric * volumetric);  // (1.2.5)
-  }
-  return sum;
-}
-
-template <class T, int D>
-EnergyBooks SolverOf<T, D>::energy() const {
-  EnergyBooks books = books_;
-  books.gravitational = gravitational_energy();
-  return books;
-}
-
-// --- for the outside ------------------------------------------------------------------------
-
-template <class T, int D>
-ParticleState SolverOf<T, D>::state() const {
-  const std::size_t n = particles_.size();
-  std::vector<std::size_t> at(n);  // by id: particles keep their places whatever the sort does
-  std::vector<BlockKey> blocks = blocks_of_particles(layout_);
-  for (std::size_t i = 0; i < n; ++i) at[i] = i;
-  std::sort(at.begin(), at.end(),
-            [this](std::size_t a, std::size_t b) { return particles_.id[a] < particles_.id[b]; });
-  const auto el = Elasticity<double>::from(options_.snow.youngs_modulus,
-                                           options_.snow.poissons_ratio, D);
-  const double initial = particles_.has_plastic ? initial_plastic_strain() : 0.0;
-  ParticleState s;
-  s.positions.reserve(n);
-  for (std::size_t i : at) {
-    s.positions.push_back(embed(position_of(particles_, i, blocks[i], options_.numerics.dx,
-                                            options_.numerics.basis)));
-    VecD<D> v;
-    for (int d = 0; d < D; ++d) v[d] = double(particles_.velocity[d][i]);
-    s.velocities.push_back(embed(v));
-    Sym<double, D> a;
-    for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.strain[k][i]);
-    const double elastic_volume = trace(hencky_strain(a));
-    const double plastic = particles_.has_plastic ? double(particles_.plastic[i]) : 0.0;
-    s.masses.push_back(double(particles_.mass[i]));
-    s.plastic_strains.push_back(plastic);
-    s.volume_ratios.push_back(std::exp(elastic_volume + plastic - initial));
-    s.pressures.push_back(-el.bulk * elastic_volume);
-    s.ids.push_back(particles_.id[i]);
-    s.events.push_back(particles_.event[i]);
-  }
-  return s;
-}
-
-template <class T, int D>
-MotionSummary SolverOf<T, D>::motion(double speed) const {
-  MotionSummary m;
-  double twice_kinetic = 0;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    double v2 = 0;
-    for (const auto& v : particles_.velocity) v2 += double(v[i]) * double(v[i]);
-    const double mass = double(particles_.mass[i]);
-    m.mass += mass;
-    twice_kinetic += mass * v2;
-    if (v2 > speed * speed) m.moving_mass += mass;
-  }
-  m.rms_speed = m.mass > 0 ? std::sqrt(twice_kinetic / m.mass) : 0;
-  return m;
-}
-
-template <class T, int D>
-std::size_t SolverOf<T, D>::bytes() const {
-  std::size_t total = grid_.bytes();
-  particles_.for_each_array([&total](const char*, const auto& array) {
-    total += array.capacity() * sizeof(array[0]);
-  });
-  return total;
-}
+template class SolverOf<float, 2>;
+template class SolverOf<float, 3>;
+template class SolverOf<double, 2>;
+template class SolverOf<double, 3>;
 
 std::unique_ptr<Solver> make_solver(const SolverOptions& options, std::vector<Obstacle> obstacles) {
   const bool single = options.numerics.precision == Precision::float32;

@@ -53,7 +53,7 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
     ordered = ordered && first[i] <= first[i + 1] && (i == 0 || keys[i - 1] < keys[i]);
   if (!ordered) throw InputError(in.path().string(), "the blocks of particles are not in order");
   layout_ = {};
-  layout_.assign(std::move(keys), std::move(first), threads_);
+  layout_.assign(std::move(keys), std::move(first), threads());
 
   const auto clock = in.get<double>("clock", 4);
   time_ = clock[0];

@@ -2,8 +2,6 @@
 #pragma once
 
 #include "mpm/grid.hpp"
-#include "snowshed/material/cam_clay.hpp"
-#include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/mpm/particle_sort.hpp"
 #include "snowshed/mpm/solver.hpp"
 
@@ -41,6 +39,7 @@ class SolverOf final : public Solver {
   void advance(double dt);
 
   StepParameters<T> parameters(double dt) const;
+  int threads() const;
   void reduce_blocks();
   void book_step();
   double gravitational_energy() const;
@@ -50,7 +49,7 @@ class SolverOf final : public Solver {
 
   SolverOptions options_;
   Kernels<T> kernels_;
-  int threads_;
+  int max_threads_;
   double elastic_limit_;  // s
   Particles<T, D> particles_;
   BlockLayout<D> layout_;

@@ -99,21 +99,28 @@ std::vector<std::string> body_paths(const Scene& scene, int event) {
   return paths;
 }
 
-/// New particles in each event. Meshes and grids, of which the scene does not tell the volume,
-/// are measured, coarsely; that they can be read shows before anything is run.
+/// What the scene tells of a body's volume (m3, in 2D m2); else it is measured, coarsely, in the
+/// solid itself, whose files are read here before anything is run.
+double body_volume(const BodySpec& body, const Scene& scene, const std::string& path,
+                   const std::filesystem::path& base_dir) {
+  if (const auto told = shape_volume(body.shape, scene.dimension)) return *told;
+  return naming(path, [&] {
+    const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
+    const Vec3 size = shape->bounds().max - shape->bounds().min;
+    return measure(*shape, scene.dimension, std::max(scene.numerics.dx, size.maxCoeff() / 64));
+  });
+}
+
+/// New particles in each event.
 std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir) {
   std::vector<double> counts = forecast(scene).particles;
-  const double dx = scene.numerics.dx;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodySpec& body = scene.bodies[i];
-    if (shape_volume(body.shape, scene.dimension)) continue;
-    const double volume = naming(body_path(i), [&] {
-      const Shape shape = build_shape(body.shape, scene.dimension, body_path(i), base_dir);
-      const Vec3 size = shape->bounds().max - shape->bounds().min;
-      return measure(*shape, scene.dimension, std::max(dx, size.maxCoeff() / 64));
-    });
-    const double count =
-        std::round(volume / std::pow(dx, scene.dimension) * scene.seeding.particles_per_voxel);
+    const double volume = body_volume(body, scene, body_path(i), base_dir);
+    const double count = volume / std::pow(scene.numerics.dx, scene.dimension) *
+                         scene.seeding.particles_per_voxel;
+    if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
+    if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
     for (int event = 1; event <= scene.events.count; ++event)
       if (body.event == 0 || body.event == event) counts[std::size_t(event - 1)] += count;
   }

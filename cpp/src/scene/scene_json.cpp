@@ -12,6 +12,8 @@ namespace {
 
 /// At most one byte more than is allowed, whatever the file is.
 std::string read_text(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw InputError(file.string(), "no such file");
+  if (std::filesystem::is_directory(file)) throw InputError(file.string(), "is a folder");
   std::ifstream stream(file, std::ios::binary);
   std::string text;
   char block[1 << 16];

@@ -10,6 +10,9 @@
 #include "material/rate_integration.hpp"
 #include "snowshed/support/random.hpp"
 
+// A vector type as template argument loses its alignment, which does not matter here.
+#pragma GCC diagnostic ignored "-Wignored-attributes"
+
 namespace snowshed {
 namespace {
 

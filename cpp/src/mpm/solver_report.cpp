@@ -1,0 +1,154 @@
+// What a solver tells of its particles: energies, and copies for the outside.
+#include <algorithm>
+#include <cmath>
+
+#include "mpm/solver_of.hpp"
+#include "snowshed/material/cam_clay.hpp"
+#include "snowshed/material/sym_tensor.hpp"
+
+namespace snowshed {
+
+template <class T, int D>
+double SolverOf<T, D>::initial_plastic_strain() const {
+  const Snow& s = options_.snow;
+  return CamClay<double>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
+                               s.cohesion, s.hardening_factor, D)
+      .initial_plastic_strain(s.preconsolidation_pressure);
+}
+
+template <class T, int D>
+void SolverOf<T, D>::book_step() {
+  double kinetic = 0, elastic = 0, plastic = 0;
+  for (const BlockStats& s : grid_.block_stats) {
+    kinetic += s.kinetic;
+    elastic += s.elastic;
+    plastic += s.plastic;
+  }
+  double before = 0, after = 0;
+  for (const NodeStats& s : grid_.node_stats) {
+    before += s.kinetic_before;
+    after += s.kinetic_after;
+    books_.friction += s.friction;
+    books_.sticking += s.sticking;
+    books_.impact += s.impact;
+  }
+  // What particles to grid and grid to particles took.
+  books_.transfer += (books_.kinetic - before) + (after - kinetic);
+  books_.plastic += plastic;
+  books_.kinetic = kinetic;
+  books_.elastic = elastic;
+}
+
+template <class T, int D>
+double SolverOf<T, D>::gravitational_energy() const {
+  double sum = 0;
+  for (std::size_t b = 0; b < layout_.particle_blocks.size(); ++b)
+    for (std::int32_t i = layout_.first[b]; i < layout_.first[b + 1]; ++i)
+      sum += double(particles_.mass[i]) *
+             position_of(particles_, std::size_t(i), layout_.particle_blocks[b],
+                         options_.numerics.dx, options_.numerics.basis)[D - 1];
+  return sum * options_.gravity;
+}
+
+template <class T, int D>
+double SolverOf<T, D>::kinetic_energy() const {
+  const double inertia = options_.numerics.dx * options_.numerics.dx /
+                         (options_.numerics.basis == Basis::quadratic ? 4.0 : 3.0);
+  double sum = 0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    double v2 = 0;
+    for (const auto& v : particles_.velocity) v2 += double(v[i]) * double(v[i]);
+    if (particles_.has_affine)
+      for (const auto& c : particles_.affine) v2 += inertia * double(c[i]) * double(c[i]);
+    sum += 0.5 * double(particles_.mass[i]) * v2;
+  }
+  return sum;
+}
+
+template <class T, int D>
+double SolverOf<T, D>::elastic_energy() const {
+  const auto el = Elasticity<double>::from(options_.snow.youngs_modulus,
+                                           options_.snow.poissons_ratio, D);
+  double sum = 0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Sym<double, D> a;
+    for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.strain[k][i]);
+    const Sym<double, D> e = hencky_strain(a);
+    const double volumetric = trace(e);
+    sum += double(particles_.mass[i]) / options_.snow.density *
+           (el.mu * norm_squared(e) + 0.5 * el.lambda * volumetric * volumetric);  // (1.2.5)
+  }
+  return sum;
+}
+
+template <class T, int D>
+EnergyBooks SolverOf<T, D>::energy() const {
+  EnergyBooks books = books_;
+  books.gravitational = gravitational_energy();
+  return books;
+}
+
+template <class T, int D>
+ParticleState SolverOf<T, D>::state() const {
+  const std::size_t n = particles_.size();
+  std::vector<std::size_t> at(n);  // by id: particles keep their places whatever the sort does
+  std::vector<BlockKey> blocks = blocks_of_particles(layout_);
+  for (std::size_t i = 0; i < n; ++i) at[i] = i;
+  std::sort(at.begin(), at.end(),
+            [this](std::size_t a, std::size_t b) { return particles_.id[a] < particles_.id[b]; });
+  const auto el = Elasticity<double>::from(options_.snow.youngs_modulus,
+                                           options_.snow.poissons_ratio, D);
+  const double initial = particles_.has_plastic ? initial_plastic_strain() : 0.0;
+  ParticleState s;
+  s.positions.reserve(n);
+  for (std::size_t i : at) {
+    s.positions.push_back(embed(position_of(particles_, i, blocks[i], options_.numerics.dx,
+                                            options_.numerics.basis)));
+    VecD<D> v;
+    for (int d = 0; d < D; ++d) v[d] = double(particles_.velocity[d][i]);
+    s.velocities.push_back(embed(v));
+    Sym<double, D> a;
+    for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.strain[k][i]);
+    const double elastic_volume = trace(hencky_strain(a));
+    const double plastic = particles_.has_plastic ? double(particles_.plastic[i]) : 0.0;
+    s.masses.push_back(double(particles_.mass[i]));
+    s.plastic_strains.push_back(plastic);
+    s.volume_ratios.push_back(std::exp(elastic_volume + plastic - initial));
+    s.pressures.push_back(-el.bulk * elastic_volume);
+    s.ids.push_back(particles_.id[i]);
+    s.events.push_back(particles_.event[i]);
+  }
+  return s;
+}
+
+template <class T, int D>
+MotionSummary SolverOf<T, D>::motion(double speed) const {
+  MotionSummary m;
+  double twice_kinetic = 0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    double v2 = 0;
+    for (const auto& v : particles_.velocity) v2 += double(v[i]) * double(v[i]);
+    const double mass = double(particles_.mass[i]);
+    m.mass += mass;
+    twice_kinetic += mass * v2;
+    if (v2 > speed * speed) m.moving_mass += mass;
+  }
+  m.rms_speed = m.mass > 0 ? std::sqrt(twice_kinetic / m.mass) : 0;
+  return m;
+}
+
+template <class T, int D>
+std::size_t SolverOf<T, D>::bytes() const {
+  std::size_t total = grid_.bytes();
+  particles_.for_each_array([&total](const char*, const auto& array) {
+    total += array.capacity() * sizeof(array[0]);
+  });
+  return total;
+}
+
+template class SolverOf<float, 2>;
+template class SolverOf<float, 3>;
+template class SolverOf<double, 2>;
+template class SolverOf<double, 3>;
+
+}  // namespace snowshed

@@ -1,0 +1,26 @@
+#include "snowshed/material/elasticity.hpp"
+
+#include <gtest/gtest.h>
+
+namespace snowshed {
+namespace {
+
+TEST(Elasticity, UniaxialStressGivesYoungsModulusAndPoissonsRatio) {
+  // Strain (-nu, -nu, 1): no stress but along z, where it is E.
+  for (double nu : {0.0, 0.2, 0.49}) {
+    const auto e = Elasticity<double>::from(1e6, nu, 3);
+    const double volumetric = 1 - 2 * nu;
+    EXPECT_NEAR(2 * e.mu * -nu + e.lambda * volumetric, 0.0, 1e-6);
+    EXPECT_NEAR(2 * e.mu + e.lambda * volumetric, 1e6, 1e-6);
+  }
+}
+
+TEST(Elasticity, BulkModulusIsThatOfTheDimension) {
+  const double E = 1e6, nu = 0.3;
+  EXPECT_NEAR(Elasticity<double>::from(E, nu, 3).bulk, E / (3 * (1 - 2 * nu)), 1e-6);
+  // Plane strain: p = -(tau_xx + tau_zz)/2 = -(lambda + mu) tr(e).
+  EXPECT_NEAR(Elasticity<double>::from(E, nu, 2).bulk, E / (2 * (1 + nu) * (1 - 2 * nu)), 1e-6);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,120 @@
+#include "snowshed/mpm/energy.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mpm/solver_testing.hpp"
+
+namespace snowshed {
+namespace {
+
+/// What has changed hands: the weight's work, or the energy that was there.
+double turnover(const EnergyBooks& now, double gravitational_at_start) {
+  return std::max({gravitational_at_start - now.gravitational, now.kinetic, now.spent()});
+}
+
+/// No dissipation may ever flow back. Impact may: it is the work of the normal forces of contact,
+/// and transfer is what the PIC part takes, up to round-off of the energy itself.
+void expect_dissipation(const EnergyBooks& before, const EnergyBooks& now, double scale) {
+  const double round_off = 1e-5 * scale;
+  EXPECT_GE(now.plastic - before.plastic, -round_off);
+  EXPECT_GE(now.friction - before.friction, -round_off);
+  EXPECT_GE(now.sticking - before.sticking, -round_off);
+}
+
+TEST(Energy, FreeFallOnlyTurnsHeightIntoSpeed) {
+  SolverOptions o = options_for({2, Precision::float64});
+  o.energy = true;
+  const auto solver = make_solver(o, {});
+  ParticleBatch batch = filled_box(2, Vec3(0, 0, 1), Vec3(0.05, 0, 1.05), 0.005);
+  batch.velocity.x() = 2;
+  solver->add(batch);
+  const EnergyBooks start = solver->energy();
+  const double mass = 210 * 0.05 * 0.05;
+  EXPECT_NEAR(start.kinetic, 0.5 * mass * 4, 1e-12);
+  EXPECT_NEAR(start.gravitational, mass * 9.81 * 1.025, 1e-12);
+  EXPECT_EQ(start.elastic, 0.0);
+  EXPECT_NEAR(start.added, start.stored(), 1e-12);
+  run_until(*solver, 0.2);
+  const EnergyBooks end = solver->energy();
+  const double v = 9.81 * solver->time();
+  EXPECT_NEAR(end.kinetic, 0.5 * mass * (4 + v * v), 1e-9);
+  // Symplectic Euler falls m g v dt/2 too far.
+  EXPECT_NEAR(end.residual(), 0.0, mass * 9.81 * v * solver->time_step());
+  EXPECT_NEAR(end.spent(), 0.0, 1e-9);
+}
+
+TEST(Energy, BooksOfASlidingSlabClose) {
+  const double tilt = 40 * pi / 180;
+  const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
+  for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
+    SolverOptions o = options_for({2, Precision::float32, transfer});
+    o.energy = true;
+    const auto solver =
+        make_solver(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::slip, 0.3)});
+    ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.3, 0, 0.05), 0.005);
+    for (Vec3& x : batch.positions) x = x.x() * slope + x.z() * normal;
+    solver->add(batch);
+    const double height = solver->energy().gravitational;
+    const ParticleState start = solver->state();
+    EnergyBooks last = solver->energy();
+    while (solver->time() < 0.3) {
+      run_steps(*solver, 200);
+      const EnergyBooks now = solver->energy();
+      expect_dissipation(last, now, turnover(now, height));
+      last = now;
+    }
+    EXPECT_NEAR(last.residual(), 0.0, 0.01 * turnover(last, height));
+    // Friction's work is mu m g cos(tilt) times the way.
+    const ParticleState end = solver->state();
+    const double way = (weighted_mean(end, end.positions) - weighted_mean(start, start.positions)).norm();
+    const double work = 0.3 * total_mass(end) * 9.81 * std::cos(tilt) * way;
+    EXPECT_NEAR(last.friction, work, 0.03 * work);  // it sets in a little late
+    EXPECT_EQ(last.sticking, 0.0);
+  }
+}
+
+TEST(Energy, BooksOfACollapsingColumnClose) {
+  for (const Way& way : {Way{2, Precision::float32}, Way{2, Precision::float64, Transfer::apic},
+                         Way{3, Precision::float32}}) {
+    SolverOptions o = options_for(way);
+    o.energy = true;
+    o.snow.preconsolidation_pressure = 200;  // too weak to stand
+    o.snow.cohesion = 0;
+    const auto solver =
+        make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+    const double height = way.dimension == 2 ? 0.4 : 0.2;
+    ParticleBatch batch = filled_box(way.dimension, Vec3::Zero(), Vec3(0.08, 0.08, height), 0.005);
+    batch.velocity.x() = 0.5;
+    solver->add(batch);
+    const EnergyBooks start = solver->energy();
+    EnergyBooks last = start;
+    while (solver->time() < (way.dimension == 2 ? 0.4 : 0.1)) {
+      run_steps(*solver, 200);
+      const EnergyBooks now = solver->energy();
+      expect_dissipation(last, now, turnover(now, start.gravitational));
+      last = now;
+    }
+    EXPECT_GT(last.plastic, 0.05 * turnover(last, start.gravitational)) << way.name();
+    EXPECT_NEAR(last.residual(), 0.0, 0.01 * turnover(last, start.gravitational)) << way.name();
+  }
+}
+
+TEST(Energy, BooksGoOnWhenSnowIsAddedOrRemoved) {
+  SolverOptions o = options_for({2, Precision::float64});
+  o.energy = true;
+  const auto solver = make_solver(o, {});
+  solver->add(filled_box(2, Vec3(0, 0, 1), Vec3(0.05, 0, 1.05), 0.005));
+  run_until(*solver, 0.1);  // the first body falls, then a second appears
+  const double residual = solver->energy().residual(), added = solver->energy().added;
+  solver->add(filled_box(2, Vec3(1, 0, 1), Vec3(1.05, 0, 1.05), 0.005));
+  const double weight = 210 * 0.05 * 0.05 * 9.81;
+  EXPECT_NEAR(solver->energy().added - added, weight * 1.025, 1e-9);
+  EXPECT_NEAR(solver->energy().residual(), residual, 1e-9);
+  run_until(*solver, 0.15);
+  solver->clear();
+  EXPECT_EQ(solver->energy().stored(), 0.0);
+  EXPECT_NEAR(solver->energy().residual(), 2 * residual, std::abs(3 * residual));
+}
+
+}  // namespace
+}  // namespace snowshed
