@@ -84,6 +84,8 @@ auto naming(const std::string& path, Action action) {
   } catch (const InputError& error) {
     if (!error.where().empty() && error.where().front() == '/') throw;
     throw InputError(path, error.what());
+  } catch (const SimulationError& error) {  // beyond the addressable grid
+    throw InputError(path, error.what());
   }
 }
 

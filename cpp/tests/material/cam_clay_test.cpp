@@ -98,8 +98,9 @@ void expect_sound(const Return& r) {
   const double p_work = -r.p * d, q_work = r.q * (r.q_trial - r.q) / (3 * snow.mu);
   EXPECT_GE(p_work + q_work, -4 * tolerance * (std::abs(d) + tolerance / snow.bulk)) << r;
 
-  const double y_old = a * r.q_trial * r.q_trial + m2 * (r.p_trial + s.cohesion * snow.p0(r.ev_old)) *
-                                                       (r.p_trial - snow.p0(r.ev_old));
+  const double y_old =
+      a * r.q_trial * r.q_trial +
+      m2 * (r.p_trial + s.cohesion * snow.p0(r.ev_old)) * (r.p_trial - snow.p0(r.ev_old));
   const double size = m2 * (std::abs(r.p) + (1 + s.cohesion) * p0) + tolerance * m2;
   const double y = a * r.q * r.q + m2 * (r.p + s.cohesion * p0) * (r.p - p0);
   if (r.p == r.p_trial && r.q == r.q_trial && d == 0) {  // elastic
@@ -137,7 +138,8 @@ Return returned(const SnowConstants& snow, int dimension, double p, double q, do
 
 /// One of the listed values.
 double pick(Random& random, std::initializer_list<double> values) {
-  return values.begin()[std::min(values.size() - 1, std::size_t(random.uniform() * double(values.size())))];
+  return values
+      .begin()[std::min(values.size() - 1, std::size_t(random.uniform() * double(values.size())))];
 }
 
 /// Random snow, e_v and trial, corners included.
@@ -148,12 +150,15 @@ Return random_trial(Random& random) {
             pick(random, {0, 0.1, 0.5, 1.0, 1.5}), pick(random, {0, 0.05, 0.2, 0.5, 1.0}),
             pick(random, {1e-3, 0.01, 0.1, 1.0, 10.0, 50.0})};
   const RateEquations snow(r.snow, r.dimension);
-  const double initial = -std::asinh(pick(random, {0, 1e-3, 50, 7e3, 1e5}) / snow.hardening) /
-                         r.snow.hardening;
-  r.ev_old = std::max(-1 / r.snow.hardening, initial) + pick(random, {0, 0, 1e-9, 1e-3, 0.1, 0.5}) * (random.uniform() - 0.5);
+  const double initial =
+      -std::asinh(pick(random, {0, 1e-3, 50, 7e3, 1e5}) / snow.hardening) / r.snow.hardening;
+  r.ev_old = std::max(-1 / r.snow.hardening, initial) +
+             pick(random, {0, 0, 1e-9, 1e-3, 0.1, 0.5}) * (random.uniform() - 0.5);
   // Elastic strains of the trial, from tiny to as large as p0 stays a finite float.
   const double largest = std::min(10.0, 30 / r.snow.hardening);
-  const auto strain = [&] { return pick(random, {0, 1, 1, 1}) * std::min(largest, std::pow(10.0, 9 * random.uniform() - 8)); };
+  const auto strain = [&] {
+    return pick(random, {0, 1, 1, 1}) * std::min(largest, std::pow(10.0, 9 * random.uniform() - 8));
+  };
   r.p_trial = snow.bulk * strain() * (random.uniform() < 0.5 ? -1 : 1);
   r.q_trial = 3 * snow.mu * strain();
   return r;
@@ -247,7 +252,8 @@ TEST(CamClay, ReturnsToTheNearestPointOfASmoothPath) {
     const RateEquations snow(t.snow, t.dimension);
     const double m2 = std::max(1e-8, t.snow.slope * t.snow.slope), a = 1 + 2 * t.snow.cohesion;
     for (int k = 1; k < 200; ++k) {
-      const double d = -t.ev_old * k / 200, p = t.p_trial + snow.bulk * d, p0 = snow.p0(t.ev_old + d);
+      const double d = -t.ev_old * k / 200, p = t.p_trial + snow.bulk * d,
+                   p0 = snow.p0(t.ev_old + d);
       const double n = 2 * p - (1 - t.snow.cohesion) * p0;
       const double q = t.q_trial * n / (n - 6 * snow.mu * a / m2 * d);
       ASSERT_GT(a * q * q + m2 * (p + t.snow.cohesion * p0) * (p - p0), 0) << r;
@@ -269,8 +275,8 @@ void expect_lanes_agree(double tolerance) {
     Return scalar[W];
     for (int l = 0; l < W; ++l) {
       const double f = std::pow(0.5, l);
-      scalar[l] = returned<T>(common.snow, common.dimension, f * common.p_trial,
-                              common.q_trial / f, common.ev_old);
+      scalar[l] = returned<T>(common.snow, common.dimension, f * common.p_trial, common.q_trial / f,
+                              common.ev_old);
       s.p[l] = T(scalar[l].p_trial);
       s.q[l] = T(scalar[l].q_trial);
       ev[l] = T(scalar[l].ev_old);
@@ -396,19 +402,28 @@ class CamClayPaths : public testing::Test {
     expect_convergence<D>({1e6, 0.4, 0.3, 0.0, 0.5}, 8e3, path);
   }
 };
-using Dimensions =
-    testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(CamClayPaths, Dimensions);
 
-TYPED_TEST(CamClayPaths, IsotropicCompaction) { this->check(Paths<TypeParam::value>::isotropic_compaction()); }
+TYPED_TEST(CamClayPaths, IsotropicCompaction) {
+  this->check(Paths<TypeParam::value>::isotropic_compaction());
+}
 TYPED_TEST(CamClayPaths, Oedometric) { this->check(Paths<TypeParam::value>::oedometric()); }
-TYPED_TEST(CamClayPaths, DrainedTriaxial) { this->check(Paths<TypeParam::value>::drained_triaxial()); }
-TYPED_TEST(CamClayPaths, ConstantVolumeShear) { this->check(Paths<TypeParam::value>::constant_volume_shear()); }
+TYPED_TEST(CamClayPaths, DrainedTriaxial) {
+  this->check(Paths<TypeParam::value>::drained_triaxial());
+}
+TYPED_TEST(CamClayPaths, ConstantVolumeShear) {
+  this->check(Paths<TypeParam::value>::constant_volume_shear());
+}
 TYPED_TEST(CamClayPaths, DilatingShear) { this->check(Paths<TypeParam::value>::dilating_shear()); }
 TYPED_TEST(CamClayPaths, Unloading) { this->check(Paths<TypeParam::value>::unloading()); }
 TYPED_TEST(CamClayPaths, Tension) { this->check(Paths<TypeParam::value>::tension()); }
-TYPED_TEST(CamClayPaths, TensionToFullSoftening) { this->check(Paths<TypeParam::value>::tension_to_full_softening()); }
-TYPED_TEST(CamClayPaths, RecompactionOfStrengthlessSnow) { this->check(Paths<TypeParam::value>::recompaction()); }
+TYPED_TEST(CamClayPaths, TensionToFullSoftening) {
+  this->check(Paths<TypeParam::value>::tension_to_full_softening());
+}
+TYPED_TEST(CamClayPaths, RecompactionOfStrengthlessSnow) {
+  this->check(Paths<TypeParam::value>::recompaction());
+}
 TYPED_TEST(CamClayPaths, RandomPolylines) {
   constexpr int D = TypeParam::value;
   Random random(7);

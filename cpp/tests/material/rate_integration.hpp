@@ -59,9 +59,7 @@ class RateEquations {
   /// located by bisection (y is convex along an elastic path); from there on the plastic rates.
   template <int D>
   MaterialState<D> integrate(MaterialState<D> x, const Eigen::Matrix<double, D, D>& path) const {
-    const auto elastic_to = [&](double t) {
-      return MaterialState<D>{x.strain + t * path, x.ev};
-    };
+    const auto elastic_to = [&](double t) { return MaterialState<D>{x.strain + t * path, x.ev}; };
     double t = 0;
     const double on_surface = 1e-10 * m2() * p0(x.ev) * p0(x.ev);
     if (yield<D>(x) < -on_surface || !loading<D>(x, path)) {
@@ -110,8 +108,8 @@ class RateEquations {
     const Matrix s = deviatoric_stress<D>(x.strain);
     const double p_now = p<D>(x.strain), p0_now = p0(x.ev), yp = y_p(p_now, p0_now);
     const double y_p0 = m2() * ((snow_.cohesion - 1) * p_now - 2 * snow_.cohesion * p0_now);
-    const double resistance = bulk * yp * yp + 18 * mu * shear() * shear() * s.squaredNorm() +
-                              y_p0 * p0_slope(x.ev) * yp;
+    const double resistance =
+        bulk * yp * yp + 18 * mu * shear() * shear() * s.squaredNorm() + y_p0 * p0_slope(x.ev) * yp;
     if (!(resistance > 0)) throw std::runtime_error("softening steeper than elasticity");
     const double gamma = std::max(0.0, drive<D>(x, rate)) / resistance;
     const Matrix flow = -yp / D * Matrix::Identity() + 3 * shear() * s;
@@ -134,7 +132,8 @@ class RateEquations {
     double low = (1 - snow_.cohesion) / 2, high = 1;
     for (int i = 0; i < 100; ++i) {
       const double r = (low + high) / 2;
-      const double q2 = m2() * (r + snow_.cohesion) * (1 - r) / shear() * std::pow(h * compaction(r), 2);
+      const double q2 =
+          m2() * (r + snow_.cohesion) * (1 - r) / shear() * std::pow(h * compaction(r), 2);
       (1.5 * stress(r).squaredNorm() < q2 ? low : high) = r;
     }
     const double pressure = low * h * compaction(low) * time;

@@ -90,10 +90,9 @@ class SymTensor : public testing::Test {
   }
 };
 
-using Cases =
-    testing::Types<Case<float, 2>, Case<float, 3>, Case<double, 2>, Case<double, 3>,
-                   Case<Lanes<float>, 2>, Case<Lanes<float>, 3>, Case<Lanes<double>, 2>,
-                   Case<Lanes<double>, 3>>;
+using Cases = testing::Types<Case<float, 2>, Case<float, 3>, Case<double, 2>, Case<double, 3>,
+                             Case<Lanes<float>, 2>, Case<Lanes<float>, 3>, Case<Lanes<double>, 2>,
+                             Case<Lanes<double>, 3>>;
 TYPED_TEST_SUITE(SymTensor, Cases);
 
 // Series below detail::series_norm = 0.04 (half of that for the strain), eigenvalues above.

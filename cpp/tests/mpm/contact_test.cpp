@@ -10,7 +10,8 @@ namespace {
 // --- Coulomb friction -------------------------------------------------------------------------
 
 constexpr double tilt = 40 * pi / 180;
-const Vec3 ramp_normal(std::sin(tilt), 0, std::cos(tilt)), ramp_slope(std::cos(tilt), 0, -std::sin(tilt));
+const Vec3 ramp_normal(std::sin(tilt), 0, std::cos(tilt)),
+    ramp_slope(std::cos(tilt), 0, -std::sin(tilt));
 
 struct Slide {
   double length, friction;
@@ -21,8 +22,8 @@ struct Slide {
 /// A slab 5 cm thick that is let go on a ramp of 40 degrees.
 std::unique_ptr<Solver> slab_on_ramp(const Slide& slide) {
   const SolverOptions o = options_for({2, Precision::float32, slide.transfer});
-  auto solver =
-      make_solver(o, {fixed(make_plane(Vec3::Zero(), ramp_normal), slide.condition, slide.friction)});
+  auto solver = make_solver(
+      o, {fixed(make_plane(Vec3::Zero(), ramp_normal), slide.condition, slide.friction)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(slide.length, 0, 0.05), 0.005);
   for (Vec3& x : batch.positions) x = x.x() * ramp_slope + x.z() * ramp_normal;
   solver->add(batch);
@@ -44,9 +45,7 @@ double acceleration(const Slide& slide, double from, double to) {
   return (mean_speed(*solver) - speed) / (solver->time() - time);
 }
 
-double by_coulomb(double friction) {
-  return 9.81 * (std::sin(tilt) - friction * std::cos(tilt));
-}
+double by_coulomb(double friction) { return 9.81 * (std::sin(tilt) - friction * std::cos(tilt)); }
 
 // The slab on which the usual nodal rule fails: it holds it at mu = 0.6 already (tan 40 = 0.84).
 class LongSlab : public testing::TestWithParam<double> {};
@@ -54,12 +53,14 @@ INSTANTIATE_TEST_SUITE_P(Friction, LongSlab, testing::Values(0.0, 0.3, 0.6, 0.8)
 
 TEST_P(LongSlab, SlidesAsCoulombSays) {
   const double friction = GetParam();
-  EXPECT_NEAR(acceleration({2.0, friction}, 0.1, 0.5), by_coulomb(friction), 0.01 * by_coulomb(friction));
+  EXPECT_NEAR(acceleration({2.0, friction}, 0.1, 0.5), by_coulomb(friction),
+              0.01 * by_coulomb(friction));
 }
 
 TEST(Friction, ActsOnSeparatingAndApicSlabsAlike) {
-  for (const Slide& slide : {Slide{0.25, 0.6, Condition::separate}, Slide{0.25, 0.3, Condition::separate},
-                             Slide{0.25, 0.6, Condition::slip, Transfer::apic}})
+  for (const Slide& slide :
+       {Slide{0.25, 0.6, Condition::separate}, Slide{0.25, 0.3, Condition::separate},
+        Slide{0.25, 0.6, Condition::slip, Transfer::apic}})
     EXPECT_NEAR(acceleration(slide, 0.1, 0.4), by_coulomb(slide.friction),
                 0.01 * by_coulomb(slide.friction));
 }
@@ -80,9 +81,9 @@ TEST(Friction, HoldsBeyondTheAngleOfRepose) {
 
 TEST(Friction, StopsASlidingSlab) {
   // On level ground; once the contact has set in it takes v/(mu g) and v^2/(2 mu g) to stop.
-  const auto solver = make_solver(
-      options_for({2, Precision::float32}),
-      {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.5)});
+  const auto solver =
+      make_solver(options_for({2, Precision::float32}),
+                  {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.5)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.2, 0, 0.03), 0.005);
   batch.velocity.x() = 1;
   solver->add(batch);
@@ -129,12 +130,13 @@ TEST(ThinPanel, LetsNoSnowThrough) {
       const double a = t.turn * pi / 180;
       const Vec3 normal(std::sin(a), 0, std::cos(a)), along(std::cos(a), 0, -std::sin(a));
       const double infinite = std::numeric_limits<double>::infinity();
-      const auto solver = make_solver(
-          options_for({t.dimension, t.precision}),
-          {fixed(make_plate(Vec3(0.0031, 0, 0.0017), normal, 2, t.dimension == 2 ? infinite : 2, 0.002),
-                 condition, 0.3)});
+      const auto solver = make_solver(options_for({t.dimension, t.precision}),
+                                      {fixed(make_plate(Vec3(0.0031, 0, 0.0017), normal, 2,
+                                                        t.dimension == 2 ? infinite : 2, 0.002),
+                                             condition, 0.3)});
       const double size = t.dimension == 2 ? 0.1 : 0.05;
-      ParticleBatch batch = filled_box(t.dimension, Vec3(0, 0, 0.06), Vec3(size, size, 0.06 + size), 0.005);
+      ParticleBatch batch =
+          filled_box(t.dimension, Vec3(0, 0, 0.06), Vec3(size, size, 0.06 + size), 0.005);
       batch.velocity.z() = -5;
       solver->add(batch);
       run_until(*solver, t.dimension == 2 ? 0.15 : 0.05);
@@ -169,7 +171,8 @@ TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
 // --- bodies -----------------------------------------------------------------------------------
 
 TEST(Contact, SnowSinksLessThanACellIntoBodies) {
-  const Shape shapes[] = {make_sphere(Vec3::Zero(), 0.06), make_box(Vec3::Zero(), Vec3(0.1, 0.1, 0.06)),
+  const Shape shapes[] = {make_sphere(Vec3::Zero(), 0.06),
+                          make_box(Vec3::Zero(), Vec3(0.1, 0.1, 0.06)),
                           make_capsule(Vec3(-0.05, 0, -0.02), Vec3(0.05, 0, 0.02), 0.03)};
   for (const Shape& shape : shapes)
     for (Condition condition : {Condition::slip, Condition::separate, Condition::sticky}) {
@@ -191,25 +194,23 @@ TEST(Contact, SnowSinksLessThanACellIntoBodies) {
 TEST(Contact, AMovingPlateCarriesSnowAlong) {
   MotionSpec motion;
   motion.velocity = Vec3(0.3, 0, 0.5);
-  Obstacle plate = fixed(make_plate(Vec3::Zero(), Vec3::UnitZ(), 1,
-                                    std::numeric_limits<double>::infinity(), 0.05),
-                         Condition::sticky);
+  Obstacle plate = fixed(
+      make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, std::numeric_limits<double>::infinity(), 0.05),
+      Condition::sticky);
   plate.motion.emplace(motion);
   const auto solver = make_solver(options_for({2, Precision::float32}), {plate});
   solver->add(filled_box(2, Vec3(0, 0, 0.003), Vec3(0.08, 0, 0.033), 0.005));
   const ParticleState start = solver->state();
   run_until(*solver, 0.2);
   const ParticleState end = solver->state();
-  const Vec3 moved =
-      weighted_mean(end, end.positions) - weighted_mean(start, start.positions);
+  const Vec3 moved = weighted_mean(end, end.positions) - weighted_mean(start, start.positions);
   EXPECT_LT((moved - solver->time() * motion.velocity).norm(), 0.002);  // a fifth of a cell
   EXPECT_LT((mean_velocity(*solver) - motion.velocity).norm(), 0.05);   // it rattles over the cells
 }
 
 TEST(Contact, TheUndersideOfASlipObstacleDoesNotHold) {
-  Contacts<double, 2> contacts({fixed(make_box(Vec3(0.035, 0, 0.035), Vec3(0.04, 1e9, 0.04)),
-                                      Condition::slip, 0.3)},
-                               0.01);
+  Contacts<double, 2> contacts(
+      {fixed(make_box(Vec3(0.035, 0, 0.035), Vec3(0.04, 1e9, 0.04)), Condition::slip, 0.3)}, 0.01);
   contacts.relocate({block_key<2>({0, 0})}, 0.0);
   ASSERT_EQ(contacts.count(0), 16);  // nodes 2 to 5 in each direction
   for (int i = 0; i < 16; ++i) {
@@ -220,7 +221,8 @@ TEST(Contact, TheUndersideOfASlipObstacleDoesNotHold) {
 }
 
 TEST(Contact, StoredImpulsesSurviveRelocation) {
-  Contacts<float, 2> contacts({fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3)}, 0.01);
+  Contacts<float, 2> contacts(
+      {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3)}, 0.01);
   const std::vector<BlockKey> few{block_key<2>({0, -1}), block_key<2>({0, 0})};
   contacts.relocate(few, 0.0);
   ASSERT_EQ(contacts.count(0), 64);
@@ -236,7 +238,8 @@ TEST(Contact, StoredImpulsesSurviveRelocation) {
   contacts.relocate(more, 0.0);
   EXPECT_EQ(contacts.of_block(2)[3].press, 2.5f);
 
-  Contacts<float, 2> fresh({fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3)}, 0.01);
+  Contacts<float, 2> fresh({fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3)},
+                           0.01);
   fresh.relocate(more, 0.0);
   EXPECT_TRUE(fresh.pressed().empty());
   fresh.restore(stored);

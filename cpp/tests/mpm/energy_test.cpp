@@ -66,7 +66,8 @@ TEST(Energy, BooksOfASlidingSlabClose) {
     EXPECT_NEAR(last.residual(), 0.0, 0.01 * turnover(last, height));
     // Friction's work is mu m g cos(tilt) times the way.
     const ParticleState end = solver->state();
-    const double way = (weighted_mean(end, end.positions) - weighted_mean(start, start.positions)).norm();
+    const double way =
+        (weighted_mean(end, end.positions) - weighted_mean(start, start.positions)).norm();
     const double work = 0.3 * total_mass(end) * 9.81 * std::cos(tilt) * way;
     EXPECT_NEAR(last.friction, work, 0.03 * work);  // it sets in a little late
     EXPECT_EQ(last.sticking, 0.0);

@@ -45,8 +45,7 @@ class ParticleSort : public testing::Test {
     for (std::size_t i = 0; i < n; ++i) {
       const auto at = Placement<D>::of(section<D>(random_vector(random, D, reach)), dx, basis);
       // Up to a cell outside their block, as after some steps.
-      for (int d = 0; d < D; ++d)
-        particles.cell[d][i] = T(at.cell[d] + 2 * random.uniform() - 1);
+      for (int d = 0; d < D; ++d) particles.cell[d][i] = T(at.cell[d] + 2 * random.uniform() - 1);
       blocks.push_back(block_key<D>(at.block));
       particles.id[i] = std::uint32_t(i);
       particles.mass[i] = T(i);

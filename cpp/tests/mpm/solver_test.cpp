@@ -101,8 +101,7 @@ class SolverFiles : public TemporaryFolder {
     for (std::size_t i = 0; i < s.masses.size(); ++i)
       sum += s.masses[i] * s.positions[i].cross(s.velocities[i]);
     if (way.transfer == Transfer::apic)
-      sum += dx * dx / (way.basis == Basis::quadratic ? 4 : 3) *
-             affine_spin(solver, way.dimension);
+      sum += dx * dx / (way.basis == Basis::quadratic ? 4 : 3) * affine_spin(solver, way.dimension);
     return sum;
   }
 };
@@ -216,10 +215,10 @@ TEST(Solver, AColumnCarriesItsWeight) {
   const double nu = o.snow.poissons_ratio, mu = 1e5 / (2 * (1 + nu));
   const double lambda = 1e5 * nu / ((1 + nu) * (1 - 2 * nu)), s = lambda + 2 * mu;
   const double weight = o.snow.density * o.gravity;
-  const auto solver = make_solver(
-      o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
-          fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::slip),
-          fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::slip)});
+  const auto solver =
+      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
+                      fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::slip),
+                      fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::slip)});
   solver->add(filled_box(2, Vec3::Zero(), Vec3(width, 0, height), spacing));
   const ParticleState start = solver->state();
   const std::size_t n = start.positions.size();
@@ -230,8 +229,8 @@ TEST(Solver, AColumnCarriesItsWeight) {
     run_steps(*solver, 8);
     const ParticleState now = solver->state();
     const double middle = (covered + solver->time()) / 2;
-    const double part = (solver->time() - covered) / duration * 2 *
-                        std::pow(std::sin(pi * middle / duration), 2);
+    const double part =
+        (solver->time() - covered) / duration * 2 * std::pow(std::sin(pi * middle / duration), 2);
     covered = solver->time();
     for (std::size_t i = 0; i < n; ++i) {
       pressure[i] += part * now.pressures[i];
@@ -250,7 +249,8 @@ TEST(Solver, AColumnCarriesItsWeight) {
       ++particles;
     }
     EXPECT_NEAR(mean_pressure / particles, bottom * (1 - z / height), 0.04 * bottom) << z;
-    EXPECT_NEAR(mean_settlement / particles, weight / s * (height * z - z * z / 2), 0.04 * top) << z;
+    EXPECT_NEAR(mean_settlement / particles, weight / s * (height * z - z * z / 2), 0.04 * top)
+        << z;
   }
 }
 
@@ -271,8 +271,7 @@ std::unique_ptr<Solver> thrown_snow(Way way, int threads, double size) {
   o.energy = true;
   auto solver = make_solver(
       o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::slip, 0.3)});
-  ParticleBatch batch =
-      filled_box(way.dimension, Vec3(0, 0, 0.01), Vec3(size, size, size), 0.005);
+  ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 0.01), Vec3(size, size, size), 0.005);
   batch.velocity = Vec3(1, 0, -3);
   solver->add(batch);
   return solver;

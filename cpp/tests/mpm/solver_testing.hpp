@@ -22,7 +22,8 @@ struct Way {
 
   double epsilon() const { return precision == Precision::float32 ? 1.2e-7 : 2.2e-16; }
   std::string name() const {
-    return std::to_string(dimension) + "D_" + (precision == Precision::float32 ? "float" : "double") +
+    return std::to_string(dimension) + "D_" +
+           (precision == Precision::float32 ? "float" : "double") +
            (transfer == Transfer::flip ? "_flip" : "_apic") +
            (basis == Basis::quadratic ? "_quadratic" : "_cubic");
   }
@@ -62,7 +63,8 @@ inline ParticleBatch filled_box(int dimension, const Vec3& low, const Vec3& high
   int n[3];
   Vec3 step;
   for (int d = 0; d < 3; ++d) {
-    n[d] = d == 1 && dimension == 2 ? 1 : std::max(1, int(std::lround((high[d] - low[d]) / spacing)));
+    n[d] =
+        d == 1 && dimension == 2 ? 1 : std::max(1, int(std::lround((high[d] - low[d]) / spacing)));
     step[d] = (high[d] - low[d]) / n[d];
   }
   for (int i = 0; i < n[0]; ++i)
@@ -104,6 +106,8 @@ inline Vec3 weighted_mean(const ParticleState& s, const std::vector<Vec3>& of) {
   return sum / total_mass(s);
 }
 
-inline Vec3 momentum(const ParticleState& s) { return total_mass(s) * weighted_mean(s, s.velocities); }
+inline Vec3 momentum(const ParticleState& s) {
+  return total_mass(s) * weighted_mean(s, s.velocities);
+}
 
 }  // namespace snowshed

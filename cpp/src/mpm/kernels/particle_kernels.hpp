@@ -250,13 +250,9 @@ struct ParticleKernels {
     }
     for (int l = 0; l < n; ++l) {
       // Built from scalars, not element by element: that would go through memory and stall.
-      const auto entry = [l](const V& v) { return v[l]; };
       NodeSums<T, D> a;
-      if constexpr (D == 2)
-        a.value = Node<T>{entry(s.mass), entry(momentum[0]), entry(momentum[1]), 0, 0, 0, 0, 0};
-      else
-        a.value = Node<T>{entry(s.mass), entry(momentum[0]), entry(momentum[1]), entry(momentum[2]),
-                          0, 0, 0, 0};
+      const T third = D == 3 ? momentum[D - 1][l] : T(0);
+      a.value = Node<T>{s.mass[l], momentum[0][l], momentum[1][l], third, 0, 0, 0, 0};
       for (int j = 0; j < D; ++j) {
         const T f0 = force[0][j][l], f1 = force[1][j][l], f2 = D == 3 ? force[D - 1][j][l] : T(0);
         if constexpr (apic) {

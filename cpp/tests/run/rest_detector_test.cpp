@@ -1,0 +1,60 @@
+#include "snowshed/run/rest_detector.hpp"
+
+#include <gtest/gtest.h>
+
+namespace snowshed {
+namespace {
+
+/// When the detector first finds rest while `speed(t)` goes on for 2 s; negative: never.
+template <class Speed>
+double time_of_rest(RestDetector detector, double start, Speed speed) {
+  detector.start_event(start);
+  for (double t = start; t < start + 2; t += 0.001)
+    if (detector.due(t) && detector.at_rest(t, speed(t - start))) return t - start;
+  return -1;
+}
+
+TEST(RestDetector, WaitsUntilTheSnowHasBeenSlowForLongEnough) {
+  const RestDetector detector(0.02, 0.05);
+  for (double start : {0.0, 7.5}) {
+    const double t = time_of_rest(detector, start, [](double t) { return t < 0.3 ? 1.0 : 0.01; });
+    EXPECT_GT(t, 0.3 + 0.04);
+    EXPECT_LT(t, 0.3 + 0.07);
+  }
+}
+
+TEST(RestDetector, NeverStopsMovingSnow) {
+  const RestDetector detector(0.02, 0.05);
+  EXPECT_LT(time_of_rest(detector, 0, [](double) { return 0.021; }), 0);
+  // Bursts of motion more frequent than the rest time.
+  EXPECT_LT(
+      time_of_rest(detector, 0, [](double t) { return std::fmod(t, 0.045) < 0.01 ? 0.1 : 0.001; }),
+      0);
+}
+
+TEST(RestDetector, DoesNotTakeSettingOffForRest) {
+  // A slab on a slope just above its angle of repose starts slowly: 0.1 m/s^2.
+  const RestDetector detector(0.02, 0.05);
+  EXPECT_LT(time_of_rest(detector, 0, [](double t) { return 0.1 * t; }), 0);
+}
+
+TEST(RestDetector, AcceptsSnowThatIsSlowingDown) {
+  const RestDetector detector(0.02, 0.05);
+  const double t = time_of_rest(detector, 0, [](double t) { return 0.5 * std::exp(-t / 0.1); });
+  EXPECT_NEAR(t, 0.1 * std::log(0.5 / 0.02) + 0.05, 0.02);
+}
+
+TEST(RestDetector, GoesOnFromItsState) {
+  RestDetector one(0.02, 0.05), other(0.02, 0.05);
+  one.start_event(1.0);
+  one.at_rest(1.0, 0.015);
+  one.at_rest(1.03, 0.01);
+  other.restore(one.state());
+  EXPECT_EQ(other.due(1.031), one.due(1.031));
+  EXPECT_FALSE(other.at_rest(1.04, 0.01));
+  EXPECT_TRUE(other.at_rest(1.06, 0.01));
+  EXPECT_EQ(other.speed(), 0.01);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,205 @@
+#include "snowshed/run/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "mpm/solver_testing.hpp"
+#include "snowshed/support/error.hpp"
+
+namespace snowshed {
+namespace {
+
+/// A slab that slides off a small panel onto the ground, in some 2000 steps per event.
+Scene small_scene(Transfer transfer = Transfer::flip) {
+  Scene scene;
+  scene.dimension = 2;
+  scene.panel.emplace();
+  scene.panel->height = 0.05;
+  scene.panel->length = 0.1;
+  scene.panel->tilt = 50;
+  scene.panel->friction = 0.2;
+  scene.slab.emplace();
+  scene.slab->thickness = 0.03;
+  scene.ground.emplace();
+  scene.numerics.transfer = transfer;
+  scene.numerics.threads = 1;
+  scene.events.count = 3;
+  scene.events.max_time = 0.3;
+  scene.output.energy = true;
+  return scene;
+}
+
+const auto go_on = [](const RunReport&) { return true; };
+constexpr double never = 1e9;
+
+void expect_same_bits(const Simulation& a, const Simulation& b) {
+  const ParticleState x = a.solver().state(), y = b.solver().state();
+  EXPECT_TRUE(x.positions == y.positions);
+  EXPECT_TRUE(x.velocities == y.velocities);
+  EXPECT_EQ(x.plastic_strains, y.plastic_strains);
+  EXPECT_EQ(x.pressures, y.pressures);
+  EXPECT_EQ(x.events, y.events);
+  EXPECT_EQ(a.solver().time(), b.solver().time());
+  EXPECT_EQ(a.solver().counters().steps, b.solver().counters().steps);
+  EXPECT_EQ(a.solver().energy().friction, b.solver().energy().friction);
+  EXPECT_EQ(a.event(), b.event());
+}
+
+/// Runs all events, saving and loading `times` times within each and once between them.
+std::unique_ptr<Simulation> with_interruptions(const Scene& scene, int times,
+                                               const std::filesystem::path& file) {
+  auto sim = std::make_unique<Simulation>(scene);
+  const auto reload = [&] {
+    sim->save(file);
+    sim = Simulation::load(file);
+  };
+  for (int event = 0; event < scene.events.count; ++event) {
+    sim->begin_event();
+    for (int i = 0; i < times; ++i) {
+      int steps = 0;
+      const RunEnd end = sim->run([&](const RunReport&) { return ++steps < 300; }, 0.0);
+      EXPECT_EQ(end, RunEnd::paused);
+      reload();
+      EXPECT_TRUE(sim->event_running());
+    }
+    EXPECT_NE(sim->run(go_on, never), RunEnd::paused);
+    EXPECT_FALSE(sim->event_running());
+    reload();
+    EXPECT_EQ(sim->event(), event + 1);
+  }
+  return sim;
+}
+
+class SimulationTest : public TemporaryFolder {};
+
+TEST_F(SimulationTest, AResumedRunEqualsAnUninterruptedOneBitForBit) {
+  for (Transfer transfer : {Transfer::flip, Transfer::apic})
+    for (Between between : {Between::carry, Between::reseed}) {
+      Scene scene = small_scene(transfer);
+      scene.events.between = between;
+      Simulation whole(scene);
+      for (int event = 0; event < scene.events.count; ++event) {
+        whole.begin_event();
+        whole.run(go_on, never);
+      }
+      const auto resumed = with_interruptions(scene, 2, path("checkpoint"));
+      expect_same_bits(*resumed, whole);
+      EXPECT_GT(whole.solver().counters().steps, 1000);
+    }
+}
+
+TEST_F(SimulationTest, ThreadsDoNotChangeTheBits) {
+  Scene scene = small_scene();
+  scene.events.count = 1;
+  Simulation one(scene);
+  one.begin_event();
+  one.run(go_on, never);
+  scene.numerics.threads = 2;
+  Simulation two(scene);
+  two.begin_event();
+  two.run(go_on, never);
+  expect_same_bits(one, two);
+}
+
+TEST_F(SimulationTest, EventsBringTheirSnowAndKeepTheOld) {
+  const Scene scene = small_scene();
+  Simulation sim(scene);
+  for (int event = 1; event <= 3; ++event) {
+    EXPECT_FALSE(sim.begin_event().has_value());
+    EXPECT_TRUE(sim.event_running());
+    EXPECT_THROW(sim.begin_event(), SimulationError);
+    EXPECT_NEAR(total_mass(sim.solver().state()), event * 210 * 0.1 * 0.03, 1e-6 * event);
+    sim.run(go_on, never);
+    EXPECT_THROW(sim.run(go_on, never), SimulationError);
+  }
+  const ParticleState s = sim.solver().state();
+  EXPECT_EQ(s.events.front(), 1);
+  EXPECT_EQ(s.events.back(), 3);
+  for (const Vec3& x : s.positions) EXPECT_GT(x.z(), -scene.numerics.dx);  // none in the ground
+}
+
+TEST_F(SimulationTest, ReseedingKeepsTheMass) {
+  Scene scene = small_scene();
+  scene.events.between = Between::reseed;
+  Simulation sim(scene);
+  EXPECT_FALSE(sim.begin_event().has_value());
+  sim.run(go_on, never);
+  const double before = total_mass(sim.solver().state());
+  EXPECT_TRUE(sim.begin_event().has_value());
+  const ParticleState s = sim.solver().state();
+  EXPECT_NEAR(total_mass(s), 2 * before, 1e-5 * before);
+}
+
+TEST_F(SimulationTest, EndsAtRestOrAtTheTimeLimit) {
+  Scene scene = small_scene();
+  scene.events.count = 1;
+  scene.events.max_time = 0.05;
+  Simulation cut(scene);
+  cut.begin_event();
+  EXPECT_EQ(cut.run(go_on, never), RunEnd::time_limit);
+  EXPECT_GE(cut.event_time(), 0.05);
+  EXPECT_LT(cut.event_time(), 0.06);
+
+  scene.panel->friction = 2;  // it stays on the panel
+  scene.events.max_time = 2;
+  Simulation held(scene);
+  held.begin_event();
+  EXPECT_EQ(held.run(go_on, never), RunEnd::rest);
+  EXPECT_LT(held.event_time(), 0.5);
+  EXPECT_EQ(held.solver().motion(0.02).moving_mass, 0.0);
+}
+
+TEST_F(SimulationTest, ReportsProgressToItsObserver) {
+  Scene scene = small_scene();
+  scene.events.count = 1;
+  Simulation sim(scene);
+  sim.begin_event();
+  double last = 0;
+  std::int64_t reports = 0;
+  sim.run(
+      [&](const RunReport& r) {
+        EXPECT_GE(r.time, last);
+        EXPECT_GT(r.time_step, 0.0);
+        EXPECT_GE(r.progress, 0.0);
+        EXPECT_LT(r.progress, 1.0);
+        EXPECT_EQ(r.particles, sim.solver().size());
+        last = r.time;
+        return ++reports < 100;
+      },
+      0.0);
+  EXPECT_GE(reports, 100);
+}
+
+TEST_F(SimulationTest, SnapshotsAreASeriesOverAllEvents) {
+  Scene scene = small_scene();
+  scene.events.count = 2;
+  Simulation sim(scene);
+  sim.write_snapshots(path("snapshots"), 0.1);
+  for (int event = 0; event < 2; ++event) {
+    sim.begin_event();
+    sim.run(go_on, never);
+  }
+  const auto files = std::distance(std::filesystem::directory_iterator(path("snapshots")), {});
+  EXPECT_GE(files, 1 + int(sim.solver().time() / 0.1));  // and the index
+  sim.write_vtp(path("end.vtp"));
+  EXPECT_TRUE(std::filesystem::exists(path("end.vtp")));
+}
+
+TEST_F(SimulationTest, RefusesDamagedCheckpoints) {
+  Scene scene = small_scene();
+  Simulation sim(scene);
+  sim.begin_event();
+  sim.run([](const RunReport&) { return false; }, 0.0);
+  sim.save(path("good"));
+  const std::string bytes = content(path("good"));
+  write_plainly(path("short"), bytes.substr(0, bytes.size() / 2));
+  EXPECT_THROW(Simulation::load(path("short")), InputError);
+  std::string flipped = bytes;
+  flipped[bytes.size() / 2] ^= 1;
+  write_plainly(path("flipped"), flipped);
+  EXPECT_THROW(Simulation::load(path("flipped")), InputError);
+  EXPECT_THROW(Simulation::load(path("absent")), FileError);
+}
+
+}  // namespace
+}  // namespace snowshed
