@@ -11,6 +11,7 @@ def tiny_scene(**values: object) -> Scene:
     """The lab's 50 degree scene in 2D on a coarse grid: two events of about a hundred particles."""
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics": {"dx": 0.02}})
     scene.update({"events": {"count": 2, "max_time": 1.0}, "seeding.particles_per_voxel": 8})
+    scene.set("numerics.threads", 1)  # the fastest for so few particles
     return scene.update(values)
 
 

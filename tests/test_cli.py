@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from bad_scenes import bad_scene  # noqa: F401
 
 from snowshed import _core, cli, read_events
 from snowshed.cli import main
@@ -12,7 +13,7 @@ from snowshed.schema import scene_parameters
 
 TINY = [
     *("--preset", "lab-50", "--dim", "2", "--dx", "0.02", "--particles-per-voxel", "8"),
-    *("--events", "1", "--max-time", "0.2"),
+    *("--events", "1", "--max-time", "0.2", "--threads", "1"),
 ]
 
 
@@ -134,26 +135,23 @@ def test_bad_options_are_one_line_code_2_and_nothing_behind(tmp_path, capsys, op
     assert not out.exists()
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("{", "1:2"),
-        ("[]", "/"),
-        ('{"snowshed": 1, "wind": 3}', "/wind"),
-        ('{"snowshed": 1, "snow": {"density": "heavy"}}', "/snow/density"),
-    ],
-)
-def test_bad_scene_files(tmp_path, capsys, text, message):
-    (tmp_path / "scene.json").write_text(text)
-    assert main(["run", str(tmp_path / "scene.json"), "-o", str(tmp_path / "out")]) == 2
-    assert message in capsys.readouterr().err
-    assert not (tmp_path / "out").exists()
+@pytest.mark.parametrize("command", ["run", "plan"])
+def test_bad_scenes_are_refused(bad_scene, tmp_path, capsys, command):  # noqa: F811
+    file, message = bad_scene
+    before = sorted(tmp_path.rglob("*"))
+    output = ["-o", str(tmp_path / "out")] if command == "run" else []
+    assert main([command, str(file), *output]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("error: ") and said.err.count("\n") == 1, said.err
+    assert message in said.err
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_files_and_folders_that_do_not_serve(tmp_path, capsys, finished):
     scene = str(finished / "scene.json")
     assert main(["run", str(tmp_path / "none.json"), "-o", str(tmp_path / "out")]) == 2
-    assert "none.json: No such file" in capsys.readouterr().err
+    assert "none.json: no such file" in capsys.readouterr().err
     assert main(["run", scene, "-o", str(finished)]) == 2
     assert "not empty" in capsys.readouterr().err
     assert main(["run", scene, "-o", str(tmp_path / "out"), "--resume"]) == 2

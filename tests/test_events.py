@@ -187,13 +187,6 @@ def test_nothing_is_left_when_seeding_fails(tmp_path, tiny, monkeypatch):
     assert not (tmp_path / "new").exists()
 
 
-def test_reseeding_reports_what_it_moved(tmp_path, tiny):
-    run_events(tiny.set("events.between", "reseed"), tmp_path, pictures=False)
-    conversions = pd.read_csv(tmp_path / "conversions.csv")
-    assert list(conversions.event) == [2]
-    assert {"mass_before_kg", "mass_after_kg", "outline_rms_m"} <= set(conversions.columns)
-
-
 def test_snapshots_on_request(tmp_path, tiny):
     tiny.update({"events.count": 1, "output.snapshot_interval": 0.1})
     run_events(tiny, tmp_path, pictures=False)

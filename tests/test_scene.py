@@ -180,3 +180,17 @@ def test_unknown_presets():
         Scene.preset("lab")
     with pytest.raises(InputError, match="calibrated"):
         Snow.preset("wet")
+
+
+def test_distance_to_obstacles_where_they_are(tiny):
+    tiny.append("obstacles", Obstacle("post", Shape.sphere((3.0, 1.0), 0.5)))
+    tiny.append("obstacles", Obstacle("cart", Shape.box((9.0, 0.5), (1.0, 1.0))))
+    tiny.set("obstacles.1.motion.velocity", [10.0, 0.0])
+    simulation = _core.Simulation(tiny.set("events.max_time", 0.1).initialise().json)
+    points = np.array([[3.0, 0, 1.0], [3.0, 0, 2.0], [9.0, 0, 0.5]])
+    assert simulation.obstacle_distance(points) == pytest.approx([-0.5, 0.5, -0.5])
+    simulation.begin_event()
+    simulation.run(lambda info: True)
+    assert simulation.obstacle_distance(points)[2] == pytest.approx(10 * 0.1 - 0.5, abs=0.02)
+    with pytest.raises(InputError, match="points"):
+        simulation.obstacle_distance(points[0])

@@ -51,6 +51,14 @@ def test_mass_volume_and_density():
     assert stack.density == pytest.approx(150)
 
 
+def test_a_particle_that_flew_apart_fills_no_more_than_a_voxel():
+    pile = triangle(1.0, 0.3, count=1000)
+    densities = np.full(1000, 200.0)
+    densities[:10], densities[10:20] = 1e-70, 0.0
+    stack = measure_stack(pile, np.full(1000, 0.3), densities, dimension=2, dx=0.1)
+    assert stack.volume == pytest.approx(980 * 0.0015 + 20 * 0.01)
+
+
 def test_a_roller_counts_for_the_stack_but_not_for_its_body():
     ridge, roller = triangle(1.0, 0.3), ball((4.0, 0, 0.05), 0.05, 3000)
     alone, together = measure(ridge), measure(np.vstack([ridge, roller]))

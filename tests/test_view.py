@@ -5,14 +5,15 @@ import pytest
 from matplotlib.image import imread
 from piles import triangle
 
-from snowshed import StackMeasure, measure_stack, read_events
+from snowshed import Scene, StackMeasure, measure_stack, read_events
 from snowshed.view import growth_figure, save, stack_figure
 
 
 class Snow:
     """What the pictures ask of a simulation."""
 
-    dimension = 2
+    scene = Scene.preset("lab-50").set("dimension", 2).initialise().json
+    event = 3
 
     def __init__(self, positions, tilt=0.0, panel=True):
         self._positions = positions
@@ -24,6 +25,9 @@ class Snow:
 
     def events(self):
         return 1 + np.arange(len(self._positions)) % 3
+
+    def obstacle_distance(self, points):
+        return np.hypot(points[:, 0] - 1.5, points[:, 2] - 0.5) - 0.1
 
     def panel_frame(self):
         frame = {"center": [0, 0, 1], "normal": [0.6, 0, 0.8], "slope": [0.8, 0, -0.6]}
@@ -47,13 +51,18 @@ def test_stack_picture_shows_panel_and_stack_to_scale(tmp_path, panel, tilt):
     ones = np.ones(len(pile))
     stack = measure_stack(pile, ones, ones, dimension=2, dx=0.05)
     figure = stack_figure(Snow(pile, tilt, panel), stack)
-    axes = figure.axes[0]
-    assert axes.get_aspect() == 1
-    low, high = axes.get_xlim()
-    assert low < (-0.4 if panel else 0.0) and high > 1.9
-    labels = " ".join(text.get_text() for text in axes.texts)
-    assert f"height {stack.height:.3f} m" in labels and f"length {stack.length:.3f} m" in labels
     save(figure, tmp_path / "stack.png")
+    overview, enlarged = figure.axes
+    assert overview.get_aspect() == enlarged.get_aspect() == 1
+    low, high = overview.get_xlim()
+    assert low < (-0.4 if panel else 0.0) and high > 1.9
+    low, high = enlarged.get_xlim()
+    assert low < stack.head and stack.tail < high
+    labels = [text.get_text() for text in enlarged.texts]
+    assert f"height {stack.height:.3f} m" in labels and f"length {stack.length:.3f} m" in labels
+    if panel:
+        support = 1 - 0.3 + 0.4 * np.tan(np.radians(tilt))  # of the lower edge above the ground
+        assert f"{support:g} m" in [text.get_text() for text in overview.texts]
     assert coloured(tmp_path / "stack.png") > 0.02
 
 
@@ -63,15 +72,25 @@ def test_pictures_without_snow(tmp_path):
 
 
 def test_growth_shows_stack_and_body(finished):
-    figure = growth_figure(read_events(finished))
-    assert [axes.get_title(loc="left") for axes in figure.axes] == [
-        "height, m",
-        "length, m",
-        "head, m",
-        "tail, m",
+    figure = growth_figure(read_events(finished), (finished / "scene.json").read_text())
+    assert [axes.get_title(loc="left").split(",")[0] for axes in figure.axes] == [
+        "height",
+        "length",
+        "head",
+        "tail",
     ]
+    assert "panel 0.245 m, tilt 50°" in figure.get_suptitle()
     assert all(len(axes.lines) == 2 for axes in figure.axes)
 
 
 def test_the_scene_beside_the_pictures_is_complete(finished):
     assert json.loads((finished / "scene.json").read_text())["snowshed"] == 1
+
+
+def test_what_rolled_far_away_does_not_hide_the_stack():
+    pile = np.vstack([triangle(1.0, 0.3, count=2000), triangle(1.0, 0.1, count=200) + [50, 0, 0]])
+    ones = np.ones(len(pile))
+    figure = stack_figure(Snow(pile), measure_stack(pile, ones, ones, dimension=2, dx=0.05))
+    low, high = figure.axes[1].get_xlim()
+    assert high - low < 3
+    assert "97 % of the snow lies within" in figure.get_suptitle()

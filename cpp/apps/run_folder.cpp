@@ -26,13 +26,15 @@ void require_empty(const fs::path& folder) {
 class FolderRun {
  public:
   FolderRun(fs::path folder, std::unique_ptr<Simulation> sim, bool quiet)
-      : folder_(std::move(folder)), sim_(std::move(sim)), quiet_(quiet) {}
+      : folder_(std::move(folder)), sim_(std::move(sim)), quiet_(quiet),
+        updates_before_(sim_->solver().counters().particle_updates) {}
 
   bool all(const std::function<bool()>& go_on) {
     const Scene& scene = sim_->scene();
     if (scene.output.snapshot_interval > 0)
       sim_->write_snapshots(folder_ / "snapshots", scene.output.snapshot_interval);
     while (sim_->event_running() || sim_->event() < scene.events.count) {
+      if (!go_on()) return checkpoint(), false;
       if (!sim_->event_running()) sim_->begin_event();
       if (!one_event(go_on)) return false;
     }
@@ -49,7 +51,7 @@ class FolderRun {
          << ",\n  \"events\": " << sim_->event() << ",\n  \"particles\": " << sim_->solver().size()
          << ",\n  \"steps\": " << c.steps << ",\n  \"rejected_steps\": " << c.rejected
          << ",\n  \"particle_updates\": " << c.particle_updates
-         << ",\n  \"updates_per_s\": " << double(c.particle_updates) / clock_.seconds()
+         << ",\n  \"updates_per_s\": " << double(c.particle_updates - updates_before_) / clock_.seconds()
          << ",\n  \"peak_memory_mb\": " << double(peak_resident_bytes()) / 1e6
          << ",\n  \"wall_s\": " << clock_.seconds() << ",\n  \"status\": \"" << status << "\"\n}\n";
     write_atomic(folder_ / "run.json", json.str());
@@ -68,7 +70,7 @@ class FolderRun {
         stop = !go_on();
         return !stop && !(every > 0 && since_checkpoint.seconds() > every);
       };
-      const RunEnd end = sim_->run(observer, 0.25);
+      const RunEnd end = sim_->run(observer, 0.1);
       if (end != RunEnd::paused) {
         finish_event(end);
         return true;
@@ -95,6 +97,7 @@ class FolderRun {
   fs::path folder_;
   std::unique_ptr<Simulation> sim_;
   bool quiet_;
+  std::int64_t updates_before_;  // by the run that is resumed
   Stopwatch clock_;
 };
 
@@ -121,7 +124,9 @@ bool run_into_folder(const Scene& scene, const fs::path& folder, bool resume, bo
     const bool finished = run.all(go_on);
     run.write_run(finished ? "finished" : "interrupted");
     return finished;
-  } catch (const SimulationError&) {
+  } catch (const FileError&) {
+    throw;
+  } catch (const std::exception&) {
     run.checkpoint();
     run.write_run("failed");
     throw;

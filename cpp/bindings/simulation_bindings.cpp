@@ -5,6 +5,7 @@
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/scene_json.hpp"
+#include "snowshed/support/error.hpp"
 
 namespace py = pybind11;
 
@@ -106,6 +107,16 @@ py::array_t<double> densities(const Simulation& sim) {
   return column<double>(density);
 }
 
+py::array_t<double> obstacle_distance(const Simulation& sim, const py::array_t<double>& points) {
+  if (points.ndim() != 2 || points.shape(1) != 3)
+    throw InputError("points", "an array of shape (n, 3) is needed");
+  const auto x = points.unchecked<2>();
+  std::vector<double> distances;
+  for (py::ssize_t i = 0; i < x.shape(0); ++i)
+    distances.push_back(sim.obstacle_distance({x(i, 0), x(i, 1), x(i, 2)}));
+  return column<double>(distances);
+}
+
 }  // namespace
 
 void bind_simulation(py::module_& m) {
@@ -135,6 +146,7 @@ void bind_simulation(py::module_& m) {
       .def("density", &densities)
       .def("on_panel",
            [](const Simulation& s) { return column<bool>(s.on_panel(s.solver().state().positions)); })
+      .def("obstacle_distance", &obstacle_distance, "points"_a)
       .def_property_readonly("event", &Simulation::event)
       .def_property_readonly("event_running", &Simulation::event_running)
       .def_property_readonly("time_s", &Simulation::event_time)

@@ -61,7 +61,8 @@ def progress_bar() -> Iterator[Reporter]:
     try:
         yield report
     finally:
-        bar.stop()
+        if bar.live.is_started:  # else stopping it would print an empty line
+            bar.stop()
 
 
 def print_events(table: pd.DataFrame, folder: Path) -> None:
@@ -89,12 +90,15 @@ def plan_rows(plan: dict[str, Any]) -> dict[str, str]:
         "left out": ", ".join(plan["left_out"]) or "nothing",
         "particles": f"{plan['particles_per_event']:,} per event",
         "particles in all": f"{plan['particles_total']:,}",
-        "memory": f"{plan['memory_bytes'] / 1e6:,.0f} MB",
+        "memory": f"{plan['memory_bytes'] / 1e6:,.1f} MB for particles and grid",
         "time step": f"{plan['time_step_s']:.3g} s",
         "steps": f"{plan['steps_per_event']:,} per event",
-        "run time": f"about {plan['expected_wall_s']:,.0f} s",
-        "threads": str(plan["threads"]),
-        "scalar": str(plan["scalar"]),
+        "run time": f"about {plan['expected_wall_s']:,.2g} s"
+        if plan["expected_wall_s"] < 10
+        else f"about {plan['expected_wall_s']:,.0f} s",
+        "speed": f"{plan['updates_per_s'] / 1e6:.1f} M particle updates/s, measured now",
+        "threads": f"{plan['threads']} at most",
+        "scalar": f"{plan['scalar']}, {plan['kernels']}",
     }
 
 

@@ -16,8 +16,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
+import numpy as np
+
 from snowshed import _core
+from snowshed.arrays import Booleans, Floats
 from snowshed.atomic import replacing
+from snowshed.conversion import conversion_row
 from snowshed.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.machine import cpu_name, peak_memory_mb
 from snowshed.results import Results, check_empty, measured_columns, read_events
@@ -129,6 +133,8 @@ def _reopen(scene: InitialisedScene, folder: PathLike) -> tuple[_core.Simulation
     else:
         simulation = _core.Simulation(scene.json, scene.base_dir)
     results.keep_through(simulation.event, running=simulation.event_running)
+    if len(results.events.rows) < simulation.event - simulation.event_running:
+        raise _core.InputError(f"{folder}: made by snowshed-run, which must resume it")
     return simulation, results
 
 
@@ -164,7 +170,7 @@ class _EventLoop:
                 self._begin()
                 self._record(self._advance())
                 self._checkpoint("running")
-        except _core.SimulationError as error:
+        except (_core.SimulationError, _core.InputError) as error:
             self._checkpoint("failed", error=str(error))
             raise
         self._checkpoint("finished")
@@ -176,13 +182,14 @@ class _EventLoop:
         stack = self.stack or self._measure()
         view.save(view.stack_figure(self.simulation, stack), self.results.stack_picture)
         table = read_events(self.results.folder)
-        view.save(view.growth_figure(table), self.results.growth_picture)
+        view.save(view.growth_figure(table, self.simulation.scene), self.results.growth_picture)
 
     def _begin(self) -> None:
         if not self.simulation.event_running:
             conversion = self.simulation.begin_event()
             if conversion is not None:
-                self.results.conversions.add([{"event": self.simulation.event, **conversion}])
+                row = conversion_row(self.simulation.event, conversion, self._measure_initial)
+                self.results.conversions.add([row])
         self._tell(Progress(self.simulation.event, self.count, self.simulation.time_s))
 
     def _advance(self) -> str:
@@ -234,14 +241,31 @@ class _EventLoop:
         self._tell(Progress(event, self.count, self.simulation.time_s, 1.0))
 
     def _measure(self) -> StackMeasure:
-        return measure_stack(
+        return self._measure_of(
             self.simulation.positions(),
             self.simulation.masses(),
             self.simulation.density(),
+            self.simulation.on_panel(),
+        )
+
+    def _measure_initial(
+        self, positions: Floats, masses: Floats, on_panel: Booleans
+    ) -> StackMeasure:
+        """Measure snow of its initial density."""
+        density = np.full(len(masses), float(self.scene["snow"]["density"]))
+        return self._measure_of(positions, masses, density, on_panel)
+
+    def _measure_of(
+        self, positions: Floats, masses: Floats, density: Floats, on_panel: Booleans
+    ) -> StackMeasure:
+        return measure_stack(
+            positions,
+            masses,
+            density,
             dimension=self.simulation.dimension,
             dx=self.scene["numerics"]["dx"],
             ground_tilt_deg=self.simulation.ground_tilt_deg,
-            exclude=self.simulation.on_panel(),
+            exclude=on_panel,
         )
 
     def _stop(self) -> None:

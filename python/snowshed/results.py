@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 from snowshed._core import InputError
 from snowshed.arrays import Floats
 from snowshed.atomic import write_text
+from snowshed.conversion import CONVERSION_COLUMNS
 from snowshed.scene import InitialisedScene, PathLike
 from snowshed.stack import StackMeasure
 from snowshed.tables import Table
@@ -91,7 +92,7 @@ class Results:
         self.growth_picture = folder / "growth.png"
         self.events = Table(folder / "events.csv", EVENT_COLUMNS)
         self.outlines = Table(folder / "outline.csv", ("event", "x", "z"))
-        self.conversions = Table(folder / "conversions.csv")
+        self.conversions = Table(folder / "conversions.csv", CONVERSION_COLUMNS)
         self.energies = Table(folder / "energy.csv")
 
     @classmethod

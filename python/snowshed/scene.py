@@ -79,7 +79,7 @@ class Scene(Record):
             If it cannot be read.
         """
         try:
-            data = json.loads(Path(path).read_text(encoding="utf-8"))
+            data = json.loads(Path(path).read_bytes())
         except ValueError as error:
             raise _core.InputError(f"{path}: not JSON: {error}") from None
         scene = cls.from_data(data)
@@ -195,8 +195,8 @@ class InitialisedScene:
 
     @classmethod
     def load(cls, path: PathLike) -> InitialisedScene:
-        """Read and validate a scene file; raises InputError, OSError."""
-        return cls.parse(Path(path).read_text(encoding="utf-8"), Path(path).parent)
+        """Read and validate a scene file; raises InputError."""
+        return cls(_core.load_scene(os.fspath(path)), os.fspath(Path(path).parent))
 
     @property
     def data(self) -> dict[str, Any]:

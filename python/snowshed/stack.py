@@ -10,7 +10,8 @@ The steps, in this order:
 
 Steps 3 and 4 are repeated on the largest connected body alone (``snowshed.bodies``), because the
 lab measured a continuous body and left out what had rolled away. Mass and volume are those of all
-snow off the panel, outliers included. In 2D the snow is a strip one metre wide.
+snow off the panel, outliers included; a particle that has flown apart counts with no more than a
+voxel, whatever its deformation says. In 2D the snow is a strip one metre wide.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ class Extent:
     tail: float = np.nan  # max x
     width: float = 0.0  # 1 in 2D
     crest: float = np.nan  # x of the highest point
+    # (k, 2): x and z of the highest particle in each of at most 30 columns
+    outline: Floats = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 @dataclass(frozen=True)
@@ -52,8 +55,6 @@ class StackMeasure(Extent):
         Part of the mass outside the largest connected body, kg.
     on_panel_mass
         Snow that was excluded because it lies on the panel, kg.
-    outline : (k, 2)
-        x and z of the highest particle in each of at most 30 columns, m, on levelled ground.
     """
 
     body: Extent = field(default_factory=Extent)
@@ -61,7 +62,6 @@ class StackMeasure(Extent):
     volume: float = 0.0
     detached_mass: float = 0.0
     on_panel_mass: float = 0.0
-    outline: Floats = field(default_factory=lambda: np.zeros((0, 2)))
 
     @property
     def density(self) -> float:
@@ -134,8 +134,8 @@ def measure_stack(
     --------
     >>> x, z = np.meshgrid(np.linspace(0, 1, 101), np.linspace(0, 0.2, 21))
     >>> heap = np.column_stack([x.ravel(), 0 * x.ravel(), z.ravel()])
-    >>> ones = np.ones(len(heap))
-    >>> stack = measure_stack(heap, ones, 200 * ones, dimension=2, dx=0.02)
+    >>> mass, density = np.full(len(heap), 0.02), np.full(len(heap), 200.0)
+    >>> stack = measure_stack(heap, mass, density, dimension=2, dx=0.02)
     >>> round(stack.height, 3), round(stack.density)
     (0.2, 200)
     """
@@ -149,11 +149,15 @@ def measure_stack(
         **vars(_extent(snow[kept], dimension)),
         body=_extent(snow[body][inliers(snow[body], mass[body], dimension)], dimension),
         mass=float(mass.sum()),
-        volume=float(np.sum(mass / densities[off])),
+        volume=_volume(mass, densities[off], dx**dimension),
         detached_mass=float(mass[~body].sum()),
         on_panel_mass=float(masses[~off].sum()),
-        outline=outline(snow[kept]),
     )
+
+
+def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
+    with np.errstate(divide="ignore"):
+        return float(np.minimum(masses / densities, voxel).sum())
 
 
 def _extent(snow: Floats, dimension: int) -> Extent:
@@ -168,4 +172,5 @@ def _extent(snow: Floats, dimension: int) -> Extent:
         tail=float(x.max()),
         width=float(np.ptp(y)) if dimension == 3 else 1.0,
         crest=float(x[np.argmax(z)]),
+        outline=outline(snow),
     )

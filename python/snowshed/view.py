@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,8 @@ from matplotlib.ticker import MaxNLocator
 from snowshed import _core
 from snowshed.arrays import Floats
 from snowshed.atomic import replacing
-from snowshed.stack import StackMeasure, level
+from snowshed.caption import scene_caption
+from snowshed.stack import Extent, StackMeasure, level
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,6 +27,10 @@ PICTURED_PARTICLES = 100_000  # at most; a regular choice of them beyond
 INK, FAINT, STACK, BODY = "#22303c", "#8a97a3", "#2b6a8f", "#c8553d"
 MEASURES = ("height", "length", "head", "tail")
 FIRST, LAST = 0.08, 0.86  # part of the colour map that reads well on white
+WIDTH, VIEW_WIDTH = 9.0, 8.1  # inches, of the figure and of the views in it
+LOWEST, HIGHEST = 1.6, 5.0  # inches, of a view
+
+Limits = tuple[float, float, float, float]  # left, right, bottom, top
 
 
 def save(figure: Figure, path: Path, *, dpi: int = 160) -> None:
@@ -34,70 +40,82 @@ def save(figure: Figure, path: Path, *, dpi: int = 160) -> None:
 
 
 def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
-    """Draw the stack from the side.
+    """Draw the stack from the side: above with the panel it came from, below enlarged.
 
     Particles are coloured by the event that brought them; the outline, the panel and the ground
-    are lines. Both axes are to the same scale, in metres.
+    are lines. In either view both axes are to the same scale, in metres. Where chunks have rolled
+    so far that the stack could not be seen, the largest connected body is shown and measured.
 
     Parameters
     ----------
     simulation
-        Gives the particles, the panel and the tilt of the ground.
+        Gives the particles, the panel, the tilt of the ground, and the scene.
     stack
         The measure of the same particles.
     """
-    tilt = simulation.ground_tilt_deg
-    frame = simulation.panel_frame()
-    limits = _limits(stack, tilt, frame)
-    shape = (limits[3] - limits[2]) / (limits[1] - limits[0])
-    figure, axes = _blank_figure(9.0, float(np.clip(8.0 * shape + 0.8, 3.0, 9.0)))
-    _draw_ground(axes, limits[0], limits[1], tilt)
+    tilt, frame = simulation.ground_tilt_deg, simulation.panel_frame()
+    views = [_filling(x) for x in (_scene_limits(stack, tilt, frame), _stack_limits(stack, tilt))]
+    heights = [VIEW_WIDTH * _steepness(view) for view in views]
+    figure = _blank_figure(WIDTH, sum(heights) + 1.9)
+    overview, enlarged = figure.subplots(2, 1, height_ratios=heights)
+    for axes, view in zip((overview, enlarged), views):
+        axes.set(xlim=view[:2], ylim=view[2:], aspect="equal", ylabel="z, m")
+        _quiet(axes)
+        _draw_ground(axes, tilt)
+        _draw_obstacles(axes, simulation)
+        _draw_particles(axes, simulation)
+        _draw_scale(axes)
     if frame is not None:
-        start, end = _panel_ends(frame)
-        axes.plot(*zip(start, end), color=INK, linewidth=3.5, solid_capstyle="round", zorder=4)
-    _draw_particles(axes, simulation)
-    _draw_measures(axes, stack, tilt)
-    axes.set(xlim=limits[:2], ylim=limits[2:], aspect="equal")
-    axes.set(xlabel="x from the panel's centre, m", ylabel="z, m")
-    _draw_scale(axes)
+        _draw_panel(overview, frame, tilt)
+    _draw_measures(enlarged, stack, tilt)
+    _name_events(overview, simulation)
+    enlarged.set_xlabel("x from the panel's centre, m" if frame is not None else "x, m")
+    title = f"Stack after event {simulation.event}, from the side"
+    if _pictured(stack) is stack.body:
+        title += f": its largest body; 97 % of the snow lies within {stack.length:.2f} m"
+    _caption(figure, simulation.scene, title)
     return figure
 
 
-def growth_figure(table: pd.DataFrame) -> Figure:
+def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
     """Draw height, length, head and tail against the event; dashed: the largest connected body.
 
     Parameters
     ----------
     table
         The table of events, as in ``events.csv``.
+    scene
+        The scene as JSON text, for the caption.
     """
-    figure = Figure(figsize=(9.0, 6.0), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = _blank_figure(WIDTH, 6.6)
     for axes, name in zip(np.ravel(figure.subplots(2, 2, sharex=True)), MEASURES):
         stack, body = table[f"{name}_m"], table[f"body_{name}_m"]
         axes.plot(table["event"], stack, "o-", color=STACK, linewidth=2, label="stack (97 %)")
         axes.plot(table["event"], body, "s--", color=BODY, markersize=4, label="largest body")
-        axes.set_title(f"{name}, m", loc="left", color=INK, fontsize=11)
+        where = ", from the panel's centre" if name in ("head", "tail") else ""
+        axes.set_title(f"{name}, m{where}", loc="left", color=INK, fontsize=11)
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.margins(y=0.12)
         if name in ("height", "length"):
-            axes.update_datalim([(table["event"].iloc[0], 0.0)])
-            axes.autoscale_view()
-            axes.set_ylim(bottom=0.0)
+            axes.set_ylim(0.0, 1.15 * max(stack.max(), body.max()) or 1.0)
         else:
             axes.set_xlabel("event")
         axes.grid(color="#e6eaee", linewidth=0.8)
         _quiet(axes)
-    figure.axes[0].legend(frameon=False, fontsize=9)
+    figure.axes[0].legend(frameon=False, fontsize=9, loc="lower right")
+    _caption(figure, scene, "Growth of the stack")
     return figure
 
 
-def _blank_figure(width: float, height: float) -> tuple[Figure, Axes]:
+def _blank_figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    _quiet(axes)
-    return figure, axes
+    return figure
+
+
+def _caption(figure: Figure, scene: str, title: str) -> None:
+    text = f"{title}\n{scene_caption(json.loads(scene))}"
+    figure.suptitle(text, x=0.02, ha="left", color=INK, fontsize=9, linespacing=1.5)
 
 
 def _quiet(axes: Axes) -> None:
@@ -112,18 +130,37 @@ def _shades(count: int) -> list[Any]:
 
 
 def _draw_particles(axes: Axes, simulation: _core.Simulation) -> None:
-    """Draw every particle, those that lie nearest in front, and name the events."""
+    """Draw particles in the size they have, those that lie nearest in front."""
     positions, events = simulation.positions(), simulation.events()
     if len(positions) == 0:
         return
-    shown = np.arange(0, len(positions), 1 + len(positions) // PICTURED_PARTICLES)
+    every = 1 + len(positions) // PICTURED_PARTICLES
+    shown = np.arange(0, len(positions), every)
     shown = shown[np.argsort(-positions[shown, 1], kind="stable")]
     count = int(events.max())
-    shades = np.array(_shades(count))
+    colours = np.array(_shades(count))[np.clip(events[shown], 1, count) - 1]
+    diameter = _points_per_metre(axes) * _spacing(json.loads(simulation.scene))
+    size = float(np.clip(every * (0.8 * diameter) ** 2, 0.6, 60.0))
     x, _, z = positions[shown].T
-    size = float(np.clip(4e4 / len(shown), 1.0, 14.0))
-    colours = shades[np.clip(events[shown], 1, count) - 1]
     axes.scatter(x, z, s=size, c=colours, linewidths=0, rasterized=True, zorder=3)
+
+
+def _spacing(scene: dict[str, Any]) -> float:
+    """Return the mean distance of particles as they are seeded, m."""
+    count: float = scene["seeding"]["particles_per_voxel"]
+    return float(scene["numerics"]["dx"] / count ** (1 / scene["dimension"]))
+
+
+def _points_per_metre(axes: Axes) -> float:
+    """Return the scale of a view, about."""
+    left, right = axes.get_xlim()
+    return VIEW_WIDTH * 72 / (right - left)
+
+
+def _name_events(axes: Axes, simulation: _core.Simulation) -> None:
+    """Say which colour is which event, where there is air: at the upper right."""
+    count = max(simulation.event, 1)
+    shades = _shades(count)
     every = range(1, count + 1, 1 + (count - 1) // 8)
     axes.legend(
         handles=[
@@ -136,27 +173,71 @@ def _draw_particles(axes: Axes, simulation: _core.Simulation) -> None:
     )
 
 
-def _draw_ground(axes: Axes, left: float, right: float, tilt: float) -> None:
-    x = np.array([left, right])
+def _draw_ground(axes: Axes, tilt: float) -> None:
+    left, right = axes.get_xlim()
+    span = right - left
+    x = np.array([left - span, right + span])
     z = -x * np.tan(np.radians(tilt))
+    view = axes.axis()
     axes.plot(x, z, color=FAINT, linewidth=1.2, zorder=1)
-    axes.fill_between(x, z, z - (right - left), color="#eef1f4", linewidth=0, zorder=0)
+    axes.fill_between(x, z, z.min() - span, color="#eef1f4", linewidth=0, zorder=0)
+    axes.axis(view)
+
+
+def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
+    """Draw what the scene's obstacles are in the plane y = 0."""
+    x = np.linspace(*axes.get_xlim(), 600)
+    z = np.linspace(*axes.get_ylim(), 400)
+    points = np.stack(np.meshgrid(x, 0.0, z, indexing="ij"), axis=-1).reshape(-1, 3)
+    distance = simulation.obstacle_distance(points).reshape(len(x), len(z)).T
+    if distance.min() < 0 < distance.max() < np.inf:
+        axes.contourf(x, z, distance, [-np.inf, 0.0], colors=["#c9d1d8"], zorder=1)
+        axes.contour(x, z, distance, [0.0], colors=[FAINT], linewidths=1.2, zorder=2)
+
+
+def _draw_panel(axes: Axes, frame: dict[str, Any], tilt: float) -> None:
+    """Draw the panel's face, and the height of its lower edge above the ground."""
+    upper, lower = _panel_ends(frame)
+    axes.plot(*zip(upper, lower), color=INK, linewidth=3.5, solid_capstyle="round", zorder=4)
+    foot = np.array([lower[0], -lower[0] * np.tan(np.radians(tilt))])
+    axes.plot(*zip(lower, foot), color=FAINT, linewidth=1.0, linestyle=(0, (4, 3)), zorder=2)
+    axes.annotate(
+        f"{lower[1] - foot[1]:g} m",
+        (lower + foot) / 2,
+        (-5, 0),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+        color=INK,
+        fontsize=9,
+    )
 
 
 def _draw_measures(axes: Axes, stack: StackMeasure, tilt: float) -> None:
     """Draw the outline, and height and length as dimension lines along the ground."""
     if len(stack.outline) == 0:
         return
-    axes.plot(*_tilted(stack.outline, tilt).T, color=INK, linewidth=1.3, zorder=5)
-    _dimension_line(axes, _length_ends(stack), tilt, f"length {stack.length:.3f} m", above=False)
-    crest = np.array([[stack.crest, 0.0], [stack.crest, stack.height]])
-    _dimension_line(axes, crest, tilt, f"height {stack.height:.3f} m", above=True)
+    shown = _pictured(stack)
+    axes.plot(*_tilted(shown.outline, tilt).T, color=INK, linewidth=1.3, zorder=5)
+    _dimension_line(axes, _length_ends(shown), tilt, f"length {shown.length:.3f} m", above=False)
+    crest = np.array([[shown.crest, 0.0], [shown.crest, shown.height]])
+    _dimension_line(axes, crest, tilt, f"height {shown.height:.3f} m", above=True)
 
 
-def _length_ends(stack: StackMeasure) -> Floats:
+def _pictured(stack: StackMeasure) -> Extent:
+    """Return the stack, or its largest body if that would be too small to see."""
+    return stack.body if stack.length > 2 * stack.body.length > 0 else stack
+
+
+def _length_ends(shown: Extent) -> Floats:
     """Return where the dimension line of the length goes, on levelled ground."""
-    below = -0.045 * max(stack.length, 4 * stack.height)
-    return np.array([[stack.head, below], [stack.tail, below]])
+    below = -0.03 * max(shown.length, 4 * shown.height)
+    return np.array([[shown.head, below], [shown.tail, below]])
+
+
+def _frame(shown: Extent) -> Floats:
+    """Return the lower ends and the top of what is shown, on levelled ground."""
+    return np.vstack([_length_ends(shown), [[shown.crest, shown.height]]])
 
 
 def _dimension_line(axes: Axes, ends: Floats, tilt: float, label: str, *, above: bool) -> None:
@@ -178,14 +259,24 @@ def _dimension_line(axes: Axes, ends: Floats, tilt: float, label: str, *, above:
 
 
 def _draw_scale(axes: Axes) -> None:
-    """Draw a bar of a round length, about a sixth of the width, at the lower left."""
+    """Draw a bar of a round length, about an eighth of the width, at the lower left."""
     left, right = axes.get_xlim()
-    bottom, top = axes.get_ylim()
-    length = _round_down((right - left) / 6)
-    x, z = left + 0.03 * (right - left), bottom + 0.05 * (top - bottom)
-    axes.plot([x, x + length], [z, z], color=INK, linewidth=3, solid_capstyle="butt", zorder=6)
+    length = _round_down((right - left) / 8)
+    across = axes.get_xaxis_transform()  # x in metres, z as a part of the height
+    start, level = left + 0.02 * (right - left), 0.05
+    bar: dict[str, Any] = {"color": INK, "linewidth": 3, "solid_capstyle": "butt", "zorder": 6}
+    axes.plot([start, start + length], [level] * 2, transform=across, scalex=False, **bar)
     label = f"{length:g} m" if length >= 1 else f"{100 * length:g} cm"
-    axes.text(x + length / 2, z, label + "\n", ha="center", va="center", fontsize=9, color=INK)
+    axes.annotate(
+        label,
+        (start + length, level),
+        (5, 0),
+        xycoords=across,
+        textcoords="offset points",
+        va="center",
+        fontsize=9,
+        color=INK,
+    )
 
 
 def _round_down(value: float) -> float:
@@ -206,15 +297,39 @@ def _panel_ends(frame: dict[str, Any]) -> tuple[Floats, Floats]:
     return (center - half)[[0, 2]], (center + half)[[0, 2]]
 
 
-def _limits(
-    stack: StackMeasure, tilt: float, frame: dict[str, Any] | None
-) -> tuple[float, float, float, float]:
-    """Return what is shown, left to right and bottom to top: the panel and the stack."""
+def _steepness(limits: Limits) -> float:
+    left, right, bottom, top = limits
+    return (top - bottom) / (right - left)
+
+
+def _filling(limits: Limits) -> Limits:
+    """Widen limits to the right and upward until they fill a view."""
+    left, right, bottom, top = limits
+    right = left + max(right - left, (top - bottom) * VIEW_WIDTH / HIGHEST)
+    top = bottom + max(top - bottom, (right - left) * LOWEST / VIEW_WIDTH)
+    return left, right, bottom, top
+
+
+def _stack_limits(stack: StackMeasure, tilt: float) -> Limits:
+    """Return a close view of the stack and its dimension lines."""
+    if len(stack.outline) == 0:
+        return 0.0, 1.0, -0.1, 0.3
+    return _around(_tilted(_frame(_pictured(stack)), tilt), 0.1)
+
+
+def _scene_limits(stack: StackMeasure, tilt: float, frame: dict[str, Any] | None) -> Limits:
+    """Return a view of the panel, the ground below it and the stack."""
     points = [np.zeros((1, 2))]
     if len(stack.outline):
-        points += [_tilted(stack.outline, tilt), _tilted(_length_ends(stack), tilt)]
+        points.append(_tilted(_frame(_pictured(stack)), tilt))
     if frame is not None:
-        points.append(np.array(_panel_ends(frame)))
-    low, high = np.concatenate(points).min(axis=0), np.concatenate(points).max(axis=0)
-    margin = 0.1 * float(max(high - low)) or 0.1
-    return low[0] - margin, high[0] + margin, low[1] - 0.8 * margin, high[1] + margin
+        ends = np.array(_panel_ends(frame))
+        points += [ends, ends * [1, 0] - ends[:, :1] * [0, np.tan(np.radians(tilt))]]
+    return _around(np.concatenate(points), 0.1)
+
+
+def _around(points: Floats, margin: float) -> Limits:
+    """Return limits around points, with a part of their larger extent as margin."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    gap = margin * float(max(high - low)) or margin
+    return low[0] - gap, high[0] + gap, low[1] - gap, high[1] + gap

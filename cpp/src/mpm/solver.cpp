@@ -60,6 +60,7 @@ int SolverOf<T, D>::threads() const {
 template <class T, int D>
 void SolverOf<T, D>::add(const ParticleBatch& batch) {
   const std::size_t old = particles_.size();
+  const EnergyBooks before = energy();
   std::vector<BlockKey> blocks = blocks_of_particles(layout_);
   particles_.resize(old + batch.positions.size());
   particles_.for_each_array([old](const char*, auto& array) {
@@ -87,25 +88,22 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
   tiles_valid_ = false;
   speed_ = std::max(speed_, velocity.norm());
   if (options_.energy) {
-    const double before = books_.stored();
     books_.gravitational = gravitational_energy();
     books_.kinetic = kinetic_energy();
     books_.elastic = elastic_energy();
-    books_.added += books_.stored() - before;
+    books_.added += books_.stored() - before.stored();
   }
 }
 
 template <class T, int D>
 void SolverOf<T, D>::clear() {
+  books_.added -= energy().stored();
+  books_.kinetic = books_.gravitational = books_.elastic = 0;
   particles_.resize(0);
   sort_particles(particles_, {}, layout_, threads());
   contacts_.relocate(layout_.grid_blocks, time_, threads());
   grid_.resize(layout_);
   tiles_valid_ = false;
-  if (options_.energy) {
-    books_.added -= books_.stored();
-    books_.kinetic = books_.gravitational = books_.elastic = 0;
-  }
 }
 
 template <class T, int D>
@@ -190,14 +188,14 @@ double SolverOf<T, D>::update_within_limits(double dt) {
     const double strain = largest_strain() * dt;
     if (strain <= limit) return dt;
     ++counters_.rejected;
-    if (!(std::isfinite(strain) && dt > 1e-7 * elastic_limit_)) {
+    dt *= std::min(0.5, 0.8 * limit / strain);
+    if (!(dt > 1e-7 * elastic_limit_)) {  // also where the strain is not finite
       std::ostringstream message;
       message << "the time step fell to " << dt << " s at t = " << time_
               << " s: the snow would strain by " << strain << " in one step (limit " << limit
               << "); try a smaller numerics.step_factor";
       throw SimulationError(message.str());
     }
-    dt *= std::min(0.5, 0.8 * limit / strain);
     update(dt);
   }
 }

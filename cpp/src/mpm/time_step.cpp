@@ -10,7 +10,7 @@ double elastic_time_step(double youngs_modulus, double poissons_ratio, double de
                          int dimension, double dx, Basis basis) {
   const auto e = Elasticity<double>::from(youngs_modulus, poissons_ratio, dimension);
   const double stiffness = dimension * e.bulk;  // d lambda + 2 mu
-  return 2 * dx / std::sqrt(stability_number(basis) * stiffness / density);
+  return dx * std::sqrt(2 / (stability_number(basis) * stiffness / density));
 }
 
 double next_time_step(double elastic_limit, double speed, double dx, double factor) {

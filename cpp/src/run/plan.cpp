@@ -14,6 +14,10 @@ namespace {
 
 constexpr double measured_particles = 50000;
 
+/// The speed is measured on a slab still whole; spread and yielding snow takes longer by this
+/// factor over an event of the laboratory scene (2D 1.3, 3D 1.4).
+constexpr double broken_snow = 1.35;
+
 void list_features(const Scene& s, Plan& plan) {
   const auto feature = [&plan](bool used, const std::string& name) {
     (used ? plan.used : plan.left_out).push_back(name);
@@ -45,14 +49,9 @@ double measured_speed(Scene scene, const std::filesystem::path& base_dir, const 
   scene.seeding.pattern = SeedPattern::jittered;  // seeds fast
   Simulation sim(scene, base_dir);
   sim.begin_event();
-  Stopwatch clock;
-  double best = 0;
-  const auto observer = [&](const RunReport& r) {
-    best = std::max(best, r.updates_per_s);
-    return clock.seconds() < 0.3;
-  };
-  sim.run(observer, 0.05);
-  return best;
+  const Stopwatch clock;
+  sim.run([&clock](const RunReport&) { return clock.seconds() < 0.3; }, 0.05);
+  return double(sim.solver().counters().particle_updates) / clock.seconds();
 }
 
 }  // namespace
@@ -70,7 +69,7 @@ Plan plan(const Scene& given, const std::filesystem::path& base_dir) {
   double present = 0;
   for (double particles : p.cost.particles) {
     present += particles;
-    p.wall_time += steps_per_event * present / std::max(p.updates_per_s, 1.0);
+    p.wall_time += broken_snow * steps_per_event * present / std::max(p.updates_per_s, 1.0);
   }
   return p;
 }

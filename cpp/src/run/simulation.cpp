@@ -147,7 +147,10 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
       cost_(forecast(scene_, count_particles(scene_, base_dir))),
       rest_(scene.events.rest_speed, scene.events.rest_time) {
   check_memory(cost_.bytes);
-  solver_ = make_solver(solver_options(scene_), build_obstacles(scene_, base_dir_));
+  std::vector<Obstacle> all = build_obstacles(scene_, base_dir_);
+  const auto first = all.begin() + int(scene_.ground.has_value()) + int(scene_.panel.has_value());
+  obstacles_.assign(first, first + std::ptrdiff_t(scene_.obstacles.size()));
+  solver_ = make_solver(solver_options(scene_), std::move(all));
 }
 
 Simulation::~Simulation() = default;
@@ -221,6 +224,14 @@ std::vector<bool> Simulation::on_panel(const std::vector<Vec3>& positions) const
                (scene_.dimension == 2 || std::abs(x.y()) < 0.5 * frame.width);
   }
   return there;
+}
+
+double Simulation::obstacle_distance(const Vec3& x) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Obstacle& o : obstacles_)
+    nearest = std::min(
+        nearest, o.shape->distance(o.motion ? o.motion->to_body(x, solver_->time()) : x));
+  return nearest;
 }
 
 /// The thesis's way between events (A.3.5): the stack as a solid, filled anew. The snow that

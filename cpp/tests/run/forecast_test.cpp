@@ -66,7 +66,7 @@ TEST(Forecast, TheRearSlidesTheWholePanelAndFalls) {
   EXPECT_NEAR(result.slide_time, slide, 1e-12);
   EXPECT_NEAR(result.slide_time, 0.3477, 1e-3);
   EXPECT_NEAR(result.fall_time, fall, 1e-12);
-  EXPECT_NEAR(result.event_time, slide + fall + 0.5, 1e-12);
+  EXPECT_NEAR(result.event_time, slide + fall + 0.25, 1e-12);
   EXPECT_EQ(result.steps, 5 * std::ceil(result.event_time / result.time_step));
 }
 
@@ -87,7 +87,7 @@ TEST(Forecast, EnoughFrictionHoldsTheSlab) {
   Scene scene = preset_scene("lab-40");
   scene.panel->friction = 0.84;  // tan 40 = 0.8391
   EXPECT_FALSE(forecast(scene).slides);
-  EXPECT_EQ(forecast(scene).event_time, 0.5);
+  EXPECT_EQ(forecast(scene).event_time, 0.25);
   scene.panel->friction = 0.838;
   EXPECT_TRUE(forecast(scene).slides);
   scene.panel->friction = 0.0;
@@ -111,7 +111,7 @@ TEST(Forecast, NoEventOutlastsItsLimit) {
   scene.events.max_time = 0.6;
   EXPECT_EQ(forecast(scene).event_time, 0.6);
   scene.gravity = 0.0;
-  EXPECT_EQ(forecast(scene).event_time, 0.5);
+  EXPECT_EQ(forecast(scene).event_time, 0.25);
   scene.bodies.emplace_back().shape.type = "sphere";
   scene.bodies[0].shape.center.z() = 1.0;
   EXPECT_EQ(forecast(scene).event_time, 0.6);  // it never lands

@@ -79,6 +79,10 @@ class Simulation {
   /// For each position, whether it is that of snow on the panel.
   std::vector<bool> on_panel(const std::vector<Vec3>& positions) const;
 
+  /// Signed distance to the nearest of the scene's obstacles where they are now, m; ground, panel
+  /// and domain do not count. Infinite without any.
+  double obstacle_distance(const Vec3& x) const;
+
   /// One .vtp with all particles and their quantities.
   void write_vtp(const std::filesystem::path&) const;
 
@@ -91,6 +95,7 @@ class Simulation {
   Scene scene_;
   std::filesystem::path base_dir_;
   Forecast cost_;
+  std::vector<Obstacle> obstacles_;  // those of the scene's list
   std::unique_ptr<Solver> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   RestDetector rest_;

@@ -10,6 +10,9 @@ SNOWSHED_VARIANT_BEGIN
 
 template <class T, int D, Basis basis, bool flip, bool energy>
 struct NodeKernels {
+  /// kg. A node that a particle barely touches may have a mass whose inverse overflows.
+  static constexpr T least_mass = T(1e-30);
+
   static void gather(const T* const* tiles, T* sums) {
     std::memset(sums, 0, block_nodes<D> * node_values * sizeof(T));
     Node<T>* out = reinterpret_cast<Node<T>*>(sums);
@@ -32,7 +35,7 @@ struct NodeKernels {
     Node<T> low = std::numeric_limits<T>::max() - Node<T>{}, high = -low;
     for (int k = 0; k < block_nodes<D>; ++k) {
       const T mass = in[k][0];
-      if (!(mass > T(0))) {
+      if (!(mass > least_mass)) {
         out[k] = Node<T>{};
         continue;
       }
@@ -44,7 +47,7 @@ struct NodeKernels {
     }
     for (int c = 0; c < contact_count; ++c) {
       const Node<T>& sum = in[contacts[c].node];
-      if (sum[0] > T(0)) {
+      if (sum[0] > least_mass) {
         Node<T> node = out[contacts[c].node];
         apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
         out[contacts[c].node] = with_second_half(node, velocity(sum));
@@ -78,7 +81,7 @@ struct NodeKernels {
   static void book_kinetic(const Node<T>* in, const Node<T>* out, NodeStats& stats) {
     for (int k = 0; k < block_nodes<D>; ++k) {
       const double mass = double(in[k][0]);
-      if (!(mass > 0)) continue;
+      if (!(mass > double(least_mass))) continue;
       for (int d = 0; d < D; ++d) {
         stats.kinetic_before += 0.5 * double(in[k][1 + d]) * double(in[k][1 + d]) / mass;
         stats.kinetic_after += 0.5 * mass * double(out[k][d]) * double(out[k][d]);

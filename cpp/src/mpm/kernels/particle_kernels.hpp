@@ -207,17 +207,16 @@ struct ParticleKernels {
     return tau;
   }
 
-  /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, before and after the return.
+  /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work of the return,
+  /// stress times plastic strain. (The trial's elastic energy less the present one would count
+  /// the square of each step's plastic strain on top, an error that does not fade with time.)
   void book(const PQ<V>& trial, const PQ<V>& now, const V& mass, int n) const {
     const auto& el = material.elastic;
     for (int l = 0; l < n; ++l) {
       const double volume = double(mass[l]) * double(step.specific_volume);
-      const auto density = [&el](double p, double q) {
-        return p * p / (2 * double(el.bulk)) + q * q / (6 * double(el.mu));
-      };
-      const double after = volume * density(now.p[l], now.q[l]);
-      stats.elastic += after;
-      stats.plastic += volume * density(trial.p[l], trial.q[l]) - after;
+      const double p = now.p[l], q = now.q[l], bulk = el.bulk, mu = el.mu;
+      stats.elastic += volume * (p * p / (2 * bulk) + q * q / (6 * mu));
+      stats.plastic += volume * (p * (trial.p[l] - p) / bulk + q * (trial.q[l] - q) / (3 * mu));
     }
   }
 

@@ -1,0 +1,45 @@
+"""Every example runs; on coarse grids, so that it takes a second or two."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from snowshed import Scene, read_events, run_events
+from snowshed.cli import main
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+ARGUMENTS = {
+    "custom_obstacles.py": ["out", "0.05"],
+    "dimension_ratio.py": ["out", "0.02", "1"],
+    "panel_2d.py": ["out", "0.02"],
+    "resume.py": ["out", "0.02"],
+}
+
+
+def test_all_scripts_are_run():
+    assert set(ARGUMENTS) == {path.name for path in EXAMPLES.glob("*.py")}
+
+
+@pytest.mark.parametrize("name", ARGUMENTS)
+def test_script(name, tmp_path):
+    command = [sys.executable, EXAMPLES / name, *ARGUMENTS[name]]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert "event" in done.stdout
+    assert (tmp_path / "out").is_dir() and len(list(tmp_path.iterdir())) == 1
+    for folder in {path.parent for path in tmp_path.rglob("events.csv")}:
+        assert (folder / "stack.png").exists() and len(read_events(folder)) >= 1
+    if name == "dimension_ratio.py":
+        assert main(["compare", str(tmp_path / "out/2d"), str(tmp_path / "out/3d")]) == 0
+
+
+@pytest.mark.parametrize("scene", sorted(EXAMPLES.glob("scenes/*.json")), ids=lambda p: p.stem)
+def test_scene(scene, tmp_path, capsys):
+    assert main(["plan", str(scene)]) == 0
+    assert "particles" in capsys.readouterr().out
+    coarse = Scene.load(scene).update({"numerics.dx": 0.025, "events.max_time": 0.1})
+    table = run_events(coarse, tmp_path / "out", pictures=False)
+    assert table.event.iloc[-1] == coarse.initialise().data["events"]["count"]

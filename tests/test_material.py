@@ -1,0 +1,54 @@
+"""The return mapping as it is bound; the C++ tests compare it with an independent integration."""
+
+import numpy as np
+import pytest
+
+from snowshed import Snow
+from snowshed._core import CamClay
+
+SNOW = Snow.preset("calibrated")
+P0 = SNOW.preconsolidation_pressure
+
+
+@pytest.fixture
+def law() -> CamClay:
+    return CamClay(
+        SNOW.youngs_modulus,
+        SNOW.poissons_ratio,
+        SNOW.critical_state_slope,
+        SNOW.cohesion,
+        SNOW.hardening_factor,
+        3,
+    )
+
+
+def test_moduli(law):
+    assert law.bulk == pytest.approx(1e6 / (3 * 0.4))
+    assert law.shear == pytest.approx(1e6 / 2.6)
+
+
+def test_initial_strain_gives_the_initial_strength(law):
+    ev = law.initial_plastic_strain(P0)
+    assert ev == pytest.approx(-0.084, abs=5e-4)  # facts of the thesis's calibrated snow
+    assert law.preconsolidation(ev) == pytest.approx(P0)
+    assert law.preconsolidation(0.1) == 0
+
+
+def test_elastic_states_stay(law):
+    ev = law.initial_plastic_strain(P0)
+    assert law.yield_function(0.5 * P0, 0.0, P0) < 0
+    assert law.return_map(0.5 * P0, 0.0, ev) == (0.5 * P0, 0.0, ev)
+
+
+@pytest.mark.parametrize("q", [0.0, 2e3, 1e5])
+@pytest.mark.parametrize("p", [-1e5, -2e3, 0.0, 0.4 * P0, 1e4, 1e6])
+def test_what_is_outside_returns_to_the_yield_surface(law, p, q):
+    ev = law.initial_plastic_strain(P0)
+    if law.yield_function(p, q, P0) <= 0:
+        pytest.skip("elastic")
+    p1, q1, ev1 = law.return_map(p, q, ev)
+    p0 = law.preconsolidation(ev1)
+    scale = max(law.preconsolidation(ev), p0) ** 2
+    assert abs(law.yield_function(p1, q1, p0)) < 1e-6 * scale
+    assert 0 <= q1 <= q
+    assert np.sign(ev - ev1) in (0, np.sign(p - 0.4 * P0))  # compacts right of the centre
