@@ -33,7 +33,7 @@ help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
 	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
 	@echo "make test      all tests (test-cpp, test-py: one half)"
-	@echo "make bench     speed of the kernels and of whole steps"
+	@echo "make bench     speed of the solver and of the laboratory events, kept in benchmarks/results"
 	@echo "make docs      the documentation as HTML"
 	@echo "make format    format all sources"
 	@echo "make lint      check format, style and types (tidy: clang-tidy, slow)"
@@ -93,7 +93,7 @@ bench: build
 	@sh tools/provide_header.sh benchmark/benchmark.h libbenchmark-dev || echo "Fetching Google Benchmark instead."
 	@$(call enable,SNOWSHED_BUILD_BENCH)
 	cmake --build $(TREE) --target snowshed_bench
-	$(TREE)/snowshed_bench
+	$(BIN)/python benchmarks/record.py $(TREE)/snowshed_bench
 
 # --- documentation and style ---------------------------------------------------------------
 

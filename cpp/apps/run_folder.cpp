@@ -26,7 +26,9 @@ void require_empty(const fs::path& folder) {
 class FolderRun {
  public:
   FolderRun(fs::path folder, std::unique_ptr<Simulation> sim, bool quiet)
-      : folder_(std::move(folder)), sim_(std::move(sim)), quiet_(quiet),
+      : folder_(std::move(folder)),
+        sim_(std::move(sim)),
+        quiet_(quiet),
         updates_before_(sim_->solver().counters().particle_updates) {}
 
   bool all(const std::function<bool()>& go_on) {
@@ -50,8 +52,8 @@ class FolderRun {
          << kernel_variant() << "\",\n  \"threads\": " << sim_->threads()
          << ",\n  \"events\": " << sim_->event() << ",\n  \"particles\": " << sim_->solver().size()
          << ",\n  \"steps\": " << c.steps << ",\n  \"rejected_steps\": " << c.rejected
-         << ",\n  \"particle_updates\": " << c.particle_updates
-         << ",\n  \"updates_per_s\": " << double(c.particle_updates - updates_before_) / clock_.seconds()
+         << ",\n  \"particle_updates\": " << c.particle_updates << ",\n  \"updates_per_s\": "
+         << double(c.particle_updates - updates_before_) / clock_.seconds()
          << ",\n  \"peak_memory_mb\": " << double(peak_resident_bytes()) / 1e6
          << ",\n  \"wall_s\": " << clock_.seconds() << ",\n  \"status\": \"" << status << "\"\n}\n";
     write_atomic(folder_ / "run.json", json.str());
@@ -65,8 +67,8 @@ class FolderRun {
       bool stop = false;
       const auto observer = [&](const RunReport& r) {
         if (!quiet_)
-          std::fprintf(stderr, "\revent %d  %3.0f %%  t = %.3f s  %.1f M updates/s ",
-                       sim_->event(), 100 * r.progress, r.time, r.updates_per_s / 1e6);
+          std::fprintf(stderr, "\revent %d  %3.0f %%  t = %.3f s  %.1f M updates/s ", sim_->event(),
+                       100 * r.progress, r.time, r.updates_per_s / 1e6);
         stop = !go_on();
         return !stop && !(every > 0 && since_checkpoint.seconds() > every);
       };

@@ -14,18 +14,23 @@ void bind_material(py::module_& m) {
       .def(py::init(&Law::from), "youngs_modulus"_a, "poissons_ratio"_a, "critical_state_slope"_a,
            "cohesion"_a, "hardening_factor"_a, "dimension"_a = 3)
       .def("initial_plastic_strain", &Law::initial_plastic_strain, "p0"_a)
-      .def("preconsolidation",
-           [](const Law& law, double ev) { return law.preconsolidation(ev); }, "ev"_a)
-      .def("yield_function",
-           [](const Law& law, double p, double q, double p0) { return law.yield(PQ<double>{p, q}, p0); },
-           "p"_a, "q"_a, "p0"_a)
-      .def("return_map",
-           [](const Law& law, double p, double q, double ev) {
-             PQ<double> s{p, q};
-             law.return_map(s, ev);
-             return py::make_tuple(s.p, s.q, ev);
-           },
-           "p"_a, "q"_a, "ev"_a, "(p, q, e_v) after bringing the trial back to the yield surface.")
+      .def(
+          "preconsolidation", [](const Law& law, double ev) { return law.preconsolidation(ev); },
+          "ev"_a)
+      .def(
+          "yield_function",
+          [](const Law& law, double p, double q, double p0) {
+            return law.yield(PQ<double>{p, q}, p0);
+          },
+          "p"_a, "q"_a, "p0"_a)
+      .def(
+          "return_map",
+          [](const Law& law, double p, double q, double ev) {
+            PQ<double> s{p, q};
+            law.return_map(s, ev);
+            return py::make_tuple(s.p, s.q, ev);
+          },
+          "p"_a, "q"_a, "ev"_a, "(p, q, e_v) after bringing the trial back to the yield surface.")
       .def_property_readonly("bulk", [](const Law& law) { return law.elastic.bulk; })
       .def_property_readonly("shear", [](const Law& law) { return law.elastic.mu; });
 }

@@ -54,8 +54,11 @@ void bind_scene(py::module_& m) {
       "load_scene", [](const std::string& path) { return write_scene(resolve(load_scene(path))); },
       "path"_a, "The same of a file; files it names are found beside it.");
   m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
-  m.def("preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);
-  m.def("snow_preset", [](const std::string& name) { return snow_json(preset_snow(name)); }, "name"_a);
+  m.def(
+      "preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);
+  m.def(
+      "snow_preset", [](const std::string& name) { return snow_json(preset_snow(name)); },
+      "name"_a);
   m.def("plan", &plan_dict, "scene_json"_a, "base_dir"_a = ".");
 }
 

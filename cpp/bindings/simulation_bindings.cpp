@@ -126,26 +126,33 @@ void bind_simulation(py::module_& m) {
              return std::make_unique<Simulation>(parse_scene(json), base_dir);
            }),
            "scene_json"_a, "base_dir"_a = ".")
-      .def_static("load", [](const std::string& path) { return Simulation::load(path); }, "path"_a)
-      .def("save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a)
+      .def_static(
+          "load", [](const std::string& path) { return Simulation::load(path); }, "path"_a)
+      .def(
+          "save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a)
       .def("begin_event", &begin_event)
       .def("run", &run, "callback"_a, "interval_s"_a = 0.5)
-      .def("set_snapshots",
-           [](Simulation& s, const std::string& dir, double interval) {
-             s.write_snapshots(dir, interval);
-           },
-           "dir"_a, "interval_s"_a)
-      .def("write_vtk", [](const Simulation& s, const std::string& path) { s.write_vtp(path); },
-           "path"_a)
+      .def(
+          "set_snapshots",
+          [](Simulation& s, const std::string& dir, double interval) {
+            s.write_snapshots(dir, interval);
+          },
+          "dir"_a, "interval_s"_a)
+      .def(
+          "write_vtk", [](const Simulation& s, const std::string& path) { s.write_vtp(path); },
+          "path"_a)
       .def("energy", &energy)
       .def("panel_frame", &frame)
       .def("positions", [](const Simulation& s) { return rows(s.solver().state().positions); })
       .def("velocities", [](const Simulation& s) { return rows(s.solver().state().velocities); })
       .def("masses", [](const Simulation& s) { return column<double>(s.solver().state().masses); })
-      .def("events", [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })
+      .def("events",
+           [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })
       .def("density", &densities)
       .def("on_panel",
-           [](const Simulation& s) { return column<bool>(s.on_panel(s.solver().state().positions)); })
+           [](const Simulation& s) {
+             return column<bool>(s.on_panel(s.solver().state().positions));
+           })
       .def("obstacle_distance", &obstacle_distance, "points"_a)
       .def_property_readonly("event", &Simulation::event)
       .def_property_readonly("event_running", &Simulation::event_running)
@@ -157,7 +164,8 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly(
           "particle_updates",
           [](const Simulation& s) { return s.solver().counters().particle_updates; })
-      .def_property_readonly("particle_count", [](const Simulation& s) { return s.solver().size(); })
+      .def_property_readonly("particle_count",
+                             [](const Simulation& s) { return s.solver().size(); })
       .def_property_readonly("time_step_s",
                              [](const Simulation& s) { return s.solver().time_step(); })
       .def_property_readonly("scene", [](const Simulation& s) { return write_scene(s.scene()); })

@@ -9,6 +9,14 @@ Examples
 50.0
 """
 
+import os
+
+# The solver's threads meet twice a step. By default OpenMP's runtime makes the early ones spin for
+# a long time, which on a busy machine takes the processor from the thread they wait for. The
+# runtime reads this once, when the core is loaded; a setting of the user's own stands.
+if "OMP_WAIT_POLICY" not in os.environ:
+    os.environ.setdefault("GOMP_SPINCOUNT", "2000")
+
 from snowshed._core import InputError, SimulationError
 from snowshed._core import version as __version__
 from snowshed.compare import dimension_ratio

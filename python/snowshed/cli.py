@@ -55,13 +55,13 @@ def panel(
     snow_preset: Optional[str],
     **options: Any,
 ) -> None:
-    r"""Run slide-offs from a panel described by options.
+    """Run slide-offs from a panel described by options.
 
     \b
     Example:
-      snowshed panel --height 0.33 --length 0.245 --width 0.213 --tilt 50 \
+      snowshed panel --height 0.33 --length 0.245 --width 0.213 --tilt 50 \\
           --thickness 0.02 --events 5 --dim 3 --friction 0.3 -o results
-    """
+    """  # noqa: D301 - click wants the control character
     _run(_initialise(preset, snow_preset, options), folder, resume, quiet)
 
 

@@ -32,11 +32,16 @@ class Builder {
     if (depth_ > max_shape_depth)
       fail("", "shapes nested deeper than " + std::to_string(max_shape_depth) + " levels");
     static const std::map<std::string, Shape (Builder::*)() const> makers = {
-        {"plane", &Builder::plane},           {"box", &Builder::box},
-        {"sphere", &Builder::sphere},         {"cylinder", &Builder::cylinder},
-        {"capsule", &Builder::capsule},       {"plate", &Builder::plate},
-        {"mesh", &Builder::mesh},             {"grid", &Builder::grid},
-        {"union", &Builder::make_union},      {"difference", &Builder::difference},
+        {"plane", &Builder::plane},
+        {"box", &Builder::box},
+        {"sphere", &Builder::sphere},
+        {"cylinder", &Builder::cylinder},
+        {"capsule", &Builder::capsule},
+        {"plate", &Builder::plate},
+        {"mesh", &Builder::mesh},
+        {"grid", &Builder::grid},
+        {"union", &Builder::make_union},
+        {"difference", &Builder::difference},
         {"transform", &Builder::transformed},
     };
     const auto maker = makers.find(spec_.type);
@@ -76,8 +81,9 @@ class Builder {
   Shape plate() const {
     const Vec3 normal = direction(spec_.normal, "/normal");
     if (std::hypot(normal.x(), normal.z()) < 1e-6)
-      fail("/normal", describe(spec_.normal) + " is along y; a plate needs a normal with a part "
-                                               "in the x-z plane");
+      fail("/normal", describe(spec_.normal) +
+                          " is along y; a plate needs a normal with a part "
+                          "in the x-z plane");
     return make_plate(point(spec_.center, "/center"), normal, length(spec_.length, "/length"),
                       dimension_ == 2 ? infinity : length(spec_.width, "/width"),
                       length(spec_.thickness, "/thickness"));
@@ -97,8 +103,9 @@ class Builder {
     const std::vector<std::size_t>& n = array.shape;
     const bool flat = n.size() == 2;
     if (flat && dimension_ == 3)
-      throw InputError(path.string(), "a two-dimensional array; a three-dimensional scene needs "
-                                      "a grid with the indices [x][y][z]");
+      throw InputError(path.string(),
+                       "a two-dimensional array; a three-dimensional scene needs "
+                       "a grid with the indices [x][y][z]");
     samples.counts = {n[0], flat ? 1 : n[1], flat ? n[1] : n[2]};
     samples.values = std::move(array.values);
     return in_scene(make_sampled_grid(std::move(samples), path.string()));
@@ -119,8 +126,9 @@ class Builder {
     const Vec3 translation = point(spec_.translate, "/translate");
     const Vec3 axis = direction(spec_.axis, "/axis", any_y);
     if (dimension_ == 2 && std::hypot(axis.x(), axis.z()) > 0)
-      fail("/axis", describe(spec_.axis) + " is not along y, the only axis that keeps a "
-                                           "two-dimensional scene in its plane");
+      fail("/axis", describe(spec_.axis) +
+                        " is not along y, the only axis that keeps a "
+                        "two-dimensional scene in its plane");
     if (!(std::abs(spec_.angle) <= 36000))
       fail("/angle", describe(spec_.angle) + "; allowed: -36000 to 36000 degrees");
     const double radians = std::fmod(spec_.angle, 360.0) * radians_per_degree;
@@ -134,8 +142,8 @@ class Builder {
                           std::to_string(at_least) + " needed");
     std::vector<Shape> shapes;
     for (std::size_t i = 0; i < spec_.shapes.size(); ++i)
-      shapes.push_back(Builder(spec_.shapes[i], dimension_,
-                               path_ + "/shapes/" + std::to_string(i), base_dir_, depth_ + 1)
+      shapes.push_back(Builder(spec_.shapes[i], dimension_, path_ + "/shapes/" + std::to_string(i),
+                               base_dir_, depth_ + 1)
                            .build());
     return shapes;
   }

@@ -69,8 +69,8 @@ class Mesh final : public LevelSet {
     for (int n = 0; n < max_steps && step > 1e-3 * ball.radius; ++n) {
       const Ball before = ball;
       const Vec3 inward = -normal(ball.center);
-      for (const Vec3& direction : {inward, Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()),
-                                    Vec3(Vec3::UnitZ())})
+      for (const Vec3& direction :
+           {inward, Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
         for (const double s : {step, -step}) {
           const Ball moved = ball_at(before.center + s * direction);
           if (moved.radius > ball.radius) ball = moved;
@@ -87,8 +87,7 @@ class Mesh final : public LevelSet {
   Ball touching_ball(std::uint32_t triangle, double least, double most) const {
     constexpr int max_steps = 30;
     const Triangle& t = mesh_.triangles[triangle];
-    const Vec3 touch =
-        (mesh_.vertices[t[0]] + mesh_.vertices[t[1]] + mesh_.vertices[t[2]]) / 3;
+    const Vec3 touch = (mesh_.vertices[t[0]] + mesh_.vertices[t[1]] + mesh_.vertices[t[2]]) / 3;
     const Vec3 inward = -normals_.face(triangle);
     double radius = most;
     for (int step = 0; step < max_steps && radius > least; ++step) {

@@ -14,11 +14,11 @@ enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 std::optional<Type> type_named(std::string_view name) {
   static const std::map<std::string_view, Type> types = {
-      {"char", Type::int8},     {"int8", Type::int8},       {"uchar", Type::uint8},
-      {"uint8", Type::uint8},   {"short", Type::int16},     {"int16", Type::int16},
-      {"ushort", Type::uint16}, {"uint16", Type::uint16},   {"int", Type::int32},
-      {"int32", Type::int32},   {"uint", Type::uint32},     {"uint32", Type::uint32},
-      {"float", Type::float32}, {"float32", Type::float32}, {"double", Type::float64},
+      {"char", Type::int8},      {"int8", Type::int8},       {"uchar", Type::uint8},
+      {"uint8", Type::uint8},    {"short", Type::int16},     {"int16", Type::int16},
+      {"ushort", Type::uint16},  {"uint16", Type::uint16},   {"int", Type::int32},
+      {"int32", Type::int32},    {"uint", Type::uint32},     {"uint32", Type::uint32},
+      {"float", Type::float32},  {"float32", Type::float32}, {"double", Type::float64},
       {"float64", Type::float64}};
   const auto found = types.find(name);
   return found == types.end() ? std::nullopt : std::optional<Type>(found->second);
@@ -63,14 +63,22 @@ class BinaryRows final : public Rows {
 
   double value(Type type) override {
     switch (type) {
-      case Type::int8: return reader_.read<std::int8_t>();
-      case Type::uint8: return reader_.read<std::uint8_t>();
-      case Type::int16: return reader_.read<std::int16_t>();
-      case Type::uint16: return reader_.read<std::uint16_t>();
-      case Type::int32: return reader_.read<std::int32_t>();
-      case Type::uint32: return reader_.read<std::uint32_t>();
-      case Type::float32: return reader_.read<float>();
-      case Type::float64: return reader_.read<double>();
+      case Type::int8:
+        return reader_.read<std::int8_t>();
+      case Type::uint8:
+        return reader_.read<std::uint8_t>();
+      case Type::int16:
+        return reader_.read<std::int16_t>();
+      case Type::uint16:
+        return reader_.read<std::uint16_t>();
+      case Type::int32:
+        return reader_.read<std::int32_t>();
+      case Type::uint32:
+        return reader_.read<std::uint32_t>();
+      case Type::float32:
+        return reader_.read<float>();
+      case Type::float64:
+        return reader_.read<double>();
     }
     fail("unknown type");
   }
@@ -142,8 +150,7 @@ std::unique_ptr<Rows> open_rows(const std::filesystem::path& path, std::string_v
   if (format != "binary_little_endian" && format != "binary_big_endian")
     scanner.fail("format '" + format.substr(0, 40) +
                  "'; allowed: ascii, binary_little_endian, binary_big_endian");
-  const ByteOrder order =
-      format == "binary_little_endian" ? ByteOrder::little : ByteOrder::big;
+  const ByteOrder order = format == "binary_little_endian" ? ByteOrder::little : ByteOrder::big;
   return std::make_unique<BinaryRows>(ByteReader(path, bytes, scanner.offset(), order));
 }
 

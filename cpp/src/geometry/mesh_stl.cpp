@@ -72,8 +72,8 @@ TriangleMesh parse_stl(const std::filesystem::path& path, std::string_view bytes
   if (solid) return parse_ascii(TextScanner(path, bytes));
   throw InputError(at_byte(path, header_size - 4),
                    std::to_string(count) + " triangles declared, which take " +
-                       std::to_string(header_size + record_size * count) +
-                       " bytes; the file has " + std::to_string(bytes.size()));
+                       std::to_string(header_size + record_size * count) + " bytes; the file has " +
+                       std::to_string(bytes.size()));
 }
 
 }  // namespace snowshed

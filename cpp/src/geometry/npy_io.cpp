@@ -87,8 +87,8 @@ NpyArray read_npy(const std::filesystem::path& path) {
   ByteReader reader(path, bytes, header.data_offset, ByteOrder::little);
   NpyArray array{header.shape, std::vector<float>(count)};
   for (float& value : array.values) {
-    value = header.type == "'<f4'" ? reader.read<float>()
-                                   : static_cast<float>(reader.read<double>());
+    value =
+        header.type == "'<f4'" ? reader.read<float>() : static_cast<float>(reader.read<double>());
     if (!std::isfinite(value)) reader.fail("the value before this byte is not finite");
   }
   return array;

@@ -31,9 +31,9 @@ struct Index {
 class NearestSeed {
  public:
   NearestSeed(const Vec3& origin, double spacing, const std::array<std::size_t, 3>& counts)
-      : origin_(origin), spacing_(spacing), counts_{std::int64_t(counts[0]),
-                                                    std::int64_t(counts[1]),
-                                                    std::int64_t(counts[2])},
+      : origin_(origin),
+        spacing_(spacing),
+        counts_{std::int64_t(counts[0]), std::int64_t(counts[1]), std::int64_t(counts[2])},
         nearest_(counts[0] * counts[1] * counts[2], none) {}
 
   std::size_t at(const Index& n) const {
@@ -126,8 +126,9 @@ GridSamples make_grid(const Bounds& bounds, int dimension, double spacing, doubl
     const double count = axis == 1 && dimension == 2 ? 1 : std::ceil(size / spacing) + 1;
     total *= count;
     if (total > max_nodes)
-      throw InputError("", "the cloud of particles spreads over more than 1.5e8 grid nodes; "
-                           "choose a larger voxel size or drop the outliers");
+      throw InputError("",
+                       "the cloud of particles spreads over more than 1.5e8 grid nodes; "
+                       "choose a larger voxel size or drop the outliers");
     grid.counts[axis] = static_cast<std::size_t>(count);
   }
   if (dimension == 2) grid.origin.y() = 0;
@@ -168,8 +169,8 @@ Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, dou
                              double radius) {
   check_arguments(points, voxel, radius);
   const double spacing = voxel / 2, closing = voxel;
-  GridSamples grid = make_grid(bounds_of(points, dimension), dimension, spacing,
-                               radius + closing + 2 * spacing);
+  GridSamples grid =
+      make_grid(bounds_of(points, dimension), dimension, spacing, radius + closing + 2 * spacing);
 
   NearestSeed to_particles(grid.origin, spacing, grid.counts);
   to_particles.spread(points);

@@ -102,8 +102,7 @@ class Cylinder final : public LevelSet {
     const Offsets o = offsets(x);
     const Vec3 outward = direction(o.across, any_perpendicular(axis_));
     const Vec3 along = o.along < 0 ? Vec3(-axis_) : axis_;
-    if (o.radial > 0 && o.axial > 0)
-      return (o.radial * outward + o.axial * along).normalized();
+    if (o.radial > 0 && o.axial > 0) return (o.radial * outward + o.axial * along).normalized();
     return o.radial > o.axial ? outward : along;
   }
 

@@ -37,8 +37,8 @@ class PseudoNormals {
     const int f = static_cast<int>(feature);
     if (f < 3) return vertices_[mesh_.triangles[triangle][f]];
     if (f == 6) return face(triangle);
-    const auto first = std::lower_bound(edges_.begin(), edges_.end(),
-                                        std::make_pair(key(triangle, f - 3), 0u));
+    const auto first =
+        std::lower_bound(edges_.begin(), edges_.end(), std::make_pair(key(triangle, f - 3), 0u));
     return face(first->second) + face((first + 1)->second);
   }
 

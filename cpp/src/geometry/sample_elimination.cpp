@@ -77,8 +77,8 @@ class CrowdedFirst {
 
 }  // namespace
 
-std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count,
-                                    int dimension, double point_measure) {
+std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count, int dimension,
+                                    double point_measure) {
   const std::vector<Vec3>& points = candidates.points;
   const double kept_ratio = static_cast<double>(count) / candidates.inside_count;
   const Crowding crowding(dimension, point_measure, kept_ratio);

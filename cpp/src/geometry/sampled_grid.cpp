@@ -57,8 +57,8 @@ void check_values(const GridSamples& s, const std::string& where) {
       const double step = std::abs(double(s.values[n]) - s.values[n - strides[axis]]);
       if (step <= slope_tolerance * s.spacing) continue;
       std::ostringstream what;
-      what << place(i, j, k) << " differs from its neighbour by " << step << " m over "
-           << s.spacing << " m: not a signed distance in metres";
+      what << place(i, j, k) << " differs from its neighbour by " << step << " m over " << s.spacing
+           << " m: not a signed distance in metres";
       throw InputError(where, what.str());
     }
   });

@@ -137,8 +137,8 @@ Candidates draw_candidates(const LevelSet& shape, int dimension, double voxel, d
   return candidates;
 }
 
-std::vector<Vec3> seed_poisson(const LevelSet& shape, int dimension, double voxel,
-                               double per_voxel, Random& random) {
+std::vector<Vec3> seed_poisson(const LevelSet& shape, int dimension, double voxel, double per_voxel,
+                               Random& random) {
   constexpr std::size_t candidates_per_point = 3;  // Yuksel: 5 gains little over 3
   const double total = measure(shape, dimension, voxel);
   const auto count = static_cast<std::size_t>(count_for(total, dimension, voxel, per_voxel));
@@ -170,8 +170,7 @@ std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, doubl
 std::size_t expected_count(const LevelSet& shape, int dimension, double voxel, double per_voxel,
                            SeedPattern pattern) {
   check_arguments(dimension, voxel, per_voxel);
-  const double count =
-      count_for(measure(shape, dimension, voxel), dimension, voxel, per_voxel);
+  const double count = count_for(measure(shape, dimension, voxel), dimension, voxel, per_voxel);
   const auto box = scene_box(shape, dimension);
   if (pattern == SeedPattern::poisson || !box) return static_cast<std::size_t>(count);
   return Tiling(*box, dimension, spacing(dimension, voxel, per_voxel)).size();

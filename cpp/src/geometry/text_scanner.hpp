@@ -50,8 +50,7 @@ class TextScanner {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     bool good = error == std::errc() && end == digits.data() + digits.size();
     if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(value);
-    if (!good)
-      fail("'" + std::string(word.substr(0, 40)) + "' is not a valid number");
+    if (!good) fail("'" + std::string(word.substr(0, 40)) + "' is not a valid number");
     return value;
   }
 

@@ -26,7 +26,7 @@ struct Nearest {
 /// Nearest point of triangle abc to p, by the Voronoi region p lies in
 /// (Ericson 2005, "Real-Time Collision Detection", 5.1.5).
 inline std::pair<Vec3, Feature> nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
-                                             const Vec3& c) {
+                                                    const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0 && d2 <= 0) return {a, Feature::vertex0};
@@ -48,7 +48,8 @@ inline std::pair<Vec3, Feature> nearest_on_triangle(const Vec3& p, const Vec3& a
 /// Bounding volume hierarchy over the triangles, halved at the median: its depth is log2 n.
 class TriangleHierarchy {
  public:
-  explicit TriangleHierarchy(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+  explicit TriangleHierarchy(const TriangleMesh& mesh)
+      : mesh_(mesh), order_(mesh.triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
     build(0, static_cast<std::uint32_t>(order_.size()));
   }

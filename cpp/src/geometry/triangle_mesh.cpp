@@ -42,8 +42,9 @@ void check_closed(const TriangleMesh& mesh, const std::string& where) {
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (edges[e].from == edges[e].to) fail(edges[e], "has no length");
     if (e > 0 && edges[e] == edges[e - 1])
-      fail(edges[e], "is used twice in the same direction: neighbouring triangles must turn the "
-                     "same way, and no more than two may share an edge");
+      fail(edges[e],
+           "is used twice in the same direction: neighbouring triangles must turn the "
+           "same way, and no more than two may share an edge");
   }
   for (const DirectedEdge& edge : edges)
     if (!std::binary_search(edges.begin(), edges.end(), DirectedEdge{edge.to, edge.from}))

@@ -78,8 +78,7 @@ void Contacts<T, D>::find_block(BlockKey key, double time, bool moving,
 }
 
 template <class T, int D>
-void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double time,
-                              int threads) {
+void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double time, int threads) {
   const std::ptrdiff_t n = std::ptrdiff_t(grid_blocks.size());
   std::vector<std::vector<Contact<T>>> found(grid_blocks.size());
   parallel_for(n, threads, 8, [&](std::ptrdiff_t i) {
@@ -125,7 +124,7 @@ std::vector<typename Contacts<T, D>::Press> Contacts<T, D>::pressed() const {
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
       if (contacts_[i].next_press > T(0))
         stored.push_back({blocks_[b], contacts_[i].node, contacts_[i].obstacle,
-                        double(contacts_[i].next_press)});
+                          double(contacts_[i].next_press)});
   return stored;
 }
 

@@ -6,10 +6,10 @@
 
 namespace snowshed {
 
-#define SNOWSHED_DECLARE(variant)                \
-  namespace variant {                            \
-  Kernels<float> float_2d(const KernelChoice&);  \
-  Kernels<float> float_3d(const KernelChoice&);  \
+#define SNOWSHED_DECLARE(variant)                 \
+  namespace variant {                             \
+  Kernels<float> float_2d(const KernelChoice&);   \
+  Kernels<float> float_3d(const KernelChoice&);   \
   Kernels<double> double_2d(const KernelChoice&); \
   Kernels<double> double_3d(const KernelChoice&); \
   }
@@ -60,30 +60,36 @@ Kernels<T> from(Kernels<T> (*two)(const KernelChoice&), Kernels<T> (*three)(cons
 
 const char* kernel_variant() {
   switch (variant()) {
-    case Variant::avx512: return "avx512";
-    case Variant::avx2: return "avx2";
-    default: return "baseline";
+    case Variant::avx512:
+      return "avx512";
+    case Variant::avx2:
+      return "avx2";
+    default:
+      return "baseline";
   }
 }
 
-#define SNOWSHED_SELECT(T)                                                      \
-  template <>                                                                   \
-  Kernels<T> select_kernels<T>(const KernelChoice& choice) {                    \
-    switch (variant()) {                                                        \
-      SNOWSHED_CASE_AVX512(T)                                                   \
-      SNOWSHED_CASE_AVX2(T)                                                     \
-      default: return from(baseline::T##_2d, baseline::T##_3d, choice);         \
-    }                                                                           \
+#define SNOWSHED_SELECT(T)                                       \
+  template <>                                                    \
+  Kernels<T> select_kernels<T>(const KernelChoice& choice) {     \
+    switch (variant()) {                                         \
+      SNOWSHED_CASE_AVX512(T)                                    \
+      SNOWSHED_CASE_AVX2(T)                                      \
+      default:                                                   \
+        return from(baseline::T##_2d, baseline::T##_3d, choice); \
+    }                                                            \
   }
 #ifdef SNOWSHED_HAS_KERNELS_avx512
 #define SNOWSHED_CASE_AVX512(T) \
-  case Variant::avx512: return from(avx512::T##_2d, avx512::T##_3d, choice);
+  case Variant::avx512:         \
+    return from(avx512::T##_2d, avx512::T##_3d, choice);
 #else
 #define SNOWSHED_CASE_AVX512(T)
 #endif
 #ifdef SNOWSHED_HAS_KERNELS_avx2
 #define SNOWSHED_CASE_AVX2(T) \
-  case Variant::avx2: return from(avx2::T##_2d, avx2::T##_3d, choice);
+  case Variant::avx2:         \
+    return from(avx2::T##_2d, avx2::T##_3d, choice);
 #else
 #define SNOWSHED_CASE_AVX2(T)
 #endif

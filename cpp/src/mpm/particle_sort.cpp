@@ -17,8 +17,8 @@ Placement<D> Placement<D>::of(const VecD<D>& position, double dx, Basis basis) {
     const double x = position[d] / dx - base_offset(basis);
     const double block = std::floor(x / block_edge<D>);
     if (!(std::abs(block) < block_coord_limit))
-      throw SimulationError("a particle lies outside the addressable grid: " +
-                            std::to_string(position[d]) + " m");
+      throw SimulationError(
+          "a particle lies outside the addressable grid: " + std::to_string(position[d]) + " m");
     p.block[d] = std::int32_t(block);
     p.cell[d] = x - block * block_edge<D>;
   }
@@ -54,8 +54,8 @@ std::vector<std::uint32_t> order_by_block(const std::vector<BlockKey>& blocks,
   const std::ptrdiff_t n = std::ptrdiff_t(blocks.size());
   std::vector<std::uint32_t> slot(blocks.size());
   parallel_for_each(n, threads, [&](std::ptrdiff_t i) {
-    slot[i] = std::uint32_t(std::lower_bound(unique.begin(), unique.end(), blocks[i]) -
-                            unique.begin());
+    slot[i] =
+        std::uint32_t(std::lower_bound(unique.begin(), unique.end(), blocks[i]) - unique.begin());
   });
   first.assign(unique.size() + 1, 0);
   for (std::uint32_t s : slot) ++first[s + 1];

@@ -41,14 +41,14 @@ SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obs
 template <class T, int D>
 StepParameters<T> SolverOf<T, D>::parameters(double dt) const {
   const Snow& s = options_.snow;
-  return {T(dt),
-          T(options_.numerics.dx),
-          T(options_.gravity),
-          T(options_.numerics.flip_ratio),
-          T(1 / s.density),
-          T(std::min(1.0, dt / (friction_memory * elastic_limit_))),
-          {s.youngs_modulus, s.poissons_ratio, s.critical_state_slope, s.cohesion,
-           s.hardening_factor}};
+  return {
+      T(dt),
+      T(options_.numerics.dx),
+      T(options_.gravity),
+      T(options_.numerics.flip_ratio),
+      T(1 / s.density),
+      T(std::min(1.0, dt / (friction_memory * elastic_limit_))),
+      {s.youngs_modulus, s.poissons_ratio, s.critical_state_slope, s.cohesion, s.hardening_factor}};
 }
 
 template <class T, int D>

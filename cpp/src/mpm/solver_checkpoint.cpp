@@ -29,8 +29,8 @@ void SolverOf<T, D>::save(BinaryWriter& out) const {
   out.add("pressed/amount", std::move(amount));
 
   const EnergyBooks& b = books_;
-  out.add("energy", std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic, b.friction,
-                                        b.sticking, b.impact, b.transfer, b.added});
+  out.add("energy", std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic,
+                                        b.friction, b.sticking, b.impact, b.transfer, b.added});
   out.add("clock", std::vector<double>{time_, dt_, speed_, counters_.smallest_dt});
   out.add("counters",
           std::vector<std::int64_t>{counters_.steps, counters_.rejected, counters_.sorts,

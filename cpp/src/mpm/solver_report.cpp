@@ -67,8 +67,8 @@ double SolverOf<T, D>::kinetic_energy() const {
 
 template <class T, int D>
 double SolverOf<T, D>::elastic_energy() const {
-  const auto el = Elasticity<double>::from(options_.snow.youngs_modulus,
-                                           options_.snow.poissons_ratio, D);
+  const auto el =
+      Elasticity<double>::from(options_.snow.youngs_modulus, options_.snow.poissons_ratio, D);
   double sum = 0;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     Sym<double, D> a;
@@ -96,14 +96,14 @@ ParticleState SolverOf<T, D>::state() const {
   for (std::size_t i = 0; i < n; ++i) at[i] = i;
   std::sort(at.begin(), at.end(),
             [this](std::size_t a, std::size_t b) { return particles_.id[a] < particles_.id[b]; });
-  const auto el = Elasticity<double>::from(options_.snow.youngs_modulus,
-                                           options_.snow.poissons_ratio, D);
+  const auto el =
+      Elasticity<double>::from(options_.snow.youngs_modulus, options_.snow.poissons_ratio, D);
   const double initial = particles_.has_plastic ? initial_plastic_strain() : 0.0;
   ParticleState s;
   s.positions.reserve(n);
   for (std::size_t i : at) {
-    s.positions.push_back(embed(position_of(particles_, i, blocks[i], options_.numerics.dx,
-                                            options_.numerics.basis)));
+    s.positions.push_back(embed(
+        position_of(particles_, i, blocks[i], options_.numerics.dx, options_.numerics.basis)));
     VecD<D> v;
     for (int d = 0; d < D; ++d) v[d] = double(particles_.velocity[d][i]);
     s.velocities.push_back(embed(v));
@@ -140,9 +140,8 @@ MotionSummary SolverOf<T, D>::motion(double speed) const {
 template <class T, int D>
 std::size_t SolverOf<T, D>::bytes() const {
   std::size_t total = grid_.bytes();
-  particles_.for_each_array([&total](const char*, const auto& array) {
-    total += array.capacity() * sizeof(array[0]);
-  });
+  particles_.for_each_array(
+      [&total](const char*, const auto& array) { total += array.capacity() * sizeof(array[0]); });
   return total;
 }
 

@@ -121,9 +121,7 @@ double stable_time_step(const Scene& scene) {
   return next_time_step(limit, 0.0, scene.numerics.dx, scene.numerics.step_factor);
 }
 
-Forecast forecast(const Scene& scene) {
-  return forecast(scene, count_particles(resolve(scene)));
-}
+Forecast forecast(const Scene& scene) { return forecast(scene, count_particles(resolve(scene))); }
 
 Forecast forecast(const Scene& given, std::vector<double> particles) {
   const Scene scene = resolve(given);

@@ -48,8 +48,10 @@ std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem:
     const ObstacleSpec& spec = specs[i];
     const std::string path =
         i < own ? "/" + spec.name : "/obstacles/" + std::to_string(i - own) + "/shape";
-    Obstacle o{spec.name, build_shape(spec.shape, scene.dimension, path, base_dir),
-               {spec.condition, spec.friction}, std::nullopt};
+    Obstacle o{spec.name,
+               build_shape(spec.shape, scene.dimension, path, base_dir),
+               {spec.condition, spec.friction},
+               std::nullopt};
     if (spec.motion) o.motion.emplace(*spec.motion);
     obstacles.push_back(std::move(o));
   }
@@ -96,8 +98,7 @@ std::vector<std::string> body_paths(const Scene& scene, int event) {
   std::vector<std::string> paths;
   if (scene.slab) paths.push_back("/slab");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (scene.bodies[i].event == 0 || scene.bodies[i].event == event)
-      paths.push_back(body_path(i));
+    if (scene.bodies[i].event == 0 || scene.bodies[i].event == event) paths.push_back(body_path(i));
   return paths;
 }
 
@@ -119,8 +120,8 @@ std::vector<double> count_particles(const Scene& scene, const std::filesystem::p
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodySpec& body = scene.bodies[i];
     const double volume = body_volume(body, scene, body_path(i), base_dir);
-    const double count = volume / std::pow(scene.numerics.dx, scene.dimension) *
-                         scene.seeding.particles_per_voxel;
+    const double count =
+        volume / std::pow(scene.numerics.dx, scene.dimension) * scene.seeding.particles_per_voxel;
     if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
     if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
     for (int event = 1; event <= scene.events.count; ++event)
@@ -168,8 +169,8 @@ std::optional<Reseeding> Simulation::begin_event() {
   event_mass_ = 0;
   const auto paths = body_paths(scene_, event_ + 1);
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    event_mass_ += lay(bodies[i], paths[i],
-                       scene_.seeding.seed + 1000003u * std::uint64_t(event_ + 1) + i);
+    event_mass_ +=
+        lay(bodies[i], paths[i], scene_.seeding.seed + 1000003u * std::uint64_t(event_ + 1) + i);
   ++event_;
   running_ = true;
   event_start_ = solver_->time();
@@ -185,8 +186,7 @@ double Simulation::lay(const BodySpec& body, const std::string& path, std::uint6
     batch.positions =
         snowshed::seed(*shape, scene_.dimension, scene_.numerics.dx,
                        scene_.seeding.particles_per_voxel, scene_.seeding.pattern, seed);
-    const double mass =
-        scene_.snow.density * measure(*shape, scene_.dimension, scene_.numerics.dx);
+    const double mass = scene_.snow.density * measure(*shape, scene_.dimension, scene_.numerics.dx);
     batch.mass = mass / double(batch.positions.size());
     batch.velocity = body.velocity;
     batch.event = event_ + 1;
@@ -215,8 +215,7 @@ std::vector<bool> Simulation::on_panel(const std::vector<Vec3>& positions) const
   const PanelFrame frame = panel_frame(scene_);
   const double dx = scene_.numerics.dx;
   // Above the face, no higher than all slabs so far together could lie.
-  const double height =
-      2 * dx + (scene_.slab ? scene_.slab->thickness : 0.0) * std::max(event_, 1);
+  const double height = 2 * dx + (scene_.slab ? scene_.slab->thickness : 0.0) * std::max(event_, 1);
   for (std::size_t i = 0; i < there.size(); ++i) {
     const Vec3 x = positions[i] - frame.center;
     const double above = frame.normal.dot(x);
@@ -229,8 +228,8 @@ std::vector<bool> Simulation::on_panel(const std::vector<Vec3>& positions) const
 double Simulation::obstacle_distance(const Vec3& x) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Obstacle& o : obstacles_)
-    nearest = std::min(
-        nearest, o.shape->distance(o.motion ? o.motion->to_body(x, solver_->time()) : x));
+    nearest =
+        std::min(nearest, o.shape->distance(o.motion ? o.motion->to_body(x, solver_->time()) : x));
   return nearest;
 }
 
@@ -240,9 +239,9 @@ Reseeding Simulation::reseed_stack() try {
   ParticleState old = solver_->state();
   const Seeding& s = scene_.seeding;
   const double dx = scene_.numerics.dx;
-  const Shape solid = particles_to_level_set(
-      old.positions, scene_.dimension, dx,
-      particle_radius(scene_.dimension, dx, s.particles_per_voxel));
+  const Shape solid =
+      particles_to_level_set(old.positions, scene_.dimension, dx,
+                             particle_radius(scene_.dimension, dx, s.particles_per_voxel));
   Reseeding::Cloud after;
   after.positions = seed(*solid, scene_.dimension, dx, s.particles_per_voxel, s.pattern,
                          s.seed + 1000003u * std::uint64_t(event_) + 500000u);

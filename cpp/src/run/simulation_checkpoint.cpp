@@ -1,9 +1,9 @@
 // Saving and restoring a simulation: its scene, where it stands between events, and the solver.
+#include "run/snapshot_series.hpp"
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/support/error.hpp"
-#include "run/snapshot_series.hpp"
 
 namespace snowshed {
 

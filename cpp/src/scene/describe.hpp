@@ -112,7 +112,8 @@ void describe(V& v, MotionSpec& m) {
          "Angular velocity about the pivot");
   v.vector("pivot", m.pivot, "m", allowed::coordinate,
            "Centre of the rotation; moves with the velocity");
-  v.number("start", m.start, "s", allowed::time, "Start of the motion, on the clock of the whole run");
+  v.number("start", m.start, "s", allowed::time,
+           "Start of the motion, on the clock of the whole run");
   v.number("end", m.end, "s", allowed::time, "End of the motion");
 }
 

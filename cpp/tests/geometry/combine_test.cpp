@@ -31,8 +31,8 @@ TEST(Difference, LeavesTheFirstWithoutTheOthers) {
   Random random(6);
   for (int n = 0; n < 500; ++n) {
     const Vec3 x = random_point(random, 1.5);
-    const bool inside = x.norm() < 1 && (x - Vec3(1, 0, 0)).norm() > 0.5 &&
-                        (x - Vec3(0, 0, 1)).norm() > 0.5;
+    const bool inside =
+        x.norm() < 1 && (x - Vec3(1, 0, 0)).norm() > 0.5 && (x - Vec3(0, 0, 1)).norm() > 0.5;
     EXPECT_EQ(bitten->distance(x) < 0, inside);
   }
   // In the bite the surface faces the centre of what was taken away.

@@ -197,10 +197,11 @@ TEST_F(MeshIo, RefusesBrokenPly) {
 /// Whatever a file holds, reading it gives a mesh or an InputError.
 TEST_F(MeshIo, SurvivesDamage) {
   const TriangleMesh mesh = sphere_mesh(1, 4);
-  const std::pair<const char*, std::string> files[] = {
-      {"a.stl", binary_stl(mesh)},      {"b.stl", ascii_stl(mesh)},
-      {"c.obj", obj(mesh)},             {"d.ply", ascii_ply(mesh)},
-      {"e.ply", binary_ply(mesh, true)}};
+  const std::pair<const char*, std::string> files[] = {{"a.stl", binary_stl(mesh)},
+                                                       {"b.stl", ascii_stl(mesh)},
+                                                       {"c.obj", obj(mesh)},
+                                                       {"d.ply", ascii_ply(mesh)},
+                                                       {"e.ply", binary_ply(mesh, true)}};
   Random random(15);
   int refused = 0;
   for (const auto& [name, content] : files)

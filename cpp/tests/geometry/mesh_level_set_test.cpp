@@ -26,8 +26,8 @@ TEST(MeshLevelSet, CubeMatchesTheBox) {
 TEST(MeshLevelSet, SignIsRightBeyondEdgesAndCorners) {
   // Planes of single faces give the wrong sign here; a spike makes it worse than a cube does.
   TriangleMesh spike = box_mesh({-1, -1, 0}, {1, 1, 0.2});
-  for (const int top : {4, 5, 6, 7}) spike.vertices[top] = {0.01 * spike.vertices[top].x(),
-                                                            0.01 * spike.vertices[top].y(), 3};
+  for (const int top : {4, 5, 6, 7})
+    spike.vertices[top] = {0.01 * spike.vertices[top].x(), 0.01 * spike.vertices[top].y(), 3};
   const Shape mesh = make_mesh(spike);
   Random random(13);
   for (int n = 0; n < 2000; ++n) {

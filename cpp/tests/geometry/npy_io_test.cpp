@@ -40,8 +40,8 @@ TEST_F(NpyIo, RefusesOtherArrays) {
   expect_refused(npy_file(1, npy_header("<f8", "(6,)"), data), "shape");
   expect_refused(npy_file(1, npy_header("<f8", "(1, 1, 2, 3)"), data), "shape");
   expect_refused(npy_file(1, npy_header("<f8", "(-2, 3)"), data), "shape");
-  expect_refused(
-      npy_file(1, "{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }", data), "C order");
+  expect_refused(npy_file(1, "{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }", data),
+                 "C order");
   expect_refused(npy_file(4, npy_header("<f8", "(2, 3)"), data), "version 4");
 }
 

@@ -27,8 +27,7 @@ class Pile : public ::testing::TestWithParam<int> {
   static constexpr double height = 0.1, length = 0.4;  // a flat dome on z = 0
   const int dimension = GetParam();
   const double per_voxel = dimension == 2 ? 6 : 8;
-  const Shape pile =
-      subtract(make_sphere({0, 0, -0.15}, 0.25), {make_plane({0, 0, 0}, {0, 0, 1})});
+  const Shape pile = subtract(make_sphere({0, 0, -0.15}, 0.25), {make_plane({0, 0, 0}, {0, 0, 1})});
   const std::vector<Vec3> points =
       seed(*pile, dimension, voxel, per_voxel, SeedPattern::poisson, 3);
   const Shape solid = particles_to_level_set(points, dimension, voxel,
@@ -82,9 +81,7 @@ TEST(ParticlesToLevelSet, OneParticleIsABall) {
 
 TEST(ParticlesToLevelSet, FillsGapsButKeepsValleys) {
   const double r = 0.006;
-  const auto pair = [&](double gap) {
-    return std::vector<Vec3>{{0, 0, 0}, {gap, 0, 0}};
-  };
+  const auto pair = [&](double gap) { return std::vector<Vec3>{{0, 0, 0}, {gap, 0, 0}}; };
   EXPECT_LT(particles_to_level_set(pair(0.016), 2, voxel, r)->distance({0.008, 0, 0}), 0);
   EXPECT_GT(particles_to_level_set(pair(0.08), 2, voxel, r)->distance({0.04, 0, 0}), 0.01);
 }

@@ -32,8 +32,8 @@ TEST(RigidMotion, VelocityIsTheTimeDerivativeOfAMaterialPoint) {
   const Vec3 material(1, -1, 3);
   const double t = 2.2, h = 1e-6;
   const Vec3 x = motion.at(t).to_world(material);
-  const Vec3 rate = (motion.at(t + h).to_world(material) - motion.at(t - h).to_world(material)) /
-                    (2 * h);
+  const Vec3 rate =
+      (motion.at(t + h).to_world(material) - motion.at(t - h).to_world(material)) / (2 * h);
   EXPECT_LT((motion.velocity(x, t) - rate).norm(), 1e-8);
   EXPECT_LT((motion.to_body(x, t) - material).norm(), 1e-12);
 }

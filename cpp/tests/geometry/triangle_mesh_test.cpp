@@ -37,7 +37,7 @@ TEST(TriangleMesh, MergesIdenticalVertices) {
     for (const std::uint32_t v : t) soup.vertices.push_back(original.vertices[v]);
     soup.triangles.push_back({first, first + 1, first + 2});
   }
-  soup.vertices[0].x() = -0.0;                                   // equal to 0
+  soup.vertices[0].x() = -0.0;  // equal to 0
   soup.vertices.push_back(soup.vertices[0]);
   soup.triangles.push_back({0, static_cast<std::uint32_t>(soup.vertices.size() - 1), 1});
   merge_identical_vertices(soup);

@@ -61,7 +61,6 @@ class PointGrid {
     return slot;
   }
 
-
   double edge_;
   std::int64_t y_reach_;  // 0 if all points lie in the plane y = 0
   std::vector<Entry> sorted_;

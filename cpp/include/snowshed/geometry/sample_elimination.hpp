@@ -11,7 +11,7 @@ namespace snowshed {
 /// Random points in and around a solid.
 struct Candidates {
   std::vector<Vec3> points;
-  std::vector<char> inside;       // whether points[i] lies in the solid
+  std::vector<char> inside;  // whether points[i] lies in the solid
   std::size_t inside_count = 0;
 
   void add(const Vec3& point, bool in) {
@@ -30,7 +30,7 @@ struct Candidates {
 ///
 /// Weights are integers, so that sums and differences are exact and the order of removal does
 /// not hang on rounding. Time grows as N log N. `count` <= candidates.inside_count.
-std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count,
-                                    int dimension, double point_measure);
+std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count, int dimension,
+                                    double point_measure);
 
 }  // namespace snowshed

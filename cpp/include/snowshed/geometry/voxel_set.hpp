@@ -18,8 +18,7 @@ struct Voxel {
 /// the centre of the solid's bounds.
 ///
 /// Throws InputError if the solid is unbounded or needs an absurd number of voxels.
-std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge,
-                            double margin = 0.0);
+std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin = 0.0);
 
 /// `shape` as a box, if it is one. In 2D: the rectangle it cuts from the plane y = 0, its edges
 /// along the columns 0 and 2 of `axes`, if its own y axis is across the plane.

@@ -54,7 +54,7 @@ struct CamClay {
     const V growth = expm1(V(-x));  // exp(-x) - 1
     const V ratio = growth / (growth + T(1));
     slope = select(ev < T(0), V(T(-0.5) * hardening * xi * (growth - ratio + T(2))),
-                   broadcast<V>(T(0)));  // -K xi cosh
+                   broadcast<V>(T(0)));            // -K xi cosh
     return T(0.5) * hardening * (growth + ratio);  // K sinh
   }
   template <class V>
@@ -93,7 +93,8 @@ struct CamClay {
     const PQ<V> trial = s;
     const V p0_old = preconsolidation(ev);
     const V to_origin = -trial.p / elastic.bulk;  // D at which p = 0
-    const V n_trial = T(2) * trial.p - (T(1) - beta) * p0_old;  // where the trial lies of the centre
+    const V n_trial =
+        T(2) * trial.p - (T(1) - beta) * p0_old;  // where the trial lies of the centre
     const auto compacts = n_trial > T(0);
 
     // The far end of the bracket. Compaction: p = 0 lies past the centre. Dilation: p0 reaches
@@ -112,7 +113,8 @@ struct CamClay {
     const V p0 = preconsolidation(V(ev + d));
     const V p_on = clamp(p, V(-beta * p0), p0);
     // Exactly on the surface, and never more shear than the trial had.
-    const V q_on = min(trial.q, sqrt(max(V(m2 / (T(1) + T(2) * beta) * (p_on + beta * p0) * (p0 - p_on)), zero)));
+    const V q_on = min(
+        trial.q, sqrt(max(V(m2 / (T(1) + T(2) * beta) * (p_on + beta * p0) * (p0 - p_on)), zero)));
     const auto free = is_loose > T(0);
     s.p = select(yields, select(free, zero, p_on), trial.p);
     s.q = select(yields, select(free, zero, q_on), trial.q);
@@ -144,7 +146,8 @@ struct CamClay {
       const V flow = n - c * d;  // has the sign of n: |flow| >= |n|
       const V ratio = n / select(abs(flow) > T(0), flow, zero + T(1));
       const V q = trial.q * ratio;
-      const V q_slope = trial.q * c * (n - d * n_slope) / select(abs(flow) > T(0), V(flow * flow), zero + T(1));
+      const V q_slope =
+          trial.q * c * (n - d * n_slope) / select(abs(flow) > T(0), V(flow * flow), zero + T(1));
       const V y = (T(1) + T(2) * beta) / m2 * q * q + (p + beta * p0) * (p - p0);
       const V y_slope = T(2) * (T(1) + T(2) * beta) / m2 * q * q_slope +
                         (elastic.bulk + beta * p0_slope) * (p - p0) +

@@ -18,8 +18,8 @@ struct Elasticity {
   /// From Young's modulus (Pa) and Poisson's ratio. The thesis's (1.1.34) prints mu on both
   /// sides; E is meant.
   static Elasticity from(double youngs_modulus, double poissons_ratio, int dimension) {
-    const double lambda = youngs_modulus * poissons_ratio /
-                          ((1 + poissons_ratio) * (1 - 2 * poissons_ratio));
+    const double lambda =
+        youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio));
     const double mu = youngs_modulus / (2 * (1 + poissons_ratio));
     return {T(lambda), T(mu), T(lambda + 2 * mu / dimension)};
   }

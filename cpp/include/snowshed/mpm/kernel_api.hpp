@@ -48,9 +48,9 @@ template <class T>
 struct ParticleView {
   T* cell[3];
   T* velocity[3];
-  T* affine[9];   // APIC only: C, row by row, 1/s
-  T* strain[6];   // b - I, b the elastic left Cauchy-Green tensor
-  T* plastic;     // volumetric plastic strain; plastic laws only
+  T* affine[9];  // APIC only: C, row by row, 1/s
+  T* strain[6];  // b - I, b the elastic left Cauchy-Green tensor
+  T* plastic;    // volumetric plastic strain; plastic laws only
   T* mass;
 };
 
@@ -79,8 +79,8 @@ struct BlockStats {
 /// What a kernel reports of one block of nodes.
 struct NodeStats {
   double low[3], high[3];  // bounds of the new velocities; low > high: no snow here
-  double kinetic_before = 0, kinetic_after = 0;  // of the grid, J; before forces, after contact
-  double friction = 0, sticking = 0, impact = 0; // taken by contact, J
+  double kinetic_before = 0, kinetic_after = 0;   // of the grid, J; before forces, after contact
+  double friction = 0, sticking = 0, impact = 0;  // taken by contact, J
 };
 
 /// A node that an obstacle constrains.

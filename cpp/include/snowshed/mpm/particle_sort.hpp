@@ -23,7 +23,7 @@ VecD<D> position_of(const Particles<T, D>& particles, std::size_t i, BlockKey bl
   const BlockCoord<D> c = block_coord<D>(block);
   VecD<D> x;
   for (int d = 0; d < D; ++d)
-    x[d] = (double(particles.cell[d][i]) + base_offset(basis) + double(c[d]) * block_edge<D>) * dx;
+    x[d] = (double(particles.cell[d][i]) + base_offset(basis) + double(c[d]) * block_edge<D>)*dx;
   return x;
 }
 

@@ -18,14 +18,14 @@ template <class T, int D>
 struct Particles {
   static constexpr int strain_size = D * (D + 1) / 2;
 
-  std::array<AlignedVector<T>, D> cell;      // in cells, relative to the block (ParticleView)
-  std::array<AlignedVector<T>, D> velocity;  // m/s
-  std::array<AlignedVector<T>, D * D> affine;           // APIC only, 1/s
-  std::array<AlignedVector<T>, strain_size> strain;     // b - I
-  AlignedVector<T> plastic;                             // plastic laws only
-  AlignedVector<T> mass;                                // kg (per metre of width in 2D)
+  std::array<AlignedVector<T>, D> cell;        // in cells, relative to the block (ParticleView)
+  std::array<AlignedVector<T>, D> velocity;    // m/s
+  std::array<AlignedVector<T>, D * D> affine;  // APIC only, 1/s
+  std::array<AlignedVector<T>, strain_size> strain;  // b - I
+  AlignedVector<T> plastic;                          // plastic laws only
+  AlignedVector<T> mass;                             // kg (per metre of width in 2D)
   AlignedVector<std::uint32_t> id;
-  AlignedVector<std::uint16_t> event;                   // in which each was released
+  AlignedVector<std::uint16_t> event;  // in which each was released
 
   bool has_affine = false, has_plastic = false;
 

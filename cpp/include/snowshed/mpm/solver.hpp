@@ -26,9 +26,9 @@ struct SolverOptions {
 
 /// Particles to add: equal masses, one velocity.
 struct ParticleBatch {
-  std::vector<Vec3> positions;  // m
-  Vec3 velocity = Vec3::Zero(); // m/s
-  double mass = 0;              // kg each (per metre of width in 2D)
+  std::vector<Vec3> positions;   // m
+  Vec3 velocity = Vec3::Zero();  // m/s
+  double mass = 0;               // kg each (per metre of width in 2D)
   int event = 1;
 };
 

@@ -23,10 +23,10 @@ enum class RunEnd { rest, time_limit, paused };
 
 /// What an observer is told while an event runs.
 struct RunReport {
-  double time = 0;        // s, in this event
-  double time_step = 0;   // s
-  double rms_speed = 0;   // m/s
-  double progress = 0;    // estimated part of the event that is done, 0 to 1
+  double time = 0;       // s, in this event
+  double time_step = 0;  // s
+  double rms_speed = 0;  // m/s
+  double progress = 0;   // estimated part of the event that is done, 0 to 1
   double updates_per_s = 0;
   std::int64_t steps = 0;
   std::size_t particles = 0;

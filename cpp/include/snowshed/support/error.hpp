@@ -11,8 +11,7 @@ namespace snowshed {
 class InputError : public std::runtime_error {
  public:
   InputError(std::string where, const std::string& what)
-      : std::runtime_error(where.empty() ? what : where + ": " + what),
-        where_(std::move(where)) {}
+      : std::runtime_error(where.empty() ? what : where + ": " + what), where_(std::move(where)) {}
   const std::string& where() const { return where_; }
 
  private:

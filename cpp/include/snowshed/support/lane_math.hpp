@@ -58,7 +58,8 @@ SNOWSHED_INLINE V log1p(const V& a) {
     V series = broadcast<V>(T(1) / T(2 * Bits::log_terms + 1));
     for (int k = Bits::log_terms - 1; k >= 0; --k) series = series * z + T(1) / T(2 * k + 1);
     const V rounding = (a - (u - T(1))) / u;  // what 1 + a lost
-    return __builtin_convertvector(e, V) * T(0.69314718055994530942) + (T(2) * s * series + rounding);
+    return __builtin_convertvector(e, V) * T(0.69314718055994530942) +
+           (T(2) * s * series + rounding);
   }
 }
 
@@ -76,7 +77,8 @@ SNOWSHED_INLINE V expm1(const V& x_in) {
     const V shifted = x * T(1.44269504088896340736) + Bits::round_magic;
     const V k = shifted - Bits::round_magic;
     constexpr T ln2_high = sizeof(T) == 4 ? T(0.693145751953125) : T(0.69314718036912381649);
-    constexpr T ln2_low = sizeof(T) == 4 ? T(1.42860682030941723e-6) : T(1.90821492927058770002e-10);
+    constexpr T ln2_low =
+        sizeof(T) == 4 ? T(1.42860682030941723e-6) : T(1.90821492927058770002e-10);
     const V r = (x - k * ln2_high) - k * ln2_low;
     V series = broadcast<V>(T(1));  // sum of r^n/(n+1)!
     for (int n = Bits::exp_terms; n >= 2; --n) series = series * r * (T(1) / T(n)) + T(1);

@@ -1,7 +1,7 @@
 // A SIMD register's worth of values, by the compiler's vector extension: with AVX-512
-// `Lanes<float>` holds 16 floats, `Lanes<double>` 8 doubles. Arithmetic and comparison work as on scalars; a
-// comparison gives a mask for `select`. Functions written for `V` accept a plain float or double
-// too, which is how the material laws are tested.
+// `Lanes<float>` holds 16 floats, `Lanes<double>` 8 doubles. Arithmetic and comparison work as on
+// scalars; a comparison gives a mask for `select`. Functions written for `V` accept a plain float
+// or double too, which is how the material laws are tested.
 #pragma once
 
 #include <cmath>

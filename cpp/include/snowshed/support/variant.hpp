@@ -7,8 +7,8 @@
 #define SNOWSHED_KERNEL_VARIANT host
 #endif
 
-#define SNOWSHED_VARIANT_BEGIN   \
-  namespace snowshed {           \
+#define SNOWSHED_VARIANT_BEGIN \
+  namespace snowshed {         \
   inline namespace SNOWSHED_KERNEL_VARIANT {
 #define SNOWSHED_VARIANT_END \
   }                          \

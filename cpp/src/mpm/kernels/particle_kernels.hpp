@@ -207,9 +207,9 @@ struct ParticleKernels {
     return tau;
   }
 
-  /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work of the return,
-  /// stress times plastic strain. (The trial's elastic energy less the present one would count
-  /// the square of each step's plastic strain on top, an error that does not fade with time.)
+  /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work of the
+  /// return, stress times plastic strain. (The trial's elastic energy less the present one would
+  /// count the square of each step's plastic strain on top, an error that does not fade with time.)
   void book(const PQ<V>& trial, const PQ<V>& now, const V& mass, int n) const {
     const auto& el = material.elastic;
     for (int l = 0; l < n; ++l) {
