@@ -148,7 +148,12 @@ struct CamClay {
       const V q = trial.q * ratio;
       const V q_slope =
           trial.q * c * (n - d * n_slope) / select(abs(flow) > T(0), V(flow * flow), zero + T(1));
-      const V y = (T(1) + T(2) * beta) / m2 * q * q + (p + beta * p0) * (p - p0);
+      const V shear = (T(1) + T(2) * beta) / m2 * q * q;
+      const V y = shear + (p + beta * p0) * (p - p0);
+      const auto before_centre = n * n_trial > T(0);
+      // As near to zero as rounding lets y come.
+      const auto found =
+          before_centre & (abs(y) <= tolerance * (shear + (abs(p) + beta * p0) * (abs(p) + p0)));
       const V y_slope = T(2) * (T(1) + T(2) * beta) / m2 * q * q_slope +
                         (elastic.bulk + beta * p0_slope) * (p - p0) +
                         (p + beta * p0) * (elastic.bulk - p0_slope);
@@ -158,9 +163,10 @@ struct CamClay {
       end = select(past, d, end);
       const V newton = d - y / select(abs(y_slope) > T(0), y_slope, zero + T(1));
       const V lo = min(near, end), hi = max(near, end);
-      const auto usable = (newton > lo) & (newton < hi) & (n * n_trial > T(0));
+      const auto usable = (newton > lo) & (newton < hi) & before_centre;
       const V next = select(usable, newton, V(T(0.5) * (near + end)));
       const auto moved = abs(V(next - d)) > tolerance * abs(next);
+      active = active & !found;
       d = select(active, next, d);
       active = active & moved;
       if (!any(active)) break;
