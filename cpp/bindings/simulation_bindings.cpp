@@ -107,14 +107,30 @@ py::array_t<double> densities(const Simulation& sim) {
   return column<double>(density);
 }
 
+std::vector<Vec3> vectors(const py::array_t<double>& array, const char* name) {
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw InputError(name, "an array of shape (n, 3) is needed");
+  const auto x = array.unchecked<2>();
+  std::vector<Vec3> out;
+  for (py::ssize_t i = 0; i < x.shape(0); ++i) out.emplace_back(x(i, 0), x(i, 1), x(i, 2));
+  return out;
+}
+
 py::array_t<double> obstacle_distance(const Simulation& sim, const py::array_t<double>& points) {
-  if (points.ndim() != 2 || points.shape(1) != 3)
-    throw InputError("points", "an array of shape (n, 3) is needed");
-  const auto x = points.unchecked<2>();
   std::vector<double> distances;
-  for (py::ssize_t i = 0; i < x.shape(0); ++i)
-    distances.push_back(sim.obstacle_distance({x(i, 0), x(i, 1), x(i, 2)}));
+  for (const Vec3& x : vectors(points, "points")) distances.push_back(sim.obstacle_distance(x));
   return column<double>(distances);
+}
+
+py::object affine(const Simulation& sim) {
+  const std::vector<Mat3> matrices = sim.solver().state().affine;
+  if (matrices.empty()) return py::none();
+  py::array_t<double> a({py::ssize_t(matrices.size()), py::ssize_t(3), py::ssize_t(3)});
+  auto out = a.mutable_unchecked<3>();
+  for (py::ssize_t i = 0; i < a.shape(0); ++i)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) out(i, r, c) = matrices[std::size_t(i)](r, c);
+  return a;
 }
 
 }  // namespace
@@ -132,6 +148,13 @@ void bind_simulation(py::module_& m) {
           "save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a)
       .def("begin_event", &begin_event)
       .def("run", &run, "callback"_a, "interval_s"_a = 0.5)
+      .def("step", &Simulation::step, "count"_a = 1, py::call_guard<py::gil_scoped_release>())
+      .def(
+          "kick",
+          [](Simulation& s, const py::array_t<double>& changes) {
+            s.kick(vectors(changes, "velocity changes"));
+          },
+          "velocity_changes"_a)
       .def(
           "set_snapshots",
           [](Simulation& s, const std::string& dir, double interval) {
@@ -145,6 +168,9 @@ void bind_simulation(py::module_& m) {
       .def("panel_frame", &frame)
       .def("positions", [](const Simulation& s) { return rows(s.solver().state().positions); })
       .def("velocities", [](const Simulation& s) { return rows(s.solver().state().velocities); })
+      .def("affine", &affine)
+      .def("pressures",
+           [](const Simulation& s) { return column<double>(s.solver().state().pressures); })
       .def("masses", [](const Simulation& s) { return column<double>(s.solver().state().masses); })
       .def("events",
            [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })

@@ -60,7 +60,7 @@ int SolverOf<T, D>::threads() const {
 template <class T, int D>
 void SolverOf<T, D>::add(const ParticleBatch& batch) {
   const std::size_t old = particles_.size();
-  const EnergyBooks before = energy();
+  const double stored = options_.energy ? energy().stored() : 0.0;
   std::vector<BlockKey> blocks = blocks_of_particles(layout_);
   particles_.resize(old + batch.positions.size());
   particles_.for_each_array([old](const char*, auto& array) {
@@ -91,18 +91,46 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
     books_.gravitational = gravitational_energy();
     books_.kinetic = kinetic_energy();
     books_.elastic = elastic_energy();
-    books_.added += books_.stored() - before.stored();
+    books_.added += books_.stored() - stored;
   }
 }
 
 template <class T, int D>
 void SolverOf<T, D>::clear() {
-  books_.added -= energy().stored();
+  if (options_.energy) books_.added -= energy().stored();
   books_.kinetic = books_.gravitational = books_.elastic = 0;
   particles_.resize(0);
   sort_particles(particles_, {}, layout_, threads());
   contacts_.relocate(layout_.grid_blocks, time_, threads());
   grid_.resize(layout_);
+  tiles_valid_ = false;
+}
+
+template <class T, int D>
+void SolverOf<T, D>::kick(const std::vector<Vec3>& velocity_changes) {
+  const std::vector<std::size_t> at = places_by_id();
+  if (velocity_changes.size() != at.size())
+    throw InputError("velocity changes", std::to_string(velocity_changes.size()) + " given for " +
+                                             std::to_string(at.size()) + " particles");
+  for (const Vec3& change : velocity_changes)
+    if (!change.allFinite()) throw InputError("velocity changes", "not finite");
+  const double before = options_.energy ? kinetic_energy() : 0.0;
+  double fastest = 0;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    double v2 = 0;
+    const VecD<D> change = section<D>(velocity_changes[k]);
+    for (int d = 0; d < D; ++d) {
+      T& v = particles_.velocity[d][at[k]];
+      v += T(change[d]);
+      v2 += double(v) * double(v);
+    }
+    fastest = std::max(fastest, v2);
+  }
+  speed_ = std::sqrt(fastest);
+  if (options_.energy) {
+    books_.kinetic = kinetic_energy();
+    books_.added += books_.kinetic - before;
+  }
   tiles_valid_ = false;
 }
 

@@ -14,6 +14,7 @@ class SolverOf final : public Solver {
 
   void add(const ParticleBatch&) override;
   void clear() override;
+  void kick(const std::vector<Vec3>& velocity_changes) override;
   void step() override;
   bool at_safe_point() const override { return !tiles_valid_; }
   std::size_t size() const override { return particles_.size(); }
@@ -46,6 +47,7 @@ class SolverOf final : public Solver {
   double elastic_energy() const;
   double kinetic_energy() const;
   double initial_plastic_strain() const;
+  std::vector<std::size_t> places_by_id() const;
 
   SolverOptions options_;
   Kernels<T> kernels_;

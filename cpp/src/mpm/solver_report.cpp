@@ -1,12 +1,26 @@
 // What a solver tells of its particles: energies, and copies for the outside.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "mpm/solver_of.hpp"
 #include "snowshed/material/cam_clay.hpp"
 #include "snowshed/material/sym_tensor.hpp"
 
 namespace snowshed {
+namespace {
+
+/// A particle's affine matrix in the space (x, y, z); without y in 2D.
+template <class T, int D>
+Mat3 affine_of(const Particles<T, D>& particles, std::size_t i) {
+  const auto axis = [](int d) { return d == D - 1 ? 2 : d; };
+  Mat3 c = Mat3::Zero();
+  for (int r = 0; r < D; ++r)
+    for (int k = 0; k < D; ++k) c(axis(r), axis(k)) = double(particles.affine[r * D + k][i]);
+  return c;
+}
+
+}  // namespace
 
 template <class T, int D>
 double SolverOf<T, D>::initial_plastic_strain() const {
@@ -88,14 +102,21 @@ EnergyBooks SolverOf<T, D>::energy() const {
   return books;
 }
 
+/// Where each particle is now, ordered by id: for the outside, particles keep their places.
+template <class T, int D>
+std::vector<std::size_t> SolverOf<T, D>::places_by_id() const {
+  std::vector<std::size_t> at(particles_.size());
+  std::iota(at.begin(), at.end(), std::size_t(0));
+  std::sort(at.begin(), at.end(),
+            [this](std::size_t a, std::size_t b) { return particles_.id[a] < particles_.id[b]; });
+  return at;
+}
+
 template <class T, int D>
 ParticleState SolverOf<T, D>::state() const {
   const std::size_t n = particles_.size();
-  std::vector<std::size_t> at(n);  // by id: particles keep their places whatever the sort does
-  std::vector<BlockKey> blocks = blocks_of_particles(layout_);
-  for (std::size_t i = 0; i < n; ++i) at[i] = i;
-  std::sort(at.begin(), at.end(),
-            [this](std::size_t a, std::size_t b) { return particles_.id[a] < particles_.id[b]; });
+  const std::vector<std::size_t> at = places_by_id();
+  const std::vector<BlockKey> blocks = blocks_of_particles(layout_);
   const auto el =
       Elasticity<double>::from(options_.snow.youngs_modulus, options_.snow.poissons_ratio, D);
   const double initial = particles_.has_plastic ? initial_plastic_strain() : 0.0;
@@ -117,6 +138,7 @@ ParticleState SolverOf<T, D>::state() const {
     s.pressures.push_back(-el.bulk * elastic_volume);
     s.ids.push_back(particles_.id[i]);
     s.events.push_back(particles_.event[i]);
+    if (particles_.has_affine) s.affine.push_back(affine_of(particles_, i));
   }
   return s;
 }

@@ -10,7 +10,6 @@
 
 #include "run/snapshot_series.hpp"
 #include "snowshed/geometry/build_shape.hpp"
-#include "snowshed/geometry/combine.hpp"
 #include "snowshed/geometry/particle_voxels.hpp"
 #include "snowshed/geometry/point_grid.hpp"
 #include "snowshed/geometry/primitives.hpp"
@@ -285,6 +284,11 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
       pausing = !observer(r);
     }
   }
+}
+
+void Simulation::step(int count) {
+  if (!running_) throw SimulationError("no event is running; begin_event first");
+  for (int i = 0; i < count; ++i) solver_->step();
 }
 
 RunReport Simulation::report(double rms_speed) const {

@@ -395,6 +395,23 @@ TEST(Solver, ParticlesOnAndNextToNodesDoNoHarm) {
     }
 }
 
+TEST(Solver, AKickAddsToTheVelocitiesAndTheBooks) {
+  SolverOptions options = options_for({3, Precision::float64});
+  options.energy = true;
+  options.gravity = 0;
+  const auto solver = make_solver(options, {});
+  solver->add(filled_box(3, Vec3::Zero(), Vec3(0.04, 0.04, 0.04), 0.005));
+  std::vector<Vec3> changes(solver->size(), Vec3(1, 0, 2));
+  solver->kick(changes);
+  solver->step();
+  const ParticleState s = solver->state();
+  for (const Vec3& v : s.velocities) EXPECT_LT((v - Vec3(1, 0, 2)).norm(), 1e-12);
+  EXPECT_NEAR(solver->energy().added, 2.5 * total_mass(s), 1e-12);
+  EXPECT_NEAR(solver->energy().residual(), 0, 1e-12);
+  changes.pop_back();
+  EXPECT_THROW(solver->kick(changes), InputError);
+}
+
 TEST(Solver, ReportsItsParticles) {
   const auto solver = make_solver(options_for({3, Precision::float64}), {});
   ParticleBatch batch = filled_box(3, Vec3(-0.05, 0, 0), Vec3(0.05, 0.02, 0.03), 0.01);

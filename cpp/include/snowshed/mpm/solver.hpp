@@ -39,6 +39,7 @@ struct ParticleState {
   std::vector<double> volume_ratios;        // current over initial volume
   std::vector<double> plastic_strains;      // volumetric, compaction negative
   std::vector<double> pressures;            // Kirchhoff, Pa, compression positive
+  std::vector<Mat3> affine;                 // APIC's C, 1/s; empty with FLIP
   std::vector<std::uint32_t> ids;
   std::vector<std::uint16_t> events;
 };
@@ -62,6 +63,9 @@ class Solver {
 
   virtual void add(const ParticleBatch&) = 0;
   virtual void clear() = 0;  ///< removes all particles
+
+  /// Adds to the velocity of each particle, ordered by id; the energy books count it as added.
+  virtual void kick(const std::vector<Vec3>& velocity_changes) = 0;
 
   /// One step. Throws SimulationError when it cannot go on; the particles are then as they were
   /// before the step, except after "not finite".

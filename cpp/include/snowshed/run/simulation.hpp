@@ -61,6 +61,11 @@ class Simulation {
   /// that a checkpoint resumes to the same bits, and returns `paused`. Call again to go on.
   RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
 
+  /// Takes `count` steps of the present event, whether the snow rests or not. For those who drive
+  /// the snow themselves: between steps, `kick` adds to the velocities, particles ordered by id.
+  void step(int count = 1);
+  void kick(const std::vector<Vec3>& velocity_changes) { solver_->kick(velocity_changes); }
+
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
   void write_snapshots(const std::filesystem::path& folder, double interval);
 

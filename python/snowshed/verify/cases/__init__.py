@@ -1,0 +1,1 @@
+"""The verification cases, one module each."""
