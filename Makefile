@@ -3,13 +3,17 @@
 # wheels into .venv.
 #
 # One CMake tree (build/release) serves the Python package, the tests and the benchmarks, so
-# the core is compiled once. The files named .venv/.* mark what has been done.
+# the core is compiled once; only sanitizers and fuzzing need others. The files named .venv/.*
+# mark what has been done.
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 TREE := build/release
+WATCHED := build/sanitize
+FUZZED := build/fuzz
 DEMO := demo-results
+FUZZ_SECONDS ?= 60
 CLANG_FORMAT := 23.1.5
 
 # Several tools must find cmake and ninja, which may be in .venv alone.
@@ -26,13 +30,16 @@ CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings c
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS = $(wildcard python tests tools examples benchmarks lua_compat)
 
-.PHONY: help build demo test test-cpp test-py bench docs format lint tidy clean
+.PHONY: help build demo test test-cpp test-py sanitize sanitize-address sanitize-thread fuzz \
+  bench docs format lint tidy clean
 .NOTPARALLEL:
 
 help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
 	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
 	@echo "make test      all tests (test-cpp, test-py: one half)"
+	@echo "make sanitize  the tests once more, watched by AddressSanitizer, UBSan and ThreadSanitizer"
+	@echo "make fuzz      feed ever new damaged files to all readers (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
 	@echo "make bench     speed of the solver and of the laboratory events, kept in benchmarks/results"
 	@echo "make docs      the documentation as HTML"
 	@echo "make format    format all sources"
@@ -88,6 +95,36 @@ test-cpp: build
 
 test-py: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest
+
+# --- robustness, see docs/robustness.md ----------------------------------------------------
+
+# Each sanitizer has a tree of its own. Left out: what takes minutes and runs no code that shorter
+# tests do not run.
+build_sanitized = cmake -S . -B $(WATCHED)-$(1) -G Ninja -DSNOWSHED_SANITIZE=$(1) \
+    -DSNOWSHED_BUILD_TESTS=ON -DSNOWSHED_BUILD_PYTHON=ON \
+    -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+    -Dpybind11_DIR="$$($(BIN)/python -m pybind11 --cmakedir)" && \
+  cmake --build $(WATCHED)-$(1) --target snowshed_tests _core snowshed-run && \
+  ctest --test-dir $(WATCHED)-$(1) -j 2 --output-on-failure --exclude-regex LongSlab
+
+sanitize: sanitize-address sanitize-thread
+
+sanitize-address: $(VENV)/.dev-tools
+	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+	$(call build_sanitized,address)
+	sh tools/sanitized_pytest.sh $(WATCHED)-address $(VENV) "asan ubsan" tests/test_*.py
+
+sanitize-thread: $(VENV)/.dev-tools
+	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+	$(call build_sanitized,thread)
+	sh tools/sanitized_pytest.sh $(WATCHED)-thread $(VENV) tsan tests/test_executable.py
+
+fuzz: $(VENV)/.build-tools
+	cmake -S . -B $(FUZZED) -G Ninja -DSNOWSHED_SANITIZE=address -DSNOWSHED_BUILD_FUZZ=ON \
+	  -DSNOWSHED_BUILD_APPS=OFF -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+	  -DCMAKE_CXX_COMPILER="$$(sh tools/provide_fuzzer.sh || echo $${CXX:-c++})"
+	cmake --build $(FUZZED)
+	sh tools/fuzz.sh $(FUZZED) $(FUZZ_SECONDS)
 
 bench: build
 	@sh tools/provide_header.sh benchmark/benchmark.h libbenchmark-dev || echo "Fetching Google Benchmark instead."

@@ -5,7 +5,9 @@ set(SNOWSHED_KERNEL_FLAGS_avx2 -mavx2 -mfma -mf16c -mbmi -mbmi2)
 set(SNOWSHED_KERNEL_FLAGS_avx512
   -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mbmi -mbmi2 -mprefer-vector-width=512)
 
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
+if(SNOWSHED_SANITIZE)
+  set(snowshed_default_variants baseline)  # all come from the same templates: one will do
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(snowshed_default_variants baseline avx2 avx512)
 else()
   set(snowshed_default_variants baseline)
@@ -21,7 +23,7 @@ function(snowshed_add_kernels target)
     target_link_libraries(${kernels} PRIVATE snowshed_headers)
     target_compile_definitions(${kernels} PRIVATE SNOWSHED_KERNEL_VARIANT=${variant})
     target_compile_options(${kernels} PRIVATE -Wno-ignored-attributes
-      -O3 -fno-math-errno -fno-trapping-math -Wall -Wextra -Wno-psabi ${SNOWSHED_KERNEL_FLAGS_${variant}})
+      ${snowshed_kernel_optimisation} -fno-math-errno -fno-trapping-math -Wall -Wextra -Wno-psabi ${SNOWSHED_KERNEL_FLAGS_${variant}})
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${kernels}>)
     target_compile_definitions(${target} PRIVATE SNOWSHED_HAS_KERNELS_${variant})
   endforeach()

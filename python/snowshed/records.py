@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-import math
+import os
+import sys
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, TypeVar
 
 from snowshed._core import InputError
+
+DEEPEST = 64  # as the core has it
 
 RecordType = TypeVar("RecordType", bound="Record")
 
@@ -32,11 +35,17 @@ class Record:
             record.assign(key, value, path)
         return record
 
-    def to_data(self, path: str = "") -> dict[str, Any]:
-        """Return the fields that were given, as a JSON object."""
+    def to_data(self, path: str = "", depth: int = 0) -> dict[str, Any]:
+        """Return the fields that were given, as a JSON object that stands `depth` deep at `path`.
+
+        Raises
+        ------
+        InputError
+            At a value that JSON does not have.
+        """
         given = {key: getattr(self, name) for key, name in self.keys().items()}
         return {
-            key: _to_json(value, f"{path}/{key}")
+            key: _to_json(value, f"{path}/{key}", depth + 1)
             for key, value in given.items()
             if value is not None
         }
@@ -67,6 +76,8 @@ def _find_record(hint: Any) -> type[Record] | None:
 
 
 def _from_json(record: type[Record] | None, value: Any, path: str) -> Any:
+    if path.count("/") > 2 * DEEPEST:
+        raise InputError(f"{path[:100]}...: nested more than {DEEPEST} deep")
     if record is None or value is None or isinstance(value, Record):
         return value
     if isinstance(value, (list, tuple)):
@@ -74,13 +85,24 @@ def _from_json(record: type[Record] | None, value: Any, path: str) -> Any:
     return record.from_data(value, path)
 
 
-def _to_json(value: Any, path: str) -> Any:
+def _to_json(value: Any, path: str, depth: int = 0) -> Any:
+    if depth > DEEPEST:
+        raise InputError(f"{path}: nested more than {DEEPEST} deep")
     if isinstance(value, Record):
-        return value.to_data(path)
+        return value.to_data(path, depth)
     if hasattr(value, "tolist"):  # NumPy scalars and arrays
         value = value.tolist()
     if isinstance(value, (list, tuple)):
-        return [_to_json(item, f"{path}/{i}") for i, item in enumerate(value)]
-    if isinstance(value, float) and not math.isfinite(value):
-        raise InputError(f"{path}: {value} is not a finite number")
+        return [_to_json(item, f"{path}/{i}", depth + 1) for i, item in enumerate(value)]
+    if isinstance(value, Mapping):
+        return {str(key): _to_json(value[key], f"{path}/{key}", depth + 1) for key in value}
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if not (value is None or isinstance(value, (bool, int, float, str))):
+        raise InputError(f"{path}: {value!r} is not a number, text, list or object")
+    if isinstance(value, (int, float)) and not abs(value) <= sys.float_info.max:
+        shown = value if isinstance(value, float) else f"an integer of {value.bit_length()} bits"
+        raise InputError(f"{path}: {shown} is not a finite number")
+    if isinstance(value, str) and any("\ud800" <= c <= "\udfff" for c in value):
+        raise InputError(f"{path}: {value!a} is not text: it has half a surrogate pair")
     return value

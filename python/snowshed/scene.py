@@ -79,8 +79,8 @@ class Scene(Record):
             If it cannot be read.
         """
         try:
-            data = json.loads(Path(path).read_bytes())
-        except ValueError as error:
+            data = json.loads(Path(path).read_bytes(), object_pairs_hook=_without_duplicates)
+        except (ValueError, RecursionError) as error:
             raise _core.InputError(f"{path}: not JSON: {error}") from None
         scene = cls.from_data(data)
         scene._base_dir = os.fspath(Path(path).parent)
@@ -112,9 +112,17 @@ class Scene(Record):
         return self
 
     def append(self, path: str, value: Any) -> Scene:
-        """Append a value to the list at a dotted path, such as ``"obstacles"``."""
+        """Append a value to the list at a dotted path, such as ``"obstacles"``.
+
+        Raises
+        ------
+        InputError
+            If the path names nothing a scene has, or something that is no list.
+        """
         record, key, where = self._locate(path)
         held = getattr(record, record.field_of(key, where))
+        if not isinstance(held, (list, tuple, type(None))):
+            raise _core.InputError(f"{where}/{key}: nothing can be appended to what is no list")
         record.assign(key, [*(held or []), value], where)
         return self
 
@@ -152,6 +160,16 @@ class Scene(Record):
         return holder, key, where
 
 
+def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return a JSON object; as in the core, a key that is given twice is an error."""
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found:
+            raise ValueError(f"the key {key!r} appears twice")
+        found[key] = value
+    return found
+
+
 def _enter(holder: Holder, key: str, where: str) -> Holder:
     """Return the record or list under `key`; a record that was not given is created."""
     if isinstance(holder, list):
@@ -168,9 +186,12 @@ def _enter(holder: Holder, key: str, where: str) -> Holder:
 
 def _item(items: list[Record], key: str, where: str) -> Record:
     try:
-        return items[int(key)]
+        item = items[int(key)]
     except (ValueError, IndexError):
         raise _core.InputError(f"{where}/{key}: no such item; the list has {len(items)}") from None
+    if not isinstance(item, Record):
+        raise _core.InputError(f"{where}/{key}: {item!r} is not an object")
+    return item
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 
@@ -149,6 +151,23 @@ std::vector<std::string> BinaryReader::names() const {
   return names;
 }
 
+void BinaryReader::require_finite() const {
+  for (const Section& section : sections_) {
+    if (section.type == ElementType::float32) require_finite<float>(section);
+    if (section.type == ElementType::float64) require_finite<double>(section);
+  }
+}
+
+template <class T>
+void BinaryReader::require_finite(const Section& section) const {
+  for (std::size_t i = 0; i < section.count; ++i) {
+    const std::size_t at = section.offset + i * sizeof(T);
+    if (!std::isfinite(read<T>(at)))
+      fail(at, "element " + std::to_string(i) + " of section '" + section.name +
+                   "' is not a finite number");
+  }
+}
+
 std::string BinaryReader::text(std::string_view name) const {
   const ArrayView<char> characters = view<char>(name);
   return std::string(characters.begin(), characters.end());
@@ -158,8 +177,11 @@ void BinaryReader::read_file() {
   std::ifstream file;
   std::error_code error;
   errno = 0;
-  if (std::filesystem::is_directory(path_, error))
+  const auto status = std::filesystem::status(path_, error);
+  if (std::filesystem::is_directory(status))
     error = std::make_error_code(std::errc::is_a_directory);
+  else if (std::filesystem::is_other(status))  // opening a pipe could block for ever
+    error = std::make_error_code(std::errc::not_supported);
   else if (file.open(path_, std::ios::binary); !file)
     error = std::error_code(errno, std::generic_category());
   if (!error) size_ = std::filesystem::file_size(path_, error);
@@ -199,11 +221,13 @@ void BinaryReader::check_sum() const {
 
 void BinaryReader::read_sections() {
   const auto header = read<Header>(0);
+  std::set<std::string_view> names;
   std::size_t position = sizeof(Header);
   for (std::uint32_t i = 0; i < header.sections; ++i) {
     const std::size_t start = position;
     Section section = read_section(start, position);
-    if (has(section.name)) fail(start, "section '" + section.name + "' is there twice");
+    if (!names.emplace(bytes() + start + sizeof(SectionHeader), section.name.size()).second)
+      fail(start, "section '" + section.name + "' is there twice");
     sections_.push_back(std::move(section));
   }
   if (position != size_ - word) fail(position, "bytes follow the last section");

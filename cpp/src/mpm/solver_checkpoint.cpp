@@ -3,8 +3,29 @@
 #include "mpm/solver_of.hpp"
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/support/error.hpp"
+#include "snowshed/support/memory.hpp"
 
 namespace snowshed {
+namespace {
+
+/// Blocks without particles would take memory out of all proportion to the file.
+template <int D>
+bool are_sound(const std::vector<BlockKey>& keys, const std::vector<std::int32_t>& first,
+               std::size_t particles) {
+  bool sound = first.front() == 0 && std::size_t(first.back()) == particles;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    sound = sound && first[i] < first[i + 1] && (i == 0 || keys[i - 1] < keys[i]) &&
+            block_key<D>(block_coord<D>(keys[i])) == keys[i];
+  return sound;
+}
+
+template <class T, int D>
+double bytes_of_grid(const BlockLayout<D>& layout, int tile_size) {
+  const double tiles = double(layout.particle_blocks.size()) * tile_size;
+  return sizeof(T) * (tiles + 2.0 * double(layout.grid_blocks.size()) * Grid<T, D>::block_size);
+}
+
+}  // namespace
 
 template <class T, int D>
 void SolverOf<T, D>::save(BinaryWriter& out) const {
@@ -48,12 +69,13 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
   });
   auto keys = in.get<std::uint64_t>("blocks/keys");
   auto first = in.get<std::int32_t>("blocks/first", keys.size() + 1);
-  bool ordered = first.front() == 0 && std::size_t(first.back()) == n;
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    ordered = ordered && first[i] <= first[i + 1] && (i == 0 || keys[i - 1] < keys[i]);
-  if (!ordered) throw InputError(in.path().string(), "the blocks of particles are not in order");
+  if (!are_sound<D>(keys, first, n))
+    throw InputError(in.path().string(), "the blocks of particles are empty or not in order");
   layout_ = {};
   layout_.assign(std::move(keys), std::move(first), threads());
+  if (bytes_of_grid<T>(layout_, grid_.tile_size) > double(available_memory_bytes()))
+    throw InputError(in.path().string(), "its " + std::to_string(layout_.particle_blocks.size()) +
+                                             " blocks of particles do not fit into memory");
 
   const auto clock = in.get<double>("clock", 4);
   time_ = clock[0];

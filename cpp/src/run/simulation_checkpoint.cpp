@@ -21,6 +21,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
 
 std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint) {
   const BinaryReader in = BinaryReader::load(checkpoint);
+  in.require_finite();  // a clock that is not a number would never reach the end of an event
   auto sim = std::make_unique<Simulation>(parse_scene(in.text("scene"), checkpoint.string()),
                                           in.text("base_dir"));
   const auto event = in.get<std::int64_t>("event", 2);

@@ -23,8 +23,10 @@ std::string place(const std::string& text, std::size_t position, const std::stri
   return name + ":" + std::to_string(line) + ":" + std::to_string(column);
 }
 
-/// The library's message without its own code and place, in printable characters.
-std::string plain_message(std::string message, const std::string& last_read) {
+/// The library's message without its own code and place, in printable characters, and the last
+/// that it could read.
+std::string plain_message(std::string message, std::string last_read) {
+  last_read.erase(0, last_read.find_first_not_of(' '));
   for (const std::string end : {"syntax error ", ": "}) {
     const std::size_t found = message.find(end);
     if (found != std::string::npos) {
@@ -37,6 +39,23 @@ std::string plain_message(std::string message, const std::string& last_read) {
     if (c < ' ' || c > '~') c = '?';
   return "not valid JSON: " + message.substr(0, 200) +
          (last_read.empty() ? "" : ", after " + quote(last_read));
+}
+
+/// The same text with spaces for line ends and tabs between values. The parser keeps what it has
+/// read since the last string or number for its message, and there spells each of them "<U+000A>":
+/// megabytes of empty lines would become gigabytes.
+std::string with_plain_blanks(std::string text) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char& c = text[i];
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == '\\' && quoted)
+      ++i;  // whatever it is, it does not end the string
+    else if (!quoted && (c == '\n' || c == '\t' || c == '\r'))
+      c = ' ';
+  }
+  return text;
 }
 
 /// Receives the parser's events and builds the value. The parser itself does not recurse.
@@ -150,7 +169,7 @@ json parse_json(const std::string& text, const std::string& name) {
   if (text.size() > max_text_bytes)
     throw InputError(name, "longer than " + std::to_string(max_text_bytes >> 20) + " MB");
   Builder builder(text, name);
-  json::sax_parse(text, &builder);
+  json::sax_parse(with_plain_blanks(text), &builder);
   return builder.take();
 }
 

@@ -19,6 +19,7 @@ class Rules {
     if (scene_.domain) check_domain(*scene_.domain);
     if (scene_.panel) check_panel(*scene_.panel);
     if (scene_.slab) check_slab(*scene_.slab);
+    check_number_of_shapes();
     for (const auto& obstacle : scene_.obstacles) check_obstacle(obstacle);
     check_names();
     for (const auto& body : scene_.bodies) check_body(body);
@@ -71,6 +72,24 @@ class Rules {
     if (height < 0.0)
       fail(panel.tilt, show(panel.tilt) + " degrees put the upper edge " + show_rounded(-height) +
                            " m below the ground, which is steeper");
+  }
+
+  /// Written in full, a shape takes up to 13 values: a scene must not grow, by its defaults, beyond
+  /// what the JSON parser reads (max_values), or no run of it could be resumed.
+  void check_number_of_shapes() const {
+    constexpr std::size_t most = 50'000;
+    std::size_t shapes = 0;
+    for (const auto& obstacle : scene_.obstacles) shapes += count(obstacle.shape);
+    for (const auto& body : scene_.bodies) shapes += count(body.shape);
+    if (shapes > most)
+      fail(scene_, std::to_string(shapes) + " shapes in all; at most " + std::to_string(most) +
+                       " are allowed");
+  }
+
+  static std::size_t count(const ShapeSpec& shape) {
+    std::size_t shapes = 1;
+    for (const auto& part : shape.shapes) shapes += count(part);
+    return shapes;
   }
 
   void check_obstacle(const ObstacleSpec& obstacle) const {

@@ -1,11 +1,13 @@
 #include "snowshed/io/binary_archive.hpp"
 
+#include <sys/stat.h>
+
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
+#include "io/forged_archive.hpp"
 #include "io/temporary_folder.hpp"
-#include "snowshed/io/checksum.hpp"
 #include "snowshed/support/error.hpp"
 
 namespace snowshed {
@@ -36,20 +38,10 @@ class BinaryArchiveTest : public TemporaryFolder {
     return message_of<InputError>([&] { load(bytes); });
   }
 
-  static std::string with_valid_sum(std::string bytes) {
-    Checksum sum;
-    sum.update(bytes.data(), bytes.size() - 8);
-    const std::uint64_t value = sum.value();
-    std::memcpy(&bytes[bytes.size() - 8], &value, 8);
-    return bytes;
-  }
-
   /// The sample with a number replaced, and a checksum that fits: an attack, not an accident.
   template <class T>
   std::string forged(std::size_t offset, T value) const {
-    std::string bytes = sample();
-    std::memcpy(&bytes[offset], &value, sizeof value);
-    return with_valid_sum(bytes);
+    return snowshed::forged(sample(), offset, value);
   }
 
  private:
@@ -58,8 +50,8 @@ class BinaryArchiveTest : public TemporaryFolder {
 
 // Where things are in the sample: the first section follows the header of 24 bytes; its header
 // has type, name length, count and bytes.
-constexpr std::size_t sections_at = 12, type_at = 24, name_length_at = 28, count_at = 32,
-                      bytes_at = 40, name_at = 48;
+constexpr std::size_t sections_at = 12, length_at = 16, type_at = 24, name_length_at = 28,
+                      count_at = 32, bytes_at = 40, name_at = 48;
 
 TEST_F(BinaryArchiveTest, ReturnsWhatWasAdded) {
   const BinaryReader reader = load(sample());
@@ -175,7 +167,7 @@ TEST_F(BinaryArchiveTest, RefusesForgedCounts) {
   for (const std::uint64_t count : {huge, huge - 7, huge / 2, std::uint64_t{1} << 40})
     for (const std::size_t at : {count_at, bytes_at})
       EXPECT_NE(load_error(forged(at, count)).find("byte 24: a section of"), std::string::npos);
-  EXPECT_THROW(load(forged(16, huge)), InputError);  // the length of the file
+  EXPECT_THROW(load(forged(length_at, huge)), InputError);  // the length of the file
   for (const std::uint32_t count : {0u, 3u, 5u, ~0u})
     EXPECT_THROW(load(forged(sections_at, count)), InputError);
 }
@@ -191,6 +183,35 @@ TEST_F(BinaryArchiveTest, RefusesASectionTwice) {
   std::string bytes = sample();
   bytes.replace(name_at, 5, "speed");
   EXPECT_NE(load_error(with_valid_sum(bytes)).find("'speed' is there twice"), std::string::npos);
+}
+
+TEST_F(BinaryArchiveTest, ManySectionsTakeTimeInProportion) {
+  constexpr std::uint32_t sections = 100'000;  // comparing each with each would take minutes
+  std::string bytes = sample().substr(0, type_at);
+  for (std::uint32_t i = 0; i < sections; ++i) {
+    const std::uint32_t header[] = {6, 8, 0, 0, 0, 0};  // no elements of one byte
+    bytes.append(reinterpret_cast<const char*>(header), sizeof header);
+    bytes.append(std::to_string(10'000'000 + i));
+  }
+  const std::uint64_t length = bytes.size() + 8;
+  std::memcpy(&bytes[sections_at], &sections, sizeof sections);
+  std::memcpy(&bytes[length_at], &length, sizeof length);
+  EXPECT_EQ(load(with_valid_sum(bytes + "checksum")).names().size(), sections);
+}
+
+TEST_F(BinaryArchiveTest, FindsNumbersThatAreNotFinite) {
+  load(sample()).require_finite();
+  BinaryWriter writer;
+  writer.add("count", std::vector<std::uint64_t>(2, ~std::uint64_t{0}));  // NaN, were it a double
+  writer.add("time", std::vector<double>{1.0, 2.0, -std::numeric_limits<double>::infinity()});
+  writer.save(path("double"));
+  EXPECT_EQ(
+      message_of<InputError>([&] { BinaryReader::load(path("double")).require_finite(); }),
+      path("double").string() + ": byte 120: element 2 of section 'time' is not a finite number");
+  writer = {};
+  writer.add("speed", std::vector<float>{std::numeric_limits<float>::quiet_NaN()});
+  writer.save(path("float"));
+  EXPECT_THROW(BinaryReader::load(path("float")).require_finite(), InputError);
 }
 
 TEST_F(BinaryArchiveTest, SurvivesEveryForgedByte) {
@@ -225,6 +246,12 @@ TEST_F(BinaryArchiveTest, AbsentFilesAndFoldersAreFileErrors) {
   EXPECT_EQ(message_of<FileError>([&] { BinaryReader::load(path("absent")); }),
             path("absent").string() + ": cannot read the file: No such file or directory");
   EXPECT_THROW(BinaryReader::load(path("")), FileError);
+}
+
+TEST_F(BinaryArchiveTest, DoesNotWaitForPipes) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  EXPECT_THROW(BinaryReader::load(path("pipe")), FileError);
+  EXPECT_THROW(BinaryReader::load("/dev/zero"), FileError);
 }
 
 TEST_F(BinaryArchiveTest, RefusesFilesLargerThanMemory) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <random>
 
+#include "io/temporary_folder.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/support/error.hpp"
 
@@ -283,6 +284,34 @@ TEST(SceneErrorsText, SizeIsLimited) {
   std::string values = "[0";
   for (int i = 0; i < 1000000; ++i) values += ",0";
   EXPECT_EQ(where_of(values + "]"), "/999999");
+}
+
+TEST(SceneErrorsText, AsManyShapesAsAreAllowedCanBeWrittenAndReadAgain) {
+  const auto with_shapes = [](int each) {
+    std::string text = good + R"(, "obstacles": [)";
+    for (int i = 0; i < 1000; ++i) {
+      text += R"({"motion": {}, "shape": {"type": "union", "shapes": [)";
+      for (int k = 1; k < each; ++k)
+        text += R"({"type": "plate", "length": 1, "width": 1, "thickness": 1},)";
+      text.back() = ']';
+      text += i < 999 ? "}}," : "}}";
+    }
+    return text + "]}";
+  };
+  EXPECT_NO_THROW(parse_scene(write_scene(parse_scene(with_shapes(49)))));
+  expect_error(with_shapes(51), "/", "51001 shapes in all; at most 50000 are allowed");
+}
+
+TEST(SceneErrorsText, BlankLinesAreNoPartOfTheMessage) {
+  const auto said = [](const std::string& text) {
+    return message_of<InputError>([&] { parse_scene(text); });
+  };
+  const std::string message = said("\n\t\r\n\n ?");
+  EXPECT_EQ(message.substr(0, 26), "scene:4:2: not valid JSON:");
+  EXPECT_EQ(message.substr(message.rfind(", after")), ", after \"?\"");
+  // Each blank took nine bytes of the message, several times over.
+  EXPECT_LT(said(std::string(1 << 22, '\n') + "x").size(), 200u);
+  EXPECT_EQ(where_of("{\"a\\\"\n\": 1}"), "name:1:6");  // within a text they stay what they are
 }
 
 TEST(SceneErrorsText, DamagedTextNeverCrashes) {

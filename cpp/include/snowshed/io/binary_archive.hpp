@@ -156,6 +156,9 @@ class BinaryReader {
 
   std::string text(std::string_view name) const;
 
+  /// InputError at the first infinity or NaN, in whatever array it is.
+  void require_finite() const;
+
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -177,6 +180,8 @@ class BinaryReader {
   const char* bytes() const { return reinterpret_cast<const char*>(words_.get()); }
   template <class T>
   T read(std::size_t offset) const;
+  template <class T>
+  void require_finite(const Section& section) const;
   const Section* find(std::string_view name) const;
   const Section& require(std::string_view name) const;
   const Section& require(std::string_view name, ElementType type) const;

@@ -1,0 +1,138 @@
+// Mutations that keep the container of a checkpoint whole: random bytes hardly ever have the right
+// lengths and checksum, and would show nothing of what lies within.
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "snowshed/io/checksum.hpp"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+
+namespace snowshed {
+namespace {
+
+/// A section in the layout of binary_archive.hpp; nothing here need be valid.
+struct ArchiveSection {
+  std::uint32_t type;
+  std::uint64_t element;  // bytes of one
+  std::string name, data;
+};
+
+constexpr std::size_t archive_header = 24, section_header = 24, archive_trailer = 8;
+
+std::size_t padded(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
+
+template <class T>
+T number_at(const std::string& bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+template <class T>
+std::string bytes_of(T value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+/// Those sections, from the first on, that lie within the bytes.
+std::vector<ArchiveSection> sections_of(const std::string& bytes) {
+  std::vector<ArchiveSection> sections;
+  if (bytes.size() < archive_header + archive_trailer) return sections;
+  const std::size_t end = bytes.size() - archive_trailer;
+  for (std::size_t at = archive_header; at + section_header <= end;) {
+    const std::size_t name_length = number_at<std::uint32_t>(bytes, at + 4);
+    const auto count = number_at<std::uint64_t>(bytes, at + 8);
+    const auto length = number_at<std::uint64_t>(bytes, at + 16);
+    const std::size_t name = at + section_header, data = name + padded(name_length);
+    if (name_length > end - name || data > end || length > end - data) break;
+    sections.push_back({number_at<std::uint32_t>(bytes, at), count > 0 ? length / count : 0,
+                        bytes.substr(name, name_length), bytes.substr(data, length)});
+    at = data + padded(length);
+  }
+  return sections;
+}
+
+/// An archive of these sections, with the lengths and the checksum that go with them.
+std::string archive_of(const std::vector<ArchiveSection>& sections) {
+  const auto pad = [](std::string text) {
+    text.resize(padded(text.size()));
+    return text;
+  };
+  std::string body;
+  for (const ArchiveSection& s : sections) {
+    body += bytes_of(s.type) + bytes_of(std::uint32_t(s.name.size()));
+    body += bytes_of(std::uint64_t(s.element > 0 ? s.data.size() / s.element : 0));
+    body += bytes_of(std::uint64_t(s.data.size())) + pad(s.name) + pad(s.data);
+  }
+  std::string bytes = "\x89SNOW\r\n\x1a" + bytes_of(std::uint32_t(1));
+  bytes += bytes_of(std::uint32_t(sections.size()));
+  bytes += bytes_of(std::uint64_t(archive_header + body.size() + archive_trailer)) + body;
+  Checksum sum;
+  sum.update(bytes.data(), bytes.size());
+  return bytes + bytes_of(sum.value());
+}
+
+/// The same bytes as a file of their length with a checksum that fits.
+std::string with_valid_frame(std::string bytes) {
+  bytes.resize(padded(std::max(bytes.size(), archive_header + archive_trailer)));
+  const auto length = bytes_of(std::uint64_t(bytes.size()));
+  bytes.replace(16, length.size(), length);
+  Checksum sum;
+  sum.update(bytes.data(), bytes.size() - archive_trailer);
+  return bytes.replace(bytes.size() - archive_trailer, archive_trailer, bytes_of(sum.value()));
+}
+
+std::string mutate(std::string bytes, std::size_t most) {
+  const std::size_t size = bytes.size();
+  bytes.resize(std::max(size, most));
+  bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), size, most));
+  return bytes;
+}
+
+/// Changes one section as a whole: its content, its name, its type, or whether it is there.
+void mutate_a_section(std::vector<ArchiveSection>& sections, std::mt19937& random) {
+  constexpr std::size_t growth = 64;
+  const std::size_t i = random() % sections.size();
+  ArchiveSection& section = sections[i];
+  switch (random() % 20) {
+    case 0:
+      section.name = mutate(section.name, 40);
+      break;
+    case 1:
+      section.type = random() % 11;
+      break;
+    case 2:
+      sections.erase(sections.begin() + std::ptrdiff_t(i));
+      break;
+    case 3:
+      sections.push_back(section);
+      break;
+    default:
+      section.data = mutate(section.data, section.data.size() + growth);
+  }
+}
+
+}  // namespace
+}  // namespace snowshed
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+  using namespace snowshed;
+  std::mt19937 random(seed);
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  std::vector<ArchiveSection> sections = sections_of(bytes);
+  std::string mutated;
+  if (sections.empty() || random() % 8 == 0) {
+    mutated = mutate(bytes, most);
+    if (random() % 4 != 0) mutated = with_valid_frame(std::move(mutated));
+  } else {
+    mutate_a_section(sections, random);
+    mutated = archive_of(sections);
+  }
+  if (mutated.size() > most) return size;
+  std::copy(mutated.begin(), mutated.end(), data);
+  return mutated.size();
+}

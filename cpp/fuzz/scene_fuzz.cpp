@@ -1,0 +1,19 @@
+// Text as a scene: refused, or a scene that its own JSON gives back.
+#include "fuzzing.hpp"
+#include "snowshed/run/forecast.hpp"
+#include "snowshed/scene/scene_json.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace snowshed;
+  allow_refusal([&] {
+    const Scene scene = parse_scene({reinterpret_cast<const char*>(data), size});
+    const std::string written = write_scene(scene);
+    try {
+      require(write_scene(parse_scene(written)) == written, "a scene changes when it is written");
+    } catch (const InputError& error) {
+      throw std::logic_error(std::string("a scene is refused once it is written: ") + error.what());
+    }
+    forecast(scene);
+  });
+  return 0;
+}

@@ -1,0 +1,283 @@
+// Writes what fuzzing starts from:  fuzz_seeds FOLDER
+// A folder of small valid inputs for each target, and a dictionary of the scene's words.
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "snowshed/run/simulation.hpp"
+#include "snowshed/scene/presets.hpp"
+#include "snowshed/scene/scene_json.hpp"
+
+namespace snowshed {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& file, const std::string& content) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+template <class Number>
+std::string raw(const std::vector<Number>& numbers) {
+  std::string bytes(numbers.size() * sizeof(Number), '\0');
+  std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  return bytes;
+}
+
+/// Every kind of thing a scene may hold; Y(y) is the component that vectors have in 3D alone.
+const char* const rich_scene = R"({"snowshed": 1, "dimension": %D, "title": "seed",
+  "snow": {"model": "elastic", "density": 250, "cohesion": 0.1},
+  "panel": {"height": 0.5, "length": 1, "width": 1, "tilt": 45, "condition": "separate"},
+  "slab": {"thickness": 0.06}, "ground": {"tilt": 10, "friction": 0.5},
+  "domain": {"min": [-9, Y(-9) -9], "max": [9, Y(9) 9]},
+  "obstacles": [
+    {"name": "fence", "condition": "sticky", "shape": {"type": "union", "shapes": [
+      {"type": "box", "center": [1.3, Y(0) -0.1], "size": [0.04, Y(1) 0.3]},
+      {"type": "capsule", "from": [1.3, Y(0) 0.05], "to": [1.2, Y(0) 0.15], "radius": 0.03},
+      {"type": "cylinder", "from": [2, Y(0) 0.05], "to": [1.2, Y(1) 0.15], "radius": 0.03},
+      {"type": "plate", "center": [2, Y(0) 1], "normal": [1, Y(0) 1], "length": 1, "width": 1,
+       "thickness": 0.1},
+      {"type": "plane", "center": [1, Y(0) 0], "normal": [0.1, Y(0) 1]}]},
+     "motion": {"velocity": [1, Y(0) 0], "pivot": [1, Y(0) 0], "start": 0.1, "end": 0.5}},
+    {"shape": {"type": "difference", "shapes": [
+      {"type": "mesh", "file": "a.stl", "scale": 0.001},
+      {"type": "grid", "file": "b.npy", "origin": [0, Y(0) 0], "spacing": 0.1},
+      {"type": "transform", "angle": 30, "translate": [1, Y(0) 0],
+       "shapes": [{"type": "sphere", "center": [0, Y(0) 0], "radius": 0.2}]}]}}],
+  "bodies": [{"shape": {"type": "sphere", "center": [0.9, Y(0) 0.3], "radius": 0.08},
+              "velocity": [0, Y(0) -1], "event": 2}],
+  "seeding": {"particles_per_voxel": 6, "pattern": "jittered", "seed": 7, "allow_sparse": true},
+  "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "basis": "cubic",
+               "step_factor": 0.5, "strain_limit": 0.1, "threads": 1},
+  "events": {"count": 2, "between": "reseed", "max_time": 3, "rest_speed": 0.02, "rest_time": 0.1},
+  "output": {"snapshot_interval": 0.1, "energy": true, "checkpoint_interval": 60}})";
+
+std::string rich_scene_in(int dimension) {
+  const std::string scene =
+      std::regex_replace(rich_scene, std::regex("%D"), std::to_string(dimension));
+  return std::regex_replace(scene, std::regex("Y\\(([^)]*)\\)"), dimension == 3 ? "$1," : "");
+}
+
+void write_scenes(const fs::path& folder) {
+  for (const std::string& name : scene_preset_names())
+    write(folder / (name + ".json"), write_scene(preset_scene(name)));
+  for (const int dimension : {2, 3})
+    write(folder / ("rich-" + std::to_string(dimension) + "d.json"),
+          write_scene(parse_scene(rich_scene_in(dimension))));
+  write(folder / "least.json", R"({"snowshed": 1, "bodies": [{"shape": {"type": "sphere",)"
+                               R"( "center": [0, 0, 1], "radius": 1e-1}}]})");
+}
+
+/// The keys and choices of a scene, quoted as they are in it.
+std::set<std::string> scene_words() {
+  std::set<std::string> words;
+  const auto collect = [&](const auto& self, const nlohmann::json& node) -> void {
+    for (const auto& [key, value] : node.items()) {
+      if (key == "properties")
+        for (const auto& [name, property] : value.items()) words.insert("\"" + name + "\"");
+      if (key == "enum" || key == "const")
+        for (const auto& choice : value.is_array() ? value : nlohmann::json::array({value}))
+          words.insert(choice.dump());
+      if (value.is_structured()) self(self, value);
+    }
+  };
+  collect(collect, nlohmann::json::parse(scene_schema()));
+  return words;
+}
+
+const std::vector<std::string> extreme_numbers = {
+    "1e308",  "1e999", "-1e-308", "1e-160",      "nan",        "inf",
+    "-1",     "0",     "256",     "-2147483649", "4294967295", "18446744073709551616",
+    "1.25e3", "0.5"};
+
+void write_dictionary(const fs::path& file, std::set<std::string> words) {
+  words.insert(extreme_numbers.begin(), extreme_numbers.end());
+  std::string lines;  // libFuzzer's form: in each a quoted word, with hexadecimal escapes
+  for (const std::string& word : words)
+    lines += std::regex_replace(nlohmann::json(word).dump(), std::regex("\\\\n"), "\\x0A") + "\n";
+  write(file, lines);
+}
+
+void write_dictionaries(const fs::path& folder) {
+  std::set<std::string> words = scene_words();
+  words.insert({"null", "true", "false", "\\ud800", "[[["});
+  write_dictionary(folder / "scene.dict", words);
+  write_dictionary(folder / "checkpoint.dict", words);
+  write_dictionary(folder / "obj.dict",
+                   {"v ", "vn ", "f ", "\nv 1 1 1\n", "\nf 1 2 3\n", "//", "/1"});
+  write_dictionary(folder / "stl.dict", {"solid", "facet normal", "outer loop", "vertex ",
+                                         "endloop", "endfacet", "endsolid"});
+  write_dictionary(folder / "ply.dict", {"ply",
+                                         "format ascii 1.0",
+                                         "format binary_little_endian 1.0",
+                                         "comment",
+                                         "format binary_big_endian 1.0",
+                                         "element vertex ",
+                                         "element face ",
+                                         "property ",
+                                         "property list uchar int vertex_indices",
+                                         "char",
+                                         "uchar",
+                                         "short",
+                                         "ushort",
+                                         "int",
+                                         "uint",
+                                         "float",
+                                         "double",
+                                         "vertex_index",
+                                         "end_header\n",
+                                         "obj_info"});
+  write_dictionary(folder / "npy.dict",
+                   {"'descr': ", "'<f4'", "'<f8'", "'>f4'", "'fortran_order': ", "False", "True",
+                    "'shape': ", "(2, 2, 2), ", "(3, 3), "});
+}
+
+using Corner = std::array<float, 3>;
+const std::vector<Corner> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+const std::vector<std::array<std::int32_t, 3>> faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+
+std::string text_of(const Corner& c) {
+  return std::to_string(c[0]) + " " + std::to_string(c[1]) + " " + std::to_string(c[2]);
+}
+
+void write_stl(const fs::path& folder) {
+  std::string ascii = "solid tetrahedron\n", binary(80, ' ');
+  binary += raw<std::uint32_t>({std::uint32_t(faces.size())});
+  for (const auto& face : faces) {
+    ascii += "facet normal 0 0 0\n outer loop\n";
+    binary += raw<float>({0, 0, 0});
+    for (const std::int32_t i : face) {
+      ascii += "  vertex " + text_of(corners[i]) + "\n";
+      binary += raw<float>({corners[i].begin(), corners[i].end()});
+    }
+    ascii += " endloop\nendfacet\n";
+    binary += std::string(2, '\0');
+  }
+  write(folder / "ascii.stl", ascii + "endsolid tetrahedron\n");
+  write(folder / "binary.stl", binary);
+}
+
+void write_obj(const fs::path& folder) {
+  std::string absolute, relative;
+  for (const Corner& c : corners) absolute += "v " + text_of(c) + "\n";
+  relative = absolute;
+  for (const auto& face : faces) {
+    absolute += "f";
+    relative += "f";
+    for (const std::int32_t i : face) {
+      absolute += " " + std::to_string(i + 1) + "/1/1";
+      relative += " " + std::to_string(i - 4);
+    }
+    absolute += "\n";
+    relative += "\n";
+  }
+  write(folder / "absolute.obj", "# a comment\nvn 0 0 1\n" + absolute);
+  write(folder / "relative.obj", relative);
+}
+
+std::string ply_header(const std::string& format) {
+  return "ply\nformat " + format + " 1.0\ncomment seed\nelement vertex 4\nproperty float x\n" +
+         "property float y\nproperty float z\nelement face 4\n" +
+         "property list uchar int vertex_indices\nend_header\n";
+}
+
+template <class Number>
+std::string big_endian(Number number) {
+  std::string bytes = raw<Number>({number});
+  return {bytes.rbegin(), bytes.rend()};
+}
+
+void write_ply(const fs::path& folder) {
+  std::string ascii = ply_header("ascii"), little = ply_header("binary_little_endian"),
+              big = ply_header("binary_big_endian");
+  for (const Corner& c : corners) {
+    ascii += text_of(c) + "\n";
+    for (const float x : c) little += raw<float>({x}), big += big_endian(x);
+  }
+  for (const auto& face : faces) {
+    ascii += "3", little += '\3', big += '\3';
+    for (const std::int32_t i : face) {
+      ascii += " " + std::to_string(i);
+      little += raw<std::int32_t>({i}), big += big_endian(i);
+    }
+    ascii += "\n";
+  }
+  write(folder / "ascii.ply", ascii);
+  write(folder / "little.ply", little);
+  write(folder / "big.ply", big);
+}
+
+std::string npy(const std::string& version, const std::string& type, const std::string& shape) {
+  const std::string header =
+      "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }\n";
+  std::string length(1, static_cast<char>(header.size()));
+  length.resize(version[0] == '\1' ? 2 : 4, '\0');
+  return "\x93NUMPY" + version + length + header;
+}
+
+void write_npy(const fs::path& folder) {
+  using namespace std::string_literals;
+  const std::vector<float> flat = {0.05f, 0.05f, 0.05f, 0.05f, -0.05f, 0.05f, 0.05f, 0.05f, 0.05f};
+  const std::vector<double> deep = {0.05, -0.05, 0.05, -0.05, 0.05, -0.05, 0.05, -0.05};
+  write(folder / "flat.npy", npy("\1\0"s, "<f4", "(3, 3)") + raw(flat));
+  write(folder / "deep.npy", npy("\2\0"s, "<f8", "(2, 2, 2)") + raw(deep));
+}
+
+/// A handful of particles, at rest between events or in flight past all that a scene may have.
+Scene scene_of_checkpoint(int dimension, bool running) {
+  Scene scene = parse_scene(R"({"snowshed": 1, "bodies": [{"shape": {"type": "sphere", "center":)"
+                            R"( [0, 0, 0.25], "radius": 0.1}, "event": 0}], "ground": {},)"
+                            R"( "events": {"count": 2}, "numerics": {"dx": 0.1, "threads": 1}})");
+  scene.dimension = dimension;
+  scene.events.max_time = running ? 1.0 : 0.01;
+  scene.events.rest_time = 0.005;
+  if (!running) return scene;
+  scene.events.between = Between::reseed;
+  scene.numerics.precision = Precision::float64;
+  scene.numerics.transfer = Transfer::apic;
+  scene.output.energy = true;
+  scene.domain.emplace(Domain{Vec3(-1, -1, -1), Vec3(1, 1, 1)});
+  ObstacleSpec plate;
+  plate.shape = scene.bodies.front().shape;
+  plate.shape.center.z() = 0;
+  plate.motion.emplace();
+  plate.motion->velocity.z() = 0.1;
+  scene.obstacles.push_back(plate);
+  return scene;
+}
+
+void write_checkpoints(const fs::path& folder) {
+  fs::create_directories(folder);
+  for (const int dimension : {2, 3})
+    for (const bool running : {false, true}) {
+      Simulation simulation(scene_of_checkpoint(dimension, running));
+      simulation.begin_event();
+      simulation.run([&](const RunReport& r) { return !running || r.steps < 10; }, 0.0);
+      simulation.save(folder / (std::to_string(dimension) + (running ? "d-running" : "d-ended")));
+    }
+}
+
+void write_seeds(const fs::path& folder) {
+  write_scenes(folder / "scene");
+  write_dictionaries(folder);
+  write_stl(folder / "stl");
+  write_obj(folder / "obj");
+  write_ply(folder / "ply");
+  write_npy(folder / "npy");
+  write_checkpoints(folder / "checkpoint");
+}
+
+}  // namespace
+}  // namespace snowshed
+
+int main(int count, char** arguments) {
+  if (count != 2) return 2;
+  snowshed::write_seeds(arguments[1]);
+  return 0;
+}

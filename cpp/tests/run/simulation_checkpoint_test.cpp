@@ -1,0 +1,84 @@
+// Checkpoints that were changed on purpose, and those of runs on several threads.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/forged_archive.hpp"
+#include "io/temporary_folder.hpp"
+#include "snowshed/io/binary_archive.hpp"
+#include "snowshed/run/simulation.hpp"
+#include "snowshed/support/error.hpp"
+
+namespace snowshed {
+namespace {
+
+/// A drop of snow above the ground.
+Scene drop(double dx) {
+  Scene scene;
+  scene.dimension = 2;
+  scene.ground.emplace();
+  BodySpec body;
+  body.shape.type = "sphere";
+  body.shape.radius = 0.05;
+  body.shape.center = {0, 0, 0.06};
+  scene.bodies.push_back(body);
+  scene.numerics.dx = dx;
+  scene.numerics.threads = 1;
+  return scene;
+}
+
+class SimulationCheckpoint : public TemporaryFolder {};
+
+/// A clock that is not a number would never reach the end of an event.
+TEST_F(SimulationCheckpoint, WithoutATimeIsRefused) {
+  Simulation sim(drop(0.02));
+  sim.begin_event();
+  sim.save(path("good"));
+  const std::string bytes = content(path("good"));
+  for (const char* section : {"clock", "run", "energy"})
+    for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      write_plainly(path("forged"), forged(bytes, data_of(bytes, section), value));
+      const std::string said = message_of<InputError>([&] { Simulation::load(path("forged")); });
+      EXPECT_NE(said.find(section + std::string("' is not a finite number")), std::string::npos)
+          << said;
+    }
+}
+
+/// They would take memory out of all proportion to the file.
+TEST_F(SimulationCheckpoint, WithBlocksWithoutParticlesIsRefused) {
+  Simulation sim(drop(0.01));
+  sim.begin_event();
+  sim.save(path("good"));
+  const std::string bytes = content(path("good"));
+  const auto first = BinaryReader::load(path("good")).get<std::int32_t>("blocks/first");
+  ASSERT_GT(first.size(), 2u);
+  const std::string table(reinterpret_cast<const char*>(first.data()), 4 * first.size());
+  // The second block begins where the first does, which is left with nothing.
+  write_plainly(path("forged"), forged(bytes, bytes.find(table) + 4, std::int32_t{0}));
+  EXPECT_THROW(Simulation::load(path("forged")), InputError);
+}
+
+/// Enough snow that there is work for the second and the third thread.
+TEST_F(SimulationCheckpoint, IsTheSameOnAnyNumberOfThreads) {
+  Scene scene = drop(0.003);
+  scene.bodies.front().velocity = {0.5, 0, -3};
+  scene.output.energy = true;
+  std::string first;
+  for (const int threads : {1, 2, 3}) {
+    scene.numerics.threads = threads;
+    Simulation sim(scene);
+    sim.begin_event();
+    ASSERT_GT(sim.solver().size(), 4000u);
+    EXPECT_EQ(sim.run([](const RunReport& r) { return r.steps < 200; }, 0.0), RunEnd::paused);
+    sim.save(path("checkpoint"));
+    std::string saved = content(path("checkpoint"));
+    saved.erase(0, saved.find("base_dir"));  // the scene before it names the threads
+    saved.resize(saved.size() - 8);          // the checksum
+    if (threads == 1) first = saved;
+    EXPECT_TRUE(saved == first) << threads;
+  }
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,32 @@
+#!/bin/sh
+# Prints the name of a clang that builds fuzz targets, that is, with libFuzzer and OpenMP; the
+# system's packages are installed where they are missing and can be:  provide_fuzzer.sh
+set -eu
+here=$(dirname "$0")
+probe=$(mktemp -d)
+trap 'rm -r "$probe"' EXIT
+cat > "$probe/target.cpp" << 'END'
+#include <omp.h>
+#include <cstddef>
+extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, std::size_t) {
+  return omp_get_num_procs() < 1;
+}
+END
+
+usable() {
+  "$1" -fopenmp -fsanitize=fuzzer,address "$probe/target.cpp" -o "$probe/target" > /dev/null 2>&1
+}
+find_one() {
+  for compiler in clang++ $(seq -f clang++-%.0f 25 -1 14); do
+    usable "$compiler" && echo "$compiler" && exit 0
+  done
+  return 0
+}
+
+find_one
+for package in clang libclang-rt-dev libomp-dev; do
+  sh "$here/install_package.sh" "$package" >&2 || break
+  find_one
+done
+echo "No clang with libFuzzer and OpenMP: install clang, libclang-rt-dev and libomp-dev." >&2
+exit 1
