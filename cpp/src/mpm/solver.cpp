@@ -149,6 +149,7 @@ void SolverOf<T, D>::step() {
   counters_.particle_updates += std::int64_t(particles_.size());
   counters_.smallest_dt = std::min(counters_.smallest_dt, dt_);
   if (++since_sort_ >= steps_between_sorts) tiles_valid_ = false;
+  check_particles();
 }
 
 template <class T, int D>
@@ -283,20 +284,36 @@ void SolverOf<T, D>::advance(double dt) {
 template <class T, int D>
 void SolverOf<T, D>::reduce_blocks() {
   double speed_squared = 0;
-  bool bad = false;
   for (const BlockStats& s : grid_.block_stats) {
     speed_squared = std::max(speed_squared, s.speed_squared);
-    bad = bad || s.bad;
     if (s.escaped) tiles_valid_ = false;
   }
   speed_ = std::sqrt(speed_squared);
-  if (bad || !std::isfinite(speed_)) {
+  if (options_.energy) book_step();
+}
+
+/// The step is done and its state is whole; the next one might not be.
+template <class T, int D>
+void SolverOf<T, D>::check_particles() const {
+  for (std::size_t b = 0; b < grid_.block_stats.size(); ++b) {
+    const BlockStats& s = grid_.block_stats[b];
+    if (s.unsound < 0) continue;
+    const std::size_t i = std::size_t(s.unsound);
+    const VecD<D> x = position_of(particles_, i, layout_.particle_blocks[b], options_.numerics.dx,
+                                  options_.numerics.basis);
     std::ostringstream message;
-    message << "a particle's state is no longer finite at t = " << time_
-            << " s; try a smaller numerics.step_factor or double precision";
+    message << "particle " << particles_.id[i] << " at (" << x[0];
+    for (int d = 1; d < D; ++d) message << ", " << x[d];
+    message << ") m, t = " << time_ << " s: ";
+    if (std::isfinite(s.elastic_strain))
+      message << "its elastic strain has come to " << s.elastic_strain
+              << ", beyond what can be resolved (" << elastic_strain_limit
+              << "); snow.youngs_modulus is too small for such speeds";
+    else
+      message << "its state is no longer finite; try a smaller numerics.step_factor or double "
+                 "precision";
     throw SimulationError(message.str());
   }
-  if (options_.energy) book_step();
 }
 
 template class SolverOf<float, 2>;

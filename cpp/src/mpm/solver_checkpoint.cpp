@@ -52,7 +52,7 @@ void SolverOf<T, D>::save(BinaryWriter& out) const {
   const EnergyBooks& b = books_;
   out.add("energy", std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic,
                                         b.friction, b.sticking, b.impact, b.transfer, b.added});
-  out.add("clock", std::vector<double>{time_, dt_, speed_, counters_.smallest_dt});
+  out.add("clock", std::vector<double>{time_, dt_, speed_, counters_.smallest_dt, stress_power_});
   out.add("counters",
           std::vector<std::int64_t>{counters_.steps, counters_.rejected, counters_.sorts,
                                     counters_.particle_updates, std::int64_t(next_id_)});
@@ -77,11 +77,12 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
     throw InputError(in.path().string(), "its " + std::to_string(layout_.particle_blocks.size()) +
                                              " blocks of particles do not fit into memory");
 
-  const auto clock = in.get<double>("clock", 4);
+  const auto clock = in.get<double>("clock", 5);
   time_ = clock[0];
   dt_ = clock[1];
   speed_ = clock[2];
   counters_.smallest_dt = clock[3];
+  stress_power_ = clock[4];
   const auto counts = in.get<std::int64_t>("counters", 5);
   counters_.steps = counts[0];
   counters_.rejected = counts[1];

@@ -42,6 +42,7 @@ class SolverOf final : public Solver {
   StepParameters<T> parameters(double dt) const;
   int threads() const;
   void reduce_blocks();
+  void check_particles() const;  ///< throws SimulationError
   void book_step();
   double gravitational_energy() const;
   double elastic_energy() const;
@@ -65,6 +66,7 @@ class SolverOf final : public Solver {
   std::uint32_t next_id_ = 0;
   StepCounters counters_;
   EnergyBooks books_;
+  double stress_power_ = 0;  // W, see book_step
 };
 
 }  // namespace snowshed

@@ -38,16 +38,22 @@ void SolverOf<T, D>::book_step() {
     elastic += s.elastic;
     plastic += s.plastic;
   }
-  double before = 0, after = 0;
+  double before = 0, after = 0, work = 0, power = 0;
+  for (const BlockStats& s : grid_.block_stats) power += s.stress_power;
   for (const NodeStats& s : grid_.node_stats) {
     before += s.kinetic_before;
     after += s.kinetic_after;
+    work += s.stress_work;
     books_.friction += s.friction;
     books_.sticking += s.sticking;
     books_.impact += s.impact;
   }
   // What particles to grid and grid to particles took.
   books_.transfer += (books_.kinetic - before) + (after - kinetic);
+  // Velocities are those of half a step ago; taken at the time of the positions, the transfer
+  // between two steps acts on velocities that have half of the coming step's force in them.
+  books_.transfer -= 0.5 * (work - stress_power_ * dt_);
+  stress_power_ = power;
   books_.plastic += plastic;
   books_.kinetic = kinetic;
   books_.elastic = elastic;

@@ -67,13 +67,20 @@ struct StepParameters {
   MaterialConstants material;
 };
 
+/// Largest norm of the elastic Hencky strain that single precision still resolves: compression to
+/// a twentieth or stretching by twenty. Snow yields long before; only bodies much too soft for
+/// their speed get there.
+inline constexpr double elastic_strain_limit = 3.0;
+
 /// What a kernel reports of one block of particles.
 struct BlockStats {
-  double speed_squared = 0;  // largest, of velocity and of motion, m2/s2
-  double strain = 0;         // largest |dt grad v| component
-  bool escaped = false;      // a particle left the tile: the sums are not valid, sort first
-  bool bad = false;          // a particle's state is not finite
+  double speed_squared = 0;   // largest, of velocity and of motion, m2/s2
+  double strain = 0;          // largest |dt grad v| component
+  bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
+  std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
+  double elastic_strain = 0;  // of that particle
   double kinetic = 0, elastic = 0, plastic = 0;  // J; with energy books only
+  double stress_power = 0;  // W, of the new stresses along the motion just made
 };
 
 /// What a kernel reports of one block of nodes.
@@ -81,6 +88,7 @@ struct NodeStats {
   double low[3], high[3];  // bounds of the new velocities; low > high: no snow here
   double kinetic_before = 0, kinetic_after = 0;   // of the grid, J; before forces, after contact
   double friction = 0, sticking = 0, impact = 0;  // taken by contact, J
+  double stress_work = 0;  // J, of the stresses at the velocities before the step
 };
 
 /// A node that an obstacle constrains.

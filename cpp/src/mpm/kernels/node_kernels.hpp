@@ -61,7 +61,7 @@ struct NodeKernels {
       stats.low[d] = double(low[d]);
       stats.high[d] = double(high[d]);
     }
-    if constexpr (energy) book_kinetic(in, out, stats);
+    if constexpr (energy) book_kinetic(step, in, out, stats);
   }
 
  private:
@@ -78,37 +78,69 @@ struct NodeKernels {
     return __builtin_shufflevector(now, second, 0, 1, 2, 3, 8, 9, 10, 11);
   }
 
-  static void book_kinetic(const Node<T>* in, const Node<T>* out, NodeStats& stats) {
+  static void book_kinetic(const StepParameters<T>& step, const Node<T>* in, const Node<T>* out,
+                           NodeStats& stats) {
     for (int k = 0; k < block_nodes<D>; ++k) {
       const double mass = double(in[k][0]);
       if (!(mass > double(least_mass))) continue;
       for (int d = 0; d < D; ++d) {
         stats.kinetic_before += 0.5 * double(in[k][1 + d]) * double(in[k][1 + d]) / mass;
         stats.kinetic_after += 0.5 * mass * double(out[k][d]) * double(out[k][d]);
+        stats.stress_work += double(step.dt) * double(in[k][4 + d]) * double(in[k][1 + d]) / mass;
       }
     }
   }
 
-  /// Energy that an impulse took from a node whose velocity went from `before` to `after` over the
-  /// step: minus its work at the mean velocity.
-  static double taken(const T (&impulse)[D], const T (&before)[D], const T (&after)[D]) {
-    double work = 0;
-    for (int d = 0; d < D; ++d)
-      work += 0.5 * double(impulse[d]) * (double(before[d]) + double(after[d]));
-    return -work;
+  /// Energy that a contact took which brought a node, or one direction of it, to a velocity of its
+  /// own. Over the step the node's velocity went from `before` to `after`; without the contact it
+  /// would have been `free`. Particles move with `after`, so that stresses and gravity did the work
+  /// m (free - before) . after; the contact took what of this is not kinetic energy now.
+  static double taken_by_holding(T mass, const T (&before)[D], const T (&free)[D],
+                                 const T (&after)[D]) {
+    double sum = 0;
+    for (int d = 0; d < D; ++d) {
+      const double b = before[d], f = free[d], a = after[d];
+      sum += (f - b) * a + 0.5 * (b * b - a * a);
+    }
+    return double(mass) * sum;
   }
 
-  static void book(const Node<T>& sum, const T (&free)[D], const T (&pressed)[D],
-                   const T (&after)[D], double& normal_part, double& tangential_part) {
-    T before[D], normal[D], tangential[D];
-    for (int d = 0; d < D; ++d) {
-      before[d] = sum[1 + d] / sum[0];
-      normal[d] = sum[0] * (pressed[d] - free[d]);
-      tangential[d] = sum[0] * (after[d] - pressed[d]);
-    }
-    normal_part += taken(normal, before, after);
-    tangential_part += taken(tangential, before, after);
+  /// The same of a bounded impulse, which leaves the node free to answer to the stresses: minus its
+  /// work at the mean velocity.
+  static double taken_by_impulse(T mass, const T (&before)[D], const T (&free)[D],
+                                 const T (&after)[D]) {
+    double work = 0;
+    for (int d = 0; d < D; ++d)
+      work += 0.5 * (double(after[d]) - double(free[d])) * (double(before[d]) + double(after[d]));
+    return -double(mass) * work;
   }
+
+  static double taken(bool held, T mass, const T (&before)[D], const T (&free)[D],
+                      const T (&after)[D]) {
+    return held ? taken_by_holding(mass, before, free, after)
+                : taken_by_impulse(mass, before, free, after);
+  }
+
+  /// Work of a node's stresses at the change of a velocity.
+  static double work(const StepParameters<T>& step, const Node<T>& sum, const T (&from)[D],
+                     const T (&to)[D]) {
+    double w = 0;
+    for (int d = 0; d < D; ++d) w += double(sum[4 + d]) * (double(to[d]) - double(from[d]));
+    return double(step.dt) * w;
+  }
+
+  /// The parts of a vector along a normal and across it.
+  struct Parts {
+    T normal[D], tangential[D];
+    Parts(const T (&v)[D], const T (&n)[3]) {
+      T along = 0;
+      for (int d = 0; d < D; ++d) along += v[d] * n[d];
+      for (int d = 0; d < D; ++d) {
+        normal[d] = along * n[d];
+        tangential[d] = v[d] - normal[d];
+      }
+    }
+  };
 
   /// STICKY, SLIP, SEPARATE (thesis 1.2.3), with Coulomb friction on the running mean of the net
   /// normal impulse. Each contact has a store of normal impulse: what presses on the obstacle
@@ -120,22 +152,27 @@ struct NodeKernels {
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const Node<T>& sum, Node<T>& node, NodeStats& stats) {
     const T mass = sum[0];
-    T free[D], pressed[D], after[D];
+    T before[D], free[D], pressed[D], after[D];
     T normal_speed = 0;
     for (int d = 0; d < D; ++d) {
+      before[d] = sum[1 + d] / mass;
       free[d] = node[d];
       normal_speed += (free[d] - c.velocity[d]) * c.normal[d];
     }
     if (law.condition == Condition::sticky) {
-      for (int d = 0; d < D; ++d) node[d] = pressed[d] = after[d] = c.velocity[d];
-      if constexpr (energy) book(sum, free, pressed, after, stats.sticking, stats.sticking);
+      for (int d = 0; d < D; ++d) node[d] = after[d] = c.velocity[d];
+      if constexpr (energy) {
+        stats.sticking += taken_by_holding(mass, before, free, after);
+        stats.stress_work += work(step, sum, before, after);
+      }
       return;
     }
     const T drained = c.press * step.friction_rate;
     const T left = c.press - drained;
     const T least_push = c.holds ? -left : T(0);
     T push = -mass * normal_speed;
-    if (push < least_push) push = least_push;
+    const bool lets_go = push < least_push;
+    if (lets_go) push = least_push;
     c.next_press = left + push;
 
     T slip[D], slip_squared = 0;
@@ -149,7 +186,13 @@ struct NodeKernels {
     const T friction = T(law.friction) * drained;
     const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
     for (int d = 0; d < D; ++d) node[d] = after[d] = pressed[d] - lost * slip[d];
-    if constexpr (energy) book(sum, free, pressed, after, stats.impact, stats.friction);
+    if constexpr (energy) {
+      const Parts was(before, c.normal), would(free, c.normal), is(after, c.normal);
+      stats.impact += taken(!lets_go, mass, was.normal, would.normal, is.normal);
+      if (!lets_go) stats.stress_work += work(step, sum, was.normal, is.normal);
+      if (lost == T(1)) stats.stress_work += work(step, sum, was.tangential, is.tangential);
+      stats.friction += taken(lost == T(1), mass, was.tangential, would.tangential, is.tangential);
+    }
   }
 };
 

@@ -220,6 +220,16 @@ struct ParticleKernels {
     }
   }
 
+  /// Of the new stresses along the motion just made.
+  void book_power(const State& s, const Motion& m, const Tensor& tau, int n) const {
+    V work = broadcast<V>(T(0));
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) work += tau(i, j) * m.gradient[i][j];
+    for (int l = 0; l < n; ++l)
+      stats.stress_power -=
+          double(s.mass[l]) * double(step.specific_volume) * double(work[l]) / double(step.dt);
+  }
+
   void book_motion(const State& s, int n) const {
     for (int l = 0; l < n; ++l) {
       double v2 = 0;
@@ -268,6 +278,27 @@ struct ParticleKernels {
     }
   }
 
+  /// |e|^2 of the Hencky strain that goes with a stress.
+  SNOWSHED_INLINE V elastic_strain_squared(const Tensor& tau) const {
+    const V mean = trace(tau) * (T(1) / T(D));
+    const V volumetric = mean / material.elastic.bulk;
+    Tensor dev = tau;
+    for (int k = 0; k < D; ++k) dev.c[k] -= mean;
+    for (int k = 0; k < Tensor::size; ++k) dev.c[k] *= T(0.5) / material.elastic.mu;
+    return norm_squared(dev) + volumetric * volumetric * (T(1) / T(D));
+  }
+
+  /// Notes a particle whose strain is beyond the limit; what is not finite is, too.
+  SNOWSHED_INLINE void check(const V& strain_squared, int at, int n) const {
+    const auto sound = strain_squared <= T(elastic_strain_limit * elastic_strain_limit);
+    if (!any(sound == 0)) return;
+    for (int l = 0; l < n; ++l) {
+      if (sound[l]) continue;
+      stats.unsound = at + l;
+      stats.elastic_strain = std::sqrt(double(strain_squared[l]));
+    }
+  }
+
   // --- blocks -----------------------------------------------------------------------------
 
   void scatter_block(int first, int count, T* tile) const {
@@ -309,7 +340,8 @@ struct ParticleKernels {
       }
       speed = max(speed, max(v2, u2));
       strain = max(strain, largest_gradient(m));
-      if (any(v2 + trace(tau) - (v2 + trace(tau)) != T(0))) stats.bad = true;  // not finite
+      if constexpr (energy) book_power(s, m, tau, n);
+      check(elastic_strain_squared(tau) + T(0) * v2, at, n);
       if constexpr (energy) book_motion(s, n);
 
       stencil.place(s.cell, n);
