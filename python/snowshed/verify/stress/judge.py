@@ -1,0 +1,95 @@
+"""What a run must do: rest or run on soundly, or stop with a clear error. All else is a failure."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+#: Ways in which a run may end, and what each means.
+OUTCOMES = {
+    "rest": "the snow came to rest",
+    "time_limit": "ran soundly to the time limit",
+    "step_limit": "ran soundly until the suite's own limit on steps",
+    "refused": "bad input, refused with a clear error before it ran",
+    "stopped": "stopped with a clear error and a sound checkpoint",
+    "failed": "anything else",
+}
+
+#: Largest change of the mass by reseeding; without it mass is exact, bit by bit.
+MASS_BOUND = 1e-9
+
+#: Largest |stored + spent - brought in| relative to what came in. The books are of first order in
+#: the time step, and soft snow takes steps that are not small beside its fall or its blow.
+ENERGY_BOUND = 0.2
+
+#: By how much motion and elastic strain may exceed what came in, for a step or two and at the end.
+#: In the step in which two bodies meet they strain before they slow down: symplectic Euler swings
+#: about an energy of its own, by up to that of the meeting particles.
+SWING_BOUND = 0.1
+GAIN_BOUND = 0.01
+
+#: A clear error names a place in the scene, a parameter, a particle, or the way between events.
+_NAMES = re.compile(
+    r"^/\w+|\b(snow|numerics|events|seeding|panel|slab)\.\w+|particle \d+|reseed", re.ASCII
+)
+
+
+def momentum_bound(precision: str, steps: int) -> float:
+    """Return the largest relative error of the momentum: a few roundings in every step.
+
+    Examples
+    --------
+    >>> momentum_bound("double", 1000) < 1e-12
+    True
+    """
+    epsilon = float(np.finfo(np.float32 if precision == "float" else np.float64).eps)
+    return epsilon * (100 + steps)
+
+
+def names_its_cause(message: str) -> bool:
+    """Tell whether an error says which parameter or particle it is about.
+
+    Examples
+    --------
+    >>> names_its_cause("particle 7 at (0.1, 0.2) m: ...")
+    True
+    >>> names_its_cause("something went wrong")
+    False
+    """
+    return _NAMES.search(message) is not None
+
+
+def judge(record: Mapping[str, Any]) -> tuple[str, str]:
+    """Return a run's outcome, one of `OUTCOMES`, and where it failed, why."""
+    ended = str(record["ended"])
+    if ended not in OUTCOMES:
+        return "failed", f"{ended}: {record['message']}"
+    fault = _error_fault(record) if ended in ("refused", "stopped") else _state_fault(record)
+    return ("failed", fault) if fault else (ended, "")
+
+
+def _error_fault(record: Mapping[str, Any]) -> str:
+    if not names_its_cause(str(record["message"])):
+        return f"the error names no cause: {record['message']}"
+    return _state_fault(record) if "finite" in record else ""
+
+
+def _state_fault(record: Mapping[str, Any]) -> str:
+    if not record["finite"]:
+        return f"the state is not finite {record['message']}".strip()
+    if not record["checkpoint"]:
+        return "no checkpoint could be written and read"
+    bounds = {
+        "mass_error": MASS_BOUND,
+        "momentum_error": momentum_bound(record["precision"], record["steps"]),
+        "energy_error": ENERGY_BOUND,
+        "stored_excess": SWING_BOUND,
+        "final_excess": GAIN_BOUND,
+    }
+    for name, bound in bounds.items():
+        if record[name] > bound:  # not for NaN: not measured
+            return f"{name} is {record[name]:.3g}, more than {bound:.3g}"
+    return ""

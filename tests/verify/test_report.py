@@ -1,0 +1,205 @@
+import base64
+import json
+import re
+from html.parser import HTMLParser
+
+import pandas as pd
+import pytest
+from made_up import made_up_case
+
+from snowshed.verify import sections, wording
+from snowshed.verify.figures import Look, worth_naming
+from snowshed.verify.measurements import MeasurementFile
+from snowshed.verify.report import Stress, Suite, write_report
+from snowshed.verify.runner import run_suite
+from snowshed.verify.stress import SummaryTable
+
+VOID = {"meta", "br", "img", "link", "hr", "input"}
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class Page(HTMLParser):
+    """Checks that tags are balanced, and gathers what the page shows."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.open, self.ids, self.links, self.images = [], [], [], []
+        self.rows, self.text, self.loose = [], [], []
+        self.feed(html)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag, attributes):
+        found = dict(attributes)
+        self.ids += [found["id"]] if "id" in found else []
+        self.links += [found["href"]] if "href" in found else []
+        self.images += [found["src"]] if tag == "img" else []
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("td", "th"):
+            self.rows[-1].append("")
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if "style" not in self.open:
+            self.text.append(data)
+        if self.open and self.open[-1] in ("td", "th"):
+            self.rows[-1][-1] += data
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """A folder with the report on a full made-up suite, one entry of which fails."""
+    folder = tmp_path_factory.mktemp("report")
+    entries = [*made_up_case().matrix(True), {"dx": 0.1, "transfer": "flip"}]
+    case = made_up_case(entries=entries)
+    measurements = run_suite([case], MeasurementFile(folder / "m.jsonl"), full=True)
+    runs = pd.DataFrame({"outcome": ["rest", "rest", "failed"]})
+    outcomes = pd.DataFrame({"outcome": ["rest"], "runs": [2], "largest_error": [0.123456789]})
+    tables = [SummaryTable("outcomes", "How runs ended", "None may fail.", outcomes)]
+    stress = Stress(runs, tables)
+    write_report(Suite([case], measurements, full=True, stress=stress), folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def page(report):
+    return Page((report / "verification.html").read_text(encoding="utf-8"))
+
+
+def row_with(page, *texts):
+    (row,) = [row for row in page.rows if row[: len(texts)] == list(texts)]
+    return row
+
+
+def test_the_page_needs_no_other_file(page, report):
+    assert len(page.images) == 2
+    for image in page.images:
+        kind, _, data = image.partition(",")
+        assert kind == "data:image/png;base64"
+        assert base64.b64decode(data).startswith(PNG)
+    assert all(link.startswith("#") for link in page.links)
+    assert {link[1:] for link in page.links} == set(page.ids)
+    assert {path.name for path in (report / "figures").iterdir()} == {
+        "made_up-convergence.png",
+        "made_up-error-against-run-time.png",
+    }
+    html = (report / "verification.html").read_text(encoding="utf-8")
+    assert not re.search(r"https?://|<script|@import|url\(", html)
+
+
+def test_the_page_says_what_holds_and_what_does_not(page):
+    text = " ".join(" ".join(page.text).split())
+    assert "0 of 2 bars" not in text
+    assert "1 of 2 bars does not hold" in text
+    assert "Of 3 runs of the stress suite 1 failed" in text
+    held = row_with(page, "holds", "A made-up case", "height, m")
+    assert held[3:6] == ["apic, dx 0.1", "≤ 6 %", "4.4 %"]
+    failed = row_with(page, "does not hold", "A made-up case", "drift, kg m2/s")
+    assert failed[3:6] == ["all settings", "order ≥ 1.9 in dx", "failed"]
+    assert "KeyError: 'flip'" in text  # why
+
+
+def test_the_page_tells_who_measured_what(page):
+    text = " ".join(" ".join(page.text).split())
+    for said in (
+        "full",
+        "7, 1 failed",
+        "The error is <known>.",
+        "Nowhere",
+        "PIC damps.",
+        "None may fail.",
+    ):
+        assert said in text
+    for title in ("What holds", "Cheapest settings", "Where the method is poor", "How runs ended"):
+        assert title in text
+
+
+def test_the_page_names_the_cheapest_settings(page):
+    # Errors 4.4 dx^2 (apic, 0.02/dx s) and 24 dx^2 (pic, 0.015/dx s).
+    rows = [row for row in page.rows if row[:2] == ["A made-up case", "height, m"]]
+    assert rows == [
+        [
+            *("A made-up case", "height, m", ""),
+            *("0.2 s: dx 0.1, apic", "←", "0.4 s: dx 0.05, apic", "not reached; best 1.1 %"),
+        ]
+    ]
+
+
+def test_the_page_shows_orders_and_extremes(page):
+    orders = [row for row in page.rows if row[0] == "height, m" and row[2] == "dx"]
+    assert [row[1] for row in orders] == ["apic", "pic"]
+    assert all(row[3:] == ["0.2 … 0.05", "2.00, 2.00", "2.00"] for row in orders)
+    extremes = row_with(page, "height, m", "1.1 %")
+    assert extremes[2] == "dx 0.05, apic"
+    assert extremes[4:] == ["96 %", "dx 0.2, pic"]
+
+
+def test_numbers_are_rounded(page):
+    cells = [text for row in page.rows for text in row]
+    assert not [text for text in cells if re.search(r"\d\.\d{6}|\d{8}", text)]
+    assert row_with(page, "rest") == ["rest", "2", "0.123"]
+
+
+def test_tables_and_numbers_are_files_too(report):
+    table = pd.read_csv(report / "results.csv")
+    assert len(table) == 14
+    assert table["error"].isna().sum() == 2
+    columns = "case quantity dx transfer value exact error wall_s updates updates_per_s steps "
+    columns += "particles peak_memory_mb elapsed_s version machine date failure"
+    assert list(table) == columns.split()
+    data = json.loads((report / "results.json").read_text(encoding="utf-8"))
+    assert data["about"]["suite"] == "full"
+    assert [bar["holds"] for bar in data["bars"]] == [True, False]
+    assert len(data["measurements"]) == 7
+    assert [one["order"] for one in data["orders"]] == pytest.approx([2.0] * 4)
+    reached = [one["reached"] for one in data["cheapest"]]
+    assert reached == [True, True, True, False]
+
+
+def test_a_suite_in_which_everything_failed_has_a_report(tmp_path):
+    case = made_up_case(entries=[{"mode": "raises", "dx": 0.1}])
+    measurements = run_suite([case], MeasurementFile(tmp_path / "m.jsonl"))
+    bars = write_report(Suite([case], measurements, full=False), tmp_path)
+    assert [bar.holds for bar in bars] == [None, False]
+    page = Page((tmp_path / "verification.html").read_text(encoding="utf-8"))
+    assert not page.images
+    assert "stress" not in page.ids
+
+
+def test_the_front_is_named_where_it_matters():
+    assert worth_naming([], [], []) == []
+    assert worth_naming([2], [0, 0, 1.0], [0, 0, 0.1]) == [2]
+    times, errors = [1.0, 2.0, 2.1, 9.0], [0.5, 0.4, 0.2, 0.199]
+    assert worth_naming([0, 1, 2, 3], times, errors) == [0, 2]
+
+
+def test_what_varies_looks_different():
+    settings = [{"dx": dx, "basis": b, "transfer": t} for dx in (1, 2) for b in "qc" for t in "fa"]
+    look = Look.of(settings, along=["dx"])
+    lines = [look.for_line(one) for one in settings[:4]]
+    assert len({(line["color"], line["marker"]) for line in lines}) == 4
+    assert len({line["color"] for line in lines}) == 2  # the transfer
+    assert lines == [look.for_line(one) for one in settings[4:]]
+    assert sorted(line.get_label() for line in look.key()) == ["a", "c", "f", "q"]
+
+
+def test_tables_of_texts_are_as_wide_as_their_heads():
+    frame = pd.DataFrame({"a_b": [1.23456, float("nan")], "c": ["x", "y"], "d": [1_234_567, 12345]})
+    grid = sections.frame_grid(frame)
+    assert grid.head == ["a b", "c", "d"]
+    assert grid.align == "rlr"
+    million = f"1.23{wording.TIMES}10⁶"
+    assert grid.rows == [["1.23", "x", million], [wording.NOTHING, "y", "12,345"]]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(1e-6, "10⁻⁶"), (-0.5, "-0.5"), (1e5, "100,000"), (999.9, "1,000"), (1e-4, "0.0001")],
+)
+def test_numbers_in_words(value, text):
+    assert wording.number(value) == text
