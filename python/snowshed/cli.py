@@ -1,11 +1,12 @@
-"""The command line: ``snowshed panel|run|plan|scene|schema|compare``.
+"""The command line: ``snowshed panel|run|plan|scene|schema|compare|study|verify``.
 
-Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted. Errors are one
-line on stderr.
+Exit codes: 0 done, 1 verified and something does not hold, 2 bad input, 3 the simulation could not
+go on, 130 interrupted. Errors are one line on stderr.
 """
 
 from __future__ import annotations
 
+import importlib
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -16,8 +17,10 @@ import click
 
 from snowshed import _core
 from snowshed.interrupt import Interrupted
-from snowshed.scene import InitialisedScene
+from snowshed.scene import InitialisedScene, Scene
 from snowshed.scene_options import in_terms_of_options, scene_from_options, scene_options
+from snowshed.verify.accuracy import accuracy_option, check_alone, choose
+from snowshed.verify.command import verify
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,11 +49,13 @@ def cli() -> None:
 
 @cli.command()
 @run_options
+@accuracy_option
 @scene_options
 def panel(
     folder: Path,
     resume: bool,
     quiet: bool,
+    accuracy: Optional[float],
     preset: Optional[str],
     snow_preset: Optional[str],
     **options: Any,
@@ -62,7 +67,8 @@ def panel(
       snowshed panel --height 0.33 --length 0.245 --width 0.213 --tilt 50 \\
           --thickness 0.02 --events 5 --dim 3 --friction 0.3 -o results
     """  # noqa: D301 - click wants the control character
-    _run(_initialise(preset, snow_preset, options), folder, resume, quiet)
+    ready = _initialise(preset, snow_preset, options, accuracy, quiet=quiet)
+    _run(ready, folder, resume, quiet)
 
 
 @cli.command()
@@ -75,11 +81,14 @@ def run(scene: Path, folder: Path, resume: bool, quiet: bool) -> None:
 
 @cli.command()
 @click.argument("scene", type=click.Path(path_type=Path))
-def plan(scene: Path) -> None:
+@accuracy_option
+def plan(scene: Path, accuracy: Optional[float]) -> None:
     """Say what running a scene file would use and cost, without running it."""
     from snowshed import console
 
     ready = InitialisedScene.load(scene)
+    if accuracy is not None:
+        ready = _accurate(Scene.load(scene), accuracy).initialise()
     console.print_plan(_core.plan(ready.json, ready.base_dir))
 
 
@@ -87,12 +96,17 @@ def plan(scene: Path) -> None:
 @click.option(
     "-o", "--output", "file", type=click.Path(path_type=Path), help="File to write; else stdout."
 )
+@accuracy_option
 @scene_options
 def scene(
-    file: Optional[Path], preset: Optional[str], snow_preset: Optional[str], **options: Any
+    file: Optional[Path],
+    accuracy: Optional[float],
+    preset: Optional[str],
+    snow_preset: Optional[str],
+    **options: Any,
 ) -> None:
     """Write the scene that the same options of ``panel`` would run."""
-    ready = _initialise(preset, snow_preset, options)
+    ready = _initialise(preset, snow_preset, options, accuracy)
     if file is None:
         click.echo(ready.json)
     else:
@@ -116,10 +130,50 @@ def compare(one: Path, other: Path) -> None:
     console.print_ratios(compare_folders(one, other))
 
 
+class DeferredGroup(click.Group):
+    """A group whose commands are imported when it is used, so that all others start quickly.
+
+    Parameters
+    ----------
+    name, help
+        As of any group.
+    module
+        The module that defines the group under the same name.
+    """
+
+    def __init__(self, name: str, module: str, help: str) -> None:
+        super().__init__(name, help=help)
+        self._module = module
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of the group's commands."""
+        return self._group().list_commands(ctx)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> Optional[click.Command]:
+        """Return a command of the group."""
+        return self._group().get_command(ctx, cmd_name)
+
+    def _group(self) -> click.Group:
+        group: click.Group = getattr(importlib.import_module(self._module), str(self.name))
+        return group
+
+
+STUDY_HELP = """Compute many runs: one scene, and parameters that vary.
+
+\b
+Example:
+  snowshed study template -o study.toml
+  snowshed study run study.toml -o results
+  snowshed study export results -o table.csv
+"""
+cli.add_command(DeferredGroup("study", "snowshed.study.command", STUDY_HELP))
+cli.add_command(verify)
+
+
 def main(arguments: Optional[Sequence[str]] = None) -> int:
     """Run the command line and return its exit code."""
     try:
-        cli.main(arguments, prog_name="snowshed", standalone_mode=False)
+        return cli.main(arguments, prog_name="snowshed", standalone_mode=False) or 0
     except click.ClickException as error:
         return _fail(error.format_message(), max(error.exit_code, 2))
     except OSError as error:
@@ -145,12 +199,29 @@ def _fail(message: str, code: int) -> int:
 
 
 def _initialise(
-    preset: Optional[str], snow_preset: Optional[str], options: dict[str, Any]
+    preset: Optional[str],
+    snow_preset: Optional[str],
+    options: dict[str, Any],
+    accuracy: Optional[float],
+    *,
+    quiet: bool = False,
 ) -> InitialisedScene:
     try:
-        return scene_from_options(preset, snow_preset, options).initialise()
+        scene = scene_from_options(preset, snow_preset, options)
+        if accuracy is not None:
+            check_alone(options)
+            scene = _accurate(scene, accuracy, quiet=quiet)
+        return scene.initialise()
     except _core.InputError as error:
         raise in_terms_of_options(error) from None
+
+
+def _accurate(scene: Scene, accuracy: float, *, quiet: bool = False) -> Scene:
+    """Return the scene with dx and scheme chosen for an accuracy, and say so."""
+    choice = choose(accuracy, scene)
+    if not quiet:
+        click.echo(choice.reason, err=True)
+    return scene.update(choice.values)
 
 
 def _run(ready: InitialisedScene, folder: Path, resume: bool, quiet: bool) -> None:

@@ -1,0 +1,151 @@
+"""Computing one run, in whatever process it was handed to."""
+
+from __future__ import annotations
+
+import json
+import platform
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any, Optional
+
+from snowshed import _core
+from snowshed._core import InputError
+from snowshed.events import Progress, run_events
+from snowshed.interrupt import Interrupted
+from snowshed.results import Results
+from snowshed.scene import InitialisedScene
+from snowshed.study.identity import content_hash
+from snowshed.study.locks import holding
+from snowshed.study.outcome import Outcome, Task
+from snowshed.study.store import COUNTS, WORDS
+
+FractionReporter = Callable[[float], None]
+
+
+def compute(task: Task, report: Optional[FractionReporter] = None) -> Outcome:
+    """Compute a run, from where an earlier attempt in its folder ended, and say what came of it.
+
+    Parameters
+    ----------
+    task
+        The run. Where the folder that holds its folder does not exist, as on a cluster without
+        shared files, a temporary folder takes its place.
+    report
+        Called with the part of the work that is done, about twice a second.
+
+    Returns
+    -------
+    Outcome
+        Errors are outcomes too.
+    """
+    try:
+        with _working_folder(Path(task.folder)) as folder:
+            return _compute(task, folder / "results", report)
+    except OSError as error:
+        name = f"{error.filename}: " if error.filename else ""
+        return Outcome(task.hash, "unable", error=f"{name}{error.strerror or error}")
+
+
+def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Outcome:
+    if content_hash(json.loads(task.scene)) != task.hash:
+        reason = (
+            f"run {task.hash} is not what was registered: a file its scene names has changed, or "
+            f"this is another version of snowshed ({_core.version})"
+        )
+        return Outcome(task.hash, "unable", error=reason)
+    earlier = Results(folder).read_run()
+    if earlier.get("status") == "failed":  # the one before was killed before it could say so
+        return _outcome(task, folder, earlier["error"])
+    try:
+        _run_or_resume(task, folder, _weighted(report))
+    except Interrupted:
+        return Outcome(task.hash, "interrupted")
+    except OSError:
+        raise
+    except Exception as error:  # whatever it is, the other runs must go on
+        return _outcome(task, folder, f"{_kind(error)}{error}")
+    return _outcome(task, folder, None)
+
+
+def _run_or_resume(task: Task, folder: Path, report: Optional[Callable[[Progress], None]]) -> None:
+    """Run the events; an attempt that left nothing to resume from is thrown away."""
+    if (folder / "scene.json").is_file():
+        try:
+            scene = InitialisedScene.load(folder / "scene.json")  # with the threads it had
+            run_events(scene, folder, resume=True, progress=report, pictures=False)
+            return
+        except InputError:
+            pass
+    shutil.rmtree(folder, ignore_errors=True)
+    data = json.loads(task.scene)
+    data["numerics"]["threads"] = task.threads
+    run_events(InitialisedScene.parse(json.dumps(data)), folder, progress=report, pictures=False)
+
+
+def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
+    """Return what the results folder says, as far as the run came."""
+    results = Results(folder)
+    events = [{name: _value(name, cell) for name, cell in row.items()}
+              for row in results.events.rows]  # fmt: skip
+    status = "done" if error is None else "failed"
+    return Outcome(task.hash, status, events, _timing(results.read_run()), error)
+
+
+def _value(name: str, cell: str) -> Any:
+    """Return the value of a cell of events.csv, exactly."""
+    if name in WORDS:
+        return cell
+    if name == "event" or name in COUNTS:
+        return int(cell)
+    return float(cell) if cell else None
+
+
+def _timing(facts: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "run_wall_s": facts.get("wall_s"),
+        "threads": facts.get("threads"),
+        "particles": facts.get("particles"),
+        "particle_updates": facts.get("particle_updates"),
+        "peak_memory_mb": facts.get("peak_memory_mb"),
+        "host": platform.node(),
+        "cpu": facts.get("cpu"),
+        "finished": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+    }
+
+
+def _kind(error: Exception) -> str:
+    """Return the kind of an unforeseen error; the core's own messages say all."""
+    expected = isinstance(error, (InputError, _core.SimulationError))
+    return "" if expected else f"{type(error).__name__}: "
+
+
+def _weighted(report: Optional[FractionReporter]) -> Optional[Callable[[Progress], None]]:
+    """Turn a run's progress into the part of its work: event k moves the snow of k slabs."""
+    if report is None:
+        return None
+
+    def tell(progress: Progress) -> None:
+        event, count = progress.event, progress.count
+        done = event * (event - 1) / 2 + progress.fraction * event
+        report(done / (count * (count + 1) / 2))
+
+    return tell
+
+
+@contextmanager
+def _working_folder(folder: Path) -> Iterator[Path]:
+    """Yield the folder, which no other process uses meanwhile, or a temporary one."""
+    if folder.parent.is_dir():
+        with holding(folder, _make):
+            yield folder
+    else:
+        with tempfile.TemporaryDirectory(prefix="snowshed-") as temporary:
+            yield Path(temporary)
+
+
+def _make(folder: Path) -> None:
+    folder.mkdir(exist_ok=True)

@@ -1,0 +1,235 @@
+"""Factors of a study: parameters of a scene, and the values they take together.
+
+A study crosses its factors: every point of one with every point of the others. What is to vary in
+step belongs into one factor.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from snowshed._core import InputError
+from snowshed.study.extras import require
+
+LARGEST_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
+SCALES = ("linear", "log")
+
+
+@dataclass(frozen=True)
+class Factor:
+    """Parameters that vary together, value by value.
+
+    Parameters
+    ----------
+    columns
+        For each parameter, by its dotted path in a scene, its values; all have equally many.
+
+    Raises
+    ------
+    InputError
+        If there are no values, or not equally many.
+
+    Examples
+    --------
+    >>> factor = Factor({"panel.height": [1.0, 2.0], "panel.length": [2.0, 4.0]})
+    >>> factor.points()[1]
+    {'panel.height': 2.0, 'panel.length': 4.0}
+    """
+
+    columns: Mapping[str, Sequence[Any]]
+
+    def __post_init__(self) -> None:
+        counts = {path: len(values) for path, values in self.columns.items()}
+        if not counts:
+            raise InputError("names no parameter; name at least one")
+        for path, count in counts.items():
+            if not 0 < count <= LARGEST_COUNT:
+                raise InputError(f"{path}: {count} values; allowed are 1 to {LARGEST_COUNT}")
+        if len(set(counts.values())) > 1:
+            listed = ", ".join(f"{path} has {count}" for path, count in counts.items())
+            raise InputError(f"what varies in step needs equally many values, but {listed}")
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def points(self) -> list[dict[str, Any]]:
+        """Return the points, each as ``{path: value}``."""
+        return [dict(zip(self.columns, values)) for values in zip(*self.columns.values())]
+
+
+def axis(path: str, values: Sequence[Any]) -> Factor:
+    """Return the factor of one parameter.
+
+    Examples
+    --------
+    >>> axis("snow.cohesion", [0.1, 0.2]).points()
+    [{'snow.cohesion': 0.1}, {'snow.cohesion': 0.2}]
+    """
+    return Factor({path: values})
+
+
+def linear(
+    start: float, stop: float, *, step: Optional[float] = None, count: Optional[int] = None
+) -> list[float]:
+    """Return evenly spaced values from `start` to `stop`, both included.
+
+    Parameters
+    ----------
+    start, stop
+        First value, and the last one that is allowed.
+    step
+        Distance of the values; `stop` itself is among them if a whole number of steps reaches it.
+    count
+        Number of values, at least 2; give either this or `step`.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not make a range.
+
+    Examples
+    --------
+    >>> linear(0.1, 0.3, step=0.1), linear(40, 70, step=10), linear(0, 1, count=3)
+    ([0.1, 0.2, 0.3], [40, 50, 60, 70], [0.0, 0.5, 1.0])
+    """
+    _check_finite(start, stop)
+    if (step is None) == (count is None):
+        raise InputError("needs either a step or a count")
+    if count is not None:
+        _check_count(count)
+        return [_tidy(start + (stop - start) * i / (count - 1)) for i in range(count)]
+    assert step is not None
+    if not (math.isfinite(step) and step > 0):
+        raise InputError(f"the step {step} is not positive")
+    if stop < start:
+        raise InputError(f"must not fall: from {start} to {stop}")
+    steps = math.floor((stop - start) / step * (1 + 1e-9))
+    if steps >= LARGEST_COUNT:
+        raise InputError(f"has {steps + 1} values; at most {LARGEST_COUNT} are allowed")
+    return [_tidy(start + i * step) for i in range(steps + 1)]
+
+
+def logarithmic(start: float, stop: float, count: int) -> list[float]:
+    """Return `count` values (at least 2) from `start` to `stop` in constant ratio.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not make such a range.
+
+    Examples
+    --------
+    >>> logarithmic(1e5, 1e7, 3)
+    [100000.0, 1000000.0, 10000000.0]
+    """
+    _check_finite(start, stop)
+    _check_positive(start, stop)
+    _check_count(count)
+    ratio = math.log(stop / start)
+    return [_tidy(start * math.exp(ratio * i / (count - 1))) for i in range(count)]
+
+
+@dataclass(frozen=True)
+class Span:
+    """An interval that is sampled, evenly in the value (linear) or in its logarithm (log)."""
+
+    low: float
+    high: float
+    scale: str = "linear"
+
+    def __post_init__(self) -> None:
+        _check_finite(self.low, self.high)
+        if self.scale not in SCALES:
+            raise InputError(f"scale {self.scale!r} is none of {', '.join(SCALES)}")
+        if not self.low < self.high:
+            raise InputError(f"must rise: from {self.low} to {self.high}")
+        if self.scale == "log":
+            _check_positive(self.low, self.high)
+
+    def at(self, fraction: float) -> float:
+        """Return the value at a fraction, 0 to 1, of the way."""
+        if self.scale == "linear":
+            return _tidy(self.low + fraction * (self.high - self.low))
+        return _tidy(self.low * (self.high / self.low) ** fraction)
+
+
+def latin_hypercube(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
+    """Return a Latin hypercube sample: each of `count` slices of each span is used once.
+
+    Parameters
+    ----------
+    spans
+        For each parameter, by its dotted path, where to sample it.
+    count
+        Number of points.
+    seed
+        Seed of the random numbers; another seed gives another sample.
+
+    Raises
+    ------
+    InputError
+        If the count is not positive, or SciPy (extra ``study``) is not installed.
+
+    Examples
+    --------
+    >>> sample = latin_hypercube({"snow.cohesion": Span(0.1, 0.3)}, 4)
+    >>> sorted(int((value - 0.1) / 0.05) for value in sample.columns["snow.cohesion"])
+    [0, 1, 2, 3]
+    """
+    return _sample("LatinHypercube", spans, count, seed)
+
+
+def sobol(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
+    """Return points of a scrambled Sobol sequence; `count` is a power of two.
+
+    Parameters and errors are those of `latin_hypercube`. Only at powers of two the sequence is
+    balanced, so that other counts are refused.
+
+    Examples
+    --------
+    >>> len(sobol({"panel.tilt": Span(30, 60), "panel.friction": Span(0, 0.4)}, 8))
+    8
+    """
+    if count < 1 or count & (count - 1):
+        raise InputError(f"count {count} is not a power of two, which Sobol's sequence needs")
+    return _sample("Sobol", spans, count, seed)
+
+
+def _sample(method: str, spans: Mapping[str, Span], count: int, seed: int) -> Factor:
+    if not 0 < count <= LARGEST_COUNT:
+        raise InputError(f"count {count} is outside the allowed range (1 to {LARGEST_COUNT})")
+    if not spans:
+        raise InputError("names no parameter; name at least one")
+    qmc = require("scipy.stats.qmc", "study", "sampling")
+    points = getattr(qmc, method)(d=len(spans), seed=seed).random(count)
+    return Factor(
+        {
+            path: [span.at(float(fraction)) for fraction in points[:, column]]
+            for column, (path, span) in enumerate(spans.items())
+        }
+    )
+
+
+def _tidy(value: float) -> float:
+    """Return a value without the last digits' rounding, so that 0.1 + 2 * 0.1 is 0.3."""
+    return value if isinstance(value, int) else float(f"{value:.12g}")
+
+
+def _check_finite(*values: float) -> None:
+    for value in values:
+        if not math.isfinite(value):
+            raise InputError(f"{value} is not a finite number")
+
+
+def _check_positive(*values: float) -> None:
+    for value in values:
+        if value <= 0:
+            raise InputError(f"{value} is not positive, which a logarithmic scale needs")
+
+
+def _check_count(count: int) -> None:
+    if not 2 <= count <= LARGEST_COUNT:
+        raise InputError(f"count {count} is outside the allowed range (2 to {LARGEST_COUNT})")

@@ -1,0 +1,94 @@
+"""What a study will cost, before it starts: the core's forecast of every run, one measured speed.
+
+``plan`` of the core measures the speed of the machine each time, which for hundreds of runs would
+take minutes. A scene whose snow counts as resting from the start leaves it nothing to measure, and
+the forecast of particles and steps does not depend on that.
+"""
+
+from __future__ import annotations
+
+import heapq
+import json
+from collections.abc import Iterable, Sequence
+
+from snowshed import _core
+from snowshed._core import InputError, SimulationError
+
+AT_REST = {"rest_speed": 1e4, "rest_time": 0.0}
+
+
+def work(scene: str) -> float:
+    """Return how many particle updates a run is expected to take, with weights as in ``plan``.
+
+    Parameters
+    ----------
+    scene
+        The complete scene as JSON. One that cannot be run takes no work.
+
+    Examples
+    --------
+    >>> from snowshed import Scene
+    >>> lab = Scene.preset("lab-50").update({"dimension": 2, "events.count": 1})
+    >>> one = work(lab.initialise().json)
+    >>> two = work(lab.set("events.count", 2).initialise().json)
+    >>> round(two / one)  # the second event moves the snow of both
+    3
+    """
+    data = json.loads(scene)
+    data["events"].update(AT_REST)
+    try:
+        plan = _core.plan(json.dumps(data))
+    except (InputError, SimulationError):
+        return 0.0
+    # The core divides by the speed it has measured, or by 1 where that is nothing.
+    return float(plan["expected_wall_s"] * max(plan["updates_per_s"], 1.0))
+
+
+def speed(scene: str, threads: int) -> float:
+    """Return the particle updates per second that a scene reaches here and now."""
+    data = json.loads(scene)
+    data["numerics"]["threads"] = threads
+    try:
+        return max(float(_core.plan(json.dumps(data))["updates_per_s"]), 1.0)
+    except (InputError, SimulationError):
+        return 1.0
+
+
+def duration(works: Iterable[float], workers: int) -> float:
+    """Return how long workers take for tasks if the longest are begun first.
+
+    Parameters
+    ----------
+    works
+        What each task takes, in any unit.
+    workers
+        Tasks at once.
+
+    Examples
+    --------
+    >>> duration([3.0, 1.0, 1.0, 1.0], 2)
+    3.0
+    """
+    busy_until = [0.0] * workers
+    for task in sorted(works, reverse=True):
+        heapq.heapreplace(busy_until, busy_until[0] + task)
+    return max(busy_until)
+
+
+def expected(scenes: Sequence[str], works: Sequence[float], workers: int, threads: int) -> float:
+    """Return how long runs are expected to take, s.
+
+    The speed is measured once, on the run of median work.
+
+    Parameters
+    ----------
+    scenes, works
+        Of each run, its complete scene and its `work`.
+    workers
+        Runs at once.
+    threads
+        Threads of each.
+    """
+    order = sorted(range(len(works)), key=works.__getitem__)
+    typical = scenes[order[len(order) // 2]]
+    return duration(works, workers) / speed(typical, threads)

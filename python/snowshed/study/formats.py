@@ -1,0 +1,129 @@
+"""Study tables as files for other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+from snowshed._core import InputError
+from snowshed.atomic import replacing
+from snowshed.scene import PathLike
+from snowshed.schema import scene_parameters
+from snowshed.study.extras import require
+from snowshed.study.store import MEASURES
+from snowshed.study.table import read_table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SUFFIXES = {".csv": "csv", ".parquet": "parquet", ".nc": "netcdf"}
+UNITS = {"m": "m", "m3": "m3", "kg_m3": "kg/m3", "kg": "kg", "s": "s", "mb": "MB"}
+
+
+def export(
+    folder: PathLike,
+    file: PathLike,
+    *,
+    study: Optional[str] = None,
+    form: Optional[str] = None,
+    timing: bool = False,
+) -> None:
+    """Write a study's table to a file.
+
+    Parameters
+    ----------
+    folder, study, timing
+        As for `read_table`.
+    file
+        The file to write; it appears whole or not at all.
+    form
+        "csv", "parquet" or "netcdf"; None: what the file's name ends with says (.csv, .parquet,
+        .nc).
+
+    Raises
+    ------
+    InputError
+        If the format is unknown, or the libraries for it (extra ``study``) are not installed.
+    """
+    write = _writer(Path(file), form)
+    table = read_table(folder, study, timing=timing)
+    with replacing(file) as beside:
+        write(table, beside)
+
+
+def to_dataset(table: pd.DataFrame) -> Any:
+    """Return a study's table as an xarray Dataset with the dimensions run and event.
+
+    What differs from event to event has both dimensions, all else (hash, parameters, settings) is
+    a coordinate along run. Events that a run has not reached hold NaN, 0 steps and empty texts.
+
+    Raises
+    ------
+    InputError
+        If xarray (extra ``study``) is not installed.
+    """
+    xarray = require("xarray", "study", "the NetCDF form")
+    per_event = [*MEASURES, "error", *(["wall_s"] if "wall_s" in table else [])]
+    grids = table.set_index(["hash", "event"])[per_event].unstack("event")
+    runs = table.drop(columns=["event", *per_event]).drop_duplicates("hash")
+    grids = grids.reindex(runs["hash"])
+    data = {name: (("run", "event"), _filled(grids[name])) for name in per_event}
+    coordinates = {name: ("run", _filled(runs[name])) for name in runs}
+    coordinates["event"] = ("event", list(grids[per_event[0]].columns))
+    dataset = xarray.Dataset(data, coordinates)
+    for name, unit in _units().items():
+        if name in dataset:
+            dataset[name].attrs["units"] = unit
+    return dataset
+
+
+def _writer(file: Path, form: Optional[str]) -> Callable[[pd.DataFrame, Path], None]:
+    form = form or SUFFIXES.get(file.suffix, f"of {file.name}")
+    if form not in WRITERS:
+        raise InputError(
+            f"{file}: unknown format {form!r}; allowed: {', '.join(WRITERS)}, "
+            f"by default what {', '.join(SUFFIXES)} stand for"
+        )
+    return WRITERS[form]
+
+
+def _write_csv(table: pd.DataFrame, file: Path) -> None:
+    table.to_csv(file, index=False, lineterminator="\n")
+
+
+def _write_parquet(table: pd.DataFrame, file: Path) -> None:
+    require("pyarrow", "study", "the Parquet format")
+    table.to_parquet(file, engine="pyarrow", index=False)
+
+
+def _write_netcdf(table: pd.DataFrame, file: Path) -> None:
+    require("scipy.io", "study", "the NetCDF format")
+    to_dataset(table).to_netcdf(file, engine="scipy")
+
+
+WRITERS: Mapping[str, Callable[[pd.DataFrame, Path], None]] = {
+    "csv": _write_csv,
+    "parquet": _write_parquet,
+    "netcdf": _write_netcdf,
+}
+
+
+def _filled(columns: Any) -> Any:
+    """Return the values of columns as a plain array; NetCDF knows no missing texts or counts."""
+    kinds = columns.dtypes if columns.ndim == 2 else [columns.dtype]
+    if all(kind == "Int64" for kind in kinds):
+        return columns.fillna(0).to_numpy(dtype="int64")
+    if all(getattr(kind, "kind", "O") in "ifb" for kind in kinds):
+        return columns.to_numpy()
+    return columns.fillna("").astype(str).to_numpy(dtype=object)
+
+
+def _units() -> dict[str, str]:
+    """Return the units of parameters, from the core's schema, and of measures, from their names."""
+    units = {parameter.path: parameter.unit for parameter in scene_parameters() if parameter.unit}
+    for name in (*MEASURES, "wall_s", "run_wall_s", "peak_memory_mb"):
+        endings = [ending for ending in UNITS if name.endswith(f"_{ending}")]
+        if endings:
+            units[name] = UNITS[max(endings, key=len)]
+    return units

@@ -1,0 +1,88 @@
+"""File locks that end with the process that holds them, however it ends.
+
+They are the kernel's (flock), on a file or a folder. That makes them the proof that a process is
+alive: unlike a process id they are never taken for those of a later process, and they hold across
+containers.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def holding(path: Path, make: Callable[[Path], None]) -> Iterator[None]:
+    """Hold the lock of a file or folder, after waiting for whoever holds it.
+
+    Parameters
+    ----------
+    path
+        What is locked.
+    make
+        Makes it; called with `path`, which may be there already.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made, or the file system has no locks.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     with holding(Path(folder) / "a.lock", Path.touch):
+    ...         held = is_held(Path(folder) / "a.lock")
+    ...     held, is_held(Path(folder) / "a.lock")
+    (True, False)
+    """
+    while True:
+        make(path)
+        try:
+            handle = os.open(path, os.O_RDONLY)
+        except FileNotFoundError:
+            continue  # its last holder has removed it just now
+        try:
+            _lock(handle, path, fcntl.LOCK_EX)
+            if _still_there(handle, path):
+                yield
+                return
+        finally:
+            os.close(handle)
+
+
+def is_held(path: Path) -> bool:
+    """Return whether some process holds the lock; nobody holds what is not there."""
+    try:
+        handle = os.open(path, os.O_RDONLY)
+    except FileNotFoundError:
+        return False
+    try:
+        # Shared, so that two that look at the same time do not take each other for the holder.
+        _lock(handle, path, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(handle)
+    return False
+
+
+def _lock(handle: int, path: Path, kind: int) -> None:
+    try:
+        fcntl.flock(handle, kind)
+    except BlockingIOError:
+        raise
+    except OSError as error:
+        reason = f"the file system has no locks ({error.strerror})"
+        raise OSError(error.errno, reason, os.fspath(path)) from None
+
+
+def _still_there(handle: int, path: Path) -> bool:
+    """Return whether the path still leads to what was opened: its last holder may remove it."""
+    try:
+        return os.path.samestat(os.fstat(handle), path.stat())
+    except FileNotFoundError:
+        return False

@@ -1,0 +1,47 @@
+"""Who computes: a process that claims runs, and whose lock says that it is alive."""
+
+from __future__ import annotations
+
+import os
+import platform
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from snowshed.study.errors import StudyError
+from snowshed.study.locks import holding, is_held
+from snowshed.study.store import Store
+
+
+@contextmanager
+def ownership(store: Store) -> Iterator[str]:
+    """Be an owner: yield a name to claim runs with; at the end all claims are given up.
+
+    If the process dies, its lock ends, and `release_dead` of another gives up its claims.
+    """
+    owner = f"{platform.node()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
+    with holding(_lock(store, owner), Path.touch):
+        try:
+            yield owner
+        finally:
+            with suppress(StudyError):  # a full disk; without its lock the owner counts as dead
+                store.release(owner)
+            _lock(store, owner).unlink(missing_ok=True)
+
+
+def is_alive(store: Store, owner: str) -> bool:
+    """Return whether the process of an owner still runs."""
+    return is_held(_lock(store, owner))
+
+
+def release_dead(store: Store) -> None:
+    """Give up the claims of owners that have died."""
+    for owner in store.owners():
+        if not is_alive(store, owner):
+            store.release(owner)
+            _lock(store, owner).unlink(missing_ok=True)
+
+
+def _lock(store: Store, owner: str) -> Path:
+    return store.running / f"{owner}.lock"

@@ -1,0 +1,361 @@
+"""Computing the runs of studies that are not yet in the store."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional
+
+from snowshed import _core
+from snowshed._core import InputError
+from snowshed.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.scene import PathLike
+from snowshed.study import forecast
+from snowshed.study.definition import Study
+from snowshed.study.errors import StudyError, StudyInterrupted
+from snowshed.study.local import LocalWorkers
+from snowshed.study.locks import is_held
+from snowshed.study.outcome import Outcome, Task
+from snowshed.study.owner import ownership, release_dead
+from snowshed.study.store import Store, StoredRun
+from snowshed.study.workers import Workers
+
+POLL_S = 0.25  # s between looks at interrupts and progress
+ELSEWHERE_S = 1.0  # s between looks at what other processes compute
+DEATHS = 3  # workers that may die of a run before it counts as failed
+
+
+@dataclass(frozen=True)
+class StudyProgress:
+    """How far a study has come.
+
+    Attributes
+    ----------
+    runs, done, failed
+        Runs in all, and how many are done or have failed, earlier ones included.
+    running, elsewhere
+        Runs being computed by this process's workers, and by other processes on the same store.
+    fraction
+        Part of the work that was left at the start which is done, 0 to 1.
+    at_once
+        Runs that are computed at once.
+    expected_s
+        Time that the work left at the start is expected to take, s.
+    """
+
+    runs: int
+    done: int
+    failed: int
+    running: int
+    elsewhere: int
+    fraction: float
+    at_once: int
+    expected_s: float
+
+
+Reporter = Callable[[StudyProgress], None]
+
+
+@dataclass(frozen=True)
+class Resources:
+    """What a study may use; see `Study.run` for the fields."""
+
+    jobs: Optional[int] = None
+    threads: Optional[int] = None
+    scheduler: Any = None
+
+    def __post_init__(self) -> None:
+        for name in ("jobs", "threads"):
+            value = getattr(self, name)
+            if value is not None and value < 1:
+                raise InputError(f"{name}: {value} is not positive")
+            if value is not None and self.scheduler is not None:
+                raise InputError(f"{name}: not with a scheduler, whose workers decide that")
+
+    def workers(self, runs: int) -> tuple[Workers, int]:
+        """Return workers for so many runs, and how many runs they compute at once."""
+        if self.scheduler is not None:
+            from snowshed.study.cluster import DaskWorkers
+
+            cluster = DaskWorkers(self.scheduler)
+            return cluster, cluster.cores
+        cores = available_cores()
+        processes = max(1, min(self.jobs or max(1, cores // (self.threads or 1)), runs))
+        return LocalWorkers(processes, self.threads, cores), processes
+
+
+def available_cores() -> int:
+    """Return the number of cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def run_study(
+    study: Study,
+    folder: PathLike,
+    *,
+    jobs: Optional[int] = None,
+    threads: Optional[int] = None,
+    scheduler: Any = None,
+    retry_failed: bool = False,
+    progress: Optional[Reporter] = None,
+) -> None:
+    """Compute what is missing of a study; see `Study.run`."""
+    resources = Resources(jobs, threads, scheduler)
+    runs = study.runs()
+    with Store.create(folder) as store:
+        store.register(study.name, study.axes, runs)
+        _compute(store, [study.name], resources, retry_failed, progress)
+
+
+def resume(
+    folder: PathLike,
+    study: Optional[str] = None,
+    *,
+    jobs: Optional[int] = None,
+    threads: Optional[int] = None,
+    scheduler: Any = None,
+    retry_failed: bool = False,
+    progress: Optional[Reporter] = None,
+) -> None:
+    """Compute what is missing of a study, or of all studies, in a store.
+
+    Parameters
+    ----------
+    folder
+        Where the store is.
+    study
+        Name of the study; None: all.
+    jobs, threads, scheduler, retry_failed, progress
+        As for `Study.run`.
+
+    Raises
+    ------
+    InputError
+        If there is no such study, or another version of snowshed has registered its runs.
+    StudyError, StudyInterrupted
+        As for `Study.run`.
+    """
+    resources = Resources(jobs, threads, scheduler)
+    with Store.open(folder) as store:
+        names = store.studies() if study is None and store.studies() else [store.named(study)]
+        _compute(store, names, resources, retry_failed, progress)
+
+
+def expected_duration(study: Study, *, jobs: Optional[int] = None) -> tuple[float, int]:
+    """Return how long a study is expected to take on this machine, s, and its runs at once.
+
+    Measures the machine's speed for a fraction of a second.
+    """
+    scenes = [run.scene for run in study.runs()]
+    workers, at_once = Resources(jobs).workers(len(scenes))
+    works = [forecast.work(scene) for scene in scenes]
+    threads = workers.threads(len(scenes))
+    return forecast.expected(scenes, works, at_once, threads), at_once
+
+
+def _compute(
+    store: Store,
+    studies: Sequence[str],
+    resources: Resources,
+    retry_failed: bool,
+    progress: Optional[Reporter],
+) -> None:
+    runs = {run.hash: run for name in studies for run in store.runs(name)}
+    if retry_failed:
+        store.reset(hash_ for hash_, run in runs.items() if run.status == "failed")
+        runs = {run.hash: run for name in studies for run in store.runs(name)}
+    pending = [run for run in runs.values() if run.status == "pending"]
+    _check_version(store, pending)
+    _tidy(store)
+    if not pending:
+        return
+    workers, at_once = resources.workers(len(pending))
+    try:
+        with ownership(store) as owner, deferred_interrupts() as interrupt:
+            session = _Session(store, owner, workers, list(runs.values()), interrupt)
+            session.run(_Narrator(session, progress, at_once) if progress else None)
+    except StudyError:
+        workers.stop()  # at checkpoints, where the disk still takes them
+        raise
+    finally:
+        workers.close()
+
+
+def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
+    for run in pending:
+        if run.version != _core.version:
+            raise InputError(
+                f"{store.folder}: its runs are for snowshed {run.version}, and this is "
+                f"{_core.version}; start the study again with `snowshed study run`, "
+                "which computes all its runs with this version"
+            )
+
+
+def _tidy(store: Store) -> None:
+    """Remove what killed processes have left behind and nobody needs to go on."""
+    for path in store.running.iterdir():
+        leftover = path.suffix == ".lock" or store.state(path.name)[0] != "pending"
+        if leftover and not is_held(path):
+            path.unlink(missing_ok=True) if path.is_file() else _remove(path)
+
+
+def _remove(folder: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+class _Session:
+    """The runs of some studies, from what is missing to what is stored."""
+
+    def __init__(
+        self,
+        store: Store,
+        owner: str,
+        workers: Workers,
+        runs: Sequence[StoredRun],
+        interrupt: InterruptRequest,
+    ) -> None:
+        self.store = store
+        self.owner = owner
+        self.workers = workers
+        self.interrupt = interrupt
+        self.counts = Counter(run.status for run in runs)
+        pending = [run for run in runs if run.status == "pending"]
+        self.work = {run.hash: forecast.work(run.scene) for run in pending}
+        # The longest first, so that none is left to run alone at the end.
+        self.waiting = deque(sorted(pending, key=lambda run: -self.work[run.hash]))
+        self.running: dict[str, StoredRun] = {}
+        self.elsewhere: list[StoredRun] = []
+        self.looked = -math.inf
+        self.deaths: Counter[str] = Counter()
+
+    def run(self, tell: Optional[Callable[[], None]]) -> None:
+        """Compute until nothing is left."""
+        while self.waiting or self.running or self.elsewhere:
+            if self.interrupt.requested:
+                self._stop()
+            self._look_elsewhere()
+            self._hand_out()
+            if tell:
+                tell()
+            ended = self._wait()
+            self._hand_out()  # before anything is stored: no worker need wait for the disk
+            for run, outcome in ended:
+                self._settle(run, outcome)
+        if tell:
+            tell()
+
+    def _hand_out(self) -> None:
+        while self.waiting and not self.interrupt.requested and self._has_room():
+            threads = self.workers.threads(len(self.waiting) + len(self.running))
+            run = self.waiting.popleft()
+            if self.store.claim(run.hash, self.owner):
+                self.running[run.hash] = run
+                folder = os.fspath(self._folder(run.hash))
+                self.workers.submit(Task(run.hash, run.scene, folder, threads))
+            else:
+                self.elsewhere.append(run)
+
+    def _has_room(self) -> bool:
+        return len(self.running) < self.workers.capacity
+
+    def _look_elsewhere(self) -> None:
+        """Take over what other processes have left undone, and count what they have done."""
+        if not self.elsewhere or time.monotonic() < self.looked + ELSEWHERE_S:
+            return
+        self.looked = time.monotonic()
+        release_dead(self.store)
+        still = []
+        for run in self.elsewhere:
+            status, owner = self.store.state(run.hash)
+            if status != "pending":
+                self._count(run.hash, status)
+            elif owner is None:
+                self.waiting.append(run)
+            else:
+                still.append(run)
+        self.elsewhere = still
+
+    def _wait(self) -> list[tuple[StoredRun, Outcome]]:
+        """Wait a moment for runs to end; return those that did."""
+        if self.running:
+            ended = self.workers.collect(POLL_S)
+            return [(self.running.pop(outcome.hash), outcome) for outcome in ended]
+        time.sleep(POLL_S)
+        return []
+
+    def _settle(self, run: StoredRun, outcome: Outcome) -> None:
+        if outcome.status == "unable":
+            raise StudyError(str(outcome.error))
+        if outcome.status == "lost":
+            outcome = self._after_death(outcome)
+        if outcome.status in ("done", "failed"):
+            self._store(outcome)
+        else:
+            self.waiting.appendleft(run)
+
+    def _after_death(self, outcome: Outcome) -> Outcome:
+        """Return the outcome of a run whose worker died: not every death is the run's fault."""
+        self.deaths[outcome.hash] += 1
+        if self.deaths[outcome.hash] < DEATHS:
+            return outcome
+        error = f"gave up after {DEATHS} attempts: {outcome.error}"
+        return Outcome(outcome.hash, "failed", error=error)
+
+    def _store(self, outcome: Outcome) -> None:
+        self.store.record(outcome)
+        _remove(self._folder(outcome.hash))
+        self._count(outcome.hash, outcome.status)
+
+    def _count(self, hash_: str, status: str) -> None:
+        self.counts["pending"] -= 1
+        self.counts[status] += 1
+        del self.work[hash_]
+
+    def _stop(self) -> None:
+        for outcome in self.workers.stop():
+            if outcome.status in ("done", "failed"):
+                self._store(outcome)
+        raise StudyInterrupted(self.store.folder)
+
+    def _folder(self, hash_: str) -> Path:
+        return self.store.running / hash_
+
+
+class _Narrator:
+    """Tells how far a session has come."""
+
+    def __init__(self, session: _Session, report: Reporter, at_once: int) -> None:
+        self._session = session
+        self._report = report
+        self._at_once = at_once
+        scenes = [run.scene for run in session.waiting]
+        works = [session.work[run.hash] for run in session.waiting]
+        threads = session.workers.threads(len(works))
+        self._work = sum(works) or 1.0
+        self._expected = forecast.expected(scenes, works, at_once, threads)
+
+    def __call__(self) -> None:
+        session = self._session
+        left = sum(session.work.values())
+        for hash_, fraction in session.workers.fractions.items():
+            left -= session.work.get(hash_, 0.0) * fraction
+        self._report(
+            StudyProgress(
+                runs=sum(session.counts.values()),
+                done=session.counts["done"],
+                failed=session.counts["failed"],
+                running=len(session.running),
+                elsewhere=len(session.elsewhere),
+                fraction=min(1.0, max(0.0, 1.0 - left / self._work)),
+                at_once=self._at_once,
+                expected_s=self._expected,
+            )
+        )

@@ -1,0 +1,311 @@
+"""Study files: TOML in, a `Study` out, and the commented template."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from snowshed._core import InputError
+from snowshed.parts import Snow
+from snowshed.scene import Scene
+from snowshed.study.accuracy import ACCURACY
+from snowshed.study.definition import Part, Study
+from snowshed.study.factors import (
+    SCALES,
+    Factor,
+    Span,
+    axis,
+    latin_hypercube,
+    linear,
+    logarithmic,
+    sobol,
+)
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+Made = TypeVar("Made")
+
+FACTOR_KEYS = ("axes", "zip", "sample")
+KEYS = ("name", "scene", "dimension", "events", "seeds", "accuracy", *FACTOR_KEYS, "part")
+SCENE_SOURCES = ("preset", "file", "snow_preset")
+SAMPLE_KEYS = ("method", "count", "seed", "axes")
+RANGE_KEYS = ("from", "to", "step", "count", "scale")
+SPAN_KEYS = ("from", "to", "scale")
+SAMPLE_METHODS: Mapping[str, Callable[..., Factor]] = {
+    "latin-hypercube": latin_hypercube,
+    "sobol": sobol,
+}
+
+TEMPLATE = """\
+# A study: one scene, and the parameters that vary in it.
+#   snowshed study plan FILE          how many runs, and how long they will take
+#   snowshed study run FILE -o DIR    compute them; again after an interruption to go on
+# Every parameter is named by its path in a scene (see `snowshed schema`). SI units, degrees.
+
+name = "cohesion-and-slope"   # default: the file's name
+dimension = 2
+events = 3
+seeds = 2                     # repetitions: seeds 1, 2; or a list such as [1, 7]
+
+# What all runs have in common. In this order, the later ones override:
+[scene]
+preset = "sensitivity"        # lab-40, lab-50, sensitivity, geometry
+# file = "scene.json"         # a scene file, found from this file's folder
+# snow_preset = "reference"   # calibrated, reference
+panel.friction = 0.2          # any field of a scene
+
+[accuracy]                    # settings that every row of the table records
+dx = 0.02
+# particles_per_voxel, pattern, precision, transfer, flip_ratio, basis, step_factor, strain_limit
+
+# Every value of every axis with every value of the others.
+[axes]
+snow.cohesion = [0.1, 0.2, 0.3]
+snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
+# snow.youngs_modulus = { from = 1e5, to = 1e7, count = 3, scale = "log" }
+
+# Parameters that vary in step, crossed with the axes.
+# [[zip]]
+# panel.height = [1.0, 2.0]
+# panel.length = [2.0, 4.0]
+
+# A sample of a box, crossed with the axes. Methods: latin-hypercube, sobol (a power of two).
+# [[sample]]
+# method = "latin-hypercube"
+# count = 20
+# seed = 1
+# [sample.axes]
+# panel.friction = { from = 0.1, to = 0.4 }
+# snow.preconsolidation_pressure = { from = 1e3, to = 1e4, scale = "log" }
+
+# Several products in one study: each part is crossed with what stands above, and their union runs.
+# [[part]]
+# axes.panel.tilt = [40]
+# [[part]]
+# axes.panel.tilt = [50, 60]
+"""
+
+
+def load(file: Path) -> Study:
+    """Read a study file; see `Study.load`."""
+    try:
+        return _study(_read(file), file)
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(file.read_bytes().decode("utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"not TOML: {error}") from None
+
+
+def _study(data: dict[str, Any], file: Path) -> Study:
+    _check_keys(data, KEYS, "")
+    folder = file.absolute().parent
+    data = _with_absolute_files(data, folder)
+    common = _factors(data, "")
+    parts: list[Part] = [common]
+    if "part" in data:
+        parts = [[*common, *_part(part, where)] for part, where in _tables(data, "part", "")]
+    study = Study(
+        _scene(data, folder),
+        parts,
+        _typed(data.get("name", file.stem), str, "name", "a text"),
+        _seeds(data["seeds"]) if "seeds" in data else None,
+    )
+    study.runs()  # a wrong scene is the file's error
+    return study
+
+
+def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
+    given = dict(_table(data.get("scene"), "scene"))
+    sources = {key: given.pop(key) for key in SCENE_SOURCES if key in given}
+    for key, value in sources.items():
+        _typed(value, str, f"scene.{key}", "a text")
+    scene = Scene()
+    if "preset" in sources:
+        scene = _named("scene", Scene.preset, sources["preset"])
+    if "file" in sources:
+        scene.update(_scene_file(Path(sources["file"])))
+    if "snow_preset" in sources:
+        snow = _named("scene", Snow.preset, sources["snow_preset"])
+        scene.update({"snow": snow.to_data()})
+    _named("scene", scene.update, given)
+    for key, path in (("dimension", "dimension"), ("events", "events.count")):
+        if key in data:
+            scene.set(path, _typed(data[key], int, key, "a whole number"))
+    accuracy = _table(data.get("accuracy", {}), "accuracy")
+    _check_keys(accuracy, tuple(ACCURACY), "accuracy.")
+    return scene.update({ACCURACY[key]: value for key, value in accuracy.items()})
+
+
+def _scene_file(file: Path) -> dict[str, Any]:
+    found: dict[str, Any] = _with_absolute_files(Scene.load(file).to_data(), file.parent)
+    return found
+
+
+def _with_absolute_files(value: Any, folder: Path) -> Any:
+    """Make the path under every key "file" absolute, since a study's scenes are in no folder."""
+    if isinstance(value, list):
+        return [_with_absolute_files(item, folder) for item in value]
+    if not isinstance(value, dict):
+        return value
+    return {
+        key: _absolute(inner, folder)
+        if key.rpartition(".")[2] == "file"
+        else _with_absolute_files(inner, folder)
+        for key, inner in value.items()
+    }
+
+
+def _absolute(value: Any, folder: Path) -> Any:
+    """Return a file's path, or those of an axis of files, found from `folder`."""
+    if isinstance(value, list):
+        return [_absolute(item, folder) for item in value]
+    return os.fspath(folder / value) if isinstance(value, str) else value
+
+
+def _seeds(value: Any) -> list[int]:
+    if isinstance(value, int) and not isinstance(value, bool) and value > 0:
+        return list(range(1, value + 1))
+    if isinstance(value, list) and value and all(type(seed) is int for seed in value):
+        return value
+    raise InputError(
+        f"seeds: {value!r} is neither a number of seeds (1 or more) nor a list of them"
+    )
+
+
+def _part(part: Mapping[str, Any], where: str) -> list[Factor]:
+    _check_keys(part, FACTOR_KEYS, f"{where}.")
+    return _factors(part, f"{where}.")
+
+
+def _factors(data: Mapping[str, Any], where: str) -> list[Factor]:
+    """Return the factors in a table with the keys axes, zip and sample."""
+    axes = _flatten(_table(data.get("axes", {}), f"{where}axes"))
+    return [
+        *(_named(f"{where}axes", axis, path, _values(value, f"{where}axes.{path}"))
+          for path, value in axes.items()),
+        *(_zipped(table, inside) for table, inside in _tables(data, "zip", where)),
+        *(_sample(table, inside) for table, inside in _tables(data, "sample", where)),
+    ]  # fmt: skip
+
+
+def _zipped(table: Mapping[str, Any], where: str) -> Factor:
+    columns = {path: _values(value, f"{where}.{path}") for path, value in _flatten(table).items()}
+    return _named(where, Factor, columns)
+
+
+def _sample(table: Mapping[str, Any], where: str) -> Factor:
+    _check_keys(table, SAMPLE_KEYS, f"{where}.")
+    method = table.get("method", "latin-hypercube")
+    if method not in SAMPLE_METHODS:
+        allowed = ", ".join(SAMPLE_METHODS)
+        raise InputError(f"{where}.method: {method!r} is unknown; allowed: {allowed}")
+    count = _typed(table.get("count"), int, f"{where}.count", "a whole number")
+    seed = _typed(table.get("seed", 1), int, f"{where}.seed", "a whole number")
+    axes = _flatten(_table(table.get("axes", {}), f"{where}.axes"))
+    spans = {path: _span(value, f"{where}.axes.{path}") for path, value in axes.items()}
+    return _named(where, SAMPLE_METHODS[method], spans, count, seed=seed)
+
+
+def _span(value: Any, where: str) -> Span:
+    numbers = _range_numbers(value, SPAN_KEYS, where)
+    return _named(where, Span, numbers["from"], numbers["to"], value.get("scale", "linear"))
+
+
+def _values(value: Any, where: str) -> list[Any]:
+    """Return the values of an axis: a list, a range, or a single value."""
+    if isinstance(value, dict):
+        return _range(value, where)
+    return value if isinstance(value, list) else [value]
+
+
+def _range(value: Mapping[str, Any], where: str) -> list[float]:
+    numbers = _range_numbers(value, RANGE_KEYS, where)
+    start, stop = numbers.pop("from"), numbers.pop("to")
+    if "count" in numbers:
+        _typed(value["count"], int, f"{where}.count", "a whole number")
+    scale = value.get("scale", "linear")
+    if scale == "linear":
+        return _named(where, linear, start, stop, **numbers)
+    if scale == "log":
+        if "step" in numbers or "count" not in numbers:
+            raise InputError(f"{where}: a logarithmic range needs a count, and has no step")
+        return _named(where, logarithmic, start, stop, numbers["count"])
+    raise InputError(f"{where}.scale: {scale!r} is unknown; allowed: {', '.join(SCALES)}")
+
+
+def _range_numbers(value: Any, keys: tuple[str, ...], where: str) -> dict[str, Any]:
+    """Return the numbers of a range, checked: `from`, `to` and what else `keys` allow."""
+    if not isinstance(value, dict):
+        raise InputError(f"{where}: {value!r} is not a range such as {{ from = 1, to = 2 }}")
+    _check_keys(value, keys, f"{where}.")
+    for key in ("from", "to"):
+        if key not in value:
+            raise InputError(f"{where}.{key}: missing; a range needs from and to")
+    numbers = {key: number for key, number in value.items() if key != "scale"}
+    for key, number in numbers.items():
+        if isinstance(number, bool) or not isinstance(number, (int, float)):
+            raise InputError(f"{where}.{key}: {number!r} is not a number")
+    return numbers
+
+
+def _flatten(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Return what nested tables hold under dotted paths; a range is a value, not a table."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, dict) and not value.keys() & set(RANGE_KEYS):
+            flat.update(_flatten(value, f"{prefix}{key}."))
+        else:
+            flat[f"{prefix}{key}"] = value
+    return flat
+
+
+def _tables(data: Mapping[str, Any], key: str, where: str) -> list[tuple[Mapping[str, Any], str]]:
+    """Return the tables of an array of tables, each with where it is, counted from 1."""
+    tables = data.get(key, [])
+    if not isinstance(tables, list):
+        raise InputError(f"{where}{key}: not a list of tables; write [[{where}{key}]]")
+    return [
+        (_table(table, f"{where}{key}[{i}]"), f"{where}{key}[{i}]")
+        for i, table in enumerate(tables, 1)
+    ]
+
+
+def _table(value: Any, where: str) -> Mapping[str, Any]:
+    if value is None:
+        raise InputError(f"{where}: missing; write a table [{where}]")
+    if not isinstance(value, dict):
+        raise InputError(f"{where}: {value!r} is not a table; write [{where}]")
+    return value
+
+
+def _check_keys(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> None:
+    for key in data:
+        if key not in allowed:
+            raise InputError(f"{where}{key}: unknown key; allowed: {', '.join(allowed)}")
+
+
+def _typed(value: Any, kind: type, where: str, expected: str) -> Any:
+    if value is None:
+        raise InputError(f"{where}: missing; give {expected}")
+    if not isinstance(value, kind) or isinstance(value, bool):
+        raise InputError(f"{where}: {value!r} is not {expected}")
+    return value
+
+
+def _named(where: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
+    """Call `make`, naming the place in the file if it refuses."""
+    try:
+        return make(*arguments, **options)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None

@@ -1,0 +1,135 @@
+"""The table of a study: one row per run and event."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional
+
+from snowshed.scene import PathLike
+from snowshed.study.accuracy import ACCURACY
+from snowshed.study.definition import SEED
+from snowshed.study.store import COUNTS, MEASURES, TIMING, Store, StoredRun
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FAILED = "failed"  # what the column `ended` says of the event at which a run failed
+RUN_TIMING = tuple(TIMING)
+
+
+def read_table(
+    folder: PathLike, study: Optional[str] = None, *, timing: bool = False
+) -> pd.DataFrame:
+    """Read the table of a study, as far as its runs are computed.
+
+    The table depends on the runs alone: not on their order of computation, on interruptions, or on
+    the number of workers.
+
+    Parameters
+    ----------
+    folder
+        Where the store is.
+    study
+        Name of the study; not needed if the store holds but one.
+    timing
+        Whether to add what differs whenever a run is repeated: ``wall_s`` (of the event),
+        ``run_wall_s``, ``threads``, ``particles``, ``particle_updates``, ``peak_memory_mb``,
+        ``host``, ``cpu`` and ``finished``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per run and event, runs in the study's order: ``hash`` of the run; the parameters
+        that vary, by their dotted paths; ``seed``; ``event``; the columns of events.csv; ``error``;
+        ``version`` of snowshed; ``dimension``; and the accuracy settings (``dx``, ``precision``,
+        ...). A run that failed has, after its completed events, a row without measures whose
+        ``ended`` is "failed" and whose ``error`` says why.
+
+    Raises
+    ------
+    InputError
+        If there is no such study.
+    """
+    import pandas as pd
+
+    with Store.open(folder) as store:
+        name = store.named(study)
+        rows = list(_rows(store, name))
+        axes = store.axes(name)
+    columns = ["hash", *axes, "seed", "event", *MEASURES, "error", "version", "dimension"]
+    columns += [*ACCURACY, *(("wall_s", *RUN_TIMING) if timing else ())]
+    table = pd.DataFrame(rows, columns=columns)
+    return table.astype(dict.fromkeys(COUNTS, "Int64"))
+
+
+def _rows(store: Store, study: str) -> Iterator[dict[str, Any]]:
+    axes = store.axes(study)
+    events = _events(store, study)
+    timings = {row[0]: dict(zip(RUN_TIMING, row[1:])) for row in _run_timings(store, study)}
+    for run in store.runs(study):
+        common = {**_facts(run, axes), **timings.get(run.hash, {})}
+        yield from ({**common, **event} for event in events.get(run.hash, ()))
+        if run.status == FAILED:
+            at = len(events.get(run.hash, ())) + 1
+            yield {**common, "event": at, "ended": FAILED, "error": run.error}
+
+
+def _facts(run: StoredRun, axes: Sequence[str]) -> dict[str, Any]:
+    """Return the columns that all events of a run share."""
+    scene = json.loads(run.scene)
+    return {
+        **{path: _cell(value_at(scene, path)) for path in axes},
+        "hash": run.hash,
+        "seed": value_at(scene, SEED),
+        "error": "",
+        "version": run.version,
+        "dimension": scene["dimension"],
+        **{name: value_at(scene, path) for name, path in ACCURACY.items()},
+    }
+
+
+def _events(store: Store, study: str) -> dict[str, list[dict[str, Any]]]:
+    names = ("event", *MEASURES, "wall_s")
+    rows = store.read(
+        f"SELECT event.hash, event.event, {', '.join(MEASURES)}, wall_s"
+        " FROM study_run JOIN event USING (hash) JOIN event_timing USING (hash, event)"
+        " WHERE study = ? ORDER BY position, event.event",
+        (study,),
+    )
+    events: dict[str, list[dict[str, Any]]] = {}
+    for hash_, *values in rows:
+        events.setdefault(hash_, []).append(dict(zip(names, values)))
+    return events
+
+
+def _run_timings(store: Store, study: str) -> list[tuple[Any, ...]]:
+    return store.read(
+        f"SELECT hash, {', '.join(RUN_TIMING)} FROM study_run JOIN run_timing USING (hash)"
+        " WHERE study = ?",
+        (study,),
+    )
+
+
+def value_at(scene: Mapping[str, Any], path: str) -> Any:
+    """Return the value at a dotted path of a complete scene, or None if it has none there.
+
+    Examples
+    --------
+    >>> value_at({"obstacles": [{"friction": 0.3}]}, "obstacles.0.friction")
+    0.3
+    """
+    value: Any = scene
+    for key in path.split("."):
+        if isinstance(value, list) and key.isdigit() and int(key) < len(value):
+            value = value[int(key)]
+        elif isinstance(value, dict) and key in value:
+            value = value[key]
+        else:
+            return None
+    return value
+
+
+def _cell(value: Any) -> Any:
+    """Return a value as a cell of a table: vectors and objects are their JSON text."""
+    return json.dumps(value) if isinstance(value, (list, dict)) else value

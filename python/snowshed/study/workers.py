@@ -1,0 +1,35 @@
+"""What computes the runs of a study: the interface of local processes and of a cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+from snowshed.study.outcome import Outcome, Task
+
+
+class Workers(Protocol):
+    """Computes tasks, several at once."""
+
+    @property
+    def capacity(self) -> int:
+        """How many tasks it takes at once."""
+
+    def threads(self, unfinished: int) -> int:
+        """Return how many threads a run may use when so many are not yet done."""
+
+    def submit(self, task: Task) -> None:
+        """Start computing a task; no more than `capacity` at once."""
+
+    def collect(self, timeout: float) -> Sequence[Outcome]:
+        """Wait until a task ends, no longer than `timeout` in s; return what has ended."""
+
+    @property
+    def fractions(self) -> Mapping[str, float]:
+        """How much of the work of each submitted run is done, as far as that is known."""
+
+    def stop(self) -> Sequence[Outcome]:
+        """Ask all tasks to stop where they can go on later; return what ended meanwhile."""
+
+    def close(self) -> None:
+        """End all work at once."""

@@ -1,0 +1,121 @@
+"""Studies small enough to be computed in a moment, and workers that only pretend."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from snowshed import Scene
+from snowshed.study import Study, session
+from snowshed.study.outcome import Outcome
+from snowshed.study.store import FILE, MEASURES, WORDS
+
+ALONE = {"jobs": 1, "threads": 1}
+
+
+def tiny_scene(max_time: float = 0.05, events: int = 2) -> Scene:
+    """The lab's 50 degree scene in 2D on a coarse grid; by default it stops in the air."""
+    scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
+    return scene.update({"events": {"count": events, "max_time": max_time}})
+
+
+def tiny_study(name: str = "tiny", frictions: tuple[float, ...] = (0.1, 0.2, 0.3)) -> Study:
+    return Study.product(tiny_scene(), {"panel.friction": frictions}, name=name)
+
+
+def outcome(hash_: str, status: str = "done", events: int = 2, error: str | None = None) -> Outcome:
+    """What a run could have given: every measure is its own little number."""
+    rows = [
+        {
+            "event": event,
+            "wall_s": 0.5,
+            **{
+                name: "rest" if name in WORDS else event * 10 + place
+                for place, name in enumerate(MEASURES)
+            },
+        }
+        for event in range(1, events + 1)
+    ]
+    return Outcome(hash_, status, rows, {"run_wall_s": 1.0, "threads": 1}, error)
+
+
+class ScriptedWorkers:
+    """Workers that answer at once, with what `answer` makes of a task."""
+
+    capacity = 2
+
+    def __init__(self, answer=lambda task: outcome(task.hash)):
+        self.answer = answer
+        self.fractions = {}
+        self.tasks = []
+        self.open = []
+        self.stopped = self.closed = False
+
+    def threads(self, unfinished):
+        return 1
+
+    def submit(self, task):
+        assert len(self.open) < self.capacity
+        self.tasks.append(task)
+        self.open.append(task)
+
+    def collect(self, timeout):
+        assert self.open
+        return [self.answer(self.open.pop(0))]
+
+    def stop(self):
+        self.stopped = True
+        ended = [self.answer(task) for task in self.open]
+        self.open.clear()
+        return ended
+
+    def close(self):
+        self.closed = True
+
+
+def contents(folder: Path) -> dict[str, list[tuple]]:
+    """All that is in a store and does not change from one computation to the next."""
+    connection = sqlite3.connect(folder / FILE)
+    try:
+        return {
+            table: connection.execute(f"SELECT * FROM {table} ORDER BY 1, 2").fetchall()
+            for table in ("study", "study_run", "run", "event")
+        }
+    finally:
+        connection.close()
+
+
+def snowshed_command(*arguments: object, **options) -> subprocess.Popen:
+    """Start ``snowshed``; its output is text in pipes."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "snowshed", *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        **options,
+    )
+
+
+@pytest.fixture(scope="session")
+def computed(tmp_path_factory):
+    """The folder of the tiny study, computed without interruption, once for all test files."""
+    folder = tmp_path_factory.getbasetemp() / "computed-tiny-study"
+    if not folder.exists():
+        tiny_study().run(folder, **ALONE)
+    return folder
+
+
+@pytest.fixture
+def scripted(monkeypatch):
+    """Workers that pretend, in place of the processes."""
+    workers = ScriptedWorkers()
+    monkeypatch.setattr(session.Resources, "workers", lambda resources, runs: (workers, 2))
+    monkeypatch.setattr(session, "POLL_S", 0.01)
+    monkeypatch.setattr(session, "ELSEWHERE_S", 0.0)
+    return workers

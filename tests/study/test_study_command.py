@@ -1,0 +1,168 @@
+"""The commands ``snowshed study ...``."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+import study_helpers
+from study_helpers import outcome, tiny_study
+
+from snowshed import Scene
+from snowshed.cli import main
+from snowshed.study.display import announcement, description
+from snowshed.study.session import StudyProgress
+from snowshed.study.store import Store
+
+scripted = study_helpers.scripted  # a fixture
+
+FILE = """
+name = "tiny"
+dimension = 2
+events = 2
+[scene]
+preset = "lab-50"
+events.max_time = 0.05
+[accuracy]
+dx = 0.02
+[axes]
+panel.friction = [0.1, 0.2, 0.3]
+"""
+HASHES = [run.hash for run in tiny_study().runs()]
+
+
+@pytest.fixture
+def file(tmp_path):
+    file = tmp_path / "study.toml"
+    file.write_text(FILE)
+    return file
+
+
+def run(*arguments):
+    return main(["study", *map(str, arguments)])
+
+
+def test_from_template_to_table(tmp_path, file, capsys):
+    folder = tmp_path / "store"
+    assert run("run", file, "-o", folder, "--jobs", 1, "--threads", 1) == 0
+    shown = capsys.readouterr()
+    assert "3 runs to compute, 1 at once; expected time: " in shown.err
+    assert "3 of 3 runs done" in shown.out
+    assert run("status", folder) == 0
+    assert capsys.readouterr().out.split() == ["tiny:", "3", "runs", "3", "done"]
+    assert run("export", folder, "-o", tmp_path / "table.csv") == 0
+    assert len((tmp_path / "table.csv").read_text().splitlines()) == 7
+    assert run("run", file, "-o", folder, "-q") == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_the_template_is_a_study(tmp_path, capsys):
+    assert run("template") == 0
+    text = capsys.readouterr().out
+    assert run("template", "-o", tmp_path / "study.toml") == 0
+    assert (tmp_path / "study.toml").read_text() == text
+    assert run("plan", tmp_path / "study.toml", "--jobs", 1) == 0
+    shown = capsys.readouterr().out
+    assert "cohesion-and-slope: 18 runs, 1 at once, about" in shown
+    assert "snow.cohesion, snow.critical_state_slope" in shown
+
+
+def test_status_of_an_unfinished_study(tmp_path, capsys):
+    with Store.create(tmp_path / "store") as store:
+        store.register("tiny", [], tiny_study().runs())
+        store.record(outcome(HASHES[1], "failed", 1, "broken [/]"))
+    assert run("status", tmp_path / "store") == 0
+    shown = capsys.readouterr().out
+    assert shown.splitlines() == [
+        "tiny: 3 runs",
+        "       0 done",
+        "       1 failed",
+        "       2 to compute",
+        f"  {HASHES[1][:12]} failed: broken [/]",
+    ]
+    assert run("export", tmp_path / "store", "-o", tmp_path / "t.csv") == 0
+    assert "2 of 3 runs are not computed yet" in capsys.readouterr().err
+
+
+def test_failed_runs_are_listed_and_code_3(tmp_path, scripted, file, capsys):
+    scripted.answer = lambda task: (
+        outcome(task.hash, "failed", 1, "broken") if task.hash == HASHES[1] else outcome(task.hash)
+    )
+    assert run("run", file, "-o", tmp_path / "store") == 3
+    shown = capsys.readouterr()
+    assert f"{HASHES[1][:12]} failed: broken" in shown.out
+    assert shown.err.endswith(f"error: 1 of 3 runs failed: {HASHES[1][:12]}\n")
+    assert run("resume", tmp_path / "store", "-q") == 3
+    assert len(scripted.tasks) == 3
+    scripted.answer = lambda task: outcome(task.hash)
+    assert run("resume", tmp_path / "store", "--study", "tiny", "--retry-failed", "-q") == 0
+    assert len(scripted.tasks) == 4
+
+
+def test_the_scene_of_a_run_can_be_had(tmp_path, capsys):
+    with Store.create(tmp_path / "store") as store:
+        store.register("tiny", [], tiny_study().runs())
+    assert run("scene", tmp_path / "store", HASHES[2][:10]) == 0
+    assert json.loads(capsys.readouterr().out)["panel"]["friction"] == 0.3
+    assert run("scene", tmp_path / "store", HASHES[2], "-o", tmp_path / "scene.json") == 0
+    assert Scene.load(tmp_path / "scene.json").initialise().data["panel"]["friction"] == 0.3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "none.toml", "-o", "out"], "none.toml: No such file"),
+        (["run", "bad.toml", "-o", "out"], "bad.toml: panel.tlt: /panel/tlt: unknown key"),
+        (["run", "study.toml"], "--output"),
+        (["run", "study.toml", "-o", "full"], "full: not empty, and holds no study"),
+        (["run", "study.toml", "-o", "out", "--jobs", "0"], "jobs: 0 is not positive"),
+        (["run", "study.toml", "-o", "out", "--jobs", "x"], "--jobs"),
+        (["resume", "full"], "full: holds no study"),
+        (["resume", "out"], "out: holds no study"),
+        (["status", "out"], "out: holds no study"),
+        (["export", "out", "-o", "t.csv"], "out: holds no study"),
+        (["export", "out", "-o", "t.csv", "--format", "xml"], "'xml' is not one of"),
+        (["scene", "out", "12"], "out: holds no study"),
+        (["fly"], "fly"),
+    ],
+)
+def test_bad_input_is_one_line_code_2_and_nothing_behind(
+    tmp_path, monkeypatch, capsys, file, arguments, message
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.toml").write_text(FILE + "panel.tlt = [1]")
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "thesis.txt").touch()
+    before = sorted(tmp_path.rglob("*"))
+    assert run(*arguments) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.startswith("error: ") and shown.err.count("\n") == 1
+    assert message in shown.err
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_help_of_other_commands_does_not_load_the_studies():
+    code = (
+        "import sys; from snowshed.cli import main; main(['--help']); "
+        "print([name for name in sys.modules if name.startswith(('snowshed.study', 'sqlite3'))])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "study " in done.stdout
+    assert done.stdout.endswith("[]\n")
+
+
+def progress(**values):
+    whole = {"runs": 12, "done": 0, "failed": 0, "running": 0, "elsewhere": 0}
+    return StudyProgress(**{**whole, "fraction": 0.0, "at_once": 2, "expected_s": 95.0, **values})
+
+
+def test_what_is_said_while_a_study_runs():
+    assert announcement(progress()) == "12 runs to compute, 2 at once; expected time: about 95 s"
+    assert announcement(progress(done=10, failed=1)) == (
+        "1 run to compute (11 of 12 are there already), 2 at once; expected time: about 95 s"
+    )
+    assert description(progress(done=3, running=2)) == "3/12 runs, 2 running"
+    assert description(progress(done=3, failed=1, elsewhere=4)) == (
+        "3/12 runs, 1 failed, 4 in other processes"
+    )

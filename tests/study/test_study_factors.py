@@ -1,0 +1,109 @@
+"""Values of axes and samples against expectations made by hand."""
+
+import importlib
+
+import pytest
+
+from snowshed import InputError
+from snowshed.study import Factor, Span, axis, latin_hypercube, linear, logarithmic, sobol
+
+
+def test_points_of_one_parameter():
+    assert axis("snow.cohesion", [0.1, 0.3]).points() == [
+        {"snow.cohesion": 0.1},
+        {"snow.cohesion": 0.3},
+    ]
+
+
+def test_parameters_in_step():
+    factor = Factor({"panel.height": [1, 2, 3], "panel.length": [4, 5, 6]})
+    assert len(factor) == 3
+    assert factor.points()[2] == {"panel.height": 3, "panel.length": 6}
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ({}, "names no parameter"),
+        ({"panel.tilt": []}, "panel.tilt: 0 values"),
+        ({"panel.tilt": [1, 2], "panel.height": [1]}, "panel.tilt has 2, panel.height has 1"),
+    ],
+)
+def test_factors_that_are_none(columns, message):
+    with pytest.raises(InputError, match=message):
+        Factor(columns)
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        (linear(0.1, 0.3, step=0.1), [0.1, 0.2, 0.3]),
+        (linear(0.3, 0.7, step=0.1), [0.3, 0.4, 0.5, 0.6, 0.7]),
+        (linear(0, 1, step=0.4), [0, 0.4, 0.8]),
+        (linear(40, 70, step=5), [40, 45, 50, 55, 60, 65, 70]),
+        (linear(5, 5, step=1), [5]),
+        (linear(1, 3, count=5), [1, 1.5, 2, 2.5, 3]),
+        (linear(3, 1, count=3), [3, 2, 1]),
+        (logarithmic(1e-4, 1e2, 7), [1e-4, 1e-3, 1e-2, 1e-1, 1, 10, 100]),
+        (logarithmic(1, 8, 4), [1, 2, 4, 8]),
+    ],
+)
+def test_ranges(values, expected):
+    assert values == expected
+
+
+def test_whole_numbers_stay_whole():
+    assert all(isinstance(value, int) for value in linear(1, 5, step=2))
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: linear(0, 1), "either a step or a count"),
+        (lambda: linear(0, 1, step=0.1, count=3), "either a step or a count"),
+        (lambda: linear(0, 1, step=0), "step 0 is not positive"),
+        (lambda: linear(0, 1, step=-1), "step -1 is not positive"),
+        (lambda: linear(1, 0, step=1), "must not fall"),
+        (lambda: linear(0, float("nan"), step=1), "nan is not a finite number"),
+        (lambda: linear(0, 1, step=1e-9), "at most"),
+        (lambda: linear(0, 1, count=1), "count 1 is outside"),
+        (lambda: logarithmic(0, 1, 3), "0 is not positive"),
+        (lambda: Span(1, 1), "must rise"),
+        (lambda: Span(-1, 1, "log"), "-1 is not positive"),
+        (lambda: Span(0, 1, "cubic"), "'cubic' is none of linear, log"),
+        (lambda: sobol({"panel.tilt": Span(0, 1)}, 12), "12 is not a power of two"),
+        (lambda: latin_hypercube({"panel.tilt": Span(0, 1)}, 0), "count 0 is outside"),
+        (lambda: latin_hypercube({}, 4), "names no parameter"),
+    ],
+)
+def test_wrong_numbers_are_named(make, message):
+    with pytest.raises(InputError, match=message):
+        make()
+
+
+def test_a_latin_hypercube_uses_every_slice_once():
+    sample = latin_hypercube({"a": Span(10, 20), "b": Span(1, 1024, "log")}, 10)
+    assert sorted(int(value - 10) for value in sample.columns["a"]) == list(range(10))
+    assert sorted(len(bin(int(value))) - 3 for value in sample.columns["b"]) == list(range(10))
+
+
+def test_sobol_points_fill_every_elementary_box():
+    sample = sobol({"a": Span(0, 4), "b": Span(0, 4)}, 16)
+    boxes = {(int(point["a"]), int(point["b"])) for point in sample.points()}
+    assert len(boxes) == 16
+
+
+def test_a_seed_is_one_sample_and_another_seed_another():
+    spans = {"a": Span(0, 1)}
+    for method in (latin_hypercube, sobol):
+        assert method(spans, 8, seed=3) == method(spans, 8, seed=3)
+        assert method(spans, 8, seed=3) != method(spans, 8, seed=4)
+
+
+def test_without_scipy_the_error_says_what_to_install(monkeypatch):
+    def missing(name):
+        raise ImportError(f"No module named {name!r}")
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    with pytest.raises(InputError, match=r'pip install "snowshed\[study\]"'):
+        sobol({"a": Span(0, 1)}, 4)

@@ -1,0 +1,51 @@
+"""Examples in docstrings run, and the interface is whole."""
+
+import doctest
+import importlib
+import pkgutil
+import re
+from pathlib import Path
+
+import pytest
+
+import snowshed.study
+from snowshed.study import Study
+from snowshed.study.store import TABLES
+
+DOCS = (Path(__file__).parents[2] / "docs" / "studies.md").read_text()
+MODULES = [module.name for module in pkgutil.iter_modules(snowshed.study.__path__)]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_in_docstrings(name):
+    module = importlib.import_module(f"snowshed.study.{name}")
+    assert doctest.testmod(module).failed == 0
+
+
+def test_every_public_name_is_there():
+    for name in snowshed.study.__all__:
+        assert getattr(snowshed.study, name).__doc__
+
+
+def blocks(language):
+    return re.findall(rf"^```{language}\n(.*?)^```", DOCS, re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize(("block", "runs"), list(zip(blocks("toml"), (18, 64, 122))))
+def test_study_files_in_the_docs(tmp_path, block, runs):
+    (tmp_path / "study.toml").write_text(block)
+    assert len(Study.load(tmp_path / "study.toml").runs()) == runs
+
+
+@pytest.mark.parametrize("block", [b for b in blocks("python") if "SLURM" not in b])
+def test_scripts_in_the_docs(tmp_path, monkeypatch, capsys, block):
+    monkeypatch.chdir(tmp_path)
+    exec(block.replace('.run("results")', '.run("results", jobs=1)'), {})
+    shown = capsys.readouterr().out
+    assert "panel.tilt" in shown
+
+
+def test_the_docs_know_the_tables_of_the_store():
+    for table in TABLES:
+        if name := re.match(r"CREATE TABLE (\w+)", table):
+            assert f"| `{name[1]}` |" in DOCS

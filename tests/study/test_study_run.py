@@ -1,0 +1,336 @@
+"""Studies computed by real processes: the same numbers as single runs, whatever happens."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import study_helpers
+from study_helpers import ALONE, contents, snowshed_command, tiny_scene, tiny_study
+
+from snowshed import InitialisedScene, Obstacle, Shape, _core, read_events, run_events
+from snowshed.study import Run, Study, StudyError, read_table, resume
+from snowshed.study.compute import compute
+from snowshed.study.local import LocalWorkers
+from snowshed.study.outcome import Task
+from snowshed.study.store import MEASURES, Store
+
+computed = study_helpers.computed  # a fixture
+
+#: Runs that take long enough to be killed in the middle, with checkpoints within events.
+KILLABLE = """
+dimension = 2
+events = 2
+seeds = 2
+[scene]
+preset = "lab-50"
+output.checkpoint_interval = 0.05
+[accuracy]
+dx = 0.02
+[axes]
+panel.friction = [0.1, 0.3]
+"""
+#: The study of `tiny_study` as a file, without its accuracy.
+TINY = """
+name = "tiny"
+dimension = 2
+events = 2
+[scene]
+preset = "lab-50"
+events.max_time = 0.05
+[axes]
+panel.friction = [0.1, 0.2, 0.3]
+"""
+COMPUTE = ("--jobs", 1, "--threads", 1, "-q")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The study file of `KILLABLE`, and the folder where it was computed without interruption."""
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "study.toml").write_text(KILLABLE)
+    Study.load(folder / "study.toml").run(folder / "store", **ALONE)
+    return folder / "study.toml", folder / "store"
+
+
+def task_of(scene, folder: Path) -> Task:
+    run = Run.of(scene.initialise())
+    return Task(run.hash, run.scene, str(folder), 1)
+
+
+def long_scene():
+    """About a second, with checkpoints on the way."""
+    return tiny_scene(max_time=1.0).set("output.checkpoint_interval", 0.01)
+
+
+def outcome_of(workers):
+    ended = []
+    while not ended:
+        ended = workers.collect(10)
+    return ended[0]
+
+
+def test_the_table_holds_what_single_runs_give(computed, tmp_path):
+    table = read_table(computed)
+    for i, run in enumerate(tiny_study().runs()):
+        run_events(InitialisedScene.parse(run.scene), tmp_path / str(i), pictures=False)
+        alone = read_events(tmp_path / str(i))[["event", *MEASURES]]
+        rows = table[table["hash"] == run.hash][["event", *MEASURES]].reset_index(drop=True)
+        pd.testing.assert_frame_equal(rows, alone, check_dtype=False)
+    assert len(table) == 6
+
+
+def test_neither_order_nor_threads_nor_parallel_work_change_the_table(computed, tmp_path):
+    tiny_study().run(tmp_path / "store", jobs=2, threads=2)
+    assert contents(tmp_path / "store") == contents(computed)
+
+
+def test_a_run_that_cannot_go_on_is_a_row_with_its_error(tmp_path):
+    # What is in the file of an obstacle shows only when the run begins.
+    np.save(tmp_path / "good.npy", np.hypot(*np.mgrid[-1:2, -1:2]) * 0.1 - 0.05)
+    (tmp_path / "bad.npy").write_text("no array")
+    shape = Shape.grid("", origin=(3, 0), spacing=0.1)
+    scene = tiny_scene().append("obstacles", Obstacle(shape=shape))
+    files = [str(tmp_path / "bad.npy"), str(tmp_path / "good.npy")]
+    study = Study.product(scene, {"obstacles.0.shape.file": files})
+    table = study.run(tmp_path / "store", **ALONE)
+    assert table["obstacles.0.shape.file"].tolist() == [files[0], files[1], files[1]]
+    assert table.ended.tolist() == ["failed", "time_limit", "time_limit"]
+    assert "bad.npy" in table.error[0] and table.error[1:].tolist() == ["", ""]
+    assert table.height_m.isna().tolist() == [True, False, False]
+
+
+def test_a_worker_computes_one_task_after_another(tmp_path):
+    workers = LocalWorkers(1, 1, 1)
+    try:
+        for tilt in (40, 50):
+            task = task_of(tiny_scene().set("panel.tilt", tilt), tmp_path / str(tilt))
+            workers.submit(task)
+            outcome = outcome_of(workers)
+            assert (outcome.hash, outcome.status) == (task.hash, "done")
+            assert [row["event"] for row in outcome.events] == [1, 2]
+            assert outcome.timing["run_wall_s"] > 0
+        assert len(workers._processes) == 1
+    finally:
+        workers.close()
+
+
+def test_a_killed_worker_is_replaced_and_the_others_do_not_notice(tmp_path):
+    workers = LocalWorkers(2, 1, 2)
+    try:
+        doomed = task_of(long_scene(), tmp_path / "doomed")
+        other = task_of(tiny_scene(), tmp_path / "other")
+        workers.submit(doomed)
+        workers.submit(other)
+        victim = workers._processes[0]._process
+        wait_for(lambda: (tmp_path / "doomed" / "results" / "scene.json").exists())
+        victim.kill()
+        outcomes = {}
+        while len(outcomes) < 2:
+            outcomes.update((outcome.hash, outcome) for outcome in workers.collect(10))
+        assert outcomes[other.hash].status == "done"
+        assert outcomes[doomed.hash].status == "lost"
+        assert outcomes[doomed.hash].error == "the worker was killed by signal 9 (Killed)"
+        workers.submit(doomed)
+        assert outcome_of(workers).status == "done"
+    finally:
+        workers.close()
+    assert victim.poll() == -signal.SIGKILL
+
+
+def test_a_stopped_worker_leaves_a_checkpoint_and_another_ends_with_the_same_bits(tmp_path):
+    task = task_of(long_scene(), tmp_path / "stopped")
+    whole = compute(task_of(long_scene(), tmp_path / "whole"))
+    workers = LocalWorkers(1, 1, 1)
+    workers.submit(task)
+    wait_for(lambda: workers.collect(0.05) or workers.fractions.get(task.hash, 0) > 0)
+    (outcome,) = workers.stop()
+    assert outcome.status == "interrupted"
+    results = tmp_path / "stopped" / "results"
+    assert json.loads((results / "run.json").read_text())["status"] == "interrupted"
+    resumed = compute(task)
+    assert resumed.status == "done"
+    assert untimed(resumed) == untimed(whole)
+
+
+def untimed(outcome):
+    return [{k: v for k, v in row.items() if k != "wall_s"} for row in outcome.events]
+
+
+def test_what_an_attempt_left_half_written_does_not_hinder_the_next(tmp_path):
+    whole = compute(task_of(tiny_scene(), tmp_path / "whole"))
+    results = tmp_path / "torn" / "results"
+    results.mkdir(parents=True)
+    (results / ".scene.123.json").touch()
+    assert untimed(compute(task_of(tiny_scene(), tmp_path / "torn"))) == untimed(whole)
+    (results / "checkpoint.bin").write_bytes(b"torn")
+    assert untimed(compute(task_of(tiny_scene(), tmp_path / "torn"))) == untimed(whole)
+
+
+def test_a_failure_is_reported_alike_after_its_process_was_killed(tmp_path, monkeypatch):
+    class Failing(_core.Simulation):
+        def run(self, callback, interval_s=0.5):
+            raise _core.SimulationError("time step underflow")
+
+    task = task_of(tiny_scene(), tmp_path / "failing")
+    monkeypatch.setattr(_core, "Simulation", Failing)
+    first = compute(task)
+    monkeypatch.undo()
+    again = compute(task)
+    assert (first.status, first.error) == (again.status, again.error)
+    assert again.error == "time step underflow"
+
+
+def test_a_file_that_changed_after_registration_stops_the_study(tmp_path):
+    task = task_of(tiny_scene(), tmp_path / "work")
+    changed = Task("0" * 32, task.scene, task.folder, 1)
+    outcome = compute(changed)
+    assert outcome.status == "unable"
+    assert "is not what was registered" in outcome.error
+
+
+def test_without_shared_files_a_run_works_in_a_temporary_folder(tmp_path):
+    outcome = compute(task_of(tiny_scene(), tmp_path / "elsewhere" / "running" / "x"))
+    assert outcome.status == "done" and len(outcome.events) == 2
+    assert not (tmp_path / "elsewhere").exists()
+
+
+def test_workers_that_cannot_start_are_no_fault_of_the_runs(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with pytest.raises(StudyError, match=r"no worker starts \(exit code 1\)"):
+        tiny_study().run(tmp_path / "store", **ALONE)
+
+
+def test_no_worker_outlives_a_killed_study(tmp_path, whole):
+    command = snowshed_command("study", "run", whole[0], "-o", tmp_path / "s", *COMPUTE)
+    wait_for(lambda: list((tmp_path / "s").glob("running/*/results/scene.json")))
+    children = children_of(command.pid)
+    assert children
+    command.kill()
+    command.communicate()
+    wait_for(lambda: not any(Path(f"/proc/{child}").exists() for child in children))
+
+
+def test_ctrl_c_says_how_to_go_on_and_the_rest_is_computed(tmp_path, whole):
+    folder = tmp_path / "store"
+    command = snowshed_command("study", "run", whole[0], "-o", folder, *COMPUTE)
+    wait_for(lambda: list(folder.glob("running/*/results/scene.json")))
+    command.send_signal(signal.SIGINT)
+    out, err = command.communicate(timeout=60)
+    assert (command.returncode, out) == (130, "")
+    assert err == f"error: interrupted; go on with: snowshed study resume {folder}\n"
+    statuses = [
+        json.loads(path.read_text())["status"] for path in folder.glob("running/*/results/run.json")
+    ]
+    assert statuses in ([], ["interrupted"])  # none if it was stopped before it began
+    resume(folder, **ALONE)
+    with Store.open(folder) as store:
+        assert {run.status for run in store.runs("study")} == {"done"}
+
+
+def kill_at_random_moments(study: Path, folder: Path, kills: int, rng: random.Random) -> int:
+    """Run a study, killing it again and again; return how often before it was done."""
+    for kill in range(kills):
+        command = snowshed_command("study", "run", study, "-o", folder, *COMPUTE)
+        # Half of the time only the worker dies.
+        victim = command.pid
+        try:
+            command.wait(rng.uniform(0.1, 3.0))
+            assert command.communicate() == ("", "") and command.returncode == 0
+            return kill
+        except subprocess.TimeoutExpired:
+            workers = children_of(command.pid)
+            if workers and rng.random() < 0.3:
+                os.kill(rng.choice(workers), signal.SIGKILL)
+                time.sleep(rng.uniform(0, 0.5))
+            os.kill(victim, signal.SIGKILL)
+            command.communicate()
+    return kills
+
+
+def kill_and_compare(tmp_path, whole, kills):
+    study, uninterrupted = whole
+    expected = contents(uninterrupted)
+    table = read_table(uninterrupted).to_csv()
+    rng = random.Random(kills)
+    done = attempt = 0
+    while done < kills:
+        attempt += 1
+        folder = tmp_path / f"killed-{attempt}"
+        done += kill_at_random_moments(study, folder, kills - done, rng)
+        Study.load(study).run(folder, **ALONE)
+        assert contents(folder) == expected
+        assert read_table(folder).to_csv() == table
+        assert not any((folder / "running").iterdir())
+
+
+def test_killed_at_random_moments_the_table_is_the_same(tmp_path, whole):
+    kill_and_compare(tmp_path, whole, kills=4)
+
+
+@pytest.mark.slow
+def test_killed_a_hundred_times_the_table_is_the_same(tmp_path, whole):
+    kill_and_compare(tmp_path, whole, kills=100)
+
+
+def test_two_processes_share_one_store(tmp_path, computed):
+    (tmp_path / "study.toml").write_text(TINY + "[accuracy]\ndx = 0.02")
+    arguments = ("study", "run", tmp_path / "study.toml", "-o", tmp_path / "store", *COMPUTE)
+    commands = [snowshed_command(*arguments) for _ in range(2)]
+    for command in commands:
+        assert command.communicate(timeout=60) == ("", "")
+        assert command.returncode == 0
+    assert contents(tmp_path / "store") == contents(computed)
+
+
+@pytest.mark.parametrize(
+    ("limit_kb", "seeding", "file"),
+    [
+        (8, "", "store.sqlite: "),
+        (50, "", "store.sqlite: "),
+        (150, 'particles_per_voxel = 400\npattern = "jittered"', ": cannot write: File too large"),
+    ],
+    ids=["making the store", "storing results", "writing results"],
+)
+def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed):
+    """The limit on the size of files stands for the full disk, at different places."""
+    (tmp_path / "study.toml").write_text(f"{TINY}[accuracy]\ndx = 0.02\n{seeding}")
+    command = ["study", "run", str(tmp_path / "study.toml"), "-o", str(tmp_path / "full"), "-q"]
+    limited = (
+        "import resource, sys; from snowshed.cli import main; "
+        f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit_kb} * 1024, resource.RLIM_INFINITY)); "
+        "sys.exit(main(sys.argv[1:]))"
+    )
+    full = subprocess.run(
+        [sys.executable, "-c", limited, *command, "--jobs", "1"], capture_output=True, text=True
+    )
+    assert full.returncode == 3, full.stderr
+    assert full.stderr.startswith("error: ") and full.stderr.count("\n") == 1
+    assert file in full.stderr and "what is stored is safe" in full.stderr
+    study = Study.load(tmp_path / "study.toml")
+    study.run(tmp_path / "full", **ALONE)
+    if seeding:
+        study.run(tmp_path / "whole", **ALONE)
+    assert contents(tmp_path / "full") == contents(tmp_path / "whole" if seeding else computed)
+
+
+def children_of(pid: int) -> list[int]:
+    children = Path(f"/proc/{pid}/task/{pid}/children")
+    try:
+        return [int(child) for child in children.read_text().split()]
+    except FileNotFoundError:
+        return []
+
+
+def wait_for(condition, timeout: float = 30.0) -> None:
+    end = time.monotonic() + timeout
+    while not condition():
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.01)

@@ -1,0 +1,280 @@
+"""How the runs of a study are handed out, and what becomes of their outcomes."""
+
+import signal
+import threading
+import time
+
+import pytest
+import study_helpers
+from study_helpers import outcome, tiny_study
+
+from snowshed import InputError, _core
+from snowshed.study import Study, StudyError, StudyInterrupted, forecast, resume, session
+from snowshed.study.outcome import Outcome
+from snowshed.study.owner import ownership
+from snowshed.study.store import Store
+
+scripted = study_helpers.scripted  # a fixture
+
+STUDY = tiny_study()
+HASHES = [run.hash for run in STUDY.runs()]
+
+
+def states(folder):
+    with Store.open(folder) as store:
+        return [(run.status, run.error) for run in store.runs("tiny")]
+
+
+def test_every_run_is_computed_once(scripted, tmp_path):
+    STUDY.run(tmp_path / "store")
+    assert sorted(task.hash for task in scripted.tasks) == sorted(HASHES)
+    STUDY.run(tmp_path / "store")
+    resume(tmp_path / "store")
+    assert len(scripted.tasks) == 3
+    assert scripted.closed
+
+
+def test_studies_that_share_a_store_share_runs(scripted, tmp_path):
+    STUDY.run(tmp_path / "store")
+    tiny_study("wider", frictions=(0.3, 0.1, 0.4)).run(tmp_path / "store")
+    assert len(scripted.tasks) == 4
+
+
+def test_the_longest_runs_come_first(scripted, tmp_path):
+    scene = STUDY.scene
+    Study.product(scene, {"events.count": [1, 3, 2]}).run(tmp_path / "store")
+    works = [forecast.work(task.scene) for task in scripted.tasks]
+    assert works == sorted(works, reverse=True) and len(set(works)) == 3
+
+
+def test_a_failed_run_does_not_stop_the_others_and_can_be_tried_again(scripted, tmp_path):
+    def fail_one(task):
+        failed = task.hash == HASHES[1]
+        return outcome(task.hash, "failed", 1, "too steep") if failed else outcome(task.hash)
+
+    scripted.answer = fail_one
+    table = STUDY.run(tmp_path / "store")
+    assert [status for status, _ in states(tmp_path / "store")] == ["done", "failed", "done"]
+    (row,) = table[table.ended == "failed"].to_dict("records")
+    assert (row["hash"], row["event"], row["error"]) == (HASHES[1], 2, "too steep")
+    STUDY.run(tmp_path / "store")
+    assert len(scripted.tasks) == 3
+    scripted.answer = lambda task: outcome(task.hash)
+    STUDY.run(tmp_path / "store", retry_failed=True)
+    assert len(scripted.tasks) == 4
+    assert states(tmp_path / "store") == [("done", None)] * 3
+
+
+def test_a_worker_that_dies_costs_only_its_run(scripted, tmp_path):
+    died = []
+
+    def die_once(task):
+        if task.hash == HASHES[0] and not died:
+            died.append(task)
+            return Outcome(task.hash, "lost", error="the worker was killed")
+        return outcome(task.hash)
+
+    scripted.answer = die_once
+    STUDY.run(tmp_path / "store")
+    assert len(scripted.tasks) == 4
+    assert states(tmp_path / "store") == [("done", None)] * 3
+
+
+def test_a_run_whose_workers_always_die_fails(scripted, tmp_path):
+    scripted.answer = lambda task: (
+        Outcome(task.hash, "lost", error="the worker was killed by signal 9 (Killed)")
+        if task.hash == HASHES[2]
+        else outcome(task.hash)
+    )
+    STUDY.run(tmp_path / "store")
+    status, error = states(tmp_path / "store")[2]
+    assert status == "failed"
+    assert error == "gave up after 3 attempts: the worker was killed by signal 9 (Killed)"
+
+
+def test_a_machine_that_cannot_stops_the_study_and_loses_nothing(scripted, tmp_path):
+    scripted.answer = lambda task: (
+        outcome(task.hash)
+        if len(scripted.tasks) < 3
+        else Outcome(task.hash, "unable", error="checkpoint.bin: No space left on device")
+    )
+    with pytest.raises(StudyError, match=r"No space left on device; .* safe.*repeat"):
+        STUDY.run(tmp_path / "store")
+    assert scripted.stopped and scripted.closed
+    assert sorted(status for status, _ in states(tmp_path / "store")) == [
+        "done",
+        "pending",
+        "pending",
+    ]
+    scripted.answer = lambda task: outcome(task.hash)
+    resume(tmp_path / "store")
+    assert states(tmp_path / "store") == [("done", None)] * 3
+
+
+def test_a_full_disk_while_storing(scripted, tmp_path, monkeypatch):
+    monkeypatch.setattr(session.Store, "record", _fill_disk_then_record(session.Store.record))
+    with pytest.raises(StudyError, match="disk is full"):
+        STUDY.run(tmp_path / "store")
+    monkeypatch.undo()
+    assert {status for status, _ in states(tmp_path / "store")} == {"pending"}
+    with Store.open(tmp_path / "store") as store:
+        assert not any(store.owners())
+
+
+def _fill_disk_then_record(record):
+    def full(store, given):
+        (pages,) = store.read("PRAGMA page_count")[0]
+        store.read(f"PRAGMA max_page_count = {pages}")
+        record(store, outcome(given.hash, events=5000))
+
+    return full
+
+
+def test_an_interrupt_keeps_what_ended_meanwhile_and_says_how_to_go_on(scripted, tmp_path):
+    study = tiny_study(frictions=(0.1, 0.2, 0.3, 0.4, 0.5))
+
+    def interrupt(progress):
+        if progress.done == 1:  # then two run, of which one ends before the signal is seen
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(StudyInterrupted, match="interrupted; go on with: snowshed study resume"):
+        study.run(tmp_path / "store", progress=interrupt)
+    assert scripted.stopped
+    assert sum(status == "done" for status, _ in states(tmp_path / "store")) == 3
+    resume(tmp_path / "store")
+    assert states(tmp_path / "store") == [("done", None)] * 5
+    assert len(scripted.tasks) == 5
+
+
+def test_runs_of_another_process_are_waited_for(scripted, tmp_path):
+    with Store.create(tmp_path / "store") as other:
+        other.register("tiny", STUDY.axes, STUDY.runs())
+    ready, go_on = threading.Event(), threading.Event()
+
+    def compute_slowly():
+        with Store.open(tmp_path / "store") as mine, ownership(mine) as me:
+            mine.claim(HASHES[0], me)
+            ready.set()
+            go_on.wait(10)
+            mine.record(outcome(HASHES[0]))
+
+    thread = threading.Thread(target=compute_slowly)
+    thread.start()
+    ready.wait(10)
+    seen = []
+
+    def watch(progress):
+        seen.append(progress)
+        if progress.elsewhere == 1 and progress.done == 2:
+            go_on.set()
+
+    STUDY.run(tmp_path / "store", progress=watch)
+    thread.join()
+    assert HASHES[0] not in {task.hash for task in scripted.tasks}
+    assert (seen[-1].done, seen[-1].elsewhere, seen[-1].fraction) == (3, 0, 1.0)
+
+
+def test_runs_of_a_process_that_died_are_taken_over(scripted, tmp_path):
+    with Store.create(tmp_path / "store") as other:
+        other.register("tiny", STUDY.axes, STUDY.runs())
+        for hash_ in HASHES:
+            other.claim(hash_, "somebody-dead")
+    STUDY.run(tmp_path / "store")
+    assert len(scripted.tasks) == 3
+
+
+def test_progress_tells_the_whole_story(scripted, tmp_path):
+    seen = []
+    STUDY.run(tmp_path / "store", progress=seen.append)
+    assert (seen[0].runs, seen[0].done, seen[0].fraction) == (3, 0, 0.0)
+    assert seen[0].expected_s > 0
+    assert [progress.done for progress in seen] == sorted(progress.done for progress in seen)
+    assert (seen[-1].done, seen[-1].running, seen[-1].fraction) == (3, 0, 1.0)
+
+
+def test_leftovers_of_killed_processes_are_removed(scripted, tmp_path):
+    with Store.create(tmp_path / "store") as store:
+        store.register("tiny", STUDY.axes, STUDY.runs())
+        store.record(outcome(HASHES[0]))
+        for name in (*HASHES[:2], "unknown"):
+            (store.running / name / "results").mkdir(parents=True)
+        (store.running / "dead.lock").touch()
+        session._tidy(store)
+        assert [path.name for path in store.running.iterdir()] == [HASHES[1]]
+        with ownership(store):
+            session._tidy(store)
+            assert len(list(store.running.iterdir())) == 2
+    STUDY.run(tmp_path / "store")
+    assert not any((tmp_path / "store" / "running").iterdir())
+
+
+def test_unfinished_runs_of_another_version_are_not_mixed_in(scripted, tmp_path, monkeypatch):
+    with Store.create(tmp_path / "store") as store:
+        store.register("tiny", STUDY.axes, STUDY.runs())
+    monkeypatch.setattr(_core, "version", "99.0")
+    with pytest.raises(InputError, match=r"this is 99\.0; start the study again with"):
+        resume(tmp_path / "store")
+    STUDY.run(tmp_path / "store")
+    with Store.open(tmp_path / "store") as store:
+        assert {run.version for run in store.runs("tiny")} == {"99.0"}
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"jobs": 0}, "jobs: 0 is not positive"),
+        ({"threads": -1}, "threads: -1 is not positive"),
+        ({"jobs": 2, "scheduler": "tcp://127.0.0.1:1"}, "jobs: not with a scheduler"),
+    ],
+)
+def test_wrong_resources_leave_nothing_behind(tmp_path, options, message):
+    with pytest.raises(InputError, match=message):
+        STUDY.run(tmp_path / "store", **options)
+    assert not (tmp_path / "store").exists()
+
+
+@pytest.mark.parametrize(
+    ("jobs", "threads", "runs", "cores", "processes", "each"),
+    [
+        (None, None, 100, 8, 8, 1),
+        (None, None, 3, 8, 3, 2),
+        (None, None, 1, 8, 1, 8),
+        (4, None, 100, 8, 4, 2),
+        (1, 1, 100, 8, 1, 1),
+        (None, 4, 100, 8, 2, 4),
+        (16, None, 100, 8, 16, 1),
+    ],
+)
+def test_processes_and_threads_fill_the_cores(
+    monkeypatch, jobs, threads, runs, cores, processes, each
+):
+    monkeypatch.setattr(session, "available_cores", lambda: cores)
+    workers, at_once = session.Resources(jobs, threads).workers(runs)
+    assert (at_once, workers.capacity, workers.threads(runs)) == (processes, processes, each)
+
+
+def test_the_last_runs_of_many_get_the_cores_that_fall_free():
+    workers, _ = session.Resources(jobs=4).workers(100)
+    workers._cores = 4
+    assert [workers.threads(unfinished) for unfinished in (100, 4, 3, 2, 1)] == [1, 1, 1, 2, 4]
+
+
+def test_expected_durations():
+    assert forecast.duration([4.0], 2) == 4.0
+    assert forecast.duration([1.0] * 6, 3) == 2.0
+    assert forecast.duration([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
+
+
+def test_the_forecast_of_work_is_that_of_plan():
+    scene = STUDY.runs()[0].scene
+    plan = _core.plan(scene)
+    assert forecast.work(scene) == pytest.approx(plan["expected_wall_s"] * plan["updates_per_s"])
+    assert forecast.work(scene.replace('"dx": 0.02', '"dx": 1e-8')) == 0.0
+
+
+def test_forecasting_many_runs_takes_little():
+    scenes = [run.scene for run in STUDY.runs()] * 10
+    start = time.process_time()
+    for scene in scenes:
+        forecast.work(scene)
+    assert time.process_time() - start < 0.05 * len(scenes)

@@ -1,0 +1,208 @@
+"""The store: what is in it, who may compute, and what it survives."""
+
+import multiprocessing
+import sqlite3
+
+import pytest
+from study_helpers import contents, outcome, tiny_study
+
+from snowshed import InputError, _core
+from snowshed.study import StudyError, store
+from snowshed.study.owner import is_alive, ownership, release_dead
+from snowshed.study.store import FILE, MEASURES, Store
+
+RUNS = tiny_study().runs()
+HASHES = [run.hash for run in RUNS]
+
+
+@pytest.fixture
+def opened(tmp_path):
+    with Store.create(tmp_path / "store") as opened:
+        opened.register("tiny", ["panel.friction"], RUNS)
+        yield opened
+
+
+def test_a_study_comes_back_in_order(opened):
+    with Store.open(opened.folder) as again:
+        assert again.studies() == ["tiny"]
+        assert again.axes("tiny") == ["panel.friction"]
+        assert [(run.hash, run.scene) for run in again.runs("tiny")] == [
+            (run.hash, run.scene) for run in RUNS
+        ]
+        assert {run.status for run in again.runs("tiny")} == {"pending"}
+
+
+def test_a_changed_study_replaces_the_one_of_its_name_and_keeps_what_is_done(opened):
+    opened.record(outcome(HASHES[0]))
+    opened.register("tiny", [], RUNS[:2])
+    assert [run.status for run in opened.runs("tiny")] == ["done", "pending"]
+
+
+def test_studies_share_runs(opened):
+    opened.register("other", ["panel.friction"], reversed(RUNS))
+    opened.record(outcome(HASHES[1]))
+    assert [run.status for run in opened.runs("other")] == ["pending", "done", "pending"]
+    with pytest.raises(InputError, match="holds several studies; name one of: other, tiny"):
+        opened.named(None)
+    with pytest.raises(InputError, match="holds no study 'third'"):
+        opened.named("third")
+
+
+def test_what_is_recorded_is_read_back_exactly(opened):
+    value = 0.1 + 0.2
+    given = outcome(HASHES[0], events=1)
+    given.events[0]["height_m"] = value
+    given.events[0]["density_kg_m3"] = None
+    opened.record(given)
+    ((height, density, wall),) = opened.read(
+        "SELECT height_m, density_kg_m3, wall_s FROM event JOIN event_timing USING (hash, event)"
+    )
+    assert (height, density, wall) == (value, None, 0.5)
+
+
+def test_only_the_first_result_of_a_run_counts(opened):
+    opened.record(outcome(HASHES[0]))
+    opened.record(outcome(HASHES[0], "failed", 1, "too late"))
+    assert opened.runs("tiny")[0].status == "done"
+    assert opened.read("SELECT count(*) FROM event") == [(2,)]
+
+
+def test_a_failed_run_can_be_tried_again(opened):
+    opened.record(outcome(HASHES[0], "failed", 1, "broken"))
+    opened.record(outcome(HASHES[1]))
+    opened.reset(HASHES)
+    assert [run.status for run in opened.runs("tiny")] == ["pending", "done", "pending"]
+    assert opened.read("SELECT DISTINCT hash FROM event") == [(HASHES[1],)]
+
+
+def test_a_run_belongs_to_one_owner_until_it_is_released_or_recorded(opened):
+    one, other, _ = HASHES
+    assert opened.claim(one, "a") and opened.claim(other, "a")
+    assert opened.claim(one, "a")
+    assert not opened.claim(one, "b")
+    opened.record(outcome(one))
+    assert not opened.claim(one, "b")
+    opened.release("a")
+    assert opened.claim(other, "b")
+    assert opened.owners() == ["b"]
+
+
+def test_the_claims_of_a_dead_owner_are_taken_over(opened):
+    assert opened.claim(HASHES[0], "died-long-ago")
+    with Store.open(opened.folder) as another, ownership(another) as living:
+        assert another.claim(HASHES[1], living)
+        assert is_alive(opened, living) and not is_alive(opened, "died-long-ago")
+        release_dead(opened)
+        assert opened.claim(HASHES[0], "me")
+        assert not opened.claim(HASHES[1], "me")
+    assert opened.claim(HASHES[1], "me")
+    assert not any(opened.running.iterdir())
+
+
+def _claim_all(folder, owner, answers):
+    with Store.open(folder) as mine:
+        answers.put([run.hash for run in mine.runs("race") if mine.claim(run.hash, owner)])
+
+
+def test_processes_that_race_for_runs_share_them_out(tmp_path):
+    runs = tiny_study(frictions=tuple(0.1 + i / 1000 for i in range(40))).runs()
+    with Store.create(tmp_path / "store") as mine:
+        mine.register("race", [], runs)
+    context = multiprocessing.get_context("fork")
+    answers = context.Queue()
+    processes = [
+        context.Process(target=_claim_all, args=(tmp_path / "store", f"owner {i}", answers))
+        for i in range(3)
+    ]
+    for process in processes:
+        process.start()
+    claimed = [hash_ for _ in processes for hash_ in answers.get(timeout=60)]
+    for process in processes:
+        process.join()
+    assert sorted(claimed) == sorted(run.hash for run in runs)
+
+
+def _create(folder, answers):
+    with Store.create(folder) as mine:
+        mine.register("race", [], RUNS)
+    answers.put("made")
+
+
+def test_processes_that_make_the_same_store_at_once_all_succeed(tmp_path):
+    context = multiprocessing.get_context("fork")
+    answers = context.Queue()
+    processes = [
+        context.Process(target=_create, args=(tmp_path / "new" / "store", answers))
+        for _ in range(4)
+    ]
+    for process in processes:
+        process.start()
+    assert [answers.get(timeout=60) for _ in processes] == ["made"] * 4
+    with Store.open(tmp_path / "new" / "store") as mine:
+        assert len(mine.runs("race")) == 3
+
+
+def test_a_full_disk_is_a_clear_error_and_loses_nothing(opened):
+    opened.record(outcome(HASHES[0]))
+    before = contents(opened.folder)
+    (pages,) = opened.read("PRAGMA page_count")[0]
+    opened.read(f"PRAGMA max_page_count = {pages}")
+    with pytest.raises(StudyError, match=r"disk is full; what is stored is safe.*repeat"):
+        opened.record(outcome(HASHES[1], events=5000))
+    assert contents(opened.folder) == before
+    opened.read(f"PRAGMA max_page_count = {pages + 10000}")
+    opened.record(outcome(HASHES[1], events=5000))
+    assert opened.state(HASHES[1]) == ("done", None)
+
+
+def test_runs_are_found_by_the_beginning_of_their_hash(opened):
+    assert opened.find(HASHES[0][:12]).hash == HASHES[0]
+    with pytest.raises(InputError, match="no run with a hash that begins with 'xyz'"):
+        opened.find("xyz")
+    with pytest.raises(InputError, match="several runs"):
+        opened.find("")
+
+
+def test_measures_that_came_later_are_added_to_an_older_store(opened, monkeypatch):
+    opened.record(outcome(HASHES[0]))
+    opened.close()
+    monkeypatch.setattr(store, "MEASURES", {**MEASURES, "wetness": "REAL"})
+    with Store.open(opened.folder) as newer:
+        assert newer.read("SELECT height_m, wetness FROM event WHERE event = 1") == [(10.0, None)]
+
+
+def test_folders_that_do_not_serve(tmp_path):
+    (tmp_path / "file").touch()
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "thesis.txt").touch()
+    with pytest.raises(InputError, match="file: not a folder"):
+        Store.create(tmp_path / "file")
+    with pytest.raises(InputError, match="not empty, and holds no study"):
+        Store.create(tmp_path / "full")
+    with pytest.raises(InputError, match="holds no study"):
+        Store.open(tmp_path / "none")
+    with Store.create(tmp_path / "empty") as empty, pytest.raises(InputError, match="no study"):
+        empty.named(None)
+    assert not (tmp_path / "none").exists()
+    assert [path.name for path in (tmp_path / "full").iterdir()] == ["thesis.txt"]
+
+
+def test_databases_that_are_no_store(tmp_path):
+    connection = sqlite3.connect(tmp_path / FILE)
+    connection.execute("CREATE TABLE run (distance REAL)")
+    connection.close()
+    with pytest.raises(InputError, match="not a store of studies"):
+        Store.open(tmp_path)
+    (tmp_path / FILE).write_bytes(b"no database at all" * 100)
+    with pytest.raises(StudyError, match="file is not a database"):
+        Store.open(tmp_path)
+
+
+def test_a_store_of_another_form_is_refused(opened):
+    opened.read("PRAGMA user_version = 99")
+    with pytest.raises(InputError, match="another version of snowshed"):
+        Store.open(opened.folder)
+
+
+def test_rows_say_which_version_computed_them(opened):
+    assert {run.version for run in opened.runs("tiny")} == {_core.version}

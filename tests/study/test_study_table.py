@@ -1,0 +1,157 @@
+"""The table of a study, and the files it is exported to."""
+
+import importlib
+
+import numpy as np
+import pandas as pd
+import pytest
+import study_helpers
+import xarray
+from study_helpers import outcome, tiny_scene, tiny_study
+
+from snowshed import InputError, Shape
+from snowshed.parts import Obstacle
+from snowshed.results import EVENT_COLUMNS
+from snowshed.study import Factor, Study, export, read_table, to_dataset
+from snowshed.study.store import MEASURES, TIMING, Store
+
+computed = study_helpers.computed  # a fixture
+
+
+def store_with(folder, study, *statuses):
+    """Enter a study whose runs have these statuses."""
+    with Store.create(folder) as store:
+        store.register(study.name, study.axes, study.runs())
+        for run, status in zip(study.runs(), statuses):
+            if status == "done":
+                store.record(outcome(run.hash))
+            elif status == "failed":
+                store.record(outcome(run.hash, "failed", 1, "broken"))
+    return folder
+
+
+@pytest.fixture
+def mixed(tmp_path):
+    """Runs that are done, failed in the second event, and not yet computed."""
+    return store_with(tmp_path / "store", tiny_study(), "done", "failed", "pending")
+
+
+def test_one_row_per_run_and_event_in_the_order_of_the_study(computed):
+    table = read_table(computed)
+    assert table["panel.friction"].tolist() == [0.1, 0.1, 0.2, 0.2, 0.3, 0.3]
+    assert table.event.tolist() == [1, 2] * 3
+    assert table["hash"].tolist() == [run.hash for run in tiny_study().runs() for _ in range(2)]
+
+
+def test_every_row_says_how_it_was_computed(computed):
+    table = read_table(computed)
+    assert set(EVENT_COLUMNS) - {"wall_s"} <= set(table.columns)
+    assert not {"wall_s", *TIMING} & set(table.columns)
+    settings = table.iloc[0][["seed", "dimension", "dx", "precision", "transfer", "flip_ratio"]]
+    assert settings.tolist() == [1, 2, 0.02, "float", "flip", 0.99]
+    assert {"version", "basis", "step_factor", "particles_per_voxel", "pattern"} <= set(table)
+    timed = read_table(computed, timing=True)
+    assert (timed.wall_s > 0).all() and (timed.run_wall_s > 0).all()
+    assert (timed.threads == 1).all() and (timed.particles > 0).all()
+
+
+def test_failed_and_missing_runs(mixed):
+    table = read_table(mixed)
+    assert table.event.tolist() == [1, 2, 1, 2]
+    assert table.ended.tolist() == ["rest", "rest", "rest", "failed"]
+    assert table.error.tolist() == ["", "", "", "broken"]
+    assert table.height_m.isna().tolist() == [False, False, False, True]
+    assert table.steps.isna().tolist() == [False, False, False, True]
+
+
+def test_values_that_a_part_did_not_vary_are_those_of_the_scene(tmp_path):
+    parts = [[Factor({"panel.tilt": [40]})], [Factor({"panel.height": [1.0]})]]
+    study = Study(tiny_scene(), parts)
+    table = read_table(store_with(tmp_path / "store", study, "done", "done"))
+    rows = table[table.event == 1][["panel.tilt", "panel.height"]]
+    assert rows.to_numpy().tolist() == [[40, 0.33], [50, 1]]
+
+
+def test_vectors_are_texts_and_what_a_scene_lacks_is_empty(tmp_path):
+    scene = tiny_scene()
+    obstacles = [[], [Obstacle(shape=Shape.sphere((3, 0), 0.1), friction=0.7)]]
+    domain = {"domain": [{"min": [-9, -9], "max": [9, 9]}]}
+    study = Study(scene, [[Factor({"obstacles": obstacles}), Factor(domain)]])
+    folder = store_with(tmp_path / "store", study, "done", "done")
+    with Store.open(folder) as store:
+        store.register("study", ["obstacles.0.friction", "domain.min"], study.runs())
+    table = read_table(folder)
+    assert table["domain.min"].tolist() == ["[-9.0, -9.0]"] * 4
+    assert table["obstacles.0.friction"].isna().tolist() == [True, True, False, False]
+
+
+def test_a_table_without_rows_has_its_columns(tmp_path):
+    table = read_table(store_with(tmp_path / "store", tiny_study(), "pending"))
+    assert len(table) == 0 and {"panel.friction", "height_m", "dx"} <= set(table)
+
+
+def test_several_studies_must_be_named(tmp_path):
+    store_with(tmp_path / "store", tiny_study(), "done", "done", "done")
+    store_with(tmp_path / "store", tiny_study("other", (0.3, 0.5)))
+    with pytest.raises(InputError, match="name one of: other, tiny"):
+        read_table(tmp_path / "store")
+    assert read_table(tmp_path / "store", "other")["panel.friction"].tolist() == [0.3, 0.3]
+
+
+def test_csv_and_parquet_give_the_table_back(mixed, tmp_path):
+    table = read_table(mixed)
+    export(mixed, tmp_path / "t.csv")
+    export(mixed, tmp_path / "t.parquet")
+    from_csv = pd.read_csv(tmp_path / "t.csv", dtype={"steps": "Int64"}, keep_default_na=True)
+    pd.testing.assert_frame_equal(from_csv.fillna({"error": ""}), table, check_dtype=False)
+    pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "t.parquet"), table)
+
+
+def test_netcdf_has_runs_and_events_as_dimensions(mixed, tmp_path):
+    export(mixed, tmp_path / "t.nc", timing=True)
+    with xarray.open_dataset(tmp_path / "t.nc") as dataset:
+        assert dict(dataset.sizes) == {"run": 2, "event": 2}
+        assert dataset.event.values.tolist() == [1, 2]
+        assert dataset["panel.friction"].dims == ("run",)
+        assert dataset["panel.friction"].values.tolist() == [0.1, 0.2]
+        assert dataset.height_m.dims == ("run", "event")
+        assert dataset.height_m.attrs["units"] == "m"
+        assert dataset.density_kg_m3.attrs["units"] == "kg/m3"
+        assert dataset.error.values.tolist() == [["", ""], ["", "broken"]]
+        assert np.isnan(dataset.height_m.values).tolist() == [[False, False], [False, True]]
+        assert dataset.steps.values[1, 1] == 0
+        assert dataset.wall_s.values[0].tolist() == [0.5, 0.5]
+
+
+def test_a_product_unfolds_into_a_dimension_per_parameter(tmp_path):
+    study = Study.product(tiny_scene(), {"panel.tilt": [40, 50], "panel.height": [1.0, 2.0, 3.0]})
+    table = read_table(store_with(tmp_path / "store", study, *["done"] * 6))
+    grid = to_dataset(table).set_index(run=["panel.tilt", "panel.height"]).unstack("run")
+    assert grid.height_m.sizes == {"panel.tilt": 2, "panel.height": 3, "event": 2}
+
+
+def test_the_form_is_told_by_the_ending_or_given(mixed, tmp_path):
+    export(mixed, tmp_path / "table.txt", form="csv")
+    assert (tmp_path / "table.txt").read_text().startswith("hash,panel.friction,seed,event,")
+    with pytest.raises(InputError, match=r"unknown format .* allowed: csv, parquet, netcdf"):
+        export(mixed, tmp_path / "table.xls")
+    assert not (tmp_path / "table.xls").exists()
+
+
+@pytest.mark.parametrize("form", ["parquet", "netcdf"])
+def test_without_its_library_a_form_says_what_to_install(mixed, tmp_path, monkeypatch, form):
+    def missing(name):
+        raise ImportError(f"No module named {name!r}")
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    with pytest.raises(InputError, match=r'pip install "snowshed\[study\]"'):
+        export(mixed, tmp_path / "table", form=form)
+    assert not (tmp_path / "table").exists()
+
+
+def test_units_of_measures_are_known():
+    from snowshed.study.formats import _units
+
+    units = _units()
+    assert units["panel.tilt"] == "degrees" and units["volume_m3"] == "m3"
+    assert {name for name in MEASURES if name not in units} == {"steps", "ended"}
