@@ -28,13 +28,25 @@ void SolverOf<T, D>::save(BinaryWriter& out) const {
   out.add("pressed/obstacle", std::move(obstacle));
   out.add("pressed/amount", std::move(amount));
 
+  std::vector<double> since, start_speed;
+  std::vector<std::uint16_t> asleep;
+  for (const auto& s : sleep_.states()) {
+    since.push_back(s.quiet.since);
+    start_speed.push_back(s.quiet.start_speed);
+    asleep.push_back(s.asleep);
+  }
+  out.add("sleep/since", std::move(since));
+  out.add("sleep/start_speed", std::move(start_speed));
+  out.add("sleep/asleep", std::move(asleep));
+
   const EnergyBooks& b = books_;
   out.add("energy", std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic,
-                                        b.friction, b.sticking, b.impact, b.transfer, b.added});
+                                        b.friction, b.sticking, b.impact, b.transfer, b.sleep, b.added});
   out.add("clock", std::vector<double>{time_, dt_, speed_, counters_.smallest_dt});
   out.add("counters",
           std::vector<std::int64_t>{counters_.steps, counters_.rejected, counters_.sorts,
-                                    counters_.particle_updates, std::int64_t(next_id_)});
+                                    counters_.particle_updates, counters_.slept_updates,
+                                    std::int64_t(next_id_)});
 }
 
 template <class T, int D>
@@ -60,14 +72,15 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
   dt_ = clock[1];
   speed_ = clock[2];
   counters_.smallest_dt = clock[3];
-  const auto counts = in.get<std::int64_t>("counters", 5);
+  const auto counts = in.get<std::int64_t>("counters", 6);
   counters_.steps = counts[0];
   counters_.rejected = counts[1];
   counters_.sorts = counts[2];
   counters_.particle_updates = counts[3];
-  next_id_ = std::uint32_t(counts[4]);
-  const auto e = in.get<double>("energy", 9);
-  books_ = {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8]};
+  counters_.slept_updates = counts[4];
+  next_id_ = std::uint32_t(counts[5]);
+  const auto e = in.get<double>("energy", 10);
+  books_ = {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9]};
 
   contacts_.relocate({}, time_);
   contacts_.relocate(layout_.grid_blocks, time_);
@@ -80,6 +93,13 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
     stored.push_back({block[i], node[i], obstacle[i], amount[i]});
   contacts_.restore(stored);
   grid_.resize(layout_);
+  const auto since = in.get<double>("sleep/since", layout_.particle_blocks.size());
+  const auto start_speed = in.get<double>("sleep/start_speed", since.size());
+  const auto asleep = in.get<std::uint16_t>("sleep/asleep", since.size());
+  std::vector<typename Sleep<D>::State> states;
+  for (std::size_t i = 0; i < since.size(); ++i)
+    states.push_back({{since[i], start_speed[i]}, asleep[i] != 0});
+  sleep_.restore(layout_, std::move(states));
   tiles_valid_ = false;
   since_sort_ = 0;
 }

@@ -70,7 +70,7 @@ struct StepParameters {
 /// What a kernel reports of one block of particles.
 struct BlockStats {
   double speed_squared = 0;  // largest, of velocity and of motion, m2/s2
-  double strain = 0;         // largest |dt grad v| component
+  double strain = 0;         // largest |dt grad v| component; of `probe` only
   bool escaped = false;      // a particle left the tile: the sums are not valid, sort first
   bool bad = false;          // a particle's state is not finite
   double kinetic = 0, elastic = 0, plastic = 0;  // J; with energy books only

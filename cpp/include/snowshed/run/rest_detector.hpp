@@ -1,7 +1,7 @@
 // When is snow at rest?
 #pragma once
 
-#include "snowshed/mpm/solver.hpp"
+#include "snowshed/mpm/quiet_spell.hpp"
 
 namespace snowshed {
 
@@ -13,7 +13,7 @@ class RestDetector {
  public:
   RestDetector(double rest_speed, double rest_time) : limit_(rest_speed), duration_(rest_time) {}
 
-  void start_event(double time) { since_ = time, speed_at_start_ = 0, speed_ = 0, next_ = time; }
+  void start_event(double time) { spell_ = {time, 0}, speed_ = 0, next_ = time; }
 
   /// Whether it is time to look again.
   bool due(double time) const { return time >= next_; }
@@ -28,15 +28,14 @@ class RestDetector {
   struct State {
     double since, speed_at_start, speed, next;
   };
-  State state() const { return {since_, speed_at_start_, speed_, next_}; }
+  State state() const { return {spell_.since, spell_.start_speed, speed_, next_}; }
   void restore(const State& s) {
-    since_ = s.since, speed_at_start_ = s.speed_at_start, speed_ = s.speed, next_ = s.next;
+    spell_ = {s.since, s.speed_at_start}, speed_ = s.speed, next_ = s.next;
   }
 
  private:
   double limit_, duration_;
-  double since_ = 0;           // start of the present quiet interval
-  double speed_at_start_ = 0;  // of that interval
+  QuietSpell spell_;
   double speed_ = 0, next_ = 0;
 };
 
