@@ -131,6 +131,8 @@ class Numerics(Record):
     basis: Optional[str] = None  # quadratic, cubic
     step_factor: Optional[float] = None
     strain_limit: Optional[float] = None
+    sleep_speed: Optional[float] = None
+    sleep_time: Optional[float] = None
     threads: Optional[int] = None
 
 

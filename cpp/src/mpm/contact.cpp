@@ -118,6 +118,16 @@ void Contacts<T, D>::follow(double time) {
 }
 
 template <class T, int D>
+bool Contacts<T, D>::moves(std::size_t block) const {
+  if (!any_motion_) return false;
+  const auto in_motion = [](const Contact<T>& c) {
+    return std::any_of(c.velocity, c.velocity + D, [](T v) { return v != T(0); });
+  };
+  return std::any_of(contacts_.begin() + first_[block], contacts_.begin() + first_[block + 1],
+                     in_motion);
+}
+
+template <class T, int D>
 std::vector<typename Contacts<T, D>::Press> Contacts<T, D>::pressed() const {
   std::vector<Press> stored;
   for (std::size_t b = 0; b < blocks_.size(); ++b)

@@ -20,6 +20,9 @@ constexpr double friction_memory = 40;
 /// Fewer particles than this are not worth waking another thread for, twice a step.
 constexpr int particles_per_thread = 2000;
 
+/// Steps between looks for snow to fall asleep or to wake: a wave crosses less than a block.
+constexpr int steps_between_looks = 8;
+
 }  // namespace
 
 template <class T, int D>
@@ -32,7 +35,8 @@ SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obs
                                        options.snow.density, D, options.numerics.dx,
                                        options.numerics.basis)),
       contacts_(std::move(obstacles), options.numerics.dx),
-      grid_(options.numerics.basis) {
+      grid_(options.numerics.basis),
+      sleep_(options.numerics.sleep_speed, options.numerics.sleep_time) {
   particles_.has_affine = options.numerics.transfer == Transfer::apic;
   particles_.has_plastic = options.snow.model == SnowModel::cam_clay;
   counters_.smallest_dt = elastic_limit_;
@@ -53,7 +57,7 @@ StepParameters<T> SolverOf<T, D>::parameters(double dt) const {
 
 template <class T, int D>
 int SolverOf<T, D>::threads() const {
-  const auto worth = std::int64_t(particles_.size()) / particles_per_thread + 1;
+  const auto worth = sleep_.awake_particles() / particles_per_thread + 1;
   return int(std::min<std::int64_t>(max_threads_, worth));
 }
 
@@ -85,6 +89,7 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
   sort_particles(particles_, std::move(blocks), layout_, threads());
   contacts_.relocate(layout_.grid_blocks, time_, threads());
   grid_.resize(layout_);
+  sleep_.relocate(layout_, time_);
   tiles_valid_ = false;
   speed_ = std::max(speed_, velocity.norm());
   if (options_.energy) {
@@ -103,6 +108,7 @@ void SolverOf<T, D>::clear() {
   sort_particles(particles_, {}, layout_, threads());
   contacts_.relocate(layout_.grid_blocks, time_, threads());
   grid_.resize(layout_);
+  sleep_.relocate(layout_, time_);
   tiles_valid_ = false;
 }
 
@@ -131,6 +137,7 @@ void SolverOf<T, D>::kick(const std::vector<Vec3>& velocity_changes) {
     books_.kinetic = kinetic_energy();
     books_.added += books_.kinetic - before;
   }
+  sleep_.wake_all(layout_, time_);
   tiles_valid_ = false;
 }
 
@@ -146,10 +153,12 @@ void SolverOf<T, D>::step() {
   advance(dt_);
   time_ += dt_;
   ++counters_.steps;
-  counters_.particle_updates += std::int64_t(particles_.size());
+  counters_.particle_updates += sleep_.awake_particles();
+  counters_.slept_updates += std::int64_t(particles_.size()) - sleep_.awake_particles();
   counters_.smallest_dt = std::min(counters_.smallest_dt, dt_);
   if (++since_sort_ >= steps_between_sorts) tiles_valid_ = false;
   check_particles();
+  let_sleep();
 }
 
 template <class T, int D>
@@ -158,6 +167,7 @@ void SolverOf<T, D>::sort() {
     contacts_.relocate(layout_.grid_blocks, time_, threads());
     grid_.resize(layout_);
   }
+  sleep_.relocate(layout_, time_);
   since_sort_ = 0;
   ++counters_.sorts;
 }
@@ -167,12 +177,17 @@ void SolverOf<T, D>::scatter() {
   const ParticleView<T> view = particles_.view();
   const StepParameters<T> step = parameters(dt_);
   const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
-  parallel_for(n, threads(), 1, [&](std::ptrdiff_t b) {
-    BlockStats stats;
-    kernels_.scatter(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
-                     grid_.tile(b), stats);
-  });
+  parallel_for(n, threads(), 1, [&](std::ptrdiff_t b) { scatter_block(step, view, b); });
+  clear_idle_nodes();
   tiles_valid_ = true;
+}
+
+template <class T, int D>
+void SolverOf<T, D>::scatter_block(const StepParameters<T>& step, const ParticleView<T>& view,
+                                   std::ptrdiff_t b) {
+  grid_.block_stats[b] = {};
+  kernels_.scatter(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
+                   grid_.tile(b), grid_.block_stats[b]);
 }
 
 /// First half of a step: the node sums, and at once the node velocities for a step of dt.
@@ -180,8 +195,9 @@ template <class T, int D>
 void SolverOf<T, D>::gather_and_update(double dt) {
   contacts_.follow(time_);
   const StepParameters<T> step = parameters(dt);
-  const std::ptrdiff_t n = std::ptrdiff_t(layout_.grid_blocks.size());
-  parallel_for(n, threads(), 8, [&](std::ptrdiff_t g) {
+  const std::vector<std::int32_t>& active = sleep_.active();
+  parallel_for(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
+    const std::int32_t g = active[i];
     contacts_.commit(g);
     const T* tiles[neighbour_count<D>];
     for (int k = 0; k < neighbour_count<D>; ++k) {
@@ -196,8 +212,9 @@ void SolverOf<T, D>::gather_and_update(double dt) {
 template <class T, int D>
 void SolverOf<T, D>::update(double dt) {
   const StepParameters<T> step = parameters(dt);
-  const std::ptrdiff_t n = std::ptrdiff_t(layout_.grid_blocks.size());
-  parallel_for(n, threads(), 8, [&](std::ptrdiff_t g) { update_block(step, g); });
+  const std::vector<std::int32_t>& active = sleep_.active();
+  parallel_for(std::ptrdiff_t(active.size()), threads(), 8,
+               [&](std::ptrdiff_t i) { update_block(step, active[i]); });
 }
 
 template <class T, int D>
@@ -230,50 +247,58 @@ double SolverOf<T, D>::update_within_limits(double dt) {
 }
 
 /// The largest velocity gradient (1/s) the particles will see. B-spline derivatives average nodal
-/// differences, so the range of the nodal velocities around a block bounds it; only where that
-/// bound is too large are the particles themselves asked.
+/// differences, so the range of the nodal velocities bounds it: of all nodes, or of those around a
+/// block. Only where these bounds are too large are the particles themselves asked.
 template <class T, int D>
 double SolverOf<T, D>::largest_strain() {
   const double dx = options_.numerics.dx;
   const double rate_limit = options_.numerics.strain_limit /
                             next_time_step(elastic_limit_, 0.0, dx, options_.numerics.step_factor);
+  const auto bound_over = [&](const auto& grid_blocks) {
+    VecD<D> low = VecD<D>::Constant(infinity), high = -low;
+    for (std::int32_t g : grid_blocks) {
+      const NodeStats& s = grid_.node_stats[g];
+      for (int d = 0; d < D; ++d) {
+        low[d] = std::min(low[d], s.low[d]);
+        high[d] = std::max(high[d], s.high[d]);
+      }
+    }
+    return std::max(0.0, (high - low).maxCoeff() / dx);  // no snow: negative
+  };
+  const double overall = bound_over(sleep_.active());
+  if (overall <= rate_limit) return overall;
+
   const StepParameters<T> unit = parameters(1.0);
   const ParticleView<T> view = particles_.view();
-  const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
-  block_strain_.resize(layout_.particle_blocks.size());
-  parallel_for(n, threads(), 256, [&](std::ptrdiff_t b) {
-    double bound = 0;
-    for (int d = 0; d < D; ++d) {
-      double low = infinity, high = -infinity;
-      for (std::int32_t g : layout_.around_particles[b]) {
-        low = std::min(low, grid_.node_stats[g].low[d]);
-        high = std::max(high, grid_.node_stats[g].high[d]);
-      }
-      bound = std::max(bound, (high - low) / dx);  // no snow: negative
-    }
+  const std::vector<std::int32_t>& awake = sleep_.awake();
+  block_strain_.resize(awake.size());
+  parallel_for(std::ptrdiff_t(awake.size()), threads(), 64, [&](std::ptrdiff_t i) {
+    const std::int32_t b = awake[i];
+    double bound = bound_over(layout_.around_particles[b]);
     if (!(bound <= rate_limit)) {
-      const T* velocities[neighbour_count<D>];
-      for (int k = 0; k < neighbour_count<D>; ++k)
-        velocities[k] = grid_.velocity(layout_.around_particles[b][k]);
-      BlockStats stats;
-      kernels_.probe(unit, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
-                     velocities, stats);
-      bound = std::isfinite(stats.strain) ? stats.strain : infinity;
+      const double strain = probe(unit, view, b).strain;
+      bound = std::isfinite(strain) ? strain : infinity;
     }
-    block_strain_[b] = bound;
+    block_strain_[i] = bound;
   });
   return *std::max_element(block_strain_.begin(), block_strain_.end());
+}
+
+template <class T, int D>
+void SolverOf<T, D>::velocities_around(std::int32_t b, const T* (&velocities)[neighbour_count<D>]) {
+  for (int k = 0; k < neighbour_count<D>; ++k)
+    velocities[k] = grid_.velocity(layout_.around_particles[b][k]);
 }
 
 template <class T, int D>
 void SolverOf<T, D>::advance(double dt) {
   const StepParameters<T> step = parameters(dt);
   const ParticleView<T> view = particles_.view();
-  const std::ptrdiff_t n = std::ptrdiff_t(layout_.particle_blocks.size());
-  parallel_for(n, threads(), 1, [&](std::ptrdiff_t b) {
+  const std::vector<std::int32_t>& awake = sleep_.awake();
+  parallel_for(std::ptrdiff_t(awake.size()), threads(), 1, [&](std::ptrdiff_t i) {
+    const std::int32_t b = awake[i];
     const T* velocities[neighbour_count<D>];
-    for (int k = 0; k < neighbour_count<D>; ++k)
-      velocities[k] = grid_.velocity(layout_.around_particles[b][k]);
+    velocities_around(b, velocities);
     grid_.block_stats[b] = {};
     kernels_.advance(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b],
                      velocities, grid_.tile(b), grid_.block_stats[b]);
@@ -284,7 +309,8 @@ void SolverOf<T, D>::advance(double dt) {
 template <class T, int D>
 void SolverOf<T, D>::reduce_blocks() {
   double speed_squared = 0;
-  for (const BlockStats& s : grid_.block_stats) {
+  for (std::int32_t b : sleep_.awake()) {
+    const BlockStats& s = grid_.block_stats[b];
     speed_squared = std::max(speed_squared, s.speed_squared);
     if (s.escaped) tiles_valid_ = false;
   }
@@ -295,7 +321,7 @@ void SolverOf<T, D>::reduce_blocks() {
 /// The step is done and its state is whole; the next one might not be.
 template <class T, int D>
 void SolverOf<T, D>::check_particles() const {
-  for (std::size_t b = 0; b < grid_.block_stats.size(); ++b) {
+  for (std::int32_t b : sleep_.awake()) {
     const BlockStats& s = grid_.block_stats[b];
     if (s.unsound < 0) continue;
     const std::size_t i = std::size_t(s.unsound);
@@ -313,6 +339,60 @@ void SolverOf<T, D>::check_particles() const {
       message << "its state is no longer finite; try a smaller numerics.step_factor or double "
                  "precision";
     throw SimulationError(message.str());
+  }
+}
+
+/// Blocks that fall asleep come to rest: what is left of their motion is lost.
+template <class T, int D>
+void SolverOf<T, D>::let_sleep() {
+  if (!sleep_.allowed() || counters_.steps % steps_between_looks != 0) return;
+  const ParticleView<T> view = particles_.view();
+  const StepParameters<T> step = parameters(dt_);
+  const auto fallen = sleep_.update(layout_, time_, look(step, view));
+  for (std::int32_t b : fallen) {
+    books_.sleep += grid_.block_stats[b].kinetic;
+    books_.kinetic -= grid_.block_stats[b].kinetic;
+    particles_.halt(layout_.first[b], layout_.first[b + 1]);
+    scatter_block(step, view, b);
+  }
+  if (!fallen.empty()) clear_idle_nodes();
+}
+
+template <class T, int D>
+typename Sleep<D>::Look SolverOf<T, D>::look(const StepParameters<T>& step,
+                                             const ParticleView<T>& view) {
+  typename Sleep<D>::Look look;
+  look.speed = [&](std::int32_t b) { return std::sqrt(grid_.block_stats[b].speed_squared); };
+  look.velocity = [&](std::int32_t b) {
+    return particles_.mean_velocity(layout_.first[b], layout_.first[b + 1]);
+  };
+  look.carried = [&](std::int32_t b) { return std::sqrt(probe(step, view, b).speed_squared); };
+  look.obstacle_moves = [&](std::int32_t b) {
+    const auto& around = layout_.around_particles[b];
+    return contacts_.any_motion() && std::any_of(around.begin(), around.end(), [&](std::int32_t g) {
+             return contacts_.moves(std::size_t(g));
+           });
+  };
+  return look;
+}
+
+template <class T, int D>
+BlockStats SolverOf<T, D>::probe(const StepParameters<T>& step, const ParticleView<T>& view,
+                                 std::int32_t b) {
+  const T* velocities[neighbour_count<D>];
+  velocities_around(b, velocities);
+  BlockStats stats;
+  kernels_.probe(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b], velocities,
+                 stats);
+  return stats;
+}
+
+/// Nodes that only sleeping snow touches are at rest.
+template <class T, int D>
+void SolverOf<T, D>::clear_idle_nodes() {
+  for (std::int32_t g : sleep_.idle()) {
+    grid_.node_stats[g] = {};
+    std::fill_n(grid_.velocity(g), grid_.block_size, T(0));
   }
 }
 

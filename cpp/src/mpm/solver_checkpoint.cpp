@@ -25,6 +25,27 @@ double bytes_of_grid(const BlockLayout<D>& layout, int tile_size) {
   return sizeof(T) * (tiles + 2.0 * double(layout.grid_blocks.size()) * Grid<T, D>::block_size);
 }
 
+template <int D>
+constexpr std::size_t sleep_values = 4 + D;
+
+template <int D>
+std::array<double, sleep_values<D>> sleep_record(const typename Sleep<D>::State& s) {
+  std::array<double, sleep_values<D>> record{double(s.asleep), s.since, s.looks, s.first_half};
+  std::copy_n(s.sum.data(), D, record.begin() + 4);
+  return record;
+}
+
+template <int D>
+typename Sleep<D>::State sleep_state(const double* record) {
+  typename Sleep<D>::State s;
+  s.asleep = record[0] != 0;
+  s.since = record[1];
+  s.looks = record[2];
+  s.first_half = record[3];
+  std::copy_n(record + 4, D, s.sum.data());
+  return s;
+}
+
 }  // namespace
 
 template <class T, int D>
@@ -49,13 +70,20 @@ void SolverOf<T, D>::save(BinaryWriter& out) const {
   out.add("pressed/obstacle", std::move(obstacle));
   out.add("pressed/amount", std::move(amount));
 
+  std::vector<double> sleep;
+  for (const auto& s : sleep_.states())
+    for (const double value : sleep_record<D>(s)) sleep.push_back(value);
+  out.add("sleep", std::move(sleep));
+
   const EnergyBooks& b = books_;
   out.add("energy", std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic,
-                                        b.friction, b.sticking, b.impact, b.transfer, b.added});
+                                        b.friction, b.sticking, b.impact, b.transfer, b.sleep,
+                                        b.added});
   out.add("clock", std::vector<double>{time_, dt_, speed_, counters_.smallest_dt, stress_power_});
   out.add("counters",
           std::vector<std::int64_t>{counters_.steps, counters_.rejected, counters_.sorts,
-                                    counters_.particle_updates, std::int64_t(next_id_)});
+                                    counters_.particle_updates, counters_.slept_updates,
+                                    std::int64_t(next_id_)});
 }
 
 template <class T, int D>
@@ -83,14 +111,15 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
   speed_ = clock[2];
   counters_.smallest_dt = clock[3];
   stress_power_ = clock[4];
-  const auto counts = in.get<std::int64_t>("counters", 5);
+  const auto counts = in.get<std::int64_t>("counters", 6);
   counters_.steps = counts[0];
   counters_.rejected = counts[1];
   counters_.sorts = counts[2];
   counters_.particle_updates = counts[3];
-  next_id_ = std::uint32_t(counts[4]);
-  const auto e = in.get<double>("energy", 9);
-  books_ = {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8]};
+  counters_.slept_updates = counts[4];
+  next_id_ = std::uint32_t(counts[5]);
+  const auto e = in.get<double>("energy", 10);
+  books_ = {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9]};
 
   contacts_.relocate({}, time_);
   contacts_.relocate(layout_.grid_blocks, time_);
@@ -103,6 +132,12 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
     stored.push_back({block[i], node[i], obstacle[i], amount[i]});
   contacts_.restore(stored);
   grid_.resize(layout_);
+  const std::size_t blocks = layout_.particle_blocks.size();
+  const auto sleep = in.get<double>("sleep", blocks * sleep_values<D>);
+  std::vector<typename Sleep<D>::State> states;
+  for (std::size_t i = 0; i < blocks; ++i)
+    states.push_back(sleep_state<D>(&sleep[i * sleep_values<D>]));
+  sleep_.restore(layout_, std::move(states));
   tiles_valid_ = false;
   since_sort_ = 0;
 }

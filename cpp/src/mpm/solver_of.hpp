@@ -3,6 +3,7 @@
 
 #include "mpm/grid.hpp"
 #include "snowshed/mpm/particle_sort.hpp"
+#include "snowshed/mpm/sleep.hpp"
 #include "snowshed/mpm/solver.hpp"
 
 namespace snowshed {
@@ -38,9 +39,16 @@ class SolverOf final : public Solver {
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
   double largest_strain();  ///< largest |dt grad v| any particle would take
   void advance(double dt);
+  void let_sleep();
+  typename Sleep<D>::Look look(const StepParameters<T>& step, const ParticleView<T>& view);
+  BlockStats probe(const StepParameters<T>& step, const ParticleView<T>& view, std::int32_t block);
+  void clear_idle_nodes();
+  void scatter_block(const StepParameters<T>& step, const ParticleView<T>& view,
+                     std::ptrdiff_t block);
 
   StepParameters<T> parameters(double dt) const;
   int threads() const;
+  void velocities_around(std::int32_t block, const T* (&velocities)[neighbour_count<D>]);
   void reduce_blocks();
   void check_particles() const;  ///< throws SimulationError
   void book_step();
@@ -58,6 +66,7 @@ class SolverOf final : public Solver {
   BlockLayout<D> layout_;
   Contacts<T, D> contacts_;
   Grid<T, D> grid_;
+  Sleep<D> sleep_;
   std::vector<double> block_strain_;  // 1/s, of the step being tried
 
   double time_ = 0, dt_ = 0, speed_ = 0;  // speed: of the fastest particle

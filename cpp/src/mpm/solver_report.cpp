@@ -33,7 +33,7 @@ double SolverOf<T, D>::initial_plastic_strain() const {
 template <class T, int D>
 void SolverOf<T, D>::book_step() {
   double kinetic = 0, elastic = 0, plastic = 0;
-  for (const BlockStats& s : grid_.block_stats) {
+  for (const BlockStats& s : grid_.block_stats) {  // of sleeping blocks as they fell asleep
     kinetic += s.kinetic;
     elastic += s.elastic;
     plastic += s.plastic;

@@ -194,6 +194,10 @@ void describe(V& v, Numerics& n) {
            "Time step over the largest stable one");
   v.number("strain_limit", n.strain_limit, "", positive.up_to(0.5),
            "Largest |dt grad v| that a step may impose on a particle");
+  v.number("sleep_speed", n.sleep_speed, "m/s", non_negative.up_to(1e4),
+           "Snow slower than this drops out of the steps until something moves it; 0: never");
+  v.number("sleep_time", n.sleep_time, "s", allowed::time,
+           "How long it must have been slower, and not have grown faster");
   v.integer("threads", n.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 

@@ -48,6 +48,9 @@ class Contacts {
   Contact<T>* of_block(std::size_t block) { return contacts_.data() + first_[block]; }
   int count(std::size_t block) const { return int(first_[block + 1] - first_[block]); }
 
+  /// Whether an obstacle moves through a block.
+  bool moves(std::size_t block) const;
+
   /// Makes the stored impulses of the step just taken the present ones.
   void commit(std::size_t block) {
     for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)

@@ -9,10 +9,11 @@ namespace snowshed {
 struct EnergyBooks {
   double kinetic = 0, gravitational = 0, elastic = 0;
   double plastic = 0, friction = 0, sticking = 0, impact = 0, transfer = 0;
+  double sleep = 0;  // motion that snow lost as it fell asleep
   double added = 0;  // brought by particles that were added
 
   double stored() const { return kinetic + gravitational + elastic; }
-  double spent() const { return plastic + friction + sticking + impact + transfer; }
+  double spent() const { return plastic + friction + sticking + impact + transfer + sleep; }
   double residual() const { return stored() + spent() - added; }
 };
 

@@ -75,7 +75,7 @@ inline constexpr double elastic_strain_limit = 3.0;
 /// What a kernel reports of one block of particles.
 struct BlockStats {
   double speed_squared = 0;   // largest, of velocity and of motion, m2/s2
-  double strain = 0;          // largest |dt grad v| component
+  double strain = 0;          // largest |dt grad v| component; of `probe` only
   bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
   std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
   double elastic_strain = 0;  // of that particle

@@ -1,8 +1,10 @@
 // The particles: structure of arrays, sorted by grid block.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "snowshed/mpm/kernel_api.hpp"
 #include "snowshed/support/aligned_vector.hpp"
 #include "snowshed/support/parallel.hpp"
+#include "snowshed/support/vec.hpp"
 
 namespace snowshed {
 
@@ -56,6 +59,24 @@ struct Particles {
     v.plastic = plastic.data();
     v.mass = mass.data();
     return v;
+  }
+
+  /// Mean velocity of the particles [begin, end), m/s.
+  VecD<D> mean_velocity(std::ptrdiff_t begin, std::ptrdiff_t end) const {
+    VecD<D> mean;
+    for (int d = 0; d < D; ++d)
+      mean[d] = std::accumulate(velocity[d].begin() + begin, velocity[d].begin() + end, 0.0);
+    return mean / double(end - begin);
+  }
+
+  /// Stops the particles [begin, end).
+  void halt(std::ptrdiff_t begin, std::ptrdiff_t end) {
+    const auto stop = [&](auto& array) {
+      std::fill(array.begin() + begin, array.begin() + end, T(0));
+    };
+    for (auto& v : velocity) stop(v);
+    if (has_affine)
+      for (auto& c : affine) stop(c);
   }
 
   /// Rearranges: the new particle i is the old particle order[i].

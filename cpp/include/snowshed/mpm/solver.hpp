@@ -53,7 +53,9 @@ struct MotionSummary {
 
 /// Counters since the solver was made.
 struct StepCounters {
-  std::int64_t steps = 0, rejected = 0, sorts = 0, particle_updates = 0;
+  std::int64_t steps = 0, rejected = 0, sorts = 0;
+  std::int64_t particle_updates = 0;  // of particles that were awake
+  std::int64_t slept_updates = 0;     // that sleeping particles did not need
   double smallest_dt = 0;  // s
 };
 

@@ -301,27 +301,32 @@ struct ParticleKernels {
 
   // --- blocks -----------------------------------------------------------------------------
 
+  /// Calls f(first particle, number) for each chunk of a block.
+  template <class F>
+  SNOWSHED_INLINE static void for_each_chunk(int first, int count, F f) {
+    for (int at = first; at < first + count; at += W)
+      f(at, first + count - at < W ? first + count - at : W);
+  }
+
   void scatter_block(int first, int count, T* tile) const {
-    for (int at = first; at < first + count; at += W) {
-      const int n = first + count - at < W ? first + count - at : W;
+    for_each_chunk(first, count, [&](int at, int n) {
       State s;
       read(s, at, n);
       Stencil<T, D, basis> stencil;
       stencil.place(s.cell, n);
       if (!stencil.inside) {
         stats.escaped = true;
-        continue;
+        return;
       }
       const Tensor tau = stress(s, n, true);
       scatter_chunk(stencil, s, tau, n, tile);
       if constexpr (energy) book_motion(s, n);
-    }
+    });
   }
 
   void advance_block(int first, int count, const T* velocities, T* tile) const {
-    V speed = broadcast<V>(T(0)), strain = speed;
-    for (int at = first; at < first + count; at += W) {
-      const int n = first + count - at < W ? first + count - at : W;
+    V speed = broadcast<V>(T(0));
+    for_each_chunk(first, count, [&](int at, int n) {
       State s;
       read(s, at, n);
       Stencil<T, D, basis> stencil;
@@ -339,7 +344,6 @@ struct ParticleKernels {
         u2 += m.pic[d] * m.pic[d];
       }
       speed = max(speed, max(v2, u2));
-      strain = max(strain, largest_gradient(m));
       if constexpr (energy) book_power(s, m, tau, n);
       check(elastic_strain_squared(tau) + T(0) * v2, at, n);
       if constexpr (energy) book_motion(s, n);
@@ -349,15 +353,13 @@ struct ParticleKernels {
         scatter_chunk(stencil, s, tau, n, tile);
       else
         stats.escaped = true;
-    }
+    });
     stats.speed_squared = double(largest(speed));
-    stats.strain = double(largest(strain));
   }
 
   void probe_block(int first, int count, const T* velocities) const {
-    V strain = broadcast<V>(T(0));
-    for (int at = first; at < first + count; at += W) {
-      const int n = first + count - at < W ? first + count - at : W;
+    V strain = broadcast<V>(T(0)), speed = strain;
+    for_each_chunk(first, count, [&](int at, int n) {
       V cell[D];
       for (int d = 0; d < D; ++d) cell[d] = load(p.cell[d] + at, n);
       Stencil<T, D, basis> stencil;
@@ -365,8 +367,12 @@ struct ParticleKernels {
       Motion m;
       interpolate(stencil, velocities, n, m);
       strain = max(strain, largest_gradient(m));
-    }
+      V u2 = m.pic[0] * m.pic[0];
+      for (int d = 1; d < D; ++d) u2 += m.pic[d] * m.pic[d];
+      speed = max(speed, u2);
+    });
     stats.strain = double(largest(strain));
+    stats.speed_squared = double(largest(speed));
   }
 
   // --- entries of the table ---------------------------------------------------------------

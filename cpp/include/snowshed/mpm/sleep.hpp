@@ -1,0 +1,79 @@
+// Snow at rest: which blocks of particles sleep, and which blocks of nodes are then not needed.
+//
+// A block of particles falls asleep when it has been slower than a limit for some time, and its
+// mean velocity has not grown meanwhile: what is just setting off is slow, too. A sleeping block
+// takes no part in a step, but keeps its mass and its stresses on its tile, so that its neighbours
+// rest on it. It wakes when nodes that it shares with awake snow would carry it faster than the
+// limit, when particles come to it, and when an obstacle moves through its nodes. What sleeping
+// leaves out is therefore motion slower than the limit.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "snowshed/mpm/block_layout.hpp"
+#include "snowshed/support/vec.hpp"
+
+namespace snowshed {
+
+template <int D>
+class Sleep {
+ public:
+  /// Speed limit (m/s; 0: nothing ever sleeps) and time (s).
+  Sleep(double speed, double time) : limit_(speed), time_(time) {}
+
+  /// What must be known of a particle block to let it fall asleep or to wake it.
+  struct Look {
+    std::function<double(std::int32_t)> speed;         // of its fastest particle, m/s
+    std::function<VecD<D>(std::int32_t)> velocity;     // mean of its particles, m/s
+    std::function<double(std::int32_t)> carried;       // speed its nodes would give it, m/s
+    std::function<bool(std::int32_t)> obstacle_moves;  // whether one does, through its nodes
+  };
+
+  /// Looks at all blocks, at a time; returns the blocks that fall asleep now. Called every few
+  /// steps.
+  std::vector<std::int32_t> update(const BlockLayout<D>& layout, double now, const Look& look);
+
+  /// After a sort: blocks that kept their particles keep their state, all others are awake.
+  void relocate(const BlockLayout<D>& layout, double now);
+
+  /// Everything awake, from now on.
+  void wake_all(const BlockLayout<D>& layout, double now);
+
+  /// Whether anything can sleep at all.
+  bool allowed() const { return limit_ > 0; }
+  /// Particle blocks that take part in a step, and the grid blocks that they touch; ascending.
+  const std::vector<std::int32_t>& awake() const { return awake_; }
+  const std::vector<std::int32_t>& active() const { return active_; }
+  /// Grid blocks that only sleeping snow touches.
+  const std::vector<std::int32_t>& idle() const { return idle_; }
+  std::int64_t awake_particles() const { return awake_particles_; }
+
+  /// What is known of one block of particles.
+  struct State {
+    bool asleep = false;
+    double since = 0;                     // start of the present quiet spell, s
+    VecD<D> sum = VecD<D>::Zero();        // of mean velocities in this half of the spell, m/s
+    double looks = 0;                     // their number
+    double first_half = -1;               // speed of the mean in the first half; before its end: -1
+  };
+  const std::vector<State>& states() const { return states_; }
+  /// States from a checkpoint, one for each particle block of the layout.
+  void restore(const BlockLayout<D>& layout, std::vector<State> states);
+
+ private:
+  static State awake_since(double now);
+  bool falls_asleep(State& state, double now, const VecD<D>& velocity) const;
+  void list_blocks(const BlockLayout<D>& layout);
+
+  double limit_, time_;
+  std::vector<BlockKey> keys_;        // of the layout that `states_` belongs to
+  std::vector<std::int32_t> counts_;  // particles in each of its blocks
+  std::vector<State> states_;
+  std::vector<std::int32_t> awake_, active_, idle_;
+  std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow
+  std::int64_t awake_particles_ = 0;
+};
+
+}  // namespace snowshed

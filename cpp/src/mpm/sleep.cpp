@@ -1,0 +1,132 @@
+#include "snowshed/mpm/sleep.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace snowshed {
+namespace {
+
+/// Growth of the mean velocity from one half of a quiet spell to the other, over the limit, that
+/// is still taken for the noise of vibrations.
+constexpr double noise = 0.1;
+
+template <int D>
+std::vector<std::int32_t> particle_counts(const BlockLayout<D>& layout) {
+  std::vector<std::int32_t> counts;
+  for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
+    counts.push_back(layout.first[b + 1] - layout.first[b]);
+  return counts;
+}
+
+}  // namespace
+
+template <int D>
+typename Sleep<D>::State Sleep<D>::awake_since(double now) {
+  State state;
+  state.since = now;
+  return state;
+}
+
+template <int D>
+void Sleep<D>::relocate(const BlockLayout<D>& layout, double now) {
+  std::vector<State> states(layout.particle_blocks.size(), awake_since(now));
+  std::vector<std::int32_t> counts = particle_counts(layout);
+  std::size_t old = 0;
+  for (std::size_t b = 0; b < states.size(); ++b) {
+    while (old < keys_.size() && keys_[old] < layout.particle_blocks[b]) ++old;
+    if (old == keys_.size()) break;
+    if (keys_[old] != layout.particle_blocks[b]) continue;
+    states[b] = states_[old];
+    // Snow that sleeps does not leave its block, so any change is snow that came.
+    if (states[b].asleep && counts[b] != counts_[old]) states[b] = awake_since(now);
+  }
+  keys_ = layout.particle_blocks;
+  counts_ = std::move(counts);
+  states_ = std::move(states);
+  list_blocks(layout);
+}
+
+template <int D>
+void Sleep<D>::wake_all(const BlockLayout<D>& layout, double now) {
+  std::fill(states_.begin(), states_.end(), awake_since(now));
+  list_blocks(layout);
+}
+
+template <int D>
+void Sleep<D>::restore(const BlockLayout<D>& layout, std::vector<State> states) {
+  keys_ = layout.particle_blocks;
+  counts_ = particle_counts(layout);
+  states_ = std::move(states);
+  list_blocks(layout);
+}
+
+template <int D>
+std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double now,
+                                           const Look& look) {
+  bool woken = false;
+  for (std::int32_t b : border_) {
+    if (!(look.carried(b) > limit_) && !look.obstacle_moves(b)) continue;
+    states_[b] = awake_since(now);
+    woken = true;
+  }
+  std::vector<std::int32_t> fallen;
+  for (std::int32_t b : awake_) {
+    const double speed = look.speed(b);
+    if (!(speed < limit_) || look.obstacle_moves(b))
+      states_[b] = awake_since(now);
+    else if (falls_asleep(states_[b], now, look.velocity(b)))
+      fallen.push_back(b);
+  }
+  for (std::int32_t b : fallen) states_[b].asleep = true;
+  if (woken || !fallen.empty()) list_blocks(layout);
+  return fallen;
+}
+
+/// Whether a slow block has been slow for long enough, and did not speed up from the first half of
+/// that time to the second. Means over time tell motion from vibration.
+template <int D>
+bool Sleep<D>::falls_asleep(State& s, double now, const VecD<D>& velocity) const {
+  s.sum += velocity;
+  s.looks += 1;
+  if (now - s.since < 0.5 * time_) return false;
+  const double mean = s.sum.norm() / s.looks;
+  if (s.first_half >= 0 && now - s.since < time_) return false;
+  if (s.first_half >= 0 && mean < s.first_half + noise * limit_) return true;
+  // The end of the first half, or the second half becomes the first one.
+  s.since = now - 0.5 * time_;
+  s.first_half = mean;
+  s.sum.setZero();
+  s.looks = 0;
+  return false;
+}
+
+template <int D>
+void Sleep<D>::list_blocks(const BlockLayout<D>& layout) {
+  awake_.clear();
+  awake_particles_ = 0;
+  for (std::size_t b = 0; b < states_.size(); ++b) {
+    if (states_[b].asleep) continue;
+    awake_.push_back(std::int32_t(b));
+    awake_particles_ += counts_[b];
+  }
+  std::vector<bool> touched(layout.grid_blocks.size(), false);
+  for (std::int32_t b : awake_)
+    for (std::int32_t g : layout.around_particles[b]) touched[g] = true;
+  active_.clear();
+  idle_.clear();
+  for (std::size_t g = 0; g < touched.size(); ++g)
+    (touched[g] ? active_ : idle_).push_back(std::int32_t(g));
+  border_.clear();
+  if (idle_.empty() && awake_.size() == states_.size()) return;
+  for (std::size_t b = 0; b < states_.size(); ++b) {
+    if (!states_[b].asleep) continue;
+    const auto& around = layout.around_particles[b];
+    if (std::any_of(around.begin(), around.end(), [&](std::int32_t g) { return touched[g]; }))
+      border_.push_back(std::int32_t(b));
+  }
+}
+
+template class Sleep<2>;
+template class Sleep<3>;
+
+}  // namespace snowshed
