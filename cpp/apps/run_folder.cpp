@@ -52,7 +52,8 @@ class FolderRun {
          << kernel_variant() << "\",\n  \"threads\": " << sim_->threads()
          << ",\n  \"events\": " << sim_->event() << ",\n  \"particles\": " << sim_->solver().size()
          << ",\n  \"steps\": " << c.steps << ",\n  \"rejected_steps\": " << c.rejected
-         << ",\n  \"particle_updates\": " << c.particle_updates << ",\n  \"updates_per_s\": "
+         << ",\n  \"particle_updates\": " << c.particle_updates
+         << ",\n  \"slept_updates\": " << c.slept_updates << ",\n  \"updates_per_s\": "
          << double(c.particle_updates - updates_before_) / clock_.seconds()
          << ",\n  \"peak_memory_mb\": " << double(peak_resident_bytes()) / 1e6
          << ",\n  \"wall_s\": " << clock_.seconds() << ",\n  \"status\": \"" << status << "\"\n}\n";

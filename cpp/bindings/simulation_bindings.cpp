@@ -84,6 +84,7 @@ py::dict energy(const Simulation& sim) {
   d["sticking_j"] = e.sticking;
   d["impact_j"] = e.impact;
   d["transfer_j"] = e.transfer;
+  d["sleep_j"] = e.sleep;
   d["added_j"] = e.added;
   d["residual_j"] = e.residual();
   return d;
@@ -190,6 +191,10 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly(
           "particle_updates",
           [](const Simulation& s) { return s.solver().counters().particle_updates; })
+      .def_property_readonly("slept_updates",
+                             [](const Simulation& s) { return s.solver().counters().slept_updates; })
+      .def_property_readonly("sorts",
+                             [](const Simulation& s) { return s.solver().counters().sorts; })
       .def_property_readonly("particle_count",
                              [](const Simulation& s) { return s.solver().size(); })
       .def_property_readonly("time_step_s",

@@ -293,6 +293,7 @@ class _EventLoop:
             "particles": self.simulation.particle_count,
             "steps": self.simulation.total_steps,
             "particle_updates": updates,
+            "slept_updates": self.simulation.slept_updates,
             "updates_per_s": updates / wall if wall else 0.0,
             "peak_memory_mb": round(peak_memory_mb(), 1),
             "wall_s": wall,

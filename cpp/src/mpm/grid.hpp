@@ -13,6 +13,7 @@ struct Grid {
   AlignedVector<T> tiles, sums, velocities;
   std::vector<BlockStats> block_stats;  // per particle block
   std::vector<NodeStats> node_stats;    // per grid block
+  std::vector<std::uint8_t> touched;    // per grid block: whether any particle reaches it
 
   static constexpr int block_size = block_nodes<D> * node_values;
 
@@ -25,6 +26,7 @@ struct Grid {
     velocities.resize(nodes * block_size);
     block_stats.resize(blocks);
     node_stats.resize(nodes);
+    touched.resize(nodes);
   }
 
   T* tile(std::size_t block) { return tiles.data() + block * tile_size; }

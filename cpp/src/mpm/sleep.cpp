@@ -1,10 +1,14 @@
 #include "snowshed/mpm/sleep.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace snowshed {
 namespace {
+
+/// How much faster than the limit a single particle of a slow block may be.
+constexpr double most_over_mean = 5;
 
 /// Growth of the mean velocity from one half of a quiet spell to the other, over the limit, that
 /// is still taken for the noise of vibrations.
@@ -65,14 +69,15 @@ std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double 
                                            const Look& look) {
   bool woken = false;
   for (std::int32_t b : border_) {
-    if (!(look.carried(b) > limit_) && !look.obstacle_moves(b)) continue;
+    const BlockStats carried = look.carried(b);
+    const double rms_speed = std::sqrt(carried.mean_speed_squared);
+    if (is_slow(rms_speed, std::sqrt(carried.speed_squared)) && !look.obstacle_moves(b)) continue;
     states_[b] = awake_since(now);
     woken = true;
   }
   std::vector<std::int32_t> fallen;
   for (std::int32_t b : awake_) {
-    const double speed = look.speed(b);
-    if (!(speed < limit_) || look.obstacle_moves(b))
+    if (!is_slow(look.speed(b), look.fastest(b)) || look.obstacle_moves(b))
       states_[b] = awake_since(now);
     else if (falls_asleep(states_[b], now, look.velocity(b)))
       fallen.push_back(b);
@@ -80,6 +85,11 @@ std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double 
   for (std::int32_t b : fallen) states_[b].asleep = true;
   if (woken || !fallen.empty()) list_blocks(layout);
   return fallen;
+}
+
+template <int D>
+bool Sleep<D>::is_slow(double rms_speed, double fastest) const {
+  return rms_speed < limit_ && fastest < most_over_mean * limit_;
 }
 
 /// Whether a slow block has been slow for long enough, and did not speed up from the first half of

@@ -17,6 +17,16 @@ namespace {
 /// few cells thick, shorter than the time snow takes to slide over a cell.
 constexpr double friction_memory = 40;
 
+/// Whether the particles of a block reach the nodes of the one that sees them as its neighbour k.
+template <int D>
+bool reaches_into(int reach, int k) {
+  for (int d = D - 1; d >= 0; --d, k /= 3) {
+    if (k % 3 == 0 && !(reach & above(d))) return false;
+    if (k % 3 == 2 && !(reach & below(d))) return false;
+  }
+  return true;
+}
+
 /// Fewer particles than this are not worth waking another thread for, twice a step.
 constexpr int particles_per_thread = 2000;
 
@@ -200,11 +210,15 @@ void SolverOf<T, D>::gather_and_update(double dt) {
     const std::int32_t g = active[i];
     contacts_.commit(g);
     const T* tiles[neighbour_count<D>];
+    bool touched = false;
     for (int k = 0; k < neighbour_count<D>; ++k) {
       const std::int32_t block = layout_.around_nodes[g][k];
-      tiles[k] = block < 0 ? nullptr : grid_.tile(block);
+      const bool reaches = block >= 0 && reaches_into<D>(grid_.block_stats[block].reach, k);
+      tiles[k] = reaches ? grid_.tile(block) : nullptr;
+      touched = touched || reaches;
     }
-    kernels_.gather(tiles, grid_.sum(g));
+    grid_.touched[g] = touched;
+    if (touched) kernels_.gather(tiles, grid_.sum(g));
     update_block(step, g);
   });
 }
@@ -220,8 +234,18 @@ void SolverOf<T, D>::update(double dt) {
 template <class T, int D>
 void SolverOf<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t g) {
   grid_.node_stats[g] = {};
+  if (!grid_.touched[g]) return leave_empty(g);
   kernels_.update(step, grid_.sum(g), grid_.velocity(g), contacts_.of_block(g), contacts_.count(g),
                   contacts_.laws().data(), grid_.node_stats[g]);
+}
+
+/// No particle touches these nodes, so nobody asks for their velocities.
+template <class T, int D>
+void SolverOf<T, D>::leave_empty(std::ptrdiff_t g) {
+  std::fill_n(grid_.node_stats[g].low, D, infinity);
+  std::fill_n(grid_.node_stats[g].high, D, -infinity);
+  Contact<T>* contacts = contacts_.of_block(g);
+  for (int c = 0; c < contacts_.count(g); ++c) contacts[c].next_press = 0;
 }
 
 /// A step that would strain a particle beyond the limit is not taken: the grid's sums do not
@@ -362,11 +386,14 @@ template <class T, int D>
 typename Sleep<D>::Look SolverOf<T, D>::look(const StepParameters<T>& step,
                                              const ParticleView<T>& view) {
   typename Sleep<D>::Look look;
-  look.speed = [&](std::int32_t b) { return std::sqrt(grid_.block_stats[b].speed_squared); };
+  look.fastest = [&](std::int32_t b) { return std::sqrt(grid_.block_stats[b].speed_squared); };
+  look.speed = [&](std::int32_t b) {
+    return particles_.rms_speed(layout_.first[b], layout_.first[b + 1]);
+  };
   look.velocity = [&](std::int32_t b) {
     return particles_.mean_velocity(layout_.first[b], layout_.first[b + 1]);
   };
-  look.carried = [&](std::int32_t b) { return std::sqrt(probe(step, view, b).speed_squared); };
+  look.carried = [&](std::int32_t b) { return probe(step, view, b); };
   look.obstacle_moves = [&](std::int32_t b) {
     const auto& around = layout_.around_particles[b];
     return contacts_.any_motion() && std::any_of(around.begin(), around.end(), [&](std::int32_t g) {

@@ -37,6 +37,7 @@ class SolverOf final : public Solver {
   void gather_and_update(double dt);
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
+  void leave_empty(std::ptrdiff_t block);
   double largest_strain();  ///< largest |dt grad v| any particle would take
   void advance(double dt);
   void let_sleep();

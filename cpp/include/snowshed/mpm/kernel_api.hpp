@@ -72,10 +72,16 @@ struct StepParameters {
 /// their speed get there.
 inline constexpr double elastic_strain_limit = 3.0;
 
+/// Bits of `BlockStats::reach`: nodes below a block, or above it, along a direction.
+constexpr int below(int direction) { return 1 << (2 * direction); }
+constexpr int above(int direction) { return 2 << (2 * direction); }
+
 /// What a kernel reports of one block of particles.
 struct BlockStats {
   double speed_squared = 0;   // largest, of velocity and of motion, m2/s2
+  double mean_speed_squared = 0;  // of motion, m2/s2; of `probe` only
   double strain = 0;          // largest |dt grad v| component; of `probe` only
+  int reach = 0;              // which blocks around it hold nodes that its particles touch
   bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
   std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
   double elastic_strain = 0;  // of that particle

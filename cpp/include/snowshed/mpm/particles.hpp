@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <string>
@@ -67,6 +68,14 @@ struct Particles {
     for (int d = 0; d < D; ++d)
       mean[d] = std::accumulate(velocity[d].begin() + begin, velocity[d].begin() + end, 0.0);
     return mean / double(end - begin);
+  }
+
+  /// Root of the mean square of their speeds, m/s.
+  double rms_speed(std::ptrdiff_t begin, std::ptrdiff_t end) const {
+    double sum = 0;
+    for (const auto& v : velocity)
+      sum += std::inner_product(v.begin() + begin, v.begin() + end, v.begin() + begin, 0.0);
+    return std::sqrt(sum / double(end - begin));
   }
 
   /// Stops the particles [begin, end).

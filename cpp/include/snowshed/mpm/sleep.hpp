@@ -1,11 +1,12 @@
 // Snow at rest: which blocks of particles sleep, and which blocks of nodes are then not needed.
 //
 // A block of particles falls asleep when it has been slower than a limit for some time, and its
-// mean velocity has not grown meanwhile: what is just setting off is slow, too. A sleeping block
-// takes no part in a step, but keeps its mass and its stresses on its tile, so that its neighbours
-// rest on it. It wakes when nodes that it shares with awake snow would carry it faster than the
-// limit, when particles come to it, and when an obstacle moves through its nodes. What sleeping
-// leaves out is therefore motion slower than the limit.
+// mean velocity has not grown meanwhile: what is just setting off is slow, too. Its speed is the
+// root of the mean square over its particles; no single one may be several times faster. A sleeping
+// block takes no part in a step, but keeps its mass and its stresses on its tile, so that its
+// neighbours rest on it. It wakes when nodes that it shares with awake snow would carry it faster
+// than the limit, when particles come to it, and when an obstacle moves through its nodes. What
+// sleeping leaves out is therefore motion slower than the limit.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +26,10 @@ class Sleep {
 
   /// What must be known of a particle block to let it fall asleep or to wake it.
   struct Look {
-    std::function<double(std::int32_t)> speed;         // of its fastest particle, m/s
-    std::function<VecD<D>(std::int32_t)> velocity;     // mean of its particles, m/s
-    std::function<double(std::int32_t)> carried;       // speed its nodes would give it, m/s
+    std::function<double(std::int32_t)> fastest;       // speed of its fastest particle, m/s
+    std::function<double(std::int32_t)> speed;         // root of the mean square, m/s
+    std::function<VecD<D>(std::int32_t)> velocity;     // mean, m/s
+    std::function<BlockStats(std::int32_t)> carried;   // how its nodes would move it
     std::function<bool(std::int32_t)> obstacle_moves;  // whether one does, through its nodes
   };
 
@@ -64,6 +66,7 @@ class Sleep {
 
  private:
   static State awake_since(double now);
+  bool is_slow(double rms_speed, double fastest) const;
   bool falls_asleep(State& state, double now, const VecD<D>& velocity) const;
   void list_blocks(const BlockLayout<D>& layout);
 

@@ -38,6 +38,10 @@ struct LaneTypes<double> {
 template <class T>
 using Lanes = typename LaneTypes<T>::type;
 
+/// What a comparison of Lanes<T> gives: in each lane all bits or none.
+template <class T>
+using LaneMask = typename LaneTypes<T>::mask;
+
 template <class T>
 inline constexpr int lane_count = lane_bytes / int(sizeof(T));
 
@@ -71,16 +75,21 @@ SNOWSHED_INLINE V select(const M& mask, const V& a, const V& b) {
   return mask ? a : b;
 }
 
+/// Bits that are set in any lane.
+template <class M>
+SNOWSHED_INLINE auto bits_in(const M& mask) {
+  constexpr int n = int(sizeof(M) / sizeof(mask[0]));
+  auto bits = mask[0];
+  for (int i = 1; i < n; ++i) bits |= mask[i];
+  return bits;
+}
+
 template <class M>
 SNOWSHED_INLINE bool any(const M& mask) {
-  if constexpr (std::is_integral_v<M>) {
+  if constexpr (std::is_integral_v<M>)
     return mask;
-  } else {
-    constexpr int n = int(sizeof(M) / sizeof(mask[0]));
-    auto bits = mask[0];
-    for (int i = 1; i < n; ++i) bits |= mask[i];
-    return bits != 0;
-  }
+  else
+    return bits_in(mask) != 0;
 }
 
 template <class V>

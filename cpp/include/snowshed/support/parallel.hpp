@@ -4,12 +4,11 @@
 
 #include <omp.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
-
-#ifdef SNOWSHED_STD_THREADS
 #include <thread>
 #include <vector>
-#endif
 
 namespace snowshed {
 
@@ -29,7 +28,26 @@ void run_in_turn(std::ptrdiff_t n, int threads, F& f) {
 }
 #endif
 
-/// f(i) for i in [0, n); threads take `grain` iterations at a time, as they become free.
+#ifndef SNOWSHED_STD_THREADS
+/// The part of a loop that belongs to one thread, on a cache line of its own.
+struct alignas(64) LoopShare {
+  std::atomic<std::ptrdiff_t> next{0};
+  std::ptrdiff_t end = 0;
+};
+
+inline std::vector<LoopShare> equal_shares(std::ptrdiff_t n, int threads) {
+  std::vector<LoopShare> shares(threads);
+  for (int t = 0; t < threads; ++t) {
+    shares[t].next = n * t / threads;
+    shares[t].end = n * (t + 1) / threads;
+  }
+  return shares;
+}
+#endif
+
+/// f(i) for i in [0, n); threads take `grain` iterations at a time. Each has its own share of the
+/// range, so that it finds in its cache what it left there the last time, and helps with those of
+/// the others when it has done its own.
 template <class F>
 void parallel_for(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f) {
 #ifdef SNOWSHED_STD_THREADS
@@ -39,8 +57,14 @@ void parallel_for(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f
     for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
     return;
   }
-#pragma omp parallel for schedule(dynamic, grain) num_threads(threads)
-  for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
+  std::vector<LoopShare> shares = equal_shares(n, threads);
+#pragma omp parallel num_threads(threads)
+  for (int k = 0; k < threads; ++k) {
+    LoopShare& share = shares[(omp_get_thread_num() + k) % threads];
+    std::ptrdiff_t i;
+    while ((i = share.next.fetch_add(grain, std::memory_order_relaxed)) < share.end)
+      for (const std::ptrdiff_t end = std::min(i + grain, share.end); i < end; ++i) f(i);
+  }
 #endif
 }
 

@@ -15,3 +15,4 @@
   }
 
 #define SNOWSHED_INLINE inline __attribute__((always_inline))
+#define SNOWSHED_INLINE_LAMBDA __attribute__((always_inline))

@@ -33,16 +33,20 @@ struct Stencil {
   alignas(64) T fraction[D][W];
   alignas(64) std::int32_t node[W];
   bool inside;  // every particle's nodes lie in the tile
+  LaneMask<T> reach;  // in each lane, the bits of BlockStats::reach
 
   SNOWSHED_INLINE void place(const Lanes<T> (&cell)[D], int n) {
     constexpr int N = tile_edge<D>(basis);
     constexpr T low = -1, high = T(block_edge<D> + 1);
     Lanes<T> index = broadcast<Lanes<T>>(T(0));
     auto outside = cell[0] < low;
+    reach = LaneMask<T>{};
     for (int d = 0; d < D; ++d) {
       Lanes<T> base;
       for (int l = 0; l < W; ++l) base[l] = std::floor(cell[d][l]);
       outside = outside | (cell[d] < low) | (cell[d] >= high) | (cell[d] != cell[d]);
+      reach |= (base < T(0)) & below(d);
+      reach |= (base > T(block_edge<D> - S)) & above(d);
       const Lanes<T> f = cell[d] - base;
       Lanes<T> w[S], g[S];
       BSpline<basis>::evaluate(f, w, g);

@@ -309,7 +309,8 @@ struct ParticleKernels {
   }
 
   void scatter_block(int first, int count, T* tile) const {
-    for_each_chunk(first, count, [&](int at, int n) {
+    LaneMask<T> reach{};
+    for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
       State s;
       read(s, at, n);
       Stencil<T, D, basis> stencil;
@@ -320,13 +321,16 @@ struct ParticleKernels {
       }
       const Tensor tau = stress(s, n, true);
       scatter_chunk(stencil, s, tau, n, tile);
+      reach |= stencil.reach;
       if constexpr (energy) book_motion(s, n);
     });
+    stats.reach = int(bits_in(reach));
   }
 
   void advance_block(int first, int count, const T* velocities, T* tile) const {
     V speed = broadcast<V>(T(0));
-    for_each_chunk(first, count, [&](int at, int n) {
+    LaneMask<T> reach{};
+    for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
       State s;
       read(s, at, n);
       Stencil<T, D, basis> stencil;
@@ -349,17 +353,20 @@ struct ParticleKernels {
       if constexpr (energy) book_motion(s, n);
 
       stencil.place(s.cell, n);
+      reach |= stencil.reach;
       if (stencil.inside)
         scatter_chunk(stencil, s, tau, n, tile);
       else
         stats.escaped = true;
     });
+    stats.reach = int(bits_in(reach));
     stats.speed_squared = double(largest(speed));
   }
 
   void probe_block(int first, int count, const T* velocities) const {
     V strain = broadcast<V>(T(0)), speed = strain;
-    for_each_chunk(first, count, [&](int at, int n) {
+    double sum = 0;
+    for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
       V cell[D];
       for (int d = 0; d < D; ++d) cell[d] = load(p.cell[d] + at, n);
       Stencil<T, D, basis> stencil;
@@ -370,7 +377,9 @@ struct ParticleKernels {
       V u2 = m.pic[0] * m.pic[0];
       for (int d = 1; d < D; ++d) u2 += m.pic[d] * m.pic[d];
       speed = max(speed, u2);
+      for (int l = 0; l < n; ++l) sum += double(u2[l]);
     });
+    stats.mean_speed_squared = sum / count;
     stats.strain = double(largest(strain));
     stats.speed_squared = double(largest(speed));
   }
