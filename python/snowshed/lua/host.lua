@@ -1,0 +1,247 @@
+-- Runs scripts that can do nothing but compute and call the vocabulary.
+--
+-- A script sees the tables made here and nothing else. Left out on purpose:
+--   io, os, debug, package, require, load, dofile, collectgarbage: reach out of the sandbox;
+--   pcall, coroutine: could catch the error of an exhausted limit, or leave its hook behind;
+--   setmetatable, getmetatable: finalisers and __close run where no hook does;
+--   string.find, match, gmatch, gsub, table.move: one call may take for ever, and hooks do not
+--   run inside a call.
+--
+-- Arguments: what plain_data.lua returns, the words, the shapes and the limits.
+
+local encode_list, words, shapes, limits = ...
+
+local clock, concat, create, error = os.clock, table.concat, coroutine.create, error
+local format, getinfo, load, next = string.format, debug.getinfo, load, next
+local rep, resume, select, sethook = string.rep, coroutine.resume, select, debug.sethook
+local sort, tostring, type, number_type = table.sort, tostring, type, math.type
+local match, randomseed, sub, tonumber = string.match, math.randomseed, string.sub, tonumber
+
+local INTERVAL = 200 -- instructions between two looks at the limits
+
+local calls, printed = {}, {}
+local main -- the coroutine that runs the scripts
+local current = 1 -- the number of the script that runs
+local env = {}
+
+-- The number of the script and the line in it that runs, or did when `main` failed. The line is 0
+-- if it is not known: a call in the script's own `return` has taken its place.
+local function place()
+  for level = 0, 200 do
+    local info = getinfo(main, level, "Sl")
+    if not info then
+      break
+    end
+    local script = match(info.source, "^=script(%d+)$")
+    if script then
+      return tonumber(script), info.currentline
+    end
+  end
+  return current, 0
+end
+
+-- --- what a script may call ------------------------------------------------------------------
+
+local function ordered(one, other)
+  local a, b = type(one), type(other)
+  if a == b then
+    return one < other
+  end
+  return a < b
+end
+
+-- Lua visits keys in an order that differs from run to run; a scene must not.
+local function sorted_pairs(values)
+  if type(values) ~= "table" then
+    error("pairs needs a table, not a " .. type(values), 0)
+  end
+  local keys = {}
+  for key in next, values do
+    if type(key) ~= "string" and type(key) ~= "number" then
+      error("pairs needs keys that are numbers or texts, not a " .. type(key), 0)
+    end
+    keys[#keys + 1] = key
+  end
+  sort(keys, ordered)
+  local i = 0
+  return function()
+    i = i + 1
+    return keys[i], values[keys[i]]
+  end
+end
+
+-- The library's own repeats nothing for ever when asked to.
+local function bounded_rep(text, count, separator)
+  local size = #tostring(text) + #tostring(separator or "")
+  if size == 0 then
+    return ""
+  end
+  size = size * (tonumber(count) or 0)
+  if size > limits.memory_bytes then
+    error(format("string.rep would make a text of %.3g bytes", size), 0)
+  end
+  return rep(text, count, separator)
+end
+
+-- A table with gaps may claim any length, and the library would walk all of it in one call.
+local function bounded_list(name, work)
+  return function(list, ...)
+    if type(list) == "table" and #list * 16 > limits.memory_bytes then
+      error(format("table.%s of a list that claims %d items", name, #list), 0)
+    end
+    return work(list, ...)
+  end
+end
+
+local function print_later(...)
+  local parts = { ... }
+  for i = 1, select("#", ...) do
+    parts[i] = tostring(parts[i])
+  end
+  if #printed < limits.printed_lines then
+    printed[#printed + 1] = sub(concat(parts, "\t"), 1, limits.line_length)
+  end
+end
+
+-- Without a number the library would take the time of day.
+local function seed_random(seed)
+  randomseed(seed)
+end
+
+local function recorder(word)
+  return function(...)
+    if #calls >= limits.calls then
+      error(format("more than %d calls of the vocabulary", limits.calls), 0)
+    end
+    local script, line = place()
+    local arguments = encode_list({ ... }, select("#", ...), 0)
+    calls[#calls + 1] = format('["%s",%d,%d,%s]', word, script, line, arguments)
+  end
+end
+
+-- Named values are the shape's own, list items the shapes it is made of.
+local function shape_maker(name, kind)
+  return function(values)
+    if type(values) ~= "table" then
+      error(format("%s needs a table of values, not a %s", name, type(values)), 0)
+    end
+    local shape, parts = { type = kind }, nil
+    for key, value in next, values do
+      if number_type(key) == "integer" then
+        parts = parts or {}
+        parts[key] = value
+      else
+        shape[key] = value
+      end
+    end
+    shape.shapes = parts or shape.shapes
+    return shape
+  end
+end
+
+local function refusal(name)
+  return function()
+    error(name .. " is not available to scene scripts", 0)
+  end
+end
+
+-- A library of which every function that is left out says so when it is called.
+local function restricted(library_name, library, names)
+  local chosen = {}
+  for name in next, library do
+    chosen[name] = refusal(library_name .. "." .. name)
+  end
+  for _, name in next, names do
+    chosen[name] = library[name]
+  end
+  return chosen
+end
+
+local FORBIDDEN_TABLES = { "io", "os", "debug", "package", "coroutine", "utf8", "python" }
+local FORBIDDEN_FUNCTIONS = {
+  "collectgarbage", "dofile", "getfenv", "getmetatable", "load", "loadfile", "loadstring",
+  "module", "pcall", "rawequal", "rawget", "rawlen", "rawset", "require", "setfenv",
+  "setmetatable", "warn", "xpcall",
+}
+
+local ALLOWED_FUNCTIONS = {
+  "_VERSION", "assert", "error", "ipairs", "next", "select", "tonumber", "tostring", "type",
+}
+local ALLOWED_OF_STRING = { "byte", "char", "format", "len", "lower", "reverse", "sub", "upper" }
+
+local function forbid()
+  for _, name in next, FORBIDDEN_TABLES do
+    local refuse = refusal(name)
+    env[name] = setmetatable({}, { __index = refuse, __newindex = refuse, __call = refuse })
+  end
+  for _, name in next, FORBIDDEN_FUNCTIONS do
+    env[name] = refusal(name)
+  end
+end
+
+local function furnish()
+  forbid()
+  for _, name in next, ALLOWED_FUNCTIONS do
+    env[name] = _G[name]
+  end
+  env._G, env.pairs, env.print, env.unpack = env, sorted_pairs, print_later, table.unpack
+  env.string = restricted("string", string, ALLOWED_OF_STRING)
+  env.string.rep = bounded_rep
+  env.table = restricted("table", table, { "pack", "unpack" })
+  for _, name in next, { "concat", "insert", "remove", "sort" } do
+    env.table[name] = bounded_list(name, table[name])
+  end
+  env.math = math
+  env.math.randomseed = seed_random
+  env.STICKY, env.SLIP, env.SEPARATE = "sticky", "slip", "separate"
+  for _, word in next, words do
+    env[word] = recorder(word)
+  end
+  for name, kind in next, shapes do
+    env[name] = shape_maker(name, kind)
+  end
+  getmetatable("").__index = env.string -- ("text"):rep is env.string.rep
+end
+
+-- --- running ---------------------------------------------------------------------------------
+
+local function watch_limits()
+  local instructions, start = 0, clock()
+  return function()
+    instructions = instructions + INTERVAL
+    if instructions > limits.instructions then
+      error(format("stopped after %d instructions", limits.instructions), 0)
+    end
+    if clock() - start > limits.soft_seconds then
+      error(format("stopped after %g s", limits.soft_seconds), 0)
+    end
+  end
+end
+
+-- Runs the texts one after the other in the same environment. Returns nothing, or the message of
+-- what went wrong; `place` then says where.
+local function run(texts)
+  main = create(function()
+    for i = 1, #texts do
+      current = i
+      local chunk, message = load(texts[i], "=script" .. i, "t", env)
+      if not chunk then
+        error(message, 0)
+      end
+      chunk()
+    end
+  end)
+  sethook(main, watch_limits(), "", INTERVAL)
+  local done, message = resume(main)
+  if done then
+    return nil
+  end
+  if type(message) ~= "string" then
+    message = "error with a " .. type(message) .. " instead of a message"
+  end
+  return message
+end
+
+randomseed(0) -- the same script makes the same scene
+furnish()
+return { run = run, place = place, calls = calls, printed = printed }

@@ -1,0 +1,46 @@
+"""What a script may use before it is stopped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the scripts of one scene may use together.
+
+    Scripts that go wrong run into one of the first three, and the error names the line. The times
+    after them end the process, for single operations that do not return. What counts is processor
+    time, which is the same on a busy machine; a script cannot wait for anything.
+
+    Attributes
+    ----------
+    instructions
+        Instructions of Lua's virtual machine.
+    memory_bytes
+        Memory of the Lua state, bytes.
+    soft_seconds
+        Processor time, s, looked at every few hundred instructions.
+    hard_seconds
+        Processor time, s, after which the operating system ends the process.
+    wall_seconds
+        Time by the clock, s, after which the operating system ends the process in any case.
+    calls
+        Calls of the vocabulary.
+    printed_lines
+        Lines printed; what comes after them is dropped.
+    line_length
+        Bytes of a printed line that are kept.
+    script_bytes
+        Length of one script, bytes.
+    """
+
+    instructions: int = 10_000_000
+    memory_bytes: int = 8 << 20
+    soft_seconds: float = 0.25
+    hard_seconds: float = 0.4
+    wall_seconds: float = 30.0
+    calls: int = 10_000
+    printed_lines: int = 100
+    line_length: int = 500
+    script_bytes: int = 1 << 20

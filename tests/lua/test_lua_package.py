@@ -1,0 +1,43 @@
+"""Examples in docstrings run, and the guide knows every word."""
+
+import doctest
+import importlib
+import pkgutil
+from pathlib import Path
+
+import pytest
+
+import snowshed.lua
+from snowshed.lua.limits import Limits
+from snowshed.lua.vocabulary import SHAPES, SYMBOLS, WORDS
+
+DOCS = (Path(__file__).parents[2] / "docs" / "lua.md").read_text()
+
+
+@pytest.mark.parametrize("name", [m.name for m in pkgutil.iter_modules(snowshed.lua.__path__)])
+def test_examples_in_docstrings(name):
+    module = importlib.import_module(f"snowshed.lua.{name}")
+    assert doctest.testmod(module).failed == 0
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_the_guide_has_every_word(word):
+    assert any(f"`{word}{opening}" in DOCS for opening in (" ", "("))
+
+
+@pytest.mark.parametrize("name", [*SHAPES, *SYMBOLS])
+def test_the_guide_has_every_shape_and_symbol(name):
+    assert any(f"`{name}{end}" in DOCS for end in ("`", " "))
+
+
+def test_the_guide_has_the_limits():
+    limits = Limits()
+    for shown in (
+        f"{limits.instructions // 10**6} million instructions",
+        f"{limits.memory_bytes >> 20} MB of memory",
+        f"{limits.calls // 1000} 000 calls",
+        f"{limits.soft_seconds:g} s of processor time",
+        f"{limits.hard_seconds:g} s of processor time, {limits.wall_seconds:g} s by the clock",
+        f"{limits.script_bytes >> 20} MB of text a script, {limits.printed_lines} printed lines",
+    ):
+        assert shown in DOCS
