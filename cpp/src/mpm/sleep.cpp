@@ -68,13 +68,17 @@ template <int D>
 std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double now,
                                            const Look& look) {
   bool woken = false;
+  const auto wake = [&](std::int32_t b) {
+    states_[b] = awake_since(now);
+    woken = true;
+  };
   for (std::int32_t b : border_) {
     const BlockStats carried = look.carried(b);
     const double rms_speed = std::sqrt(carried.mean_speed_squared);
-    if (is_slow(rms_speed, std::sqrt(carried.speed_squared)) && !look.obstacle_moves(b)) continue;
-    states_[b] = awake_since(now);
-    woken = true;
+    if (!is_slow(rms_speed, std::sqrt(carried.speed_squared))) wake(b);
   }
+  for (std::size_t b = 0; b < states_.size(); ++b)
+    if (states_[b].asleep && look.obstacle_moves(std::int32_t(b))) wake(std::int32_t(b));
   std::vector<std::int32_t> fallen;
   for (std::int32_t b : awake_) {
     if (!is_slow(look.speed(b), look.fastest(b)) || look.obstacle_moves(b))

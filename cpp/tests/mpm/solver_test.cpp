@@ -256,14 +256,6 @@ TEST(Solver, AColumnCarriesItsWeight) {
 
 // --- the same bits ----------------------------------------------------------------------------
 
-void expect_same_bits(const ParticleState& a, const ParticleState& b) {
-  EXPECT_TRUE(a.positions == b.positions);
-  EXPECT_TRUE(a.velocities == b.velocities);
-  EXPECT_EQ(a.pressures, b.pressures);
-  EXPECT_EQ(a.plastic_strains, b.plastic_strains);
-  EXPECT_EQ(a.ids, b.ids);
-}
-
 /// Snow thrown onto a slippery slope: contact, plasticity, blocks that come and go.
 std::unique_ptr<Solver> thrown_snow(Way way, int threads, double size) {
   SolverOptions o = options_for(way);

@@ -1,6 +1,8 @@
 // What the tests of the solver share: options, blocks of particles, and sums over them.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <string>
 #include <vector>
@@ -48,6 +50,7 @@ inline SolverOptions options_for(const Way& way, double dx = 0.01) {
   o.numerics.transfer = way.transfer;
   o.numerics.basis = way.basis;
   o.numerics.threads = 1;
+  o.numerics.sleep_speed = 0;  // most of these tests are about small motions
   return o;
 }
 
@@ -104,6 +107,14 @@ inline Vec3 weighted_mean(const ParticleState& s, const std::vector<Vec3>& of) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < of.size(); ++i) sum += s.masses[i] * of[i];
   return sum / total_mass(s);
+}
+
+inline void expect_same_bits(const ParticleState& a, const ParticleState& b) {
+  EXPECT_TRUE(a.positions == b.positions);
+  EXPECT_TRUE(a.velocities == b.velocities);
+  EXPECT_EQ(a.pressures, b.pressures);
+  EXPECT_EQ(a.plastic_strains, b.plastic_strains);
+  EXPECT_EQ(a.ids, b.ids);
 }
 
 inline Vec3 momentum(const ParticleState& s) {

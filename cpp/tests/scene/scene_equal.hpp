@@ -46,8 +46,8 @@ inline auto tied(const Seeding& s) {
   return std::tie(a, b, c, d);
 }
 inline auto tied(const Numerics& s) {
-  auto& [a, b, c, d, e, f, g, h] = s;
-  return std::tie(a, b, c, d, e, f, g, h);
+  auto& [a, b, c, d, e, f, g, h, i, j] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j);
 }
 inline auto tied(const Events& s) {
   auto& [a, b, c, d, e] = s;

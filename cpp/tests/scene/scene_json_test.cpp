@@ -55,7 +55,8 @@ TEST(SceneJson, EveryFieldIsRead) {
     "seeding": {"particles_per_voxel": 3, "pattern": "regular", "seed": 18446744073709551615,
                 "allow_sparse": true},
     "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "flip_ratio": 0.5,
-                 "basis": "cubic", "step_factor": 0.3, "strain_limit": 0.1, "threads": 3},
+                 "basis": "cubic", "step_factor": 0.3, "strain_limit": 0.1, "sleep_speed": 0.4,
+                 "sleep_time": 0.7, "threads": 3},
     "events": {"count": 4, "between": "reseed", "max_time": 3, "rest_speed": 0.1,
                "rest_time": 0.2},
     "output": {"snapshot_interval": 0.25, "energy": true, "checkpoint_interval": 30}})");
@@ -68,7 +69,8 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
   EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
   EXPECT_TRUE(scene.numerics ==
-              (Numerics{0.02, Precision::float64, Transfer::apic, 0.5, Basis::cubic, 0.3, 0.1, 3}));
+              (Numerics{0.02, Precision::float64, Transfer::apic, 0.5, Basis::cubic, 0.3, 0.1, 0.4,
+                        0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, true, 30}));
 

@@ -1,0 +1,171 @@
+#include "snowshed/mpm/sleep.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "mpm/solver_testing.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double sleep_speed = 0.02;
+
+const Way two_d{2, Precision::float32}, three_d{3, Precision::float32};
+
+SolverOptions sleepy(const Way& way, double speed = sleep_speed) {
+  SolverOptions o = options_for(way);
+  o.snow.model = SnowModel::cam_clay;
+  o.numerics.sleep_speed = speed;
+  o.energy = true;
+  return o;
+}
+
+Obstacle floor() {
+  return fixed(make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1)), Condition::sticky);
+}
+
+/// A low wall of snow, resting on the floor.
+ParticleBatch wall(const Way& way) {
+  return filled_box(way.dimension, Vec3(0, 0, 0), Vec3(0.3, 0.06, 0.08), 0.005);
+}
+
+/// A lump in free fall above the middle of the wall, due on it after `time`.
+ParticleBatch falling_lump(const Way& way, double time) {
+  const double low = 0.085 + 3 * time;
+  ParticleBatch batch =
+      filled_box(way.dimension, Vec3(0.13, 0, low), Vec3(0.17, 0.06, low + 0.04), 0.005);
+  batch.velocity = Vec3(0, 0, -3 + 9.81 * time / 2);
+  return batch;
+}
+
+std::unique_ptr<Solver> wall_under_lump(const Way& way, double speed, int threads = 1) {
+  SolverOptions o = sleepy(way, speed);
+  o.numerics.threads = threads;
+  auto solver = make_solver(o, {floor()});
+  solver->add(wall(way));
+  solver->add(falling_lump(way, 0.15));
+  return solver;
+}
+
+double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
+  return largest;
+}
+
+class SleepFiles : public TemporaryFolder {};
+
+TEST(Sleep, SnowAtRestCostsNothingAndStaysWhereItIs) {
+  for (const Way& way : {two_d, three_d}) {
+    const auto solver = make_solver(sleepy(way), {floor()});
+    solver->add(wall(way));
+    run_until(*solver, 0.2);
+    const ParticleState before = solver->state();
+    const StepCounters counters = solver->counters();
+    run_steps(*solver, 500);
+    EXPECT_EQ(solver->counters().particle_updates, counters.particle_updates);
+    EXPECT_EQ(solver->counters().slept_updates - counters.slept_updates,
+              std::int64_t(500 * solver->size()));
+    EXPECT_EQ(largest_distance(solver->state().positions, before.positions), 0.0);
+    EXPECT_EQ(solver->motion(sleep_speed).rms_speed, 0.0);
+  }
+}
+
+TEST(Sleep, IsOffAtSpeedZero) {
+  const auto solver = make_solver(sleepy(two_d, 0.0), {floor()});
+  solver->add(wall(two_d));
+  run_until(*solver, 0.2);
+  EXPECT_EQ(solver->counters().slept_updates, 0);
+  EXPECT_EQ(solver->energy().sleep, 0.0);
+}
+
+/// In the twentieth of a second that it takes to become faster than the limit, it must not be
+/// taken for resting: its mean velocity grows.
+TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
+  SolverOptions o = sleepy(two_d);
+  o.gravity = 0.4;
+  const auto solver = make_solver(o, {});
+  solver->add(wall(two_d));
+  const double start = weighted_mean(solver->state(), solver->state().positions)[2];
+  run_until(*solver, 0.3);
+  const double fallen = start - weighted_mean(solver->state(), solver->state().positions)[2];
+  EXPECT_NEAR(fallen, 0.5 * o.gravity * solver->time() * solver->time(), 0.01 * fallen);
+}
+
+TEST(Sleep, AnImpactWakes) {
+  for (const Way& way : {two_d, three_d}) {
+    const auto sleeping = wall_under_lump(way, sleep_speed), awake = wall_under_lump(way, 0.0);
+    run_until(*sleeping, 0.12);
+    EXPECT_GT(sleeping->counters().slept_updates, sleeping->counters().particle_updates / 4);
+    const ParticleState before = sleeping->state();
+    run_until(*sleeping, 0.5);
+    run_until(*awake, 0.5);
+    const auto a = sleeping->state().positions, b = awake->state().positions;
+    EXPECT_GT(largest_distance(before.positions, a), 0.01);
+    // The mean height and length hardly differ, and no particle by more than a cell or two.
+    EXPECT_NEAR(weighted_mean(sleeping->state(), a)[2], weighted_mean(awake->state(), b)[2], 5e-4);
+    EXPECT_LT(largest_distance(a, b), 0.02);
+    EXPECT_LT(sleeping->counters().particle_updates, awake->counters().particle_updates * 3 / 4);
+  }
+}
+
+TEST(Sleep, EnergyThatSleepTakesIsInTheBooks) {
+  const auto solver = wall_under_lump(two_d, sleep_speed);
+  run_until(*solver, 0.5);
+  const EnergyBooks e = solver->energy();
+  EXPECT_GT(e.sleep, 0.0);
+  EXPECT_LT(e.sleep, 0.01 * e.added);
+  EXPECT_NEAR(e.residual(), 0.0, 0.01 * e.added);
+}
+
+TEST(Sleep, AMovingObstacleWakes) {
+  Obstacle paddle = fixed(make_box(Vec3(-0.05, 0, 0.05), Vec3(0.06, 1, 0.08)), Condition::sticky);
+  MotionSpec motion;
+  motion.start = 0.2;
+  motion.velocity = Vec3(0.5, 0, 0);
+  paddle.motion.emplace(motion);
+  const auto solver = make_solver(sleepy(two_d), {floor(), paddle});
+  solver->add(wall(two_d));
+  run_until(*solver, 0.2);
+  EXPECT_EQ(solver->motion(sleep_speed).rms_speed, 0.0);
+  run_until(*solver, 0.35);
+  EXPECT_GT(solver->motion(sleep_speed).rms_speed, 0.05);
+}
+
+TEST(Sleep, AKickWakes) {
+  const auto solver = make_solver(sleepy(two_d), {floor()});
+  solver->add(wall(two_d));
+  run_until(*solver, 0.2);
+  solver->kick(std::vector<Vec3>(solver->size(), Vec3(0.2, 0, 0)));
+  const std::int64_t before = solver->counters().particle_updates;
+  solver->step();
+  EXPECT_EQ(solver->counters().particle_updates - before, std::int64_t(solver->size()));
+}
+
+TEST(Sleep, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const auto one = wall_under_lump(three_d, sleep_speed), two = wall_under_lump(three_d, sleep_speed, 2);
+  for (const auto* solver : {&one, &two}) run_until(**solver, 0.2);
+  EXPECT_GT(one->counters().slept_updates, 0);
+  EXPECT_EQ(two->counters().slept_updates, one->counters().slept_updates);
+  expect_same_bits(two->state(), one->state());
+}
+
+TEST_F(SleepFiles, GoesOnFromACheckpointWithTheSameBits) {
+  const auto whole = wall_under_lump(two_d, sleep_speed);
+  run_until(*whole, 0.1);
+  EXPECT_GT(whole->counters().slept_updates, 0);
+  while (!whole->at_safe_point()) whole->step();
+  BinaryWriter out;
+  whole->save(out);
+  out.save(path("checkpoint"));
+  const auto resumed = make_solver(sleepy(two_d), {floor()});
+  resumed->load(BinaryReader::load(path("checkpoint")));
+  for (const auto* solver : {&whole, &resumed}) run_until(**solver, 0.25);
+  expect_same_bits(resumed->state(), whole->state());
+  EXPECT_EQ(resumed->counters().slept_updates, whole->counters().slept_updates);
+  EXPECT_EQ(resumed->energy().residual(), whole->energy().residual());
+}
+
+}  // namespace
+}  // namespace snowshed
