@@ -1,80 +1,203 @@
 // Whole steps of the solver: particle updates per second on the slab of snow that other MPM codes
-// were measured on (2 x 0.5 x 1 m, dx 1/32 m, 8 particles per cell), and its two-dimensional kin.
+// were measured on (2 x 0.5 x 1 m, dx 1/32 m, 8 particles per cell), and its two-dimensional kin;
+// the bare kernel beside it; the same slab with one feature more or less at a time; and cost
+// against the number of particles. Snow does not sleep here, except where that is the subject.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "bare_kernel.hpp"
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/mpm/solver.hpp"
 
 namespace snowshed {
 namespace {
 
-/// A lattice of cells x 2 particles along each direction, resting on sticky ground.
-ParticleBatch slab(int nx, int ny, int nz, double dx, double density) {
+constexpr double slab_dx = 1.0 / 32;
+constexpr int slab_cells[3] = {64, 16, 32};
+
+/// A lattice of cells x 2 particles along each direction; two-dimensional where cells[1] is 0.
+ParticleBatch slab(const int (&cells)[3], double dx, double density) {
   const double h = dx / 2;
+  const bool flat = cells[1] == 0;
   ParticleBatch batch;
-  for (int i = 0; i < nx; ++i)
-    for (int j = 0; j < std::max(ny, 1); ++j)
-      for (int k = 0; k < nz; ++k)
-        batch.positions.push_back(Vec3(i + 0.5, ny ? j + 0.5 : 0.0, k + 0.5) * h);
-  batch.mass = density * h * h * (ny ? h : 1.0);
+  for (int i = 0; i < 2 * cells[0]; ++i)
+    for (int j = 0; j < (flat ? 1 : 2 * cells[1]); ++j)
+      for (int k = 0; k < 2 * cells[2]; ++k)
+        batch.positions.push_back(Vec3(i + 0.5, flat ? 0.0 : j + 0.5, k + 0.5) * h);
+  batch.mass = density * h * h * (flat ? 1.0 : h);
   return batch;
 }
 
-void run(benchmark::State& state, SolverOptions options, const ParticleBatch& batch) {
-  options.numerics.threads = int(state.range(0));
-  const auto ground = make_plane(Vec3::Zero(), Vec3::UnitZ());
-  const auto solver =
-      make_solver(options, {{"ground", ground, {Condition::sticky, 0.0}, std::nullopt}});
-  solver->add(batch);
-  for (int i = 0; i < 10; ++i) solver->step();
+/// One thing to measure; the defaults are the slab at rest on sticky ground.
+struct Case {
+  SolverOptions options;
+  ParticleBatch batch;
+  std::vector<Obstacle> obstacles;
+  int steps_before = 10;
+};
+
+Case slab_3d(const Vec3& velocity = Vec3::Zero()) {
+  Case c;
+  c.options.numerics.dx = slab_dx;
+  c.options.numerics.sleep_speed = 0;
+  c.batch = slab(slab_cells, slab_dx, c.options.snow.density);
+  c.batch.velocity = velocity;
+  c.obstacles = {{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
+  return c;
+}
+
+Case slab_2d() {
+  Case c;
+  c.options.dimension = 2;
+  c.options.numerics.sleep_speed = 0;
+  c.batch = slab({200, 0, 25}, c.options.numerics.dx, c.options.snow.density);
+  c.obstacles = {{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
+  return c;
+}
+
+void report(benchmark::State& state, std::size_t particles, double bytes) {
+  state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(particles));
+  state.counters["bytes/particle"] = bytes / double(particles);
+}
+
+void run(benchmark::State& state, const Case& c, int threads) {
+  SolverOptions options = c.options;
+  options.numerics.threads = threads;
+  const auto solver = make_solver(options, c.obstacles);
+  solver->add(c.batch);
+  for (int i = 0; i < c.steps_before; ++i) solver->step();
   for (auto _ : state) solver->step();
-  state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(solver->size()));
-  state.counters["bytes/particle"] = double(solver->bytes()) / double(solver->size());
+  report(state, solver->size(), double(solver->bytes()));
 }
 
-void slab_3d(benchmark::State& state, Precision precision, const Vec3& velocity) {
-  SolverOptions options;
-  options.numerics.dx = 1.0 / 32;
-  options.numerics.precision = precision;
-  ParticleBatch batch = slab(128, 32, 64, options.numerics.dx, options.snow.density);
-  batch.velocity = velocity;
-  run(state, options, batch);
+void add(const std::string& name, const std::function<Case()>& make, std::vector<int> threads) {
+  for (int n : threads)
+    benchmark::RegisterBenchmark(
+        (name + "/" + std::to_string(n)).c_str(),
+        [make, n](benchmark::State& state) { run(state, make(), n); })
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
 }
 
-void slab_2d(benchmark::State& state, Precision precision) {
-  SolverOptions options;
-  options.dimension = 2;
-  options.numerics.precision = precision;
-  run(state, options, slab(400, 0, 50, options.numerics.dx, options.snow.density));
+void add(const std::string& name, Case c, const std::function<void(Case&)>& change,
+         std::vector<int> threads) {
+  add(
+      name,
+      [c, change] {
+        Case changed = c;
+        change(changed);
+        return changed;
+      },
+      std::move(threads));
 }
 
-BENCHMARK_CAPTURE(slab_3d, float_at_rest, Precision::float32, Vec3::Zero())
-    ->Arg(1)
-    ->Arg(2)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(slab_3d, float_in_plastic_flow, Precision::float32, Vec3(5, 0, -5))
-    ->Arg(1)
-    ->Arg(2)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(slab_3d, double_at_rest, Precision::float64, Vec3::Zero())
-    ->Arg(1)
-    ->Arg(2)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(slab_2d, float_at_rest, Precision::float32)
-    ->Arg(1)
-    ->Arg(2)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(slab_2d, double_at_rest, Precision::float64)
-    ->Arg(1)
-    ->Arg(2)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
+// --- the slab ---------------------------------------------------------------------------------
+
+const Vec3 in_flow(5, 0, -5);  // onto the ground at once: all of it yields
+
+void add_slabs() {
+  const auto as_it_is = [](Case&) {};
+  const auto in_double = [](Case& c) { c.options.numerics.precision = Precision::float64; };
+  add("slab_3d/float_at_rest", slab_3d(), as_it_is, {1, 2});
+  add("slab_3d/float_in_plastic_flow", slab_3d(in_flow), as_it_is, {1, 2});
+  add("slab_3d/double_at_rest", slab_3d(), in_double, {1, 2});
+  add("slab_2d/float_at_rest", slab_2d(), as_it_is, {1, 2});
+  add("slab_2d/double_at_rest", slab_2d(), in_double, {1, 2});
+  for (int threads : {1, 2})
+    benchmark::RegisterBenchmark(("bare_kernel_3d/float/" + std::to_string(threads)).c_str(),
+                                 [threads](benchmark::State& state) {
+                                   BareKernel kernel(slab_cells, threads);
+                                   for (auto _ : state) kernel.step();
+                                   if (std::abs(kernel.grid_mass() / kernel.mass() - 1) > 1e-4)
+                                     state.SkipWithError("the bare kernel lost mass");
+                                   report(state, kernel.size(), 0);
+                                 })
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
+}
+
+// --- the price of each feature ----------------------------------------------------------------
+
+/// The base is elastic snow in free fall: nothing but the transfers and a stress.
+Case plain() {
+  Case c = slab_3d(Vec3(0, 0, -1));
+  c.options.snow.model = SnowModel::elastic;
+  c.obstacles.clear();
+  return c;
+}
+
+Case on(Condition condition, bool moving = false) {
+  Case c = plain();
+  Obstacle ground{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {condition, 0.3}, {}};
+  if (moving) {
+    MotionSpec motion;
+    motion.velocity = Vec3(0, 0, -0.1);
+    ground.motion.emplace(motion);
+  }
+  c.obstacles = {ground};
+  return c;
+}
+
+void add_prices() {
+  using C = Case;
+  const auto price = [](const std::string& feature, Case c, const std::function<void(C&)>& change) {
+    add("price/" + feature, std::move(c), change, {1});
+  };
+  const auto nothing = [](C&) {};
+  price("base_3d", plain(), nothing);
+  price("base_2d", plain(), [](C& c) {
+    c.options.dimension = 2;
+    c.batch = slab({256, 0, 256}, slab_dx, c.options.snow.density);
+  });
+  price("cam_clay_elastic", plain(), [](C& c) { c.options.snow.model = SnowModel::cam_clay; });
+  price("ground_cam_clay_in_flow", slab_3d(in_flow), nothing);
+  price("ground_elastic_in_flow", slab_3d(in_flow),
+        [](C& c) { c.options.snow.model = SnowModel::elastic; });
+  price("double", plain(), [](C& c) { c.options.numerics.precision = Precision::float64; });
+  price("cubic", plain(), [](C& c) { c.options.numerics.basis = Basis::cubic; });
+  price("apic", plain(), [](C& c) { c.options.numerics.transfer = Transfer::apic; });
+  price("sticky_contact", on(Condition::sticky), nothing);
+  price("slip_contact", on(Condition::slip), nothing);
+  price("separate_contact", on(Condition::separate), nothing);
+  price("moving_contact", on(Condition::sticky, true), nothing);
+  price("energy_books", plain(), [](C& c) { c.options.energy = true; });
+  price("sleep_of_awake_snow", plain(), [](C& c) { c.options.numerics.sleep_speed = 0.02; });
+  // Without weight it is at rest at once.
+  price("sleep_at_rest", slab_3d(), [](C& c) {
+    c.options.numerics.sleep_speed = 0.02;
+    c.options.gravity = 0;
+    c.steps_before = 1000;
+  });
+}
+
+// --- cost against the number of particles -----------------------------------------------------
+
+void add_scaling() {
+  for (const double particles : {1e4, 1e5, 1e6, 1e7}) {
+    const int edge = int(std::lround(std::cbrt(particles / 8 / 4)));
+    add(
+        "scaling_3d/" + std::to_string(int(particles)),
+        [edge] {
+          Case c = slab_3d();
+          c.batch = slab({2 * edge, 2 * edge, edge}, slab_dx, c.options.snow.density);
+          return c;
+        },
+        {2});
+  }
+}
 
 }  // namespace
 }  // namespace snowshed
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  snowshed::add_slabs();
+  snowshed::add_prices();
+  snowshed::add_scaling();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -1,4 +1,4 @@
-"""The command line: ``snowshed panel|run|plan|scene|schema|compare|study|verify``.
+"""The command line: ``snowshed panel|run|plan|scene|schema|compare|lua|study|verify``.
 
 Exit codes: 0 done, 1 verified and something does not hold, 2 bad input, 3 the simulation could not
 go on, 130 interrupted. Errors are one line on stderr.
@@ -10,6 +10,7 @@ import importlib
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
@@ -17,6 +18,7 @@ import click
 
 from snowshed import _core
 from snowshed.interrupt import Interrupted
+from snowshed.regression.command import geometry, predict, regress
 from snowshed.scene import InitialisedScene, Scene
 from snowshed.scene_options import in_terms_of_options, scene_from_options, scene_options
 from snowshed.verify.accuracy import accuracy_option, check_alone, choose
@@ -30,11 +32,16 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-def run_options(command: Command) -> Command:
-    """Add the options of commands that run a scene."""
+def run_options(command: Command, *, required: bool = True) -> Command:
+    """Add the options of commands that run a scene; `required`: that they cannot do without."""
     folder = click.Path(path_type=Path)
     output = click.option(
-        "-o", "--output", "folder", type=folder, required=True, help="Results folder, new or empty."
+        "-o",
+        "--output",
+        "folder",
+        type=folder,
+        required=required,
+        help="Results folder, new or empty.",
     )
     resume = click.option("--resume", is_flag=True, help="Go on from the checkpoint in the folder.")
     quiet = click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
@@ -130,6 +137,39 @@ def compare(one: Path, other: Path) -> None:
     console.print_ratios(compare_folders(one, other))
 
 
+@cli.command()
+@click.argument("init", type=click.Path(path_type=Path))
+@click.argument("update", type=click.Path(path_type=Path), required=False)
+@click.option(
+    "--to-json",
+    "file",
+    type=click.Path(path_type=Path),
+    help="Write the scene to this file; if the scripts name runs, one file each to this folder.",
+)
+@partial(run_options, required=False)
+def lua(
+    init: Path,
+    update: Optional[Path],
+    file: Optional[Path],
+    folder: Optional[Path],
+    resume: bool,
+    quiet: bool,
+) -> None:
+    """Run a scene that Lua scripts describe, or leave Lua behind.
+
+    UPDATE runs after INIT; its values override those before. Needs the extra snowshed[lua].
+    """
+    from snowshed.lua.command import load, run_all, save_all
+
+    if file is None and folder is None:
+        raise click.UsageError("give -o DIR to run the scene, or --to-json FILE to write it")
+    runs = load(init, update, quiet=quiet)
+    if file is not None:
+        save_all(runs, file)
+    if folder is not None:
+        run_all(runs, folder, partial(_run, quiet=quiet), resume=resume, quiet=quiet)
+
+
 class DeferredGroup(click.Group):
     """A group whose commands are imported when it is used, so that all others start quickly.
 
@@ -168,6 +208,9 @@ Example:
 """
 cli.add_command(DeferredGroup("study", "snowshed.study.command", STUDY_HELP))
 cli.add_command(verify)
+cli.add_command(geometry)
+cli.add_command(regress)
+cli.add_command(predict)
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:

@@ -3,6 +3,7 @@ import json
 import pytest
 
 from snowshed import InputError, Scene
+from snowshed.accuracy_settings import ACCURACY
 from snowshed.cli import main
 from snowshed.scene_options import option_name
 from snowshed.schema import scene_parameters
@@ -11,7 +12,6 @@ from snowshed.verify.accuracy import CASE, QUANTITIES, choose
 from snowshed.verify.case import Measured
 from snowshed.verify.measurements import Measurement
 from snowshed.verify.recorded import load_recorded, record
-from snowshed.verify.schemes import SCHEME
 
 THICKNESS = 0.02  # of the laboratory's slab, m
 
@@ -100,8 +100,8 @@ def test_what_is_chosen_can_be_set():
     assert data["numerics"]["dx"] == 0.005
     assert data["numerics"]["basis"] == "cubic"
     assert choice.values["numerics.precision"] is None  # as in the recorded runs: the default
-    assert set(choice.values) == set(SCHEME.values())
-    assert set(SCHEME.values()) <= {parameter.path for parameter in scene_parameters()}
+    assert set(choice.values) == set(ACCURACY.values())
+    assert set(ACCURACY.values()) <= {parameter.path for parameter in scene_parameters()}
 
 
 def test_it_needs_a_slab_and_something_recorded():

@@ -3,9 +3,17 @@
 import numpy as np
 import pytest
 
+from snowshed.stack import measure_stack
 from snowshed.verify.cases import between_events
 from snowshed.verify.cases.between_events import CASE
-from snowshed.verify.lab_stack import lab_scene, recorded, run_lab
+from snowshed.verify.lab_stack import (
+    MEASURES,
+    Conversion,
+    lab_scene,
+    measure_of,
+    recorded,
+    run_lab,
+)
 
 SMALL = {"dimension": 2, "dx": 0.02, "events": 2, "seedings": 2, "seed": 101}
 
@@ -34,21 +42,41 @@ def test_carrying_over_converts_nothing():
     assert names == ["mass", "height", "height_noise", "length", "length_noise"]
 
 
-def test_conversions_are_counted_in_cells(reseeded, runs):
-    for name in ("height", "length"):
-        changes = [
-            (row[f"{name}_after_m"] - row[f"{name}_before_m"]) / 0.02
-            for run in runs
-            for row in run.conversions
-        ]
+def test_the_largest_change_of_all_conversions_is_shown_in_cells(reseeded, runs):
+    for name in MEASURES:
+        changes = [one.change(name) / 0.02 for run in runs for one in run.conversions]
         found = reseeded[f"conversion_{name}"]
-        assert abs(found.error) == pytest.approx(max(abs(change) for change in changes))
-        assert found.value - found.exact == pytest.approx(found.error)
+        assert abs(found.error) == max(abs(change) for change in changes)
+        assert found.error in changes
+
+
+def test_a_conversion_measures_the_stack_as_it_was_left(runs):
+    for run in runs:
+        (conversion,) = run.conversions
+        for name in MEASURES:
+            assert measure_of(conversion.before, name) == run.series(name)[0]
+
+
+def heap(chunk):
+    """A body 1 m long and 0.1 m high, and beyond a gap of 0.5 m some particles in a row."""
+    x, z = np.meshgrid(np.linspace(0, 1, 101), np.linspace(0, 0.1, 11))
+    x, z = np.append(x, 1.5 + 0.01 * np.arange(chunk)), np.append(z, np.zeros(chunk))
+    positions, masses = np.column_stack([x, 0 * x, z]), np.ones(len(x))
+    return measure_stack(positions, masses, masses, dimension=2, dx=0.02)
+
+
+def test_a_chunk_that_vanishes_shortens_the_stack_but_not_its_body():
+    before, after = heap(60), heap(0)
+    conversion = Conversion(before, after, 1171.0, 1171.0, 1111)
+    assert conversion.change("length") < -0.5
+    assert conversion.change("body_length") == pytest.approx(0, abs=0.011)
+    assert conversion.change("height") == conversion.outline_moved == 0
+    assert conversion.loose_change == pytest.approx(-60 / 1171)
 
 
 def test_space_is_counted_in_particles_of_the_slabs(reseeded, runs):
     """A slab is 0.245 m x 0.02 m, and as densely seeded as the stack."""
-    found = [run.conversions[-1]["particles_after"] for run in runs]
+    found = [run.conversions[-1].particles_after for run in runs]
     in_a_slab = [run.particles - count for run, count in zip(runs, found)]
     assert np.std(in_a_slab) < 1
     assert reseeded["conversion_space"].value == pytest.approx(

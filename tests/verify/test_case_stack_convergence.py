@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from snowshed import Scene
 from snowshed.verify import lab_stack
 from snowshed.verify.cases import stack_convergence
 from snowshed.verify.cases.stack_convergence import CASE
@@ -99,6 +100,13 @@ def test_every_entry_makes_a_scene_with_a_reference(settings):
     assert recorded(data["dimension"]).mean("height", settings["events"]) > 0
 
 
+def test_snow_sleeps_as_by_default_but_in_the_reference():
+    default = Scene.preset("lab-50").initialise().data["numerics"]["sleep_speed"]
+    assert lab_scene(QUICK).initialise().data["numerics"]["sleep_speed"] == default > 0
+    awake = lab_scene({**QUICK, **lab_stack.AWAKE}).initialise()
+    assert awake.data["numerics"]["sleep_speed"] == 0
+
+
 def test_events_are_set_too():
     scene = lab_scene({"dimension": 3, "dx": 0.02, "between": "reseed", "events": 2})
     assert (scene.dimension, scene.events.count, scene.events.between) == (3, 2, "reseed")
@@ -118,7 +126,30 @@ def test_measure_gives_the_error_of_a_single_run_and_the_spread():
 
 def test_one_seeding_has_no_spread():
     names = {one.quantity for one in CASE.measure(QUICK).measured}
-    assert names == set(lab_stack.MEASURES)
+    assert names == {*lab_stack.MEASURES, "height_noise", "length_noise"}
+
+
+def test_without_sleep_a_stack_is_like_the_recorded_ones():
+    """The mean of four: its own deviation is half of a single one's."""
+    settings = {**QUICK, "seedings": 4, "sleep_speed": 0.0}
+    found = {one.quantity: one for one in CASE.measure(settings).measured}
+    there = recorded(2, 0.02)
+    for name in ("height", "length"):
+        departure = (found[name].value - there.mean(name, 1)) / there.spread(name, 1)
+        assert found[f"{name}_noise"].error == pytest.approx(departure)
+        assert abs(departure) < 2
+
+
+def test_the_full_matrix_runs_every_grid_with_sleep_and_without():
+    entries = CASE.matrix(True)
+    awake = [entry for entry in entries if entry.get("sleep_speed") == 0]
+    for entry in awake:
+        asleep = {name: value for name, value in entry.items() if name != "sleep_speed"}
+        assert asleep in entries
+    assert {(entry["dimension"], entry["dx"]) for entry in awake} >= {(2, 0.005), (3, 0.01)}
+    for dimension in (2, 3):
+        events = {e["events"] for e in entries if e["dimension"] == dimension}
+        assert events == {1, 2, 3, 5}
 
 
 def test_three_dimensions_are_compared_with_two(monkeypatch):

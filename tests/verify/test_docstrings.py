@@ -6,8 +6,9 @@ import pytest
 
 from snowshed import verify
 
+MODULES = [m.name for m in pkgutil.walk_packages(verify.__path__, f"{verify.__name__}.")]
 
-@pytest.mark.parametrize("name", [module.name for module in pkgutil.iter_modules(verify.__path__)])
+
+@pytest.mark.parametrize("name", MODULES)
 def test_examples_in_docstrings(name):
-    module = importlib.import_module(f"{verify.__name__}.{name}")
-    assert doctest.testmod(module).failed == 0
+    assert doctest.testmod(importlib.import_module(name)).failed == 0

@@ -1,15 +1,17 @@
 import base64
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pandas as pd
 import pytest
-from made_up import made_up_case
+from made_up import DRIFT, HEIGHT, made_up_case
 
 from snowshed.verify import sections, wording
+from snowshed.verify.case import Quantity
 from snowshed.verify.figures import Look, worth_naming
-from snowshed.verify.measurements import MeasurementFile
+from snowshed.verify.measurements import MeasurementFile, to_table
 from snowshed.verify.report import Stress, Suite, write_report
 from snowshed.verify.runner import run_suite
 from snowshed.verify.stress import SummaryTable
@@ -185,7 +187,46 @@ def test_what_varies_looks_different():
     assert len({(line["color"], line["marker"]) for line in lines}) == 4
     assert len({line["color"] for line in lines}) == 2  # the transfer
     assert lines == [look.for_line(one) for one in settings[4:]]
-    assert sorted(line.get_label() for line in look.key()) == ["a", "c", "f", "q"]
+    assert sorted(line.get_label() for line in look.key(settings)) == ["a", "c", "f", "q"]
+    same_basis = [one for one in settings if one["basis"] == "q"]
+    assert sorted(line.get_label() for line in look.key(same_basis)) == ["a", "f"]
+    assert look.key(settings[:1]) == []
+
+
+def test_errors_are_drawn_against_time_where_they_say_which_way_is_better(tmp_path):
+    several, one = [{"transfer": "apic"}, {"transfer": "pic"}], [{"transfer": "apic"}]
+    diagnostic = Quantity("height", "height, cells", relative=False)
+    no_drift = replace(DRIFT, order_in=None)
+    for number, (quantity, entries, drawn) in enumerate(
+        [
+            (HEIGHT, several, True),
+            (HEIGHT, one, False),
+            (diagnostic, several, False),
+            (replace(diagnostic, bar=1.0), several, True),
+        ]
+    ):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        case = made_up_case(entries=entries, quantities=[quantity, no_drift])
+        measured = run_suite([case], MeasurementFile(folder / "m.jsonl"))
+        pictures = sections.section(case, measured, to_table(measured)).pictures
+        assert [one.name for one in pictures] == ["made_up-error-against-run-time"] * drawn
+
+
+def test_quantities_that_were_not_measured_have_no_column(tmp_path):
+    case = made_up_case(
+        entries=[{"transfer": "apic"}], quantities=[HEIGHT, DRIFT, Quantity("tilt", "tilt")]
+    )
+    measured = run_suite([case], MeasurementFile(tmp_path / "m.jsonl"))
+    grid = sections.results_grid(case, measured)
+    titles = [title for title, _ in grid.groups if title]
+    assert [title.split(",")[0] for title in titles] == ["height", "drift"]
+
+
+def test_settings_that_are_not_given_are_named():
+    assert sections._cell({"dx": 0.1}, "flip_ratio") == "default"
+    assert sections._cell({"dx": 0.1}, "aspect") == wording.NOTHING
+    assert sections._cell({"dimension": 3}, "dimension") == "3D"
 
 
 def test_tables_of_texts_are_as_wide_as_their_heads():

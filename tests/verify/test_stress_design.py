@@ -1,12 +1,13 @@
 """What the stress suite tries: ranges, coverage of pairs, scenes that the core accepts."""
 
+import importlib
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 import pytest
 
-from snowshed import _core
+from snowshed import InputError, _core
 from snowshed.verify.stress.design import trials
 from snowshed.verify.stress.scenes import build, longest_event
 from snowshed.verify.stress.space import KINDS, PARAMETERS, Range, reference
@@ -79,3 +80,14 @@ def test_scenes_hold_what_they_are_to_show(kind: str, dimension: int) -> None:
 def test_free_flight_ends_before_snow_is_scattered_wide() -> None:
     point = {**reference(), "kind": "collide", "speed": 100.0}
     assert longest_event(point) == pytest.approx(50 * 0.06 / 100)
+
+
+def test_without_allpairspy_the_error_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def missing(name: str) -> Any:
+        raise ImportError(f"No module named {name!r}")
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    with pytest.raises(InputError, match=r'allpairspy.*pip install "snowshed\[verify\]"'):
+        trials(full=False)

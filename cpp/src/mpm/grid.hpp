@@ -21,12 +21,21 @@ struct Grid {
 
   void resize(const BlockLayout<D>& layout) {
     const std::size_t blocks = layout.particle_blocks.size(), nodes = layout.grid_blocks.size();
-    tiles.resize(blocks * tile_size);
-    sums.resize(nodes * block_size);
-    velocities.resize(nodes * block_size);
+    make_room(tiles, blocks * tile_size);
+    make_room(sums, nodes * block_size);
+    make_room(velocities, nodes * block_size);
     block_stats.resize(blocks);
     node_stats.resize(nodes);
     touched.resize(nodes);
+  }
+
+  /// What the arrays held is not kept: all of it is computed anew after a change of layout.
+  static void make_room(AlignedVector<T>& values, std::size_t n) {
+    if (n > values.capacity()) {
+      AlignedVector<T>().swap(values);
+      values.reserve(n + n / 8);  // doubling would hold as much again
+    }
+    values.resize(n);
   }
 
   T* tile(std::size_t block) { return tiles.data() + block * tile_size; }

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
+from snowshed.extras import require
 from snowshed.study.compute import compute
 from snowshed.study.errors import StudyError
-from snowshed.study.extras import require
 from snowshed.study.outcome import Outcome, Task
 
 CONNECT_S = 30  # s to wait for the scheduler

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.study.extras import require
+from snowshed.extras import require
 
 LARGEST_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
 SCALES = ("linear", "log")

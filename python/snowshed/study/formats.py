@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
 from snowshed.atomic import replacing
+from snowshed.extras import require
 from snowshed.scene import PathLike
 from snowshed.schema import scene_parameters
-from snowshed.study.extras import require
 from snowshed.study.store import MEASURES
 from snowshed.study.table import read_table
 

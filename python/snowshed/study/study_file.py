@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from snowshed._core import InputError
+from snowshed.accuracy_settings import ACCURACY
 from snowshed.parts import Snow
 from snowshed.scene import Scene
-from snowshed.study.accuracy import ACCURACY
 from snowshed.study.definition import Part, Study
 from snowshed.study.factors import (
     SCALES,

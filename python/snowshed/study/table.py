@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
+from snowshed.accuracy_settings import ACCURACY
 from snowshed.scene import PathLike
-from snowshed.study.accuracy import ACCURACY
 from snowshed.study.definition import SEED
 from snowshed.study.store import COUNTS, MEASURES, TIMING, Store, StoredRun
 

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed._core import InputError
+from snowshed.accuracy_settings import ACCURACY
 from snowshed.scene import Scene
 from snowshed.scene_options import option_name
-from snowshed.verify.schemes import SCHEME
 
 if TYPE_CHECKING:
     from snowshed.verify.case import Settings, Value
@@ -119,7 +119,7 @@ def choose(
     stack = stacks[quickest(costs, errors, wanted)]
     share = float(stack.settings["dx"]) / _slab_thickness(Scene.preset(PRESET).initialise().data)
     # What a recorded run does not name had its default, and so must have it here.
-    values = {path: stack.settings.get(name) for name, path in SCHEME.items()}
+    values = {path: stack.settings.get(name) for name, path in ACCURACY.items()}
     values["numerics.dx"] = float(f"{share * thickness:.3g}")
     what = f"dx {values['numerics.dx']:g} m ({share:.3g} of the slab's thickness)"
     reason = " ".join([f"--accuracy {percent(wanted)}: {what}", *_reasons(stack, wanted, data)])
@@ -138,7 +138,7 @@ def check_alone(options: Mapping[str, Any]) -> None:
     --------
     >>> check_alone({"panel__tilt": 50.0, "numerics__basis": None})
     """
-    for path in SCHEME.values():
+    for path in ACCURACY.values():
         if options.get(path.replace(".", "__")) is not None:
             raise InputError(
                 f"{option_name(path)}: --accuracy chooses grid and scheme; give one of the two"
@@ -232,7 +232,7 @@ def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any]) -> li
     """Return the rest of the first sentence and all that follow it."""
     from snowshed.verify.wording import percent, settings
 
-    scheme = {k: v for k, v in stack.settings.items() if k in SCHEME and k != "dx"}
+    scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != "dx"}
     height, length = (percent(error, 2) for error in stack.errors)
     off = f"the height of the stack was off by {height} and its length by {length}"
     if stack.error <= wanted:

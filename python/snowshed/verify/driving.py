@@ -19,8 +19,12 @@ SECTIONS: Mapping[str, type[Record]] = {"numerics": Numerics, "seeding": Seeding
 LONGEST_STRETCH = 200
 
 
-def apply_settings(scene: Scene, settings: Settings, own: Collection[str] = ()) -> Scene:
+def apply_settings(
+    scene: Scene, settings: Settings, own: Collection[str] = (), *, sleeping: bool = False
+) -> Scene:
     """Set a scene's parameters from a case's settings, and one thread.
+
+    Small motions are what most cases measure, so snow never sleeps unless the settings say so.
 
     Parameters
     ----------
@@ -30,6 +34,8 @@ def apply_settings(scene: Scene, settings: Settings, own: Collection[str] = ()) 
         Names without their section, and values.
     own
         Names that are the case's own business and left out.
+    sleeping
+        Whether snow at rest sleeps as it does by default.
 
     Raises
     ------
@@ -39,10 +45,12 @@ def apply_settings(scene: Scene, settings: Settings, own: Collection[str] = ()) 
     Examples
     --------
     >>> scene = apply_settings(Scene(), {"dx": 0.02, "seed": 3, "friction": 0.1}, {"friction"})
-    >>> scene.numerics.dx, scene.seeding.seed, scene.numerics.threads
-    (0.02, 3, 1)
+    >>> scene.numerics.dx, scene.seeding.seed, scene.numerics.threads, scene.numerics.sleep_speed
+    (0.02, 3, 1, 0.0)
     """
     scene.set("numerics.threads", 1)
+    if not sleeping:
+        scene.set("numerics.sleep_speed", 0.0)
     for name, value in settings.items():
         if name not in own:
             scene.set(_path(name), value)

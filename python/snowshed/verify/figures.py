@@ -111,22 +111,18 @@ class Look:
             "linestyle": _pick(self.dashes, settings, DASHES[0]),
         }
 
-    def key(self) -> list[Line2D]:
-        """Return the entries of a legend: every value that has a look of its own."""
-        entries = []
-        for keyword, looks in (
-            ("color", self.colours),
-            ("marker", self.markers),
-            ("linestyle", self.dashes),
-        ):
-            for name, shapes in looks.items():
-                for value, shape in shapes.items():
-                    plain = {"color": INK, "marker": "" if keyword == "linestyle" else "o"}
-                    plain["linestyle"] = "-" if keyword != "marker" else ""
-                    label = wording.NOTHING if value is None else wording.setting(name, value)
-                    drawn = {**plain, keyword: shape, "markersize": 5, "linewidth": 1.4}
-                    entries.append(Line2D([], [], label=label, **drawn))
-        return entries
+    def key(self, drawn: Sequence[Settings]) -> list[Line2D]:
+        """Return the entries of a legend: every value in which what is drawn differs."""
+        kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
+        differing = varying(drawn)
+        return [
+            _entry(keyword, shape, wording.setting(name, value))
+            for keyword, looks in kinds
+            for name, shapes in looks.items()
+            if name in differing
+            for value, shape in shapes.items()
+            if any(one.get(name) == value for one in drawn)
+        ]
 
 
 def convergence_figure(
@@ -141,7 +137,8 @@ def convergence_figure(
     look
         How the other settings are told apart.
     """
-    with _figure(look, rows=-(-len(panels) // 2)) as figure:
+    drawn = [one.settings for _, series in panels for one in series]
+    with _figure(look, drawn, rows=-(-len(panels) // 2)) as figure:
         for axes, (quantity, series) in zip(_pairs(figure, len(panels)), panels):
             _draw_convergence(axes, quantity, series, look)
     return figure
@@ -160,26 +157,32 @@ def work_precision_figure(
     look
         How the settings are told apart.
     """
-    if not any(_with_fronts(problems) for _, problems in panels):
-        with _figure(look, rows=-(-len(panels) // 2)) as figure:
-            for axes, (quantity, problems) in zip(_pairs(figure, len(panels)), panels):
-                _draw_work_precision(axes, quantity, problems, look)
-        return figure
-    with _figure(look, rows=len(panels)) as figure:
+    drawn = [one.settings for _, problems in panels for _, found in problems for one in found]
+    with _figure(look, drawn, rows=len(panels)) as figure:
         grid = figure.subplots(len(panels), 2, squeeze=False, width_ratios=(1.25, 1))
         for (axes, beside), (quantity, problems) in zip(grid, panels):
             _write_key(beside, _draw_work_precision(axes, quantity, problems, look))
     return figure
 
 
+def _entry(keyword: str, shape: Any, label: str) -> Line2D:
+    """Return an entry of a legend that shows a colour, a marker or dashes, and nothing else."""
+    drawn: dict[str, Any] = {"color": INK, "marker": "o", "linestyle": "-"}
+    if keyword == "marker":
+        drawn["linestyle"] = ""
+    if keyword == "linestyle":
+        drawn["marker"] = ""
+    return Line2D([], [], label=label, markersize=5, linewidth=1.4, **{**drawn, keyword: shape})
+
+
 @contextmanager
-def _figure(look: Look, *, rows: int) -> Iterator[Figure]:
-    """Yield a figure for some rows of panels; what the look means is added below."""
+def _figure(look: Look, drawn: Sequence[Settings], *, rows: int) -> Iterator[Figure]:
+    """Yield a figure for some rows of panels; what the look of what is drawn means is added."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(8.2, 2.9 * rows + 0.6), layout="constrained")
         FigureCanvasAgg(figure)
         yield figure
-        if key := look.key():
+        if key := look.key(drawn):
             lines = -(-len(key) // 8)
             figure.legend(handles=key, loc="outside lower center", ncols=-(-len(key) // lines))
 

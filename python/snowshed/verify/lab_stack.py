@@ -21,17 +21,20 @@ import numpy as np
 from snowshed import _core
 from snowshed.arrays import Booleans, Floats
 from snowshed.atomic import write_text
-from snowshed.conversion import conversion_row
+from snowshed.conversion import outline_difference
 from snowshed.scene import Scene
 from snowshed.stack import StackMeasure, measure_stack
 from snowshed.verify.case import Measured, Outcome, Settings, Value
-from snowshed.verify.driving import apply_settings
+from snowshed.verify.driving import absolute, apply_settings
 
 #: What is measured of a stack; body: of its largest connected body.
 MEASURES = ("height", "length", "body_height", "body_length")
 
 #: Settings of the events, and where they lie in a scene.
 EVENTS: Mapping[str, str] = {"events": "events.count", "between": "events.between"}
+
+#: What the reference is made with besides the defaults: no snow sleeps.
+AWAKE: Settings = {"sleep_speed": 0.0}
 
 #: The runs of the reference: dimension, dx in m, seedings.
 RECORDED: Sequence[tuple[int, float, int]] = (
@@ -41,9 +44,46 @@ RECORDED: Sequence[tuple[int, float, int]] = (
     (2, 0.0025, 4),
     (3, 0.02, 8),
     (3, 0.01, 4),
+    (3, 0.005, 1),
 )
 
 FILE = Path(__file__).with_name("lab_stack.json")
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """What reseeding did to a stack.
+
+    Attributes
+    ----------
+    before, after
+        The stack.
+    mass_before, mass_after
+        Of all snow, that on the panel included, kg.
+    particles_after
+        How many it is made of then.
+    """
+
+    before: StackMeasure
+    after: StackMeasure
+    mass_before: float
+    mass_after: float
+    particles_after: int
+
+    def change(self, name: str) -> float:
+        """Return by how much one of `MEASURES` grew, m."""
+        return measure_of(self.after, name) - measure_of(self.before, name)
+
+    @property
+    def loose_change(self) -> float:
+        """By how much the part of the snow that lies outside the largest body grew."""
+        shares = [stack.detached_mass / stack.mass for stack in (self.before, self.after)]
+        return shares[1] - shares[0]
+
+    @property
+    def outline_moved(self) -> float:
+        """Root mean square of the change in height of the outline, m."""
+        return outline_difference(self.before.outline, self.after.outline)
 
 
 @dataclass
@@ -55,7 +95,7 @@ class LabRun:
     stacks
         The stack after each event.
     conversions
-        Rows of conversions.csv: what reseeding did before each event but the first.
+        What reseeding did before each event but the first.
     ended
         How each event ended.
     mass
@@ -69,7 +109,7 @@ class LabRun:
     """
 
     stacks: list[StackMeasure] = field(default_factory=list)
-    conversions: list[dict[str, Any]] = field(default_factory=list)
+    conversions: list[Conversion] = field(default_factory=list)
     ended: list[str] = field(default_factory=list)
     mass: float = 0.0
     brought_mass: float = 0.0
@@ -81,12 +121,19 @@ class LabRun:
 
     def series(self, name: str) -> list[float]:
         """Return one of `MEASURES` after each event, m."""
-        extents = [stack.body if name.startswith("body_") else stack for stack in self.stacks]
-        return [float(getattr(extent, name.removeprefix("body_"))) for extent in extents]
+        return [measure_of(stack, name) for stack in self.stacks]
+
+
+def measure_of(stack: StackMeasure, name: str) -> float:
+    """Return one of `MEASURES` of a stack, m."""
+    extent = stack.body if name.startswith("body_") else stack
+    return float(getattr(extent, name.removeprefix("body_")))
 
 
 def lab_scene(settings: Settings) -> Scene:
     """Return the scene: preset lab-50 in 2D, panel friction 0.3, one thread, and the settings.
+
+    Snow at rest sleeps as it does by default, since stacks are what users run.
 
     Examples
     --------
@@ -95,7 +142,7 @@ def lab_scene(settings: Settings) -> Scene:
     """
     scene = Scene.preset("lab-50").update({"dimension": 2, "panel.friction": 0.3})
     scene.update({path: settings[name] for name, path in EVENTS.items() if name in settings})
-    return apply_settings(scene, settings, own=EVENTS)
+    return apply_settings(scene, settings, own=EVENTS, sleeping=True)
 
 
 def run_lab(settings: Settings) -> LabRun:
@@ -115,10 +162,10 @@ def run_lab(settings: Settings) -> LabRun:
     simulation = _core.Simulation(ready.json)
     tape = _Tape(simulation, ready.data)
     run = LabRun(brought_mass=_brought_mass(ready.data), particle_mass=_particle_mass(ready.data))
-    for event in range(1, ready.data["events"]["count"] + 1):
-        conversion = simulation.begin_event()
-        if conversion is not None:
-            run.conversions.append(conversion_row(event, conversion, tape.measure_reseeded))
+    for _ in range(ready.data["events"]["count"]):
+        reseeded = simulation.begin_event()
+        if reseeded is not None:
+            run.conversions.append(tape.measure_conversion(reseeded))
         started = time.perf_counter()
         run.ended.append(simulation.run(lambda info: True))
         run.wall_s += time.perf_counter() - started
@@ -160,12 +207,24 @@ class _Tape:
         now = self._simulation
         return self._measure(now.positions(), now.masses(), now.on_panel(), now.density())
 
-    def measure_reseeded(
-        self, positions: Floats, masses: Floats, on_panel: Booleans
-    ) -> StackMeasure:
-        """Measure snow of its initial density."""
-        density = np.full(len(masses), self._initial_density)
-        return self._measure(positions, masses, on_panel, density)
+    def measure_conversion(self, reseeded: Mapping[str, Any]) -> Conversion:
+        """Measure what the core says of a conversion: the snow before and after."""
+        masses = {when: reseeded[f"masses_{when}"] for when in ("before", "after")}
+        stacks = {
+            when: self._measure(
+                reseeded[f"positions_{when}"],
+                masses[when],
+                reseeded[f"on_panel_{when}"],
+                np.full(len(masses[when]), self._initial_density),
+            )
+            for when in masses
+        }
+        return Conversion(
+            **stacks,
+            mass_before=float(masses["before"].sum()),
+            mass_after=float(masses["after"].sum()),
+            particles_after=len(masses["after"]),
+        )
 
     def _measure(
         self, positions: Floats, masses: Floats, on_panel: Booleans, density: Floats
@@ -210,6 +269,30 @@ class Recorded:
     def spread(self, name: str, event: int) -> float:
         """Return the standard deviation between seedings of a measure after an event, m."""
         return float(self.runs[name][:, event - 1].std(ddof=1))
+
+
+def noise(name: str, runs: Sequence[LabRun], settings: Settings) -> Measured:
+    """Compare the mean of the last stacks with the recorded ones on the same grid.
+
+    Parameters
+    ----------
+    name
+        One of `MEASURES`.
+    runs
+        With the settings, each with a seed of its own.
+    settings
+        For `lab_scene`.
+
+    Returns
+    -------
+    Measured
+        Of the quantity ``<name>_noise``: the departure in standard deviations between the recorded
+        seedings.
+    """
+    there, event = recorded(int(settings["dimension"]), float(settings["dx"])), len(runs[0].stacks)
+    value = float(np.mean([run.series(name)[-1] for run in runs]))
+    departure = (value - there.mean(name, event)) / there.spread(name, event)
+    return absolute(f"{name}_noise", departure, 0.0)
 
 
 def recorded(dimension: int, dx: Optional[float] = None) -> Recorded:
@@ -260,7 +343,7 @@ def record(
     runs = json.loads(path.read_text(encoding="utf-8"))["runs"] if path.exists() else []
     for dimension, dx, seedings in grids:
         for seed in range(1, seedings + 1):
-            key = {"dimension": dimension, "dx": dx, "seed": seed, **settings}
+            key = {"dimension": dimension, "dx": dx, "seed": seed, **AWAKE, **settings}
             held = [run for run in runs if key.items() <= run.items()]
             if any(run["version"] == _core.version for run in held):
                 continue
@@ -284,8 +367,8 @@ def _recording(settings: Settings) -> dict[str, Any]:
 def _document(runs: list[dict[str, Any]]) -> str:
     """Return the file's text, one run a line."""
     about = (
-        "Stacks of preset lab-50 with panel friction 0.3 and the core's default numerics after "
-        "each event, in m. Made by snowshed.verify.lab_stack.record()."
+        "Stacks of preset lab-50 after each event, in m, with panel friction 0.3 and the core's "
+        "default numerics but for what each run names. Made by snowshed.verify.lab_stack.record()."
     )
     lines = ",\n".join(f"    {json.dumps(run)}" for run in runs)
     return f'{{\n  "about": {json.dumps(about)},\n  "runs": [\n{lines}\n  ]\n}}\n'

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from snowshed.arrays import Floats
-from snowshed.study.extras import require
+from snowshed.extras import require
 
 #: Softening snow is followed until its strength has fallen to this part; stress and strength then
 #: vanish together, and their ratio would be lost in rounding.

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from snowshed.arrays import Floats
-from snowshed.study.extras import require
+from snowshed.extras import require
 
 
 @dataclass(frozen=True)

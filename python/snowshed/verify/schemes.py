@@ -6,21 +6,13 @@ the same problem are compared with each other.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
 from typing import TYPE_CHECKING
 
-from snowshed.parts import Numerics
+from snowshed.accuracy_settings import ACCURACY
 
 if TYPE_CHECKING:
     from snowshed.verify.case import Case, Settings
 
-#: Settings that decide how accurate a scene's run is, and where they stand in it.
-SCHEME: Mapping[str, str] = {
-    **{f.name: f"numerics.{f.name}" for f in fields(Numerics) if f.name != "threads"},
-    "particles_per_voxel": "seeding.particles_per_voxel",
-    "pattern": "seeding.pattern",
-}
 #: Settings that make no other way of solving, only another sample of it.
 SAMPLING = ("seed", "seedings")
 
@@ -36,5 +28,5 @@ def problem_of(case: Case, settings: Settings) -> Settings:
     {'friction': 0.3}
     """
     sizes = {quantity.order_in for quantity in case.quantities}
-    ways = {*SCHEME, *SAMPLING, *sizes}
+    ways = {*ACCURACY, *SAMPLING, *sizes}
     return {name: value for name, value in settings.items() if name not in ways}

@@ -162,7 +162,8 @@ def results_grid(case: Case, measurements: Sequence[Measurement]) -> Grid:
     """Return all measurements of a case: what varies, every quantity, the cost."""
     solved = [one for one in measurements if not one.failure]
     names = varying([one.settings for one in measurements])
-    quantities = [_Columns.of(quantity, solved) for quantity in case.quantities]
+    given = {m.quantity for one in solved for m in one.measured}
+    quantities = [_Columns.of(one, solved) for one in case.quantities if one.name in given]
     costs = {name: [words(one) for one in solved] for name, words in COSTS.items()}
     costs = {name: texts for name, texts in costs.items() if set(texts) != {wording.NOTHING}}
     rows = [
@@ -322,7 +323,9 @@ def _pictures(
     quantities = {one.name: one for one in case.quantities}
     converging = [(quantities[name], listed) for name, listed in series.items() if listed]
     solved = [(quantities[name], by_problem(case, listed)) for name, listed in found.items()]
-    solved = [(quantity, problems) for quantity, problems in solved if problems]
+    solved = [
+        (quantity, problems) for quantity, problems in solved if _compared(quantity, problems)
+    ]
     pictures = []
     if converging:
         figure = figures.convergence_figure(converging, look)
@@ -331,6 +334,15 @@ def _pictures(
         figure = figures.work_precision_figure(solved, look)
         pictures.append(_picture(figure, case, "Error against run time", WORK_PRECISION))
     return pictures
+
+
+def _compared(quantity: Quantity, problems: Sequence[tuple[Settings, Sequence[Solution]]]) -> bool:
+    """Return whether errors say which way of solving is better.
+
+    There must be several ways for one problem, and a measure of what a small error is.
+    """
+    measured_by = quantity.relative or quantity.order_in or quantity.bar is not None
+    return bool(measured_by) and any(len(found) > 1 for _, found in problems)
 
 
 def _picture(figure: Figure, case: Case, title: str, caption: str) -> Picture:
@@ -379,9 +391,11 @@ def _cheapest_cell(one: Cheapest, ways: Sequence[str]) -> str:
 def _cell(settings: Settings, name: str) -> str:
     value: Optional[Any] = settings.get(name)
     if value is None:
-        return wording.NOTHING
+        return wording.unset(name)
     if isinstance(value, bool):
         return "yes" if value else "no"
+    if name == "dimension":
+        return wording.setting(name, value)
     return value.replace("_", " ") if isinstance(value, str) else wording.number(value, 4)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from math import isnan
 from typing import Optional
 
+from snowshed.accuracy_settings import ACCURACY
 from snowshed.verify.case import Settings, Value
 
 #: What stands where there is no number.
@@ -90,8 +91,8 @@ def count(value: Optional[float]) -> str:
     return f"{value:,.0f}"
 
 
-def setting(name: str, value: Value) -> str:
-    """Return one setting; a word needs no name beside it.
+def setting(name: str, value: Optional[Value]) -> str:
+    """Return one setting; a word needs no name beside it. None: it is not given.
 
     Examples
     --------
@@ -99,13 +100,28 @@ def setting(name: str, value: Value) -> str:
     ['dx 0.01', 'apic', 'no sleeping']
     >>> setting("dimension", 2)
     '2D'
+    >>> setting("flip_ratio", None)
+    'flip ratio default'
     """
+    if value is None:
+        return f"{name.replace('_', ' ')} {unset(name)}"
     if name == "dimension":
         return f"{value}D"
     name = name.replace("_", " ")
     if isinstance(value, bool):
         return name if value else f"no {name}"
     return value.replace("_", " ") if isinstance(value, str) else f"{name} {number(value, 4)}"
+
+
+def unset(name: str) -> str:
+    """Return what stands for a setting that is not given: a scene's settings have defaults.
+
+    Examples
+    --------
+    >>> unset("flip_ratio"), unset("aspect") == NOTHING
+    ('default', True)
+    """
+    return "default" if name in ACCURACY else NOTHING
 
 
 def settings(chosen: Settings, names: Optional[Iterable[str]] = None) -> str:

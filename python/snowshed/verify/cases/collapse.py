@@ -122,12 +122,13 @@ def measure(settings: Settings) -> Outcome:
         return _measure_exponent(settings, TALL[dimension])
     aspect = float(settings["aspect"])
     deposit = collapse(settings, aspect)
-    measured = [
-        relative("runout", deposit.runout, runout_law(aspect, dimension)),
-        relative("height", deposit.height, height_law(aspect, dimension)),
-    ]
-    if dimension == 2 and settings.get("friction_angle") == GLASS:
-        measured.append(relative("runout_glass", deposit.runout, glass_runout_law(aspect)))
+    if settings.get("friction_angle") == GLASS:
+        measured = [relative("runout_glass", deposit.runout, glass_runout_law(aspect))]
+    else:
+        measured = [
+            relative("runout", deposit.runout, runout_law(aspect, dimension)),
+            relative("height", deposit.height, height_law(aspect, dimension)),
+        ]
     return _outcome([deposit], measured)
 
 
@@ -168,7 +169,15 @@ def matrix(full: bool) -> list[Settings]:
     ]
     damping: list[Settings] = [
         {**plane, "aspect": 1.5, **scheme}
-        for scheme in ({"flip_ratio": 0.95}, {"flip_ratio": 0.999}, {"step_factor": 0.3})
+        for scheme in (
+            {"flip_ratio": 0.95},
+            {"flip_ratio": 0.999},
+            {"step_factor": 0.3},
+            # The same share of PIC per second as 0.99 at three times the step: 0.99^(1/3).
+            {"step_factor": 0.3, "flip_ratio": 0.9967},
+            {"sleep_speed": 0.005},
+            {"sleep_speed": 0.02},
+        )
     ]
     glass: list[Settings] = [
         {**plane, "transfer": transfer, "aspect": 1.5, "friction_angle": GLASS}
@@ -242,6 +251,9 @@ so smaller steps, and stiffer snow, which needs them, damp more: a third of the 
 the run-out by 17 %. If flip_ratio is brought to 0.9967 along with it, so that the share of PIC per
 second stays, the run-out stays too, within 2 %. The solution does not converge in the time step
 alone. APIC loses some energy in every step as well, with the same effect on the run-out.
+
+Snow that comes to rest may sleep without harm: with a sleep_speed of 5 or 20 mm/s the run-out and
+the height change by less than a thousandth (a = 1.5). All other columns never sleep.
 """
 
 CASE = Case(

@@ -11,8 +11,8 @@ import numpy as np
 
 from snowshed import _core
 from snowshed.arrays import Floats
+from snowshed.extras import require
 from snowshed.parts import Snow
-from snowshed.study.extras import require
 from snowshed.verify.case import Case, Measured, Outcome, Quantity, Settings
 from snowshed.verify.driving import relative
 from snowshed.verify.rate_equations import RateEquations, evenly

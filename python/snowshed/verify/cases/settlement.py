@@ -10,10 +10,10 @@ from typing import Union
 import numpy as np
 
 from snowshed.arrays import Floats
+from snowshed.extras import require
 from snowshed.parts import Body, Obstacle
 from snowshed.scene import Scene
 from snowshed.shape import Shape
-from snowshed.study.extras import require
 from snowshed.verify.case import Case, Measured, Outcome, Quantity, Settings
 from snowshed.verify.driving import Drive, apply_settings, relative
 from snowshed.verify.rate_equations import RateEquations

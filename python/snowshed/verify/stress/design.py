@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from snowshed.extras import require
 from snowshed.verify.stress.space import PARAMETERS, Point, Value, reference
 
 #: Random combinations of the full suite.
@@ -72,12 +73,11 @@ def _pairwise(steps: int) -> Iterator[Trial]:
 
     Raises
     ------
-    ImportError
+    InputError
         If `allpairspy` is not installed.
     """
-    from allpairspy import AllPairs  # type: ignore[import-untyped,import-not-found,unused-ignore]
-
-    for row in AllPairs([list(p.levels) for p in PARAMETERS]):
+    all_pairs = require("allpairspy", "verify", "the stress suite").AllPairs
+    for row in all_pairs([list(p.levels) for p in PARAMETERS]):
         point = {p.name: value for p, value in zip(PARAMETERS, row)}
         yield Trial("pairwise", "", point, steps)
 

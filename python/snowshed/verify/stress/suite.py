@@ -37,7 +37,7 @@ def run(full: bool, seed: int = 1, progress: Optional[Progress] = None) -> pd.Da
 
     Raises
     ------
-    ImportError
+    InputError
         If `allpairspy` is not installed.
     """
     return run_trials(trials(full, seed), progress)

@@ -1,4 +1,4 @@
-"""The settings that decide how accurate a run is: every row of a study's table holds them."""
+"""Which settings of a scene decide how accurate a run is, and not what is simulated."""
 
 from __future__ import annotations
 

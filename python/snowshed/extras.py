@@ -1,4 +1,4 @@
-"""Libraries that only some studies need: optional extras, imported where they are used."""
+"""Libraries that not everyone needs: optional extras, imported where they are used."""
 
 from __future__ import annotations
 

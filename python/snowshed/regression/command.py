@@ -1,0 +1,198 @@
+"""The commands ``snowshed geometry|regress|predict``; they import what takes long when they run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Optional
+
+import click
+
+PATH = click.Path(path_type=Path)
+
+
+class _Stopped(click.ClickException):
+    """An interrupted regression."""
+
+    exit_code = 130
+
+
+@click.command()
+@click.option(
+    "--between",
+    default="carry",
+    help="What happens to the stack between events: carry or reseed.  [default: carry]",
+)
+@click.option("--trial", is_flag=True, help="A few panels on a coarse grid: minutes, not hours.")
+@click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+def geometry(between: str, trial: bool, file: Optional[Path]) -> None:
+    """Write the study of panel geometries whose table ``regress`` takes.
+
+    \b
+    Example:
+      snowshed geometry -o geometry.toml
+      snowshed study run geometry.toml -o runs
+      snowshed study export runs -o rows.csv
+      snowshed regress rows.csv -o regression
+    """  # noqa: D301 - click wants the control character
+    from snowshed.atomic import write_text
+    from snowshed.regression.geometry import geometry_study
+
+    text = geometry_study(between, trial=trial)
+    if file is None:
+        click.echo(text, nl=False)
+    else:
+        write_text(file, text)
+
+
+@click.command()
+@click.argument("table", type=PATH)
+@click.option(
+    "-o", "--output", "folder", type=PATH, required=True, help="Results folder, old or new."
+)
+@click.option(
+    "--target",
+    "targets",
+    multiple=True,
+    metavar="NAME",
+    help="ratio, height or length; may be repeated.  [default: all]",
+)
+@click.option(
+    "--kind",
+    "kinds",
+    multiple=True,
+    metavar="NAME",
+    help="linear, rbf, gaussian-process or gradient-boosting; may be repeated.  [default: all]",
+)
+@click.option(
+    "--measure",
+    default="stack",
+    help="stack (97 % of the snow) or body (the largest connected one).  [default: stack]",
+)
+@click.option(
+    "--where",
+    "conditions",
+    multiple=True,
+    metavar="COLUMN=VALUE",
+    help="Only rows that have this value; may be repeated.",
+)
+@click.option(
+    "--split",
+    default="rows",
+    help="What the folds split: rows, or panels with all their events.  [default: rows]",
+)
+@click.option("--rounds", default=10, help="Repetitions of the outer loop.  [default: 10]")
+@click.option("--folds", default=10, help="Outer folds.  [default: 10]")
+@click.option("--inner-folds", default=5, help="Inner folds.  [default: 5]")
+@click.option("--seed", default=1, help="Of the random splits.  [default: 1]")
+@click.option("--jobs", type=int, help="Processes.  [default: the number of cores]")
+@click.option("--title", help="What the data are; predict shows it.  [default: the table's name]")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+def regress(
+    table: Path,
+    folder: Path,
+    targets: Sequence[str],
+    kinds: Sequence[str],
+    measure: str,
+    conditions: Sequence[str],
+    split: str,
+    rounds: int,
+    folds: int,
+    inner_folds: int,
+    seed: int,
+    jobs: Optional[int],
+    title: Optional[str],
+    quiet: bool,
+) -> None:
+    """Regress stacks on panels: models, tables and figures from a study's table.
+
+    Nested cross-validation of support vector machines, a Gaussian process and boosted trees for the
+    stack's height, length and their ratio. After an interruption the same command goes on.
+    """
+    from snowshed.regression.display import print_reports, progress_bar
+    from snowshed.regression.folds import CrossValidation
+    from snowshed.regression.nested import RegressionInterrupted
+    from snowshed.regression.pipeline import MODEL
+    from snowshed.regression.pipeline import regress as run
+    from snowshed.regression.rows import read_rows
+
+    rows = read_rows(table, measure, dict(map(_condition, conditions)))
+    scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
+    if rows.left_out and not quiet:
+        click.echo(f"note: {rows.left_out} rows have no measures and are left out", err=True)
+    try:
+        with nullcontext() if quiet else progress_bar() as progress:
+            reports = run(
+                rows,
+                folder,
+                targets=targets,
+                models=kinds,
+                scheme=scheme,
+                jobs=jobs,
+                title=title or f"{table.stem}, {len(rows)} rows",
+                measure=measure,
+                progress=progress,
+            )
+    except RegressionInterrupted as interrupted:
+        raise _Stopped(str(interrupted)) from None
+    if not quiet:
+        print_reports(reports)
+        click.echo(f"tables, figures and {MODEL} in {folder}")
+
+
+@click.command()
+@click.option("--height", type=float, required=True, help="Panel's lower edge above ground, m.")
+@click.option("--length", type=float, required=True, help="Panel along the slope, m.")
+@click.option("--tilt", type=float, required=True, help="Panel from the horizontal, degrees.")
+@click.option("--events", type=int, default=5, help="Slide-offs.  [default: 5]")
+@click.option("--model", type=PATH, help="Model file of regress.  [default: the one shipped]")
+@click.option("--kind", help="rbf, gaussian-process or linear.  [default: the first there is]")
+@click.option(
+    "--extrapolate", is_flag=True, help="Answer outside the data too, with a mark on every answer."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def predict(
+    height: float,
+    length: float,
+    tilt: float,
+    events: int,
+    model: Optional[Path],
+    kind: Optional[str],
+    extrapolate: bool,
+    as_json: bool,
+) -> None:
+    """Predict a stack's height and length, with their spread, without simulating it.
+
+    Questions outside the data of the model are refused (exit code 2).
+
+    \b
+    Example:
+      snowshed predict --height 2 --length 4 --tilt 60 --events 5
+    """  # noqa: D301 - click wants the control character
+    from snowshed.regression.display import prediction_json, print_prediction
+    from snowshed.regression.predictor import predict as ask
+
+    found = ask(
+        height=height,
+        length=length,
+        tilt=tilt,
+        events=events,
+        model=model,
+        kind=kind,
+        extrapolate=extrapolate,
+    )
+    for objection in found.objections:
+        click.echo(f"warning: EXTRAPOLATED, do not rely on it: {objection}", err=True)
+    if as_json:
+        click.echo(prediction_json(found))
+    else:
+        panel = f"panel height {height:g} m, length {length:g} m, tilt {tilt:g} degrees"
+        print_prediction(found, f"Stack below the panel: {panel}\n{found.kind}, {found.title}")
+
+
+def _condition(text: str) -> tuple[str, str]:
+    column, equals, value = text.partition("=")
+    if not equals:
+        raise click.BadParameter(f"{text}: not COLUMN=VALUE", param_hint="--where")
+    return column, value

@@ -1,0 +1,134 @@
+"""What ``snowshed regress`` and ``snowshed predict`` show."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+from rich.progress import Progress as Bar
+from rich.table import Table
+
+from snowshed.regression.nested import FoldProgress, Reporter
+from snowshed.regression.pipeline import TargetReport
+from snowshed.regression.rows import TARGETS
+from snowshed.regression.summary import QUARTILES
+
+if TYPE_CHECKING:
+    from snowshed.regression.predictor import Prediction
+
+SPEED_PERIOD_S = 3600.0  # folds take many seconds, and the time left should not jump
+WIDTH = 100  # columns, of what is not a terminal
+TARGET_WORDS = {"ratio": "height / length", "height": "height", "length": "length"}
+
+
+@contextmanager
+def progress_bar() -> Iterator[Reporter]:
+    """Show one bar over all outer folds, with the time that is left, on stderr."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+    )
+    console = Console(stderr=True, highlight=False)
+    bar = Bar(*columns, console=console, speed_estimate_period=SPEED_PERIOD_S)
+    task = bar.add_task("starting", total=1.0)
+
+    def report(progress: FoldProgress) -> None:
+        bar.start()
+        what = f"{progress.done}/{progress.count} folds; {progress.doing}"
+        bar.update(task, completed=progress.fraction, description=what)
+
+    try:
+        yield report
+    finally:
+        if bar.live.is_started:
+            bar.stop()
+
+
+def print_reports(reports: Sequence[TargetReport]) -> None:
+    """Print Tables 5.3.1 and 5.3.2 for each target."""
+    for report in reports:
+        unit = f", {TARGETS[report.target]}" if TARGETS[report.target] else ""
+        _print(_error_table(report, unit))
+        shown = _table(f"Quartiles of the predicted {report.target}{unit}", ["model", *QUARTILES])
+        for model, row in report.quartiles.iterrows():
+            shown.add_row(str(model), *(f"{row[name]:.3f}" for name in QUARTILES))
+        _print(shown)
+        for check in report.checks:
+            _console().print(f" {check}", highlight=False, markup=False)
+        if report.expression:
+            _console().print(f" {report.expression}\n", highlight=False)
+
+
+def _error_table(report: TargetReport, unit: str) -> Table:
+    thesis = bool(report.errors["thesis_error"].notna().any())
+    headings = ["model", "all rows", *(["thesis"] if thesis else []), "not trained\non"]
+    headings += ["unseen\npanels", "fits", "cpu time\ns"]
+    shown = _table(f"Mean absolute error of the {report.target}{unit}", headings)
+    for model, row in report.errors.iterrows():
+        cells = [f"{row['mean_absolute_error']:.4f} ± {row['standard_deviation']:.4f}"]
+        if thesis:
+            known = row["thesis_error"] == row["thesis_error"]
+            words = f"{row['thesis_error']:.3f} ± {row['thesis_deviation']:.3f}"
+            cells.append(words if known else "")
+        cells += [f"{row['held_out_error']:.4f}", _or_nothing(row["unseen_panel_error"])]
+        cells += [f"{row['fits']:,.0f}", f"{row['cpu_s']:,.1f}"]
+        shown.add_row(str(model), *cells)
+    return shown
+
+
+def _or_nothing(value: float) -> str:
+    return f"{value:.4f}" if value == value else ""
+
+
+def print_prediction(prediction: Prediction, title: str) -> None:
+    """Print the answers, one line per event, marked where they are extrapolated."""
+    rows = prediction.table
+    targets = list(dict.fromkeys(rows["target"]))
+    units = {target: f", {TARGETS[target]}" if TARGETS[target] else "" for target in targets}
+    _console().print(f"{title}\n", highlight=False, markup=False)
+    shown = _table("", ["event", *(f"{TARGET_WORDS[name]}{units[name]}" for name in targets)])
+    for event, answers in rows.groupby("event"):
+        cells = [
+            f"{one['value']:.3f} ± {one['spread']:.3f}\n[{one['low']:.3f}, {one['high']:.3f}]"
+            for one in (answers[answers["target"] == target].iloc[0] for target in targets)
+        ]
+        mark = "\nEXTRAPOLATED" if prediction.extrapolated else ""
+        shown.add_row(f"{event}{mark}", *map(escape, cells))
+    _print(shown)
+    _console().print(" 68 % of the stacks lie within ±, 90 % within [ ].", markup=False)
+
+
+def prediction_json(prediction: Prediction) -> str:
+    """Return the answers as JSON."""
+    content: dict[str, Any] = {
+        "kind": prediction.kind,
+        "extrapolated": prediction.extrapolated,
+        "objections": list(prediction.objections),
+        "predictions": prediction.table.to_dict("records"),
+    }
+    return json.dumps(content, indent=1)
+
+
+def _table(title: str, headings: Sequence[str]) -> Table:
+    table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD, padding=(0, 1))
+    for number, heading in enumerate(headings):
+        table.add_column(heading, justify="right" if number else "left", no_wrap=True)
+    return table
+
+
+def _print(table: Table) -> None:
+    _console().print(table)
+
+
+def _console() -> Console:
+    console = Console()
+    console.width = console.width if console.is_terminal else WIDTH
+    return console

@@ -1,0 +1,38 @@
+"""The study of section 5.1: the data set of 610 rows, as files for ``snowshed study``."""
+
+from __future__ import annotations
+
+from importlib import resources
+
+from snowshed._core import InputError
+
+#: How snow goes from one event to the next; each is a study of its own.
+BETWEEN = ("carry", "reseed")
+
+
+def geometry_study(between: str = "carry", *, trial: bool = False) -> str:
+    """Return the study file of the geometry data set, Tables 5.1.1 and 5.2.1.
+
+    At 40 degrees 7 heights x 11 lengths x 5 events are 385 rows; 3 tilts x 3 heights x 5 lengths x
+    5 events are another 225.
+
+    Parameters
+    ----------
+    between
+        "carry": the stack's particles stay as they are; "reseed": the stack is filled anew, as the
+        thesis does.
+    trial
+        A few panels on a coarse grid, to try the way from study to prediction within minutes; its
+        numbers mean nothing.
+
+    Examples
+    --------
+    >>> geometry_study("reseed").splitlines()[0]
+    '# The geometry data set: 122 panels, 5 events each, 610 rows (Tables 5.1.1 and 5.2.1).'
+    """
+    if between not in BETWEEN:
+        raise InputError(f"between: {between!r} is unknown; allowed: {', '.join(BETWEEN)}")
+    name = "geometry-trial.toml" if trial else "geometry.toml"
+    folder = resources.files("snowshed.regression") / "studies"
+    text = (folder / name).read_text(encoding="utf-8")
+    return text.replace("{between}", between)

@@ -1,0 +1,164 @@
+"""Predictions: height, length and ratio of a stack, with their spread, inside the data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.arrays import Floats
+from snowshed.regression.domain import Domain
+from snowshed.regression.model_file import StackModel, load_model
+from snowshed.regression.scaling import Scaling
+from snowshed.regression.spread import INTERVAL, SPREAD
+from snowshed.scene import PathLike
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: The model that comes with snowshed, where there is one.
+SHIPPED = Path(__file__).with_name("geometry-model.npz")
+HOW_TO_MAKE = (
+    "no model comes with this version; make one with: snowshed geometry -o geometry.toml; "
+    "snowshed study run geometry.toml -o runs; snowshed study export runs -o rows.csv; "
+    "snowshed regress rows.csv -o regression; then give --model regression/model.npz"
+)
+
+
+class OutsideDataError(InputError):
+    """A question lies outside the data of the model that should answer it."""
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Answers for the events of one panel.
+
+    Attributes
+    ----------
+    table
+        One row per event and target: ``event``, ``target``, ``value``, ``spread`` (half width that
+        holds 68 % of the stacks), ``low`` and ``high`` (between which 90 % lie), ``models``
+        (standard deviation of the models); m, or 1 for the ratio.
+    kind, title
+        The kind of model, and what data it comes from.
+    objections
+        Why the question lies outside the data, in words; empty: it lies inside.
+    """
+
+    table: pd.DataFrame
+    kind: str
+    title: str
+    objections: tuple[str, ...] = ()
+
+    @property
+    def extrapolated(self) -> bool:
+        """Whether the question lies outside the data."""
+        return bool(self.objections)
+
+
+def predict(
+    *,
+    height: float,
+    length: float,
+    tilt: float,
+    events: int,
+    model: Optional[PathLike] = None,
+    kind: Optional[str] = None,
+    extrapolate: bool = False,
+) -> Prediction:
+    """Predict the stack below a panel after each of several events.
+
+    Parameters
+    ----------
+    height, length
+        Of the panel: its lower edge above the ground, and along the slope, m.
+    tilt
+        Of the panel from the horizontal, degrees.
+    events
+        Slide-offs, 1 or more.
+    model
+        A model file of ``snowshed regress``; None: the one that comes with snowshed.
+    kind
+        "rbf", "gaussian-process" or "linear"; None: the first of these that the file holds.
+    extrapolate
+        Answer even if the question lies outside the data; the answer is marked.
+
+    Raises
+    ------
+    OutsideDataError
+        If the question lies outside the data.
+    InputError
+        If there is no such model, or a value is not possible.
+    """
+    if model is None and not SHIPPED.is_file():
+        raise InputError(HOW_TO_MAKE)
+    _check(height=height, length=length, tilt=tilt, events=events)
+    loaded = load_model(SHIPPED if model is None else model)
+    return answer(loaded, (height, length, tilt), events, kind=kind, extrapolate=extrapolate)
+
+
+def answer(
+    model: StackModel,
+    panel: tuple[float, float, float],
+    events: int,
+    *,
+    kind: Optional[str] = None,
+    extrapolate: bool = False,
+) -> Prediction:
+    """Predict with a model that is loaded already; see `predict`."""
+    import pandas as pd
+
+    kind = model.kinds[0] if kind is None else kind
+    if kind not in model.kinds:
+        raise InputError(f"kind: the model holds no {kind!r}; it has: {', '.join(model.kinds)}")
+    questions = np.array([[event, *panel] for event in range(1, events + 1)], dtype=float)
+    domain = Domain(model.inputs)
+    objections = list(dict.fromkeys(text for one in questions for text in domain.objections(one)))
+    if objections and not extrapolate:
+        raise OutsideDataError(
+            f"the question lies outside the data: {'; '.join(objections)}; no model can be "
+            "trusted there. Simulate this panel (snowshed panel), or force an answer with "
+            "--extrapolate"
+        )
+    scaled = Scaling.of(model.inputs).scaled(questions)
+    tables = [
+        _rows(model, target, kind, scaled)
+        for target in model.targets
+        if (target, kind) in model.members
+    ]
+    table = pd.concat(tables).sort_values("event", kind="stable").reset_index(drop=True)
+    return Prediction(table, kind, model.title, tuple(objections))
+
+
+def _rows(model: StackModel, target: str, kind: str, scaled: Floats) -> pd.DataFrame:
+    import pandas as pd
+
+    member = model.members[target, kind]
+    found = member.ensemble.predict(scaled) * member.deviation + member.mean
+    value, deviation = found.mean(axis=0), found.std(axis=0)
+    spread = member.spread.half_width(value, deviation, SPREAD)
+    reach = member.spread.half_width(value, deviation, INTERVAL)
+    return pd.DataFrame(
+        {
+            "event": np.arange(1, len(scaled) + 1),
+            "target": target,
+            "value": value,
+            "spread": spread,
+            "low": np.maximum(value - reach, 0.0),  # neither a length nor a ratio is negative
+            "high": value + reach,
+            "models": deviation,
+        }
+    )
+
+
+def _check(*, height: float, length: float, tilt: float, events: int) -> None:
+    for name, value in (("height", height), ("length", length)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"{name}: {value:g} is not a positive length in m")
+    if not 0 <= tilt < 90:
+        raise InputError(f"tilt: {tilt:g} is outside the allowed range (0 <= value < 90 degrees)")
+    if not 1 <= events <= 1000:
+        raise InputError(f"events: {events} is outside the allowed range (1 to 1000)")

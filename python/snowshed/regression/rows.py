@@ -1,0 +1,219 @@
+"""The rows that are regressed: inputs and targets out of a study's table, checked."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.arrays import Booleans, Floats, Integers
+from snowshed.extras import require
+from snowshed.scene import PathLike
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: The inputs of section 5.2.2 with the tilt of section 5.1.3; columns of a study's table.
+INPUTS = ("event", "panel.height", "panel.length", "panel.tilt")
+#: What messages call the inputs, and their units.
+INPUT_WORDS = ("event", "panel height", "panel length", "panel tilt")
+INPUT_UNITS = ("", "m", "m", "degrees")
+#: What can be predicted, and its unit.
+TARGETS: Mapping[str, str] = {"ratio": "", "height": "m", "length": "m"}
+#: Columns of height and length, by what counts as the stack.
+MEASURES: Mapping[str, tuple[str, str]] = {
+    "stack": ("height_m", "length_m"),
+    "body": ("body_height_m", "body_length_m"),
+}
+#: Columns that make two rows the result of different physics or methods where they differ.
+SETTINGS = ("version", "dimension", "dx", "precision", "transfer")
+FEWEST_ROWS = 20
+
+
+@dataclass(frozen=True)
+class StackRows:
+    """Inputs and targets, one row per panel and event.
+
+    Attributes
+    ----------
+    inputs
+        Shape (n, 4): the columns of `INPUTS`, heights and lengths in m, tilts in degrees.
+    targets
+        For each name of `TARGETS` an array of shape (n,): ratio of stack height to length, stack
+        height in m, stack length in m.
+    left_out
+        How many rows of the table had no measures, because their runs failed.
+    """
+
+    inputs: Floats
+    targets: Mapping[str, Floats]
+    left_out: int = 0
+
+    def __len__(self) -> int:
+        return len(self.inputs)
+
+    @property
+    def panels(self) -> Integers:
+        """Which panel each row belongs to, counted from 0: shape (n,)."""
+        _, which = np.unique(self.inputs[:, 1:], axis=0, return_inverse=True)
+        return np.asarray(which, dtype=np.int64).reshape(-1)
+
+    @property
+    def digest(self) -> str:
+        """What tells these rows from any others."""
+        content = hashlib.sha256(np.ascontiguousarray(self.inputs).tobytes())
+        for name in TARGETS:
+            content.update(np.ascontiguousarray(self.targets[name]).tobytes())
+        return content.hexdigest()[:32]
+
+
+def read_rows(
+    file: PathLike,
+    measure: str = "stack",
+    where: Optional[Mapping[str, str]] = None,
+) -> StackRows:
+    """Read the rows to regress from a table that ``snowshed study export`` wrote.
+
+    Parameters
+    ----------
+    file
+        A CSV file, or a Parquet file (.parquet).
+    measure
+        "stack": height and length of 97 % of the snow, as the thesis measures; "body": of the
+        largest connected body.
+    where
+        Columns and the value they must have: only these rows are read.
+
+    Raises
+    ------
+    InputError
+        If columns are missing, a cell is not a positive number, the rows differ in something that
+        is not an input, or there are too few. It names file, column and line.
+    """
+    if measure not in MEASURES:
+        raise InputError(f"measure: {measure!r} is unknown; allowed: {', '.join(MEASURES)}")
+    path = Path(file)
+    table = _read(path)
+    try:
+        return _rows(_chosen(table, where or {}), MEASURES[measure])
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
+    """Return rows from arrays.
+
+    Parameters
+    ----------
+    inputs
+        Shape (n, 4), the columns of `INPUTS`.
+    height, length
+        Of the stack, shape (n,), m.
+
+    Examples
+    --------
+    >>> rows = rows_of(np.array([[1, 2, 4, 40], [2, 2, 4, 40]]), np.array([1, 2]), np.array([4, 5]))
+    >>> rows.targets["ratio"].tolist(), rows.panels.tolist()
+    ([0.25, 0.4], [0, 0])
+    """
+    height, length = np.asarray(height, float), np.asarray(length, float)
+    targets = {"ratio": height / length, "height": height, "length": length}
+    return StackRows(np.asarray(inputs, float), targets)
+
+
+def _read(path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    try:
+        if path.suffix == ".parquet":
+            require("pyarrow", "study", "reading Parquet")
+            return pd.read_parquet(path)
+        with path.open(encoding="utf-8") as text:
+            return pd.read_csv(text, dtype=str, keep_default_na=False)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}") from None
+    except (ValueError, UnicodeDecodeError, pd.errors.ParserError) as error:
+        raise InputError(f"{path}: not a table: {error}") from None
+
+
+def _chosen(table: pd.DataFrame, where: Mapping[str, str]) -> pd.DataFrame:
+    """Return the rows that `where` asks for."""
+    for column, value in where.items():
+        if column not in table:
+            raise InputError(f"{column}: no such column; the table has {_names(table)}")
+        cells = table[column].astype(str)
+        if not (cells == value).any():
+            there = ", ".join(sorted(set(cells))[:8])
+            raise InputError(f"{column}: no row has the value {value}; there are: {there}")
+        table = table.loc[cells == value]
+    return table
+
+
+def _rows(table: pd.DataFrame, measures: tuple[str, str]) -> StackRows:
+    _check_columns(table, (*INPUTS, *measures))
+    cells = table[list(measures)]
+    measured = cells.notna().all(axis=1) & (cells.astype(str) != "").all(axis=1)
+    left_out = int((~measured).sum())
+    table = table.loc[measured]
+    if len(table) < FEWEST_ROWS:
+        lost = f" (and {left_out} without measures)" if left_out else ""
+        raise InputError(f"{len(table)} rows{lost}; at least {FEWEST_ROWS} are needed")
+    _check_same(table)
+    inputs = np.column_stack([_numbers(table, name) for name in INPUTS])
+    height, length = (_numbers(table, name, positive=True) for name in measures)
+    events = inputs[:, 0]
+    _complain(table, INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
+    found = rows_of(inputs, height, length)
+    return StackRows(found.inputs, found.targets, left_out)
+
+
+def _check_columns(table: pd.DataFrame, needed: Sequence[str]) -> None:
+    missing = [name for name in needed if name not in table]
+    if missing:
+        hint = (
+            "; a study's table has a column for each parameter in its axes, also with a single "
+            "value: axes.panel.tilt = 40"
+            if any(name.startswith("panel.") for name in missing)
+            else ""
+        )
+        raise InputError(f"no column {', '.join(missing)}; it has {_names(table)}{hint}")
+
+
+def _names(table: pd.DataFrame) -> str:
+    return ", ".join(map(str, table))
+
+
+def _check_same(table: pd.DataFrame) -> None:
+    """Refuse rows that differ in what is not an input."""
+    for name in table:
+        parameter = "." in str(name) and name not in INPUTS and name != "seeding.seed"
+        if parameter or name in SETTINGS:
+            values = sorted(set(table[name].astype(str)))
+            if len(values) > 1:
+                raise InputError(
+                    f"{name}: the rows have different values ({', '.join(values[:6])}), and it is "
+                    f"not an input; choose some with --where {name}={values[0]}"
+                )
+
+
+def _numbers(table: pd.DataFrame, column: str, *, positive: bool = False) -> Floats:
+    import pandas as pd
+
+    numbers = np.asarray(pd.to_numeric(table[column], errors="coerce"), dtype=float)
+    wrong = ~np.isfinite(numbers) | (numbers <= 0 if positive else False)
+    _complain(table, column, wrong, "a positive number" if positive else "a number")
+    return numbers
+
+
+def _complain(table: pd.DataFrame, column: str, wrong: Booleans, expected: str) -> None:
+    """Raise an error about the first wrong cell, with its line in the file."""
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        line = int(table.index[row]) + 2  # lines count from 1, and the first holds the names
+        cell = str(table[column].iloc[row])
+        raise InputError(f"line {line}, {column}: {cell!r} is not {expected}")

@@ -1,0 +1,69 @@
+"""One outer fold of one kind of model for one target: the unit of work."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed.regression.fold_result import FoldResult
+from snowshed.regression.folds import CrossValidation
+from snowshed.regression.kernels import Expansion
+from snowshed.regression.kinds import Development, kinds, median_absolute_error
+from snowshed.regression.rows import StackRows
+from snowshed.regression.scaling import Scaling
+
+
+@dataclass(frozen=True)
+class Task:
+    """Which fold of what; `round` and `fold` count from 0."""
+
+    target: str
+    kind: str
+    round: int
+    fold: int
+
+    @property
+    def file(self) -> str:
+        """Where its result lies in the results folder."""
+        return f"folds/{self.target}/{self.kind}/{self.round:03}-{self.fold:03}.npz"
+
+
+def compute(task: Task, rows: StackRows, scheme: CrossValidation) -> FoldResult:
+    """Choose, train and score a model as section 5.2.3 says.
+
+    Inputs and target are standardised over all rows, (5.2.12). Scores are in the target's unit.
+    """
+    inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
+    values = rows.targets[task.target]
+    scaling = Scaling.of(values[:, None])
+    targets = scaling.scaled(values[:, None])[:, 0]
+    unit, offset = float(scaling.deviation[0]), float(scaling.mean[0])
+    development, validation = scheme.outer(rows, task.round)[task.fold]
+    splits = scheme.inner(rows, development, task.round, task.fold)
+    kind = kinds()[task.kind]
+
+    start = time.process_time()
+    choice = kind.search(Development(inputs, targets, development, splits))
+    model = kind.fit(choice.parameters, inputs[development], targets[development])
+    elapsed = time.process_time() - start
+
+    scaled = model.predict(inputs)
+    expansion = None
+    if isinstance(model, Expansion):
+        coefficients = np.zeros(len(rows))
+        coefficients[development] = model.coefficients
+        expansion = Expansion(inputs, coefficients, model.intercept, model.rates)
+    errors = (scaled - targets) * unit
+    return FoldResult(
+        choice.parameters,
+        choice.score * unit,
+        median_absolute_error(errors[development]),
+        median_absolute_error(errors[validation]),
+        choice.fits + 1,
+        elapsed,
+        scaled * unit + offset,
+        validation,
+        expansion,
+    )

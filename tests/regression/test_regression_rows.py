@@ -1,0 +1,92 @@
+"""Reading the table: what is taken, and what is refused where."""
+
+import numpy as np
+import pytest
+from made_up_rows import few_inputs, made_up_rows, thesis_inputs, write_table
+
+from snowshed import InputError
+from snowshed.regression import read_rows
+
+
+def test_a_table_gives_inputs_and_targets(tmp_path):
+    rows = made_up_rows(few_inputs())
+    write_table(rows, tmp_path / "rows.csv")
+    read = read_rows(tmp_path / "rows.csv")
+    np.testing.assert_array_equal(read.inputs, rows.inputs)
+    for name, values in rows.targets.items():
+        np.testing.assert_allclose(read.targets[name], values, rtol=1e-12)
+    assert len(set(read.panels)) == 32 and read.left_out == 0
+
+
+def test_the_body_may_be_measured_instead(tmp_path):
+    rows = made_up_rows(few_inputs())
+    write_table(rows, tmp_path / "rows.csv")
+    body = read_rows(tmp_path / "rows.csv", measure="body")
+    np.testing.assert_allclose(body.targets["ratio"], rows.targets["ratio"] * 0.9 / 0.8)
+
+
+def test_parquet_is_read_too(tmp_path):
+    rows = made_up_rows(few_inputs())
+    table = write_table(rows, tmp_path / "rows.csv")
+    table.to_parquet(tmp_path / "rows.parquet")
+    read = read_rows(tmp_path / "rows.parquet")
+    np.testing.assert_array_equal(read.inputs, rows.inputs)
+
+
+def test_failed_runs_are_left_out(tmp_path):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    table.loc[[3, 7], ["height_m", "length_m"]] = np.nan
+    table.to_csv(tmp_path / "rows.csv", index=False)
+    read = read_rows(tmp_path / "rows.csv")
+    assert (len(read), read.left_out) == (94, 2)
+
+
+def test_conditions_choose_rows(tmp_path):
+    ways = ["carry", "reseed"] * 48
+    write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv", **{"events.between": ways})
+    assert len(read_rows(tmp_path / "rows.csv", where={"events.between": "carry"})) == 48
+    with pytest.raises(InputError, match=r"events.between: the rows have different values"):
+        read_rows(tmp_path / "rows.csv")
+    with pytest.raises(InputError, match=r"no row has the value x; there are: carry, reseed"):
+        read_rows(tmp_path / "rows.csv", where={"events.between": "x"})
+
+
+@pytest.mark.parametrize(
+    ("column", "cell", "message"),
+    [
+        ("height_m", "tall", r"line 7, height_m: 'tall' is not a positive number"),
+        ("length_m", "-1", r"line 7, length_m: '-1' is not a positive number"),
+        ("length_m", "inf", r"line 7, length_m: 'inf' is not a positive number"),
+        ("panel.tilt", "", r"line 7, panel.tilt: '' is not a number"),
+        ("event", "1.5", r"line 7, event: '1.5' is not a whole number"),
+        ("dx", "0.02", r"dx: the rows have different values"),
+    ],
+)
+def test_wrong_cells_are_named(tmp_path, column, cell, message):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv").astype(str)
+    table.loc[5, column] = cell
+    table.to_csv(tmp_path / "rows.csv", index=False)
+    with pytest.raises(InputError, match=r"rows.csv: .*" + message):
+        read_rows(tmp_path / "rows.csv")
+
+
+def test_missing_columns_and_few_rows_are_refused(tmp_path):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    table.drop(columns="panel.tilt").to_csv(tmp_path / "no-tilt.csv", index=False)
+    with pytest.raises(InputError, match=r"no column panel.tilt.*axes.panel.tilt = 40"):
+        read_rows(tmp_path / "no-tilt.csv")
+    table[:10].to_csv(tmp_path / "few.csv", index=False)
+    with pytest.raises(InputError, match="10 rows; at least 20"):
+        read_rows(tmp_path / "few.csv")
+    (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="not a table"):
+        read_rows(tmp_path / "binary.csv")
+    with pytest.raises(InputError, match="No such file"):
+        read_rows(tmp_path / "none.csv")
+
+
+def test_the_made_up_rows_look_like_the_thesis_data():
+    rows = made_up_rows()
+    quartiles = np.quantile(rows.targets["ratio"], (0.25, 0.5, 0.75, 1))
+    np.testing.assert_allclose(quartiles, (0.057, 0.092, 0.142, 0.240), rtol=0.35)
+    assert len(thesis_inputs()) == 610
