@@ -1,8 +1,8 @@
-"""Measure the solver and the five laboratory events, and keep the numbers.
+"""Measure the solver and whole problems, and keep the numbers.
 
 Usage: python benchmarks/record.py path/to/snowshed_bench
 
-Writes benchmarks/results/DATE.json (machine, date, every case) and prints the table that
+Writes benchmarks/results/DATE.json (machine, date, every case) and prints the tables that
 docs/performance.md shows. Nothing else should run on the machine meanwhile.
 """
 
@@ -10,10 +10,15 @@ from __future__ import annotations
 
 import datetime
 import json
+import resource
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+from tables import print_tables
 
 from snowshed.events import run_events
 from snowshed.machine import cpu_name
@@ -21,11 +26,24 @@ from snowshed.scene import Scene
 
 RESULTS = Path(__file__).parent / "results"
 
+Case = dict[str, Any]
 
-def solver_cases(program: str) -> list[dict[str, object]]:
-    """Run the Google Benchmark program: median of three repetitions of each case."""
-    command = [program, "--benchmark_format=json", "--benchmark_repetitions=3"]
-    report = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+
+def solver_cases(program: str, repetitions: int = 5) -> list[Case]:
+    """Run the Google Benchmark program: medians; the repetitions of all cases are interleaved."""
+    report = json.loads(
+        subprocess.run(
+            [
+                program,
+                "--benchmark_format=json",
+                f"--benchmark_repetitions={repetitions}",
+                "--benchmark_enable_random_interleaving=true",
+                "--benchmark_filter=-scaling_3d/10000000",
+            ],
+            check=True,
+            capture_output=True,
+        ).stdout
+    )
     return [
         {
             "case": row["run_name"].removesuffix("/real_time"),
@@ -37,36 +55,86 @@ def solver_cases(program: str) -> list[dict[str, object]]:
     ]
 
 
-def lab_events(dimension: int) -> dict[str, object]:
-    """Run five events of the laboratory experiment (Table 2.3.1, tilt 50 degrees)."""
-    scene = Scene.preset("lab-50").update({"dimension": dimension, "panel.friction": 0.3})
+def largest_case(program: str) -> Case:
+    """Run the slab of ten million particles alone, for the memory of the whole process."""
+    case = "scaling_3d/10000000"
+    command = [program, "--benchmark_format=json", f"--benchmark_filter={case}"]
+    report = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+    [row] = report["benchmarks"]
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024.0
+    return {
+        "case": f"{case}/2",
+        "updates_per_s": row["items_per_second"],
+        "bytes_per_particle": row["bytes/particle"],
+        "peak_memory_mb": peak / 1e6,
+    }
+
+
+def whole_run(name: str, scene: Scene) -> Case:
+    """Run a scene with all its events, as `snowshed run` would."""
     with tempfile.TemporaryDirectory() as folder:
         table = run_events(scene, folder, pictures=False)
         run = json.loads((Path(folder) / "run.json").read_text(encoding="utf-8"))
+    kept = (
+        "updates_per_s",
+        "particle_updates",
+        "slept_updates",
+        "wall_s",
+        "peak_memory_mb",
+        "steps",
+    )
     return {
-        "case": f"lab_{dimension}d_five_events",
-        "updates_per_s": run["updates_per_s"],
-        "wall_s": run["wall_s"],
-        "peak_memory_mb": run["peak_memory_mb"],
-        "steps": run["steps"],
+        "case": name,
+        **{key: run[key] for key in kept},
         "height_m": table.height_m.round(3).tolist(),
         "length_m": table.length_m.round(3).tolist(),
     }
 
 
+def lab(dimension: int, **more: float) -> Scene:
+    """Return five events of the laboratory experiment (Table 2.3.1, tilt 50 degrees)."""
+    return Scene.preset("lab-50").update(
+        {
+            "dimension": dimension,
+            "panel.friction": 0.3,
+            **{k.replace("__", "."): v for k, v in more.items()},
+        }
+    )
+
+
+def geometry(**more: float) -> Scene:
+    """Return a panel of chapter 5: 2 m high, 2 m long, five events in 2D."""
+    panel = {"panel.height": 2.0, "panel.length": 2.0, "slab.length": 2.0, "numerics.dx": 0.01}
+    return lab(2, **more).update(panel)
+
+
+def sleeping(name: str, make: Callable[..., Scene], seeds: int, **more: float) -> list[Case]:
+    """Run a scene with snow that sleeps and with snow that never does, for some seedings."""
+    cases = []
+    for seed in range(1, seeds + 1):
+        for state, speed in (("asleep", {}), ("awake", {"numerics__sleep_speed": 0.0})):
+            scene = make(seeding__seed=seed, **speed, **more)
+            cases.append(whole_run(f"{name}/{state}/seed_{seed}", scene))
+    return cases
+
+
 def main() -> None:
-    """Measure everything, write the file and print the table."""
+    """Measure everything, write the file and print the tables."""
     date = datetime.date.today().isoformat()
-    cases = [*solver_cases(sys.argv[1]), lab_events(2), lab_events(3)]
+    program = sys.argv[1]
+    seeds = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    cases = [
+        *solver_cases(program),
+        largest_case(program),
+        whole_run("lab_2d_five_events", lab(2)),
+        whole_run("lab_3d_five_events", lab(3)),
+        *sleeping("geometry_2d", geometry, seeds),
+    ]
     RESULTS.mkdir(exist_ok=True)
     record = {"date": date, "cpu": cpu_name(), "cases": cases}
     (RESULTS / f"{date}.json").write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
     print(f"{date}, {cpu_name()}\n")
-    print("| case | M updates/s | bytes per particle | wall, s |\n| --- | --- | --- | --- |")
-    for case in cases:
-        memory = f"{case['bytes_per_particle']:.0f}" if "bytes_per_particle" in case else ""
-        wall = f"{case['wall_s']:.1f}" if "wall_s" in case else ""
-        print(f"| {case['case']} | {case['updates_per_s'] / 1e6:.2f} | {memory} | {wall} |")
+    print_tables(cases)
 
 
 if __name__ == "__main__":

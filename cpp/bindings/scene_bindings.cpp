@@ -60,6 +60,13 @@ void bind_scene(py::module_& m) {
       "snow_preset", [](const std::string& name) { return snow_json(preset_snow(name)); },
       "name"_a);
   m.def("plan", &plan_dict, "scene_json"_a, "base_dir"_a = ".");
+  m.def(
+      "expected_work",
+      [](const std::string& text, const std::string& base_dir) {
+        return expected_work(parse_scene(text), base_dir);
+      },
+      "scene_json"_a, "base_dir"_a = ".",
+      "Expected work of a run, in particle updates of whole snow; nothing is measured.");
 }
 
 }  // namespace snowshed

@@ -66,16 +66,14 @@ void Sleep<D>::restore(const BlockLayout<D>& layout, std::vector<State> states) 
 
 template <int D>
 std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double now,
-                                           const Look& look) {
+                                           int steps, double dt, const Look& look) {
   bool woken = false;
   const auto wake = [&](std::int32_t b) {
     states_[b] = awake_since(now);
     woken = true;
   };
   for (std::int32_t b : border_) {
-    const BlockStats carried = look.carried(b);
-    const double rms_speed = std::sqrt(carried.mean_speed_squared);
-    if (!is_slow(rms_speed, std::sqrt(carried.speed_squared))) wake(b);
+    if (is_pushed(states_[b], steps, dt, look.carried(b))) wake(b);
   }
   for (std::size_t b = 0; b < states_.size(); ++b)
     if (states_[b].asleep && look.obstacle_moves(std::int32_t(b))) wake(std::int32_t(b));
@@ -86,7 +84,10 @@ std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double 
     else if (falls_asleep(states_[b], now, look.velocity(b)))
       fallen.push_back(b);
   }
-  for (std::int32_t b : fallen) states_[b].asleep = true;
+  for (std::int32_t b : fallen) {
+    states_[b].asleep = true;
+    states_[b].sum.setZero();
+  }
   if (woken || !fallen.empty()) list_blocks(layout);
   return fallen;
 }
@@ -94,6 +95,15 @@ std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double 
 template <int D>
 bool Sleep<D>::is_slow(double rms_speed, double fastest) const {
   return rms_speed < limit_ && fastest < most_over_mean * limit_;
+}
+
+/// Whether the awake snow beside a sleeping block moves it, or presses harder than it withstands.
+/// Its own snow does not answer to forces, so these are summed up, older ones fading.
+template <int D>
+bool Sleep<D>::is_pushed(State& s, int steps, double dt, const CarriedMotion& carried) const {
+  s.sum *= std::max(0.0, 1.0 - steps * dt / time_);
+  for (int d = 0; d < D; ++d) s.sum[d] += steps * carried.change[d];
+  return carried.speed_squared > limit_ * limit_ || s.sum.norm() > limit_;
 }
 
 /// Whether a slow block has been slow for long enough, and did not speed up from the first half of
@@ -123,19 +133,19 @@ void Sleep<D>::list_blocks(const BlockLayout<D>& layout) {
     awake_.push_back(std::int32_t(b));
     awake_particles_ += counts_[b];
   }
-  std::vector<bool> touched(layout.grid_blocks.size(), false);
+  touched_.assign(layout.grid_blocks.size(), false);
   for (std::int32_t b : awake_)
-    for (std::int32_t g : layout.around_particles[b]) touched[g] = true;
+    for (std::int32_t g : layout.around_particles[b]) touched_[g] = true;
   active_.clear();
   idle_.clear();
-  for (std::size_t g = 0; g < touched.size(); ++g)
-    (touched[g] ? active_ : idle_).push_back(std::int32_t(g));
+  for (std::size_t g = 0; g < touched_.size(); ++g)
+    (touched_[g] ? active_ : idle_).push_back(std::int32_t(g));
   border_.clear();
   if (idle_.empty() && awake_.size() == states_.size()) return;
   for (std::size_t b = 0; b < states_.size(); ++b) {
     if (!states_[b].asleep) continue;
     const auto& around = layout.around_particles[b];
-    if (std::any_of(around.begin(), around.end(), [&](std::int32_t g) { return touched[g]; }))
+    if (std::any_of(around.begin(), around.end(), [&](std::int32_t g) { return touched_[g]; }))
       border_.push_back(std::int32_t(b));
   }
 }

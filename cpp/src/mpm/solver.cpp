@@ -372,7 +372,7 @@ void SolverOf<T, D>::let_sleep() {
   if (!sleep_.allowed() || counters_.steps % steps_between_looks != 0) return;
   const ParticleView<T> view = particles_.view();
   const StepParameters<T> step = parameters(dt_);
-  const auto fallen = sleep_.update(layout_, time_, look(step, view));
+  const auto fallen = sleep_.update(layout_, time_, steps_between_looks, dt_, look());
   for (std::int32_t b : fallen) {
     books_.sleep += grid_.block_stats[b].kinetic;
     books_.kinetic -= grid_.block_stats[b].kinetic;
@@ -383,18 +383,28 @@ void SolverOf<T, D>::let_sleep() {
 }
 
 template <class T, int D>
-typename Sleep<D>::Look SolverOf<T, D>::look(const StepParameters<T>& step,
-                                             const ParticleView<T>& view) {
+typename Sleep<D>::Look SolverOf<T, D>::look() {
   typename Sleep<D>::Look look;
-  look.fastest = [&](std::int32_t b) { return std::sqrt(grid_.block_stats[b].speed_squared); };
-  look.speed = [&](std::int32_t b) {
+  look.fastest = [this](std::int32_t b) { return std::sqrt(grid_.block_stats[b].speed_squared); };
+  look.speed = [this](std::int32_t b) {
     return particles_.rms_speed(layout_.first[b], layout_.first[b + 1]);
   };
-  look.velocity = [&](std::int32_t b) {
+  look.velocity = [this](std::int32_t b) {
     return particles_.mean_velocity(layout_.first[b], layout_.first[b + 1]);
   };
-  look.carried = [&](std::int32_t b) { return probe(step, view, b); };
-  look.obstacle_moves = [&](std::int32_t b) {
+  look.carried = [this](std::int32_t b) {
+    const T *sums[neighbour_count<D>], *velocities[neighbour_count<D>];
+    for (int k = 0; k < neighbour_count<D>; ++k) {
+      const std::int32_t g = layout_.around_particles[b][k];
+      const bool moves = sleep_.is_active(g) && grid_.touched[g];
+      sums[k] = moves ? grid_.sum(g) : nullptr;
+      velocities[k] = moves ? grid_.velocity(g) : nullptr;
+    }
+    CarriedMotion motion;
+    kernels_.carry(grid_.tile(b), sums, velocities, motion);
+    return motion;
+  };
+  look.obstacle_moves = [this](std::int32_t b) {
     const auto& around = layout_.around_particles[b];
     return contacts_.any_motion() && std::any_of(around.begin(), around.end(), [&](std::int32_t g) {
              return contacts_.moves(std::size_t(g));

@@ -41,7 +41,7 @@ class SolverOf final : public Solver {
   double largest_strain();  ///< largest |dt grad v| any particle would take
   void advance(double dt);
   void let_sleep();
-  typename Sleep<D>::Look look(const StepParameters<T>& step, const ParticleView<T>& view);
+  typename Sleep<D>::Look look();
   BlockStats probe(const StepParameters<T>& step, const ParticleView<T>& view, std::int32_t block);
   void clear_idle_nodes();
   void scatter_block(const StepParameters<T>& step, const ParticleView<T>& view,

@@ -57,6 +57,10 @@ double measured_speed(Scene scene, const std::filesystem::path& base_dir, const 
 
 }  // namespace
 
+double expected_work(const Scene& scene, const std::filesystem::path& base_dir) {
+  return broken_snow * Simulation(scene, base_dir).cost().updates;
+}
+
 Plan plan(const Scene& given, const std::filesystem::path& base_dir) {
   const Scene scene = resolve(given);
   Plan p;
@@ -66,12 +70,7 @@ Plan plan(const Scene& given, const std::filesystem::path& base_dir) {
   p.threads = sim.threads();
   p.kernels = kernel_variant();
   p.updates_per_s = measured_speed(scene, base_dir, p.cost);
-  const double steps_per_event = p.cost.steps / std::max(1, scene.events.count);
-  double present = 0;
-  for (double particles : p.cost.particles) {
-    present += particles;
-    p.wall_time += broken_snow * steps_per_event * present / std::max(p.updates_per_s, 1.0);
-  }
+  p.wall_time = broken_snow * p.cost.updates / std::max(p.updates_per_s, 1.0);
   return p;
 }
 

@@ -66,8 +66,34 @@ TEST(Forecast, TheRearSlidesTheWholePanelAndFalls) {
   EXPECT_NEAR(result.slide_time, slide, 1e-12);
   EXPECT_NEAR(result.slide_time, 0.3477, 1e-3);
   EXPECT_NEAR(result.fall_time, fall, 1e-12);
-  EXPECT_NEAR(result.event_time, slide + fall + 0.25, 1e-12);
+  const double impact = std::sqrt(std::pow(acceleration * slide, 2) + 2 * g * 0.33);
+  EXPECT_NEAR(result.event_time, slide + fall + impact / g, 1e-12);
   EXPECT_EQ(result.steps, 5 * std::ceil(result.event_time / result.time_step));
+}
+
+TEST(Forecast, OlderSnowIsAwakeOnlyInPart) {
+  Scene scene = preset_scene("lab-40");
+  scene.numerics.sleep_speed = 0.0;
+  const Forecast awake = forecast(scene);
+  const double steps = awake.steps / 5, slab = awake.particles[0];
+  EXPECT_NEAR(awake.updates, steps * slab * (1 + 2 + 3 + 4 + 5), 1.0);
+  scene.numerics.sleep_speed = 0.02;
+  const Forecast asleep = forecast(scene);
+  EXPECT_LT(asleep.first_landing, asleep.slide_time + asleep.fall_time);
+  const double share = 0.5 * (1 - asleep.first_landing / asleep.event_time);
+  EXPECT_NEAR(asleep.updates, steps * slab * (5 + share * (1 + 2 + 3 + 4)), 1e-6 * awake.updates);
+}
+
+TEST(Forecast, HigherFallsTakeLongerToSettle) {
+  Scene scene = preset_scene("geometry");
+  const auto settling = [&scene] {
+    const Forecast f = forecast(scene);
+    return f.event_time - f.slide_time - f.fall_time;
+  };
+  scene.panel->height = 2.0;
+  const double high = settling();
+  scene.panel->height = 0.5;
+  EXPECT_GT(high, settling());
 }
 
 TEST(Forecast, TheGroundsTiltLengthensTheFall) {

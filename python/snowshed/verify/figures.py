@@ -37,7 +37,7 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
 #: Which settings get colours before others get markers and dashes.
-FIRST = ("transfer", "law", "between", "basis", "precision", "dimension")
+FIRST = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
 #: Points on a Pareto front closer than this part are not both named.
 NEARLY = 0.1
 #: Problems of a quantity that get a Pareto front, at most.
@@ -93,14 +93,27 @@ class Look:
     dashes: Looks
 
     @classmethod
-    def of(cls, choices: Sequence[Settings], along: Collection[str] = ()) -> Look:
-        """Return a look for choices of settings; those named in `along` are told by the lines."""
-        names = [name for name in varying(choices) if name not in along]
+    def of(
+        cls, choices: Sequence[Settings], drawn: Sequence[Settings], along: Collection[str] = ()
+    ) -> Look:
+        """Return a look for what is drawn.
+
+        Parameters
+        ----------
+        choices
+            All choices of settings, so that a value looks the same in every figure of a case.
+        drawn
+            Those that are drawn: the settings in which they differ are told apart.
+        along
+            Settings that are told by the lines. Where there are none, dashes tell nothing.
+        """
+        names = [name for name in varying(drawn) if name not in along]
         names.sort(key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST))
+        shapes = (COLOURS, MARKERS, DASHES) if along else (COLOURS, MARKERS)
         looks: list[dict[str, dict[Optional[Value], Any]]] = [{}, {}, {}]
-        for look, name, shapes in zip(looks, names, (COLOURS, MARKERS, DASHES)):
+        for look, name, of_values in zip(looks, names, shapes):
             values = dict.fromkeys(one.get(name) for one in choices)
-            look[name] = dict(zip(values, cycle(shapes)))
+            look[name] = dict(zip(values, cycle(of_values)))
         return cls(*looks)
 
     def for_line(self, settings: Settings) -> dict[str, Any]:
@@ -112,21 +125,19 @@ class Look:
         }
 
     def key(self, drawn: Sequence[Settings]) -> list[Line2D]:
-        """Return the entries of a legend: every value in which what is drawn differs."""
+        """Return the entries of a legend: every value that is drawn."""
         kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
-        differing = varying(drawn)
         return [
             _entry(keyword, shape, wording.setting(name, value))
             for keyword, looks in kinds
             for name, shapes in looks.items()
-            if name in differing
             for value, shape in shapes.items()
             if any(one.get(name) == value for one in drawn)
         ]
 
 
 def convergence_figure(
-    panels: Sequence[tuple[Quantity, Sequence[Convergence]]], look: Look
+    panels: Sequence[tuple[Quantity, Sequence[Convergence]]], choices: Sequence[Settings]
 ) -> Figure:
     """Draw errors against the setting they fall with, both axes logarithmic.
 
@@ -134,10 +145,11 @@ def convergence_figure(
     ----------
     panels
         Quantities, and how their errors converge.
-    look
-        How the other settings are told apart.
+    choices
+        All choices of settings of the case.
     """
     drawn = [one.settings for _, series in panels for one in series]
+    look = Look.of(choices, drawn, _orders_in(panels))
     with _figure(look, drawn, rows=-(-len(panels) // 2)) as figure:
         for axes, (quantity, series) in zip(_pairs(figure, len(panels)), panels):
             _draw_convergence(axes, quantity, series, look)
@@ -145,7 +157,7 @@ def convergence_figure(
 
 
 def work_precision_figure(
-    panels: Sequence[tuple[Quantity, Sequence[Problem]]], look: Look
+    panels: Sequence[tuple[Quantity, Sequence[Problem]]], choices: Sequence[Settings]
 ) -> Figure:
     """Draw errors against the time of the solution, with Pareto fronts and the names on them.
 
@@ -154,15 +166,21 @@ def work_precision_figure(
     panels
         Quantities, and the problems they were solved for in. No more than `MOST_FRONTS` of these
         get a front: those that were solved in most ways.
-    look
-        How the settings are told apart.
+    choices
+        All choices of settings of the case.
     """
     drawn = [one.settings for _, problems in panels for _, found in problems for one in found]
+    look = Look.of(choices, drawn, _orders_in(panels))
     with _figure(look, drawn, rows=len(panels)) as figure:
         grid = figure.subplots(len(panels), 2, squeeze=False, width_ratios=(1.25, 1))
         for (axes, beside), (quantity, problems) in zip(grid, panels):
             _write_key(beside, _draw_work_precision(axes, quantity, problems, look))
     return figure
+
+
+def _orders_in(panels: Sequence[tuple[Quantity, Any]]) -> list[str]:
+    """Return the settings along which lines are drawn."""
+    return [quantity.order_in for quantity, _ in panels if quantity.order_in is not None]
 
 
 def _entry(keyword: str, shape: Any, label: str) -> Line2D:

@@ -319,7 +319,6 @@ def _pictures(
     series: Mapping[str, Sequence[Convergence]],
 ) -> list[Picture]:
     choices = [one.settings for listed in found.values() for one in listed]
-    look = figures.Look.of(choices, [one.order_in for one in case.quantities if one.order_in])
     quantities = {one.name: one for one in case.quantities}
     converging = [(quantities[name], listed) for name, listed in series.items() if listed]
     solved = [(quantities[name], by_problem(case, listed)) for name, listed in found.items()]
@@ -328,10 +327,10 @@ def _pictures(
     ]
     pictures = []
     if converging:
-        figure = figures.convergence_figure(converging, look)
+        figure = figures.convergence_figure(converging, choices)
         pictures.append(_picture(figure, case, "Convergence", CONVERGENCE))
     if solved:
-        figure = figures.work_precision_figure(solved, look)
+        figure = figures.work_precision_figure(solved, choices)
         pictures.append(_picture(figure, case, "Error against run time", WORK_PRECISION))
     return pictures
 

@@ -63,15 +63,15 @@ def duration(seconds: Optional[float]) -> str:
 
     Examples
     --------
-    >>> [duration(t) for t in (0.00123, 0.5, 75.3, 400.0, 8000.0)]
-    ['1.2 ms', '0.5 s', '75 s', '6 min 40 s', '2 h 13 min']
+    >>> [duration(t) for t in (0.00123, 0.5, 75.3, 100.2, 400.0, 8000.0)]
+    ['1.2 ms', '0.5 s', '75 s', '100 s', '6 min 40 s', '2 h 13 min']
     """
     if seconds is None or isnan(seconds):
         return NOTHING
     if seconds < 0.1:
         return f"{number(1e3 * seconds, 2)} ms"
     if seconds < 120:
-        return f"{number(seconds, 2)} s"
+        return f"{number(seconds, 2 if seconds < 99.5 else 3)} s"
     minutes, rest = divmod(round(seconds), 60)
     if minutes < 120:
         return f"{minutes} min {rest} s"

@@ -79,7 +79,6 @@ constexpr int above(int direction) { return 2 << (2 * direction); }
 /// What a kernel reports of one block of particles.
 struct BlockStats {
   double speed_squared = 0;   // largest, of velocity and of motion, m2/s2
-  double mean_speed_squared = 0;  // of motion, m2/s2; of `probe` only
   double strain = 0;          // largest |dt grad v| component; of `probe` only
   int reach = 0;              // which blocks around it hold nodes that its particles touch
   bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
@@ -95,6 +94,12 @@ struct NodeStats {
   double kinetic_before = 0, kinetic_after = 0;   // of the grid, J; before forces, after contact
   double friction = 0, sticking = 0, impact = 0;  // taken by contact, J
   double stress_work = 0;  // J, of the stresses at the velocities before the step
+};
+
+/// How the nodes of a step would have moved a block of particles that sleeps: means over its mass.
+struct CarriedMotion {
+  double speed_squared = 0;               // m2/s2
+  double change[3] = {0.0, 0.0, 0.0};     // of its velocity in the step, by all forces, m/s
 };
 
 /// A node that an obstacle constrains.
@@ -131,6 +136,8 @@ struct Kernels {
   /// Node velocities from the sums: forces, gravity, contact.
   void (*update)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
                  int contact_count, const ContactLaw*, NodeStats&);
+  /// What the 3^D blocks of nodes around (null: at rest) would do to the snow on a tile.
+  void (*carry)(const T* tile, const T* const* sums, const T* const* velocities, CarriedMotion&);
 };
 
 struct KernelChoice {

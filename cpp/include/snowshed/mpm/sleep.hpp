@@ -5,8 +5,8 @@
 // root of the mean square over its particles; no single one may be several times faster. A sleeping
 // block takes no part in a step, but keeps its mass and its stresses on its tile, so that its
 // neighbours rest on it. It wakes when nodes that it shares with awake snow would carry it faster
-// than the limit, when particles come to it, and when an obstacle moves through its nodes. What
-// sleeping leaves out is therefore motion slower than the limit.
+// than the limit, or when the forces at them, left to act for as long as it takes to fall asleep,
+// would make it so; when particles come to it; and when an obstacle moves through its nodes.
 #pragma once
 
 #include <cstdint>
@@ -29,13 +29,13 @@ class Sleep {
     std::function<double(std::int32_t)> fastest;       // speed of its fastest particle, m/s
     std::function<double(std::int32_t)> speed;         // root of the mean square, m/s
     std::function<VecD<D>(std::int32_t)> velocity;     // mean, m/s
-    std::function<BlockStats(std::int32_t)> carried;   // how its nodes would move it
+    std::function<CarriedMotion(std::int32_t)> carried;  // how its nodes would have moved it
     std::function<bool(std::int32_t)> obstacle_moves;  // whether one does, through its nodes
   };
 
-  /// Looks at all blocks, at a time; returns the blocks that fall asleep now. Called every few
-  /// steps.
-  std::vector<std::int32_t> update(const BlockLayout<D>& layout, double now, const Look& look);
+  /// Looks at all blocks, at a time, after some steps of dt; returns the blocks that fall asleep.
+  std::vector<std::int32_t> update(const BlockLayout<D>& layout, double now, int steps, double dt,
+                                   const Look& look);
 
   /// After a sort: blocks that kept their particles keep their state, all others are awake.
   void relocate(const BlockLayout<D>& layout, double now);
@@ -48,6 +48,7 @@ class Sleep {
   /// Particle blocks that take part in a step, and the grid blocks that they touch; ascending.
   const std::vector<std::int32_t>& awake() const { return awake_; }
   const std::vector<std::int32_t>& active() const { return active_; }
+  bool is_active(std::int32_t grid_block) const { return touched_[grid_block]; }
   /// Grid blocks that only sleeping snow touches.
   const std::vector<std::int32_t>& idle() const { return idle_; }
   std::int64_t awake_particles() const { return awake_particles_; }
@@ -56,7 +57,9 @@ class Sleep {
   struct State {
     bool asleep = false;
     double since = 0;                     // start of the present quiet spell, s
-    VecD<D> sum = VecD<D>::Zero();        // of mean velocities in this half of the spell, m/s
+    /// Awake: sum of mean velocities in this half of the spell. Asleep: the velocity that forces
+    /// would have given it lately. m/s
+    VecD<D> sum = VecD<D>::Zero();
     double looks = 0;                     // their number
     double first_half = -1;               // speed of the mean in the first half; before its end: -1
   };
@@ -67,6 +70,7 @@ class Sleep {
  private:
   static State awake_since(double now);
   bool is_slow(double rms_speed, double fastest) const;
+  bool is_pushed(State& state, int steps, double dt, const CarriedMotion& carried) const;
   bool falls_asleep(State& state, double now, const VecD<D>& velocity) const;
   void list_blocks(const BlockLayout<D>& layout);
 
@@ -75,6 +79,7 @@ class Sleep {
   std::vector<std::int32_t> counts_;  // particles in each of its blocks
   std::vector<State> states_;
   std::vector<std::int32_t> awake_, active_, idle_;
+  std::vector<bool> touched_;         // by awake snow: whether a grid block is active
   std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow
   std::int64_t awake_particles_ = 0;
 };

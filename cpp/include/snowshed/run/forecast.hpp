@@ -16,8 +16,10 @@ struct Forecast {
   bool slides = false;            // gravity overcomes the panel's friction
   double slide_time = 0.0;        // s, until the slab's rear leaves the panel
   double fall_time = 0.0;         // s, of that rear or the last body; infinite if it never lands
+  double first_landing = 0.0;     // s, when the front of the slab, or a body, reaches the ground
   double event_time = 0.0;        // s, sliding, falling and settling; at most events.max_time
   double steps = 0.0;             // all events
+  double updates = 0.0;           // of particles that are awake, all events
   double bytes = 0.0;             // peak memory, particles and grid
 };
 

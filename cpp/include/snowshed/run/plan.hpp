@@ -18,6 +18,10 @@ struct Plan {
   std::string kernels;  // instruction set
 };
 
+/// Expected work of a run: particle updates of whole snow, of which updates of spread and yielding
+/// snow count more. Nothing is measured. Throws InputError as running would.
+double expected_work(const Scene& scene, const std::filesystem::path& base_dir = ".");
+
 /// Throws InputError as running would. Takes a fraction of a second: the speed is measured on the
 /// scene itself, coarsened to at most 50 000 particles.
 Plan plan(const Scene& scene, const std::filesystem::path& base_dir = ".");

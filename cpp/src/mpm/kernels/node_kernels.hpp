@@ -64,6 +64,29 @@ struct NodeKernels {
     if constexpr (energy) book_kinetic(step, in, out, stats);
   }
 
+  static void carry(const T* tile, const T* const* sums, const T* const* velocities,
+                    CarriedMotion& motion) {
+    const Node<T>* snow = reinterpret_cast<const Node<T>*>(tile);
+    double mass = 0, change[D] = {}, squared = 0;
+    for_each_shared_row<D, basis>([&](int neighbour, int node, int tile_node, auto length) {
+      for (int k = 0; k < length; ++k) {
+        const double m = double(snow[tile_node + k][0]);
+        mass += m;
+        if (!sums[neighbour] || m == 0) continue;
+        const Node<T>& sum = reinterpret_cast<const Node<T>*>(sums[neighbour])[node + k];
+        const Node<T>& now = reinterpret_cast<const Node<T>*>(velocities[neighbour])[node + k];
+        if (!(sum[0] > least_mass)) continue;
+        const Node<T> before = velocity(sum);
+        for (int d = 0; d < D; ++d) {
+          squared += m * double(now[d]) * double(now[d]);
+          change[d] += m * (double(now[d]) - double(before[d]));
+        }
+      }
+    });
+    motion.speed_squared = squared / mass;
+    for (int d = 0; d < D; ++d) motion.change[d] = change[d] / mass;
+  }
+
  private:
   /// Velocity before the step, in the first three values (the fourth is zero).
   static SNOWSHED_INLINE Node<T> velocity(const Node<T>& sum) {

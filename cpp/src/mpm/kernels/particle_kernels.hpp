@@ -364,8 +364,7 @@ struct ParticleKernels {
   }
 
   void probe_block(int first, int count, const T* velocities) const {
-    V strain = broadcast<V>(T(0)), speed = strain;
-    double sum = 0;
+    V strain = broadcast<V>(T(0));
     for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
       V cell[D];
       for (int d = 0; d < D; ++d) cell[d] = load(p.cell[d] + at, n);
@@ -374,14 +373,8 @@ struct ParticleKernels {
       Motion m;
       interpolate(stencil, velocities, n, m);
       strain = max(strain, largest_gradient(m));
-      V u2 = m.pic[0] * m.pic[0];
-      for (int d = 1; d < D; ++d) u2 += m.pic[d] * m.pic[d];
-      speed = max(speed, u2);
-      for (int l = 0; l < n; ++l) sum += double(u2[l]);
     });
-    stats.mean_speed_squared = sum / count;
     stats.strain = double(largest(strain));
-    stats.speed_squared = double(largest(speed));
   }
 
   // --- entries of the table ---------------------------------------------------------------

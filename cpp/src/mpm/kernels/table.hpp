@@ -10,7 +10,7 @@ template <class T, int D, Transfer transfer, Basis basis, class Material, bool e
 Kernels<T> kernels_for() {
   using P = ParticleKernels<T, D, transfer, basis, Material, energy>;
   using G = NodeKernels<T, D, basis, transfer == Transfer::flip, energy>;
-  return {&P::scatter, &P::advance, &P::probe, &G::gather, &G::update};
+  return {&P::scatter, &P::advance, &P::probe, &G::gather, &G::update, &G::carry};
 }
 
 template <class T, int D, Transfer transfer, Basis basis, class Material>
