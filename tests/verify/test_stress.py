@@ -23,7 +23,7 @@ class Ledger:
     """A simulation that consists of its energies and two particles."""
 
     def __init__(self) -> None:
-        self.values = {f"{name}_j": 0.0 for name in (*TERMS, "transfer")}
+        self.values = {f"{name}_j": 0.0 for name in (*TERMS, "transfer", "sleep")}
         self.velocity = np.zeros((2, 3))
 
     def energy(self) -> dict[str, float]:
@@ -47,7 +47,9 @@ def books_of(ledger: Ledger, **laid: float) -> Books:
 def test_books_are_relative_to_what_came_in() -> None:
     ledger = Ledger()
     books = books_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
-    ledger.values.update(kinetic_j=15.0, gravitational_j=70.0, plastic_j=30.0, transfer_j=4.0)
+    ledger.values.update(
+        kinetic_j=15.0, gravitational_j=70.0, plastic_j=30.0, transfer_j=3.0, sleep_j=1.0
+    )
     books.sample()  # 50 J came in; 15 J are there, 34 J were spent: 1 J is missing
     errors = books.energy_errors()
     assert errors["energy_error"] == pytest.approx(1 / 50)

@@ -30,9 +30,6 @@ bool reaches_into(int reach, int k) {
 /// Fewer particles than this are not worth waking another thread for, twice a step.
 constexpr int particles_per_thread = 2000;
 
-/// Steps between looks for snow to fall asleep or to wake: a wave crosses less than a block.
-constexpr int steps_between_looks = 8;
-
 }  // namespace
 
 template <class T, int D>
@@ -366,53 +363,6 @@ void SolverOf<T, D>::check_particles() const {
   }
 }
 
-/// Blocks that fall asleep come to rest: what is left of their motion is lost.
-template <class T, int D>
-void SolverOf<T, D>::let_sleep() {
-  if (!sleep_.allowed() || counters_.steps % steps_between_looks != 0) return;
-  const ParticleView<T> view = particles_.view();
-  const StepParameters<T> step = parameters(dt_);
-  const auto fallen = sleep_.update(layout_, time_, steps_between_looks, dt_, look());
-  for (std::int32_t b : fallen) {
-    books_.sleep += grid_.block_stats[b].kinetic;
-    books_.kinetic -= grid_.block_stats[b].kinetic;
-    particles_.halt(layout_.first[b], layout_.first[b + 1]);
-    scatter_block(step, view, b);
-  }
-  if (!fallen.empty()) clear_idle_nodes();
-}
-
-template <class T, int D>
-typename Sleep<D>::Look SolverOf<T, D>::look() {
-  typename Sleep<D>::Look look;
-  look.fastest = [this](std::int32_t b) { return std::sqrt(grid_.block_stats[b].speed_squared); };
-  look.speed = [this](std::int32_t b) {
-    return particles_.rms_speed(layout_.first[b], layout_.first[b + 1]);
-  };
-  look.velocity = [this](std::int32_t b) {
-    return particles_.mean_velocity(layout_.first[b], layout_.first[b + 1]);
-  };
-  look.carried = [this](std::int32_t b) {
-    const T *sums[neighbour_count<D>], *velocities[neighbour_count<D>];
-    for (int k = 0; k < neighbour_count<D>; ++k) {
-      const std::int32_t g = layout_.around_particles[b][k];
-      const bool moves = sleep_.is_active(g) && grid_.touched[g];
-      sums[k] = moves ? grid_.sum(g) : nullptr;
-      velocities[k] = moves ? grid_.velocity(g) : nullptr;
-    }
-    CarriedMotion motion;
-    kernels_.carry(grid_.tile(b), sums, velocities, motion);
-    return motion;
-  };
-  look.obstacle_moves = [this](std::int32_t b) {
-    const auto& around = layout_.around_particles[b];
-    return contacts_.any_motion() && std::any_of(around.begin(), around.end(), [&](std::int32_t g) {
-             return contacts_.moves(std::size_t(g));
-           });
-  };
-  return look;
-}
-
 template <class T, int D>
 BlockStats SolverOf<T, D>::probe(const StepParameters<T>& step, const ParticleView<T>& view,
                                  std::int32_t b) {
@@ -422,15 +372,6 @@ BlockStats SolverOf<T, D>::probe(const StepParameters<T>& step, const ParticleVi
   kernels_.probe(step, view, layout_.first[b], layout_.first[b + 1] - layout_.first[b], velocities,
                  stats);
   return stats;
-}
-
-/// Nodes that only sleeping snow touches are at rest.
-template <class T, int D>
-void SolverOf<T, D>::clear_idle_nodes() {
-  for (std::int32_t g : sleep_.idle()) {
-    grid_.node_stats[g] = {};
-    std::fill_n(grid_.velocity(g), grid_.block_size, T(0));
-  }
 }
 
 template class SolverOf<float, 2>;

@@ -174,6 +174,7 @@ class _SceneOf:
             basis=self._text("basis"),
             step_factor=float(self.point["step_factor"]),
             strain_limit=float(self.point["strain_limit"]),
+            sleep_speed=float(self.point["sleep_speed"]),
             threads=1,
         )
 
