@@ -59,9 +59,7 @@ def prices(cases: list[Case]) -> None:
     ns = {name: 1e9 / case["updates_per_s"] for name, case in found.items()}
     size = {name: case["bytes_per_particle"] for name, case in found.items()}
     print("| feature | ns per update | bytes per particle |\n| --- | --- | --- |")
-    print(
-        f"| plain elastic snow in 3D | {ns['base_3d']:.1f} | {size['base_3d']:.0f} |"
-    )
+    print(f"| plain elastic snow in 3D | {ns['base_3d']:.1f} | {size['base_3d']:.0f} |")
     for feature, (with_it, without) in PRICES.items():
         more, bytes_more = ns[with_it] - ns[without], size[with_it] - size[without]
         print(f"| {feature} | {more:+.1f} | {bytes_more:+.0f} |")

@@ -1,4 +1,4 @@
-"""What a study will cost, before it starts: the core's forecast of every run, one measured speed."""
+"""What a study will cost, before it starts: the core's forecast, and one measured speed."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from snowshed import _core
 from snowshed._core import InputError, SimulationError
+
 
 def work(scene: str) -> float:
     """Return how many particle updates a run is expected to take, with weights as in ``plan``.
