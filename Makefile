@@ -30,14 +30,14 @@ CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings c
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS = $(wildcard python tests tools examples benchmarks lua_compat)
 
-.PHONY: help build demo test test-cpp test-py sanitize sanitize-address sanitize-thread fuzz \
+.PHONY: help build demo test test-cpp test-py test-slow sanitize sanitize-address sanitize-thread fuzz \
   bench docs format lint tidy clean
 .NOTPARALLEL:
 
 help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
 	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
-	@echo "make test      all tests (test-cpp, test-py: one half)"
+	@echo "make test      all tests (test-cpp, test-py: one half; test-slow: those that take minutes)"
 	@echo "make sanitize  the tests once more, watched by AddressSanitizer, UBSan and ThreadSanitizer"
 	@echo "make fuzz      feed ever new damaged files to all readers (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
 	@echo "make bench     speed of the solver and of the laboratory events, kept in benchmarks/results"
@@ -95,6 +95,9 @@ test-cpp: build
 
 test-py: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest
+
+test-slow: build $(VENV)/.dev-tools
+	$(BIN)/python -m pytest -m slow
 
 # --- robustness, see docs/robustness.md ----------------------------------------------------
 
