@@ -17,10 +17,13 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 import click
 
 from snowshed import _core
+from snowshed.calibration.command import calibrate
 from snowshed.interrupt import Interrupted
 from snowshed.regression.command import geometry, predict, regress
 from snowshed.scene import InitialisedScene, Scene
 from snowshed.scene_options import in_terms_of_options, scene_from_options, scene_options
+from snowshed.season.command import season
+from snowshed.sensitivity.command import sensitivity
 from snowshed.verify.accuracy import accuracy_option, check_alone, choose
 from snowshed.verify.command import verify
 
@@ -211,6 +214,9 @@ cli.add_command(verify)
 cli.add_command(geometry)
 cli.add_command(regress)
 cli.add_command(predict)
+cli.add_command(season)
+cli.add_command(sensitivity)
+cli.add_command(calibrate)
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:

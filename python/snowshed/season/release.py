@@ -1,0 +1,51 @@
+"""When snow on a panel lets go."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Balance:
+    """What pulls at the snow on a panel, and what holds it, Pa (per area of the panel)."""
+
+    driving: float
+    resisting: float
+
+    @property
+    def releases(self) -> bool:
+        """Whether the snow lets go."""
+        return self.driving > self.resisting
+
+
+def balance(
+    load: float, tilt: float, friction: float, adhesion: float, gravity: float = 9.81
+) -> Balance:
+    """Weigh the downslope part of the snow's weight against friction and adhesion.
+
+    tau = m g sin(Phi) against mu m g cos(Phi) + a (Mohr-Coulomb). Without adhesion the load does
+    not matter: the snow lets go where tan(Phi) > mu. With it, snow gathers until
+    m = a / (g (sin(Phi) - mu cos(Phi))).
+
+    Parameters
+    ----------
+    load
+        Mass of the snow, kg per m2 of the panel.
+    tilt
+        Phi, degrees from the horizontal.
+    friction
+        mu, static Coulomb coefficient between snow and panel.
+    adhesion
+        a, Pa.
+    gravity
+        m/s2.
+
+    Examples
+    --------
+    >>> balance(10.0, 40.0, 0.7, 0.0).releases, balance(10.0, 30.0, 0.7, 0.0).releases
+    (True, False)
+    """
+    weight = load * gravity
+    slope = math.radians(tilt)
+    return Balance(weight * math.sin(slope), friction * weight * math.cos(slope) + adhesion)
