@@ -50,12 +50,9 @@ struct CamClay {
   /// (1.2.7); `slope` receives d p0 / d e_v.
   template <class V>
   SNOWSHED_INLINE V preconsolidation(const V& ev, V& slope) const {
-    const V x = min(V(ev * xi), broadcast<V>(T(0)));
-    const V growth = expm1(V(-x));  // exp(-x) - 1
-    const V ratio = growth / (growth + T(1));
-    slope = select(ev < T(0), V(T(-0.5) * hardening * xi * (growth - ratio + T(2))),
-                   broadcast<V>(T(0)));            // -K xi cosh
-    return T(0.5) * hardening * (growth + ratio);  // K sinh
+    const auto k = hyperbolic(max(V(-xi * ev), broadcast<V>(T(0))));
+    slope = select(ev < T(0), V(-xi * k.cosh), broadcast<V>(T(0)));
+    return k.sinh;
   }
   template <class V>
   SNOWSHED_INLINE V preconsolidation(const V& ev) const {
@@ -87,6 +84,29 @@ struct CamClay {
   }
 
  private:
+  /// K sinh(u) and K cosh(u), Pa.
+  template <class V>
+  struct Hyperbolic {
+    V sinh, cosh;
+  };
+  template <class V>
+  SNOWSHED_INLINE Hyperbolic<V> hyperbolic(const V& u) const {
+    const V growth = expm1(u);  // exp(u) - 1
+    const V ratio = growth / (growth + T(1));
+    return {T(0.5) * hardening * (growth + ratio), T(0.5) * hardening * (growth - ratio + T(2))};
+  }
+
+  /// The same at u + w from the values at u, by the addition theorems with their series in w: exact
+  /// to rounding while |w| <= near_enough. A fraction of the cost of an exponential.
+  static constexpr T near_enough = T(0.01);
+  template <class V>
+  static SNOWSHED_INLINE Hyperbolic<V> shifted(const Hyperbolic<V>& k, const V& w) {
+    const V w2 = w * w;
+    const V sinh_w = w * (T(1) + w2 * (T(1) / T(6) + w2 * T(1) / T(120)));
+    const V cosh_w = T(1) + w2 * (T(0.5) + w2 * (T(1) / T(24) + w2 * T(1) / T(720)));
+    return {k.sinh * cosh_w + k.cosh * sinh_w, k.cosh * cosh_w + k.sinh * sinh_w};
+  }
+
   template <class V, class M>
   __attribute__((noinline)) void project(PQ<V>& s, V& ev, const M& yields) const {
     const V zero = broadcast<V>(T(0));
@@ -130,6 +150,9 @@ struct CamClay {
     const V zero = broadcast<V>(T(0));
     const T c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
     V near = zero, end = far;
+    // Snow that spread far beyond its strength (u < -1) keeps none: no need to follow it further.
+    const auto at_trial = hyperbolic(max(V(-xi * ev), broadcast<V>(T(-1))));
+    const bool stays_near = !any(abs(V(xi * far)) > near_enough);
 
     // First guess: the rate solution, exact for a trial close to the centre line.
     const V inside = max(V((trial.p + beta * p0_old) * (p0_old - trial.p)), zero);
@@ -138,8 +161,14 @@ struct CamClay {
     d = select(abs(d) < abs(far), d, V(T(0.5) * far));
     auto active = skip <= T(0);
     for (int iteration = 0; iteration < 100; ++iteration) {
-      V p0_slope;
-      const V p0 = preconsolidation(V(ev + d), p0_slope);
+      V p0, p0_slope;
+      if (stays_near) {
+        const auto k = shifted(at_trial, V(-xi * d));
+        p0 = max(k.sinh, zero);
+        p0_slope = select(k.sinh > T(0), V(-xi * k.cosh), zero);
+      } else {
+        p0 = preconsolidation(V(ev + d), p0_slope);
+      }
       const V p = trial.p + elastic.bulk * d;
       const V n = T(2) * p - (T(1) - beta) * p0;
       const V n_slope = T(2) * elastic.bulk - (T(1) - beta) * p0_slope;
