@@ -149,15 +149,23 @@ struct CamClay {
     constexpr T tolerance = sizeof(T) == 4 ? T(3e-7) : T(1e-15);
     const V zero = broadcast<V>(T(0));
     const T c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
+    // Close to the root a change of pressures that rounding hides ends the search.
+    const V unseen = T(0.2) * tolerance * (abs(trial.p) + beta * p0_old);
     V near = zero, end = far;
     // Snow that spread far beyond its strength (u < -1) keeps none: no need to follow it further.
     const auto at_trial = hyperbolic(max(V(-xi * ev), broadcast<V>(T(-1))));
     const bool stays_near = !any(abs(V(xi * far)) > near_enough);
 
-    // First guess: the rate solution, exact for a trial close to the centre line.
-    const V inside = max(V((trial.p + beta * p0_old) * (p0_old - trial.p)), zero);
-    const V q_yield = sqrt(V(m2 / (T(1) + T(2) * beta) * inside));
-    V d = -(n_trial / c) * (trial.q / (q_yield + T(1e-30)) - T(1));
+    // First guess: N (q_tr/q_s - 1) + c D = 0, which is y = 0 written for the shear q_s that the
+    // surface allows, with N linear in D and q_s as at the trial, or that of snow near the tips
+    // where the trial lies beyond them. Never past the centre line; zero, the trial itself, where
+    // hardly any shear is to be given up.
+    const V inside =
+        max(V((trial.p + beta * p0_old) * (p0_old - trial.p)), V(T(0.05) * p0_old * p0_old));
+    const V q_s = sqrt(V(m2 / (T(1) + T(2) * beta) * inside));
+    const V excess = clamp(V(trial.q / (q_s + T(1e-30)) - T(1)), zero, broadcast<V>(T(1e6)));
+    const V n_slope_trial = T(2) * elastic.bulk + (T(1) - beta) * xi * at_trial.cosh;
+    V d = -n_trial * excess / (c + n_slope_trial * excess);
     d = select(abs(d) < abs(far), d, V(T(0.5) * far));
     auto active = skip <= T(0);
     for (int iteration = 0; iteration < 100; ++iteration) {
@@ -180,9 +188,9 @@ struct CamClay {
       const V shear = (T(1) + T(2) * beta) / m2 * q * q;
       const V y = shear + (p + beta * p0) * (p - p0);
       const auto before_centre = n * n_trial > T(0);
-      // As near to zero as rounding lets y come.
-      const auto found =
-          before_centre & (abs(y) <= tolerance * (shear + (abs(p) + beta * p0) * (abs(p) + p0)));
+      // As near to zero as rounding lets y come; not where it overflows.
+      const V size = shear + (abs(p) + beta * p0) * (abs(p) + p0);
+      const auto found = before_centre & (abs(y) < tolerance * size);
       const V y_slope = T(2) * (T(1) + T(2) * beta) / m2 * q * q_slope +
                         (elastic.bulk + beta * p0_slope) * (p - p0) +
                         (p + beta * p0) * (elastic.bulk - p0_slope);
@@ -194,7 +202,9 @@ struct CamClay {
       const V lo = min(near, end), hi = max(near, end);
       const auto usable = (newton > lo) & (newton < hi) & before_centre;
       const V next = select(usable, newton, V(T(0.5) * (near + end)));
-      const auto moved = abs(V(next - d)) > tolerance * abs(next);
+      const V change = abs(V(next - d));
+      const auto moved = (change > tolerance * abs(next)) &
+                         ((change * (elastic.bulk - p0_slope) > unseen) | (abs(y) > T(0.01) * size));
       active = active & !found;
       d = select(active, next, d);
       active = active & moved;
