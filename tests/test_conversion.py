@@ -26,10 +26,11 @@ def test_outlines_that_do_not_meet():
 
 
 def test_a_row_has_all_columns_and_leaves_out_the_panel():
-    def measure(positions, masses, on_panel):
+    def measure(positions, masses, densities, on_panel):
         return StackMeasure(height=float(positions[~on_panel, 2].max()), length=len(masses))
 
     cloud = {"positions": np.array([[0, 0, 1.0], [0, 0, 5.0]]), "masses": np.array([1.0, 2.0])}
+    cloud["densities"] = np.array([200.0, 200.0])
     cloud["on_panel"] = np.array([False, True])
     conversion = {f"{k}_{when}": v for k, v in cloud.items() for when in ("before", "after")}
     row = conversion_row(2, conversion, measure)

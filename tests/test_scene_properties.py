@@ -16,7 +16,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from snowshed import Body, InitialisedScene, InputError, Motion, Obstacle, Scene, Shape
+from snowshed import (
+    Body,
+    InitialisedScene,
+    InputError,
+    Layer,
+    Motion,
+    Obstacle,
+    Scene,
+    Shape,
+    Snow,
+)
 from snowshed.cli import main
 from snowshed.scene_options import option_name
 from snowshed.schema import Parameter, scene_parameters
@@ -52,9 +62,12 @@ PLAUSIBLE = {
     "vector": st.one_of(vectors(), vectors().map(np.array)),
 }
 MOTIONS = st.none() | st.builds(Motion, velocity=st.none() | vectors(), start=st.none() | lengths)
+SNOWS = st.none() | st.builds(Snow, density=st.none() | lengths.map(lambda part: 400 * part))
+EVENTS = st.none() | st.integers(0, 4)
 ITEMS = {
     "obstacles": st.builds(Obstacle, shape=shapes(), friction=st.none() | small, motion=MOTIONS),
-    "bodies": st.builds(Body, shape=shapes(), event=st.none() | st.integers(0, 4)),
+    "bodies": st.builds(Body, shape=shapes(), event=EVENTS, snow=SNOWS),
+    "slab.layers": st.builds(Layer, thickness=lengths, snow=SNOWS, event=EVENTS),
 }
 JSON_VALUES = st.recursive(
     st.none()

@@ -43,7 +43,7 @@ Case slab_3d(const Vec3& velocity = Vec3::Zero()) {
   Case c;
   c.options.numerics.dx = slab_dx;
   c.options.numerics.sleep_speed = 0;
-  c.batch = slab(slab_cells, slab_dx, c.options.snow.density);
+  c.batch = slab(slab_cells, slab_dx, c.options.snows[0].density);
   c.batch.velocity = velocity;
   c.obstacles = {{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
   return c;
@@ -53,7 +53,7 @@ Case slab_2d() {
   Case c;
   c.options.dimension = 2;
   c.options.numerics.sleep_speed = 0;
-  c.batch = slab({200, 0, 25}, c.options.numerics.dx, c.options.snow.density);
+  c.batch = slab({200, 0, 25}, c.options.numerics.dx, c.options.snows[0].density);
   c.obstacles = {{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
   return c;
 }
@@ -75,9 +75,8 @@ void run(benchmark::State& state, const Case& c, int threads) {
 
 void add(const std::string& name, const std::function<Case()>& make, std::vector<int> threads) {
   for (int n : threads)
-    benchmark::RegisterBenchmark(
-        (name + "/" + std::to_string(n)).c_str(),
-        [make, n](benchmark::State& state) { run(state, make(), n); })
+    benchmark::RegisterBenchmark((name + "/" + std::to_string(n)).c_str(),
+                                 [make, n](benchmark::State& state) { run(state, make(), n); })
         ->UseRealTime()
         ->Unit(benchmark::kMillisecond);
 }
@@ -124,7 +123,7 @@ void add_slabs() {
 /// The base is elastic snow in free fall: nothing but the transfers and a stress.
 Case plain() {
   Case c = slab_3d(Vec3(0, 0, -1));
-  c.options.snow.model = SnowModel::elastic;
+  c.options.snows[0].model = SnowModel::elastic;
   c.obstacles.clear();
   return c;
 }
@@ -150,12 +149,12 @@ void add_prices() {
   price("base_3d", plain(), nothing);
   price("base_2d", plain(), [](C& c) {
     c.options.dimension = 2;
-    c.batch = slab({256, 0, 256}, slab_dx, c.options.snow.density);
+    c.batch = slab({256, 0, 256}, slab_dx, c.options.snows[0].density);
   });
-  price("cam_clay_elastic", plain(), [](C& c) { c.options.snow.model = SnowModel::cam_clay; });
+  price("cam_clay_elastic", plain(), [](C& c) { c.options.snows[0].model = SnowModel::cam_clay; });
   price("ground_cam_clay_in_flow", slab_3d(in_flow), nothing);
   price("ground_elastic_in_flow", slab_3d(in_flow),
-        [](C& c) { c.options.snow.model = SnowModel::elastic; });
+        [](C& c) { c.options.snows[0].model = SnowModel::elastic; });
   price("double", plain(), [](C& c) { c.options.numerics.precision = Precision::float64; });
   price("cubic", plain(), [](C& c) { c.options.numerics.basis = Basis::cubic; });
   price("apic", plain(), [](C& c) { c.options.numerics.transfer = Transfer::apic; });
@@ -178,11 +177,10 @@ void add_prices() {
 void add_scaling() {
   for (const double particles : {1e4, 1e5, 1e6, 1e7}) {
     const int edge = int(std::lround(std::cbrt(particles / 8 / 4)));
-    add(
-        "scaling_3d/" + std::to_string(int(particles)),
+    add("scaling_3d/" + std::to_string(int(particles)),
         [edge] {
           Case c = slab_3d();
-          c.batch = slab({2 * edge, 2 * edge, edge}, slab_dx, c.options.snow.density);
+          c.batch = slab({2 * edge, 2 * edge, edge}, slab_dx, c.options.snows[0].density);
           return c;
         },
         {2});

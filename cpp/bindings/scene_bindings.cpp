@@ -10,14 +10,6 @@ namespace py = pybind11;
 namespace snowshed {
 namespace {
 
-/// Of a scene that is all presets, the "snow" part.
-std::string snow_json(const Snow& snow) {
-  Scene scene = preset_scene("lab-50");
-  scene.snow = snow;
-  const auto json = py::module_::import("json");
-  return json.attr("dumps")(json.attr("loads")(write_scene(scene))["snow"]).cast<std::string>();
-}
-
 py::dict plan_dict(const std::string& text, const std::string& base_dir) {
   const Scene scene = parse_scene(text);
   const Plan p = plan(scene, base_dir);
@@ -57,7 +49,7 @@ void bind_scene(py::module_& m) {
   m.def(
       "preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);
   m.def(
-      "snow_preset", [](const std::string& name) { return snow_json(preset_snow(name)); },
+      "snow_preset", [](const std::string& name) { return write_snow(preset_snow(name)); },
       "name"_a);
   m.def("plan", &plan_dict, "scene_json"_a, "base_dir"_a = ".");
   m.def(

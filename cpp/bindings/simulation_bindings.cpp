@@ -38,6 +38,7 @@ py::object begin_event(Simulation& sim) {
     const std::string suffix = std::string("_") + when;
     d[("positions" + suffix).c_str()] = rows(cloud->positions);
     d[("masses" + suffix).c_str()] = column<double>(cloud->masses);
+    d[("densities" + suffix).c_str()] = column<double>(cloud->densities);
     d[("on_panel" + suffix).c_str()] = column<bool>(cloud->on_panel);
   }
   return d;
@@ -102,10 +103,16 @@ py::object frame(const Simulation& sim) {
   return d;
 }
 
-py::array_t<double> densities(const Simulation& sim) {
-  std::vector<double> density = sim.solver().state().volume_ratios;
-  for (double& d : density) d = sim.scene().snow.density / d;
-  return column<double>(density);
+py::array_t<std::int64_t> kinds(const Simulation& sim) {
+  std::vector<std::uint8_t> kinds = sim.solver().state().kinds;
+  kinds.resize(sim.solver().size());  // of one snow: all zero
+  return column<std::int64_t>(kinds);
+}
+
+std::vector<std::string> snows(const Simulation& sim) {
+  std::vector<std::string> json;
+  for (const Snow& snow : sim.snows()) json.push_back(write_snow(snow));
+  return json;
 }
 
 std::vector<Vec3> vectors(const py::array_t<double>& array, const char* name) {
@@ -175,7 +182,9 @@ void bind_simulation(py::module_& m) {
       .def("masses", [](const Simulation& s) { return column<double>(s.solver().state().masses); })
       .def("events",
            [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })
-      .def("density", &densities)
+      .def("kinds", &kinds)
+      .def("density",
+           [](const Simulation& s) { return column<double>(s.solver().state().densities); })
       .def("on_panel",
            [](const Simulation& s) {
              return column<bool>(s.on_panel(s.solver().state().positions));
@@ -191,8 +200,8 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly(
           "particle_updates",
           [](const Simulation& s) { return s.solver().counters().particle_updates; })
-      .def_property_readonly("slept_updates",
-                             [](const Simulation& s) { return s.solver().counters().slept_updates; })
+      .def_property_readonly(
+          "slept_updates", [](const Simulation& s) { return s.solver().counters().slept_updates; })
       .def_property_readonly("sorts",
                              [](const Simulation& s) { return s.solver().counters().sorts; })
       .def_property_readonly("particle_count",
@@ -200,6 +209,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("time_step_s",
                              [](const Simulation& s) { return s.solver().time_step(); })
       .def_property_readonly("scene", [](const Simulation& s) { return write_scene(s.scene()); })
+      .def_property_readonly("snows", &snows)
       .def_property_readonly("threads", &Simulation::threads)
       .def_property_readonly("dimension", [](const Simulation& s) { return s.scene().dimension; })
       .def_property_readonly("ground_tilt_deg", [](const Simulation& s) {

@@ -34,7 +34,8 @@ std::string raw(const std::vector<Number>& numbers) {
 const char* const rich_scene = R"({"snowshed": 1, "dimension": %D, "title": "seed",
   "snow": {"model": "elastic", "density": 250, "cohesion": 0.1},
   "panel": {"height": 0.5, "length": 1, "width": 1, "tilt": 45, "condition": "separate"},
-  "slab": {"thickness": 0.06}, "ground": {"tilt": 10, "friction": 0.5},
+  "slab": {"layers": [{"thickness": 0.06, "snow": {"model": "cam_clay", "density": 100}},
+                      {"thickness": 0.02, "event": 2}]}, "ground": {"tilt": 10, "friction": 0.5},
   "domain": {"min": [-9, Y(-9) -9], "max": [9, Y(9) 9]},
   "obstacles": [
     {"name": "fence", "condition": "sticky", "shape": {"type": "union", "shapes": [
@@ -51,7 +52,7 @@ const char* const rich_scene = R"({"snowshed": 1, "dimension": %D, "title": "see
       {"type": "transform", "angle": 30, "translate": [1, Y(0) 0],
        "shapes": [{"type": "sphere", "center": [0, Y(0) 0], "radius": 0.2}]}]}}],
   "bodies": [{"shape": {"type": "sphere", "center": [0.9, Y(0) 0.3], "radius": 0.08},
-              "velocity": [0, Y(0) -1], "event": 2}],
+              "velocity": [0, Y(0) -1], "event": 2, "snow": {"density": 150}}],
   "seeding": {"particles_per_voxel": 6, "pattern": "jittered", "seed": 7, "allow_sparse": true},
   "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "basis": "cubic",
                "step_factor": 0.5, "strain_limit": 0.1, "threads": 1},

@@ -27,11 +27,22 @@ def scene_caption(scene: dict[str, Any]) -> str:
             f"{panel['height']:g} m above ground, {_contact(panel)}"
         )
     if slab := scene.get("slab"):
-        parts.append(f"slab {slab['thickness']:g} m thick")
+        parts.append(_slab(slab))
     if tilt := (scene.get("ground") or {}).get("tilt"):
         parts.append(f"ground tilt {tilt:g}°")
     parts.append(f"dx {scene['numerics']['dx']:g} m")
     return " · ".join(parts) + "\n" + _snow(scene["snow"]) + f" · events {_between(scene)}"
+
+
+def _slab(slab: dict[str, Any]) -> str:
+    layers = slab["layers"]
+    if not layers:
+        return f"slab {slab['thickness']:g} m thick"
+    return (
+        "layers "
+        + ", ".join(f"{layer['thickness']:g}" for layer in layers[:5])
+        + (f" m (of {len(layers)})" if len(layers) > 5 else " m")
+    )
 
 
 def _contact(panel: dict[str, Any]) -> str:

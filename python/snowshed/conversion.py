@@ -13,7 +13,7 @@ from snowshed.shell import CELLS
 if TYPE_CHECKING:
     from snowshed.stack import StackMeasure
 
-Measure = Callable[[Floats, Floats, Booleans], "StackMeasure"]
+Measure = Callable[[Floats, Floats, Floats, Booleans], "StackMeasure"]
 
 CONVERSION_COLUMNS = (
     "event",
@@ -37,10 +37,10 @@ def conversion_row(event: int, conversion: dict[str, Any], measure: Measure) -> 
     event
         The event that follows.
     conversion
-        What the core's ``begin_event`` returned: positions, masses and on_panel, each before and
-        after.
+        What the core's ``begin_event`` returned: positions, masses, initial densities and
+        on_panel, each before and after.
     measure
-        Measures the stack that positions, masses and on_panel make.
+        Measures the stack that positions, masses, densities and on_panel make.
 
     Returns
     -------
@@ -51,7 +51,12 @@ def conversion_row(event: int, conversion: dict[str, Any], measure: Measure) -> 
     outlines = []
     for when in ("before", "after"):
         masses = conversion[f"masses_{when}"]
-        stack = measure(conversion[f"positions_{when}"], masses, conversion[f"on_panel_{when}"])
+        stack = measure(
+            conversion[f"positions_{when}"],
+            masses,
+            conversion[f"densities_{when}"],
+            conversion[f"on_panel_{when}"],
+        )
         row[f"mass_{when}_kg"] = float(masses.sum())
         row[f"particles_{when}"] = len(masses)
         row[f"height_{when}_m"] = stack.height

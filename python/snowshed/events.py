@@ -16,8 +16,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
-import numpy as np
-
 from snowshed import _core
 from snowshed.arrays import Booleans, Floats
 from snowshed.atomic import replacing
@@ -188,7 +186,7 @@ class _EventLoop:
         if not self.simulation.event_running:
             conversion = self.simulation.begin_event()
             if conversion is not None:
-                row = conversion_row(self.simulation.event, conversion, self._measure_initial)
+                row = conversion_row(self.simulation.event, conversion, self._measure_of)
                 self.results.conversions.add([row])
         self._tell(Progress(self.simulation.event, self.count, self.simulation.time_s))
 
@@ -247,13 +245,6 @@ class _EventLoop:
             self.simulation.density(),
             self.simulation.on_panel(),
         )
-
-    def _measure_initial(
-        self, positions: Floats, masses: Floats, on_panel: Booleans
-    ) -> StackMeasure:
-        """Measure snow of its initial density."""
-        density = np.full(len(masses), float(self.scene["snow"]["density"]))
-        return self._measure_of(positions, masses, density, on_panel)
 
     def _measure_of(
         self, positions: Floats, masses: Floats, density: Floats, on_panel: Booleans

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import List, Optional, Union
 
 from snowshed import _core
 from snowshed.records import Record
@@ -54,12 +54,22 @@ class Panel(Record):
 
 
 @dataclass
+class Layer(Record):
+    """A layer of the slab, over its whole length and width."""
+
+    thickness: Optional[float] = None  # m
+    snow: Optional[Snow] = None  # what it leaves out is as in the scene's snow
+    event: Optional[int] = None  # at whose start it is laid; 0: of every event
+
+
+@dataclass
 class Slab(Record):
-    """The slab of snow on the panel that slides off in every event."""
+    """The slab laid on the panel at the start of every event: one snow, or layer by layer."""
 
     thickness: Optional[float] = None  # m
     length: Optional[float] = None  # m
     width: Optional[float] = None  # m, 3D only
+    layers: Optional[List[Layer]] = None  # in place of a thickness, from the panel upwards
 
 
 @dataclass
@@ -100,6 +110,7 @@ class Body(Record):
     shape: Optional[Shape] = None
     velocity: Optional[Vector] = None  # m/s
     event: Optional[int] = None
+    snow: Optional[Snow] = None  # what it leaves out is as in the scene's snow
 
 
 @dataclass

@@ -27,6 +27,7 @@ SHORT_NAMES = {
     "panel.tilt": "tilt",
     "panel.friction": "friction",
     "slab.thickness": "thickness",
+    "slab.layers": "layer",
     "events.count": "events",
     "snow.model": "snow-model",
     "obstacles": "obstacle",

@@ -13,9 +13,14 @@
 namespace snowshed {
 namespace {
 
-/// Memory of the contacts' friction, in elastic time steps: longer than the vibration of a slab a
-/// few cells thick, shorter than the time snow takes to slide over a cell.
+/// Memory of the contacts' friction, in elastic time steps of the slowest snow: longer than the
+/// vibration of a slab a few cells thick, shorter than the time snow takes to slide over a cell.
 constexpr double friction_memory = 40;
+
+bool any_yields(const std::vector<Snow>& snows) {
+  return std::any_of(snows.begin(), snows.end(),
+                     [](const Snow& s) { return s.model == SnowModel::cam_clay; });
+}
 
 /// Whether the particles of a block reach the nodes of the one that sees them as its neighbour k.
 template <int D>
@@ -36,30 +41,46 @@ template <class T, int D>
 SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obstacles)
     : options_(options),
       kernels_(select_kernels<T>({D, options.numerics.transfer, options.numerics.basis,
-                                  options.snow.model, options.energy})),
+                                  options.snows.front().model, options.energy,
+                                  options.snows.size() > 1})),
       max_threads_(options.numerics.threads > 0 ? options.numerics.threads : omp_get_num_procs()),
-      elastic_limit_(elastic_time_step(options.snow.youngs_modulus, options.snow.poissons_ratio,
-                                       options.snow.density, D, options.numerics.dx,
-                                       options.numerics.basis)),
       contacts_(std::move(obstacles), options.numerics.dx),
       grid_(options.numerics.basis),
       sleep_(options.numerics.sleep_speed, options.numerics.sleep_time) {
   particles_.has_affine = options.numerics.transfer == Transfer::apic;
-  particles_.has_plastic = options.snow.model == SnowModel::cam_clay;
+  particles_.has_plastic = any_yields(options.snows);
+  particles_.has_kind = options.snows.size() > 1;
+  for (const Snow& snow : options.snows) {
+    kinds_.emplace_back(snow, D, options.numerics);
+    constants_.push_back(snow_constants<T>(snow, D));
+  }
+  find_elastic_limits();
   counters_.smallest_dt = elastic_limit_;
+}
+
+/// Of the snows that particles are of; of all while there are none.
+template <class T, int D>
+void SolverOf<T, D>::find_elastic_limits() {
+  std::vector<bool> present(kinds_.size(), !particles_.has_kind || particles_.size() == 0);
+  for (const std::uint8_t kind : particles_.kind) present[kind] = true;
+  double shortest = infinity, longest = 0;
+  for (std::size_t k = 0; k < kinds_.size(); ++k) {
+    if (!present[k]) continue;
+    shortest = std::min(shortest, kinds_[k].elastic_time_step);
+    longest = std::max(longest, kinds_[k].elastic_time_step);
+  }
+  elastic_limit_ = shortest;
+  friction_memory_ = friction_memory * longest;
 }
 
 template <class T, int D>
 StepParameters<T> SolverOf<T, D>::parameters(double dt) const {
-  const Snow& s = options_.snow;
-  return {
-      T(dt),
-      T(options_.numerics.dx),
-      T(options_.gravity),
-      T(options_.numerics.flip_ratio),
-      T(1 / s.density),
-      T(std::min(1.0, dt / (friction_memory * elastic_limit_))),
-      {s.youngs_modulus, s.poissons_ratio, s.critical_state_slope, s.cohesion, s.hardening_factor}};
+  return {T(dt),
+          T(options_.numerics.dx),
+          T(options_.gravity),
+          T(options_.numerics.flip_ratio),
+          T(std::min(1.0, dt / friction_memory_)),
+          constants_.data()};
 }
 
 template <class T, int D>
@@ -79,7 +100,7 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
     std::fill(array.begin() + std::ptrdiff_t(old), array.end(), Value(0));
   });
   const VecD<D> velocity = section<D>(batch.velocity);
-  const T plastic = particles_.has_plastic ? T(initial_plastic_strain()) : T(0);
+  const T plastic = T(kinds_.at(std::size_t(batch.kind)).initial_plastic_strain);
   for (std::size_t i = 0; i < batch.positions.size(); ++i) {
     const auto place = Placement<D>::of(section<D>(batch.positions[i]), options_.numerics.dx,
                                         options_.numerics.basis);
@@ -92,7 +113,9 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
     particles_.mass[old + i] = T(batch.mass);
     particles_.id[old + i] = next_id_++;
     particles_.event[old + i] = std::uint16_t(batch.event);
+    if (particles_.has_kind) particles_.kind[old + i] = std::uint8_t(batch.kind);
   }
+  find_elastic_limits();
   sort_particles(particles_, std::move(blocks), layout_, threads());
   contacts_.relocate(layout_.grid_blocks, time_, threads());
   grid_.resize(layout_);

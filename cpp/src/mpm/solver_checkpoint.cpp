@@ -76,14 +76,13 @@ void SolverOf<T, D>::save(BinaryWriter& out) const {
   out.add("sleep", std::move(sleep));
 
   const EnergyBooks& b = books_;
-  out.add("energy", std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic,
-                                        b.friction, b.sticking, b.impact, b.transfer, b.sleep,
-                                        b.added});
+  out.add("energy",
+          std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic, b.friction,
+                              b.sticking, b.impact, b.transfer, b.sleep, b.added});
   out.add("clock", std::vector<double>{time_, dt_, speed_, counters_.smallest_dt, stress_power_});
-  out.add("counters",
-          std::vector<std::int64_t>{counters_.steps, counters_.rejected, counters_.sorts,
-                                    counters_.particle_updates, counters_.slept_updates,
-                                    std::int64_t(next_id_)});
+  out.add("counters", std::vector<std::int64_t>{counters_.steps, counters_.rejected,
+                                                counters_.sorts, counters_.particle_updates,
+                                                counters_.slept_updates, std::int64_t(next_id_)});
 }
 
 template <class T, int D>
@@ -95,6 +94,11 @@ void SolverOf<T, D>::load(const BinaryReader& in) {
     const auto values = in.get<Value>(std::string("particles/") + name, n);
     std::copy(values.begin(), values.end(), array.begin());
   });
+  for (const std::uint8_t kind : particles_.kind)
+    if (kind >= kinds_.size())
+      throw InputError(in.path().string(), "a particle of snow " + std::to_string(kind) + " of " +
+                                               std::to_string(kinds_.size()));
+  find_elastic_limits();
   auto keys = in.get<std::uint64_t>("blocks/keys");
   auto first = in.get<std::int32_t>("blocks/first", keys.size() + 1);
   if (!are_sound<D>(keys, first, n))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mpm/grid.hpp"
+#include "mpm/snow_kind.hpp"
 #include "snowshed/mpm/particle_sort.hpp"
 #include "snowshed/mpm/sleep.hpp"
 #include "snowshed/mpm/solver.hpp"
@@ -56,13 +57,19 @@ class SolverOf final : public Solver {
   double gravitational_energy() const;
   double elastic_energy() const;
   double kinetic_energy() const;
-  double initial_plastic_strain() const;
+  void find_elastic_limits();
+  const SnowKind& kind_of(std::size_t particle) const {
+    return kinds_[particles_.has_kind ? particles_.kind[particle] : 0];
+  }
   std::vector<std::size_t> places_by_id() const;
 
   SolverOptions options_;
   Kernels<T> kernels_;
   int max_threads_;
-  double elastic_limit_;  // s
+  std::vector<SnowKind> kinds_;              // of options_.snows
+  std::vector<SnowConstants<T>> constants_;  // the same for the kernels
+  double elastic_limit_;                     // s, time step of the stiffest snow there is
+  double friction_memory_;                   // s
   Particles<T, D> particles_;
   BlockLayout<D> layout_;
   Contacts<T, D> contacts_;

@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "mpm/solver_of.hpp"
-#include "snowshed/material/cam_clay.hpp"
 #include "snowshed/material/sym_tensor.hpp"
 
 namespace snowshed {
@@ -21,14 +20,6 @@ Mat3 affine_of(const Particles<T, D>& particles, std::size_t i) {
 }
 
 }  // namespace
-
-template <class T, int D>
-double SolverOf<T, D>::initial_plastic_strain() const {
-  const Snow& s = options_.snow;
-  return CamClay<double>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
-                               s.cohesion, s.hardening_factor, D)
-      .initial_plastic_strain(s.preconsolidation_pressure);
-}
 
 template <class T, int D>
 void SolverOf<T, D>::book_step() {
@@ -87,15 +78,15 @@ double SolverOf<T, D>::kinetic_energy() const {
 
 template <class T, int D>
 double SolverOf<T, D>::elastic_energy() const {
-  const auto el =
-      Elasticity<double>::from(options_.snow.youngs_modulus, options_.snow.poissons_ratio, D);
   double sum = 0;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const SnowKind& snow = kind_of(i);
+    const Elasticity<double>& el = snow.elastic;
     Sym<double, D> a;
     for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.strain[k][i]);
     const Sym<double, D> e = hencky_strain(a);
     const double volumetric = trace(e);
-    sum += double(particles_.mass[i]) / options_.snow.density *
+    sum += double(particles_.mass[i]) / snow.density *
            (el.mu * norm_squared(e) + 0.5 * el.lambda * volumetric * volumetric);  // (1.2.5)
   }
   return sum;
@@ -123,9 +114,6 @@ ParticleState SolverOf<T, D>::state() const {
   const std::size_t n = particles_.size();
   const std::vector<std::size_t> at = places_by_id();
   const std::vector<BlockKey> blocks = blocks_of_particles(layout_);
-  const auto el =
-      Elasticity<double>::from(options_.snow.youngs_modulus, options_.snow.poissons_ratio, D);
-  const double initial = particles_.has_plastic ? initial_plastic_strain() : 0.0;
   ParticleState s;
   s.positions.reserve(n);
   for (std::size_t i : at) {
@@ -136,14 +124,17 @@ ParticleState SolverOf<T, D>::state() const {
     s.velocities.push_back(embed(v));
     Sym<double, D> a;
     for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.strain[k][i]);
+    const SnowKind& snow = kind_of(i);
     const double elastic_volume = trace(hencky_strain(a));
     const double plastic = particles_.has_plastic ? double(particles_.plastic[i]) : 0.0;
     s.masses.push_back(double(particles_.mass[i]));
     s.plastic_strains.push_back(plastic);
-    s.volume_ratios.push_back(std::exp(elastic_volume + plastic - initial));
-    s.pressures.push_back(-el.bulk * elastic_volume);
+    s.volume_ratios.push_back(std::exp(elastic_volume + plastic - snow.initial_plastic_strain));
+    s.densities.push_back(snow.density / s.volume_ratios.back());
+    s.pressures.push_back(-snow.elastic.bulk * elastic_volume);
     s.ids.push_back(particles_.id[i]);
     s.events.push_back(particles_.event[i]);
+    if (particles_.has_kind) s.kinds.push_back(particles_.kind[i]);
     if (particles_.has_affine) s.affine.push_back(affine_of(particles_, i));
   }
   return s;

@@ -141,6 +141,12 @@ std::vector<double> count_particles(const Scene& scene) {
   return counts;
 }
 
+/// Of elastic waves of compression, m/s.
+double wave_speed(const Snow& snow) {
+  const auto elastic = Elasticity<double>::from(snow.youngs_modulus, snow.poissons_ratio, 3);
+  return std::sqrt((elastic.lambda + 2.0 * elastic.mu) / snow.density);
+}
+
 std::string gigabytes(double bytes) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g GB", bytes / 1e9);
@@ -150,9 +156,11 @@ std::string gigabytes(double bytes) {
 }  // namespace
 
 double stable_time_step(const Scene& scene) {
-  const double limit =
-      elastic_time_step(scene.snow.youngs_modulus, scene.snow.poissons_ratio, scene.snow.density,
-                        scene.dimension, scene.numerics.dx, scene.numerics.basis);
+  double limit = std::numeric_limits<double>::infinity();
+  for (const Snow& snow : assemble_snows(scene))
+    limit = std::min(limit,
+                     elastic_time_step(snow.youngs_modulus, snow.poissons_ratio, snow.density,
+                                       scene.dimension, scene.numerics.dx, scene.numerics.basis));
   return next_time_step(limit, 0.0, scene.numerics.dx, scene.numerics.step_factor);
 }
 
@@ -163,9 +171,8 @@ Forecast forecast(const Scene& given, std::vector<double> particles) {
   Forecast forecast;
   forecast.total_particles = std::accumulate(particles.begin(), particles.end(), 0.0);
   forecast.particles = std::move(particles);
-  const auto elastic =
-      Elasticity<double>::from(scene.snow.youngs_modulus, scene.snow.poissons_ratio, 3);
-  forecast.wave_speed = std::sqrt((elastic.lambda + 2.0 * elastic.mu) / scene.snow.density);
+  for (const Snow& snow : assemble_snows(scene))
+    forecast.wave_speed = std::max(forecast.wave_speed, wave_speed(snow));
   forecast.time_step = stable_time_step(scene);
   add_times(scene, forecast);
   forecast.steps = scene.events.count * std::ceil(forecast.event_time / forecast.time_step);

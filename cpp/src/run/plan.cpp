@@ -24,7 +24,12 @@ void list_features(const Scene& s, Plan& plan) {
   };
   feature(s.dimension == 3, "third dimension");
   feature(s.numerics.precision == Precision::float64, "double precision");
-  feature(s.snow.model == SnowModel::cam_clay, "plasticity and hardening (Cam-Clay)");
+  const std::vector<Snow> snows = assemble_snows(s);
+  const bool yields = std::any_of(snows.begin(), snows.end(), [](const Snow& snow) {
+    return snow.model == SnowModel::cam_clay;
+  });
+  feature(yields, "plasticity and hardening (Cam-Clay)");
+  feature(snows.size() > 1, "several snows");
   feature(s.numerics.transfer == Transfer::apic, "APIC affine velocities");
   feature(s.numerics.basis == Basis::cubic, "cubic B-splines");
   bool conditions[3] = {s.domain.has_value(), false, false}, moving = false;

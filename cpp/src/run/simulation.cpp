@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "run/snapshot_series.hpp"
 #include "snowshed/geometry/build_shape.hpp"
@@ -58,23 +57,44 @@ std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem:
   return obstacles;
 }
 
-/// Points sorted by the event of the particle nearest to each, all of them within `reach` of one.
-std::map<int, std::vector<Vec3>> by_nearest_event(const std::vector<Vec3>& points,
-                                                  const ParticleState& particles, double reach) {
-  const PointGrid grid(particles.positions, reach);
-  std::map<int, std::vector<Vec3>> sorted;
+/// For each point the particle nearest to it, all of them within `reach` of one.
+std::vector<std::size_t> nearest_particles(const std::vector<Vec3>& points,
+                                           const std::vector<Vec3>& particles, double reach) {
+  const PointGrid grid(particles, reach);
+  std::vector<std::size_t> found;
   for (const Vec3& x : points) {
-    int event = particles.events.back();
+    std::size_t at = particles.size() - 1;
     double nearest = std::numeric_limits<double>::infinity();
     grid.for_each_near(x, [&](std::size_t i, const Vec3& y) {
       const double distance = (x - y).squaredNorm();
       if (distance >= nearest) return;
       nearest = distance;
-      event = particles.events[i];
+      at = i;
     });
-    sorted[event].push_back(x);
+    found.push_back(at);
   }
-  return sorted;
+  return found;
+}
+
+int kind_of(const ParticleState& particles, std::size_t i) {
+  return particles.kinds.empty() ? 0 : particles.kinds[i];
+}
+
+/// Shares out the mass of old particles among the new ones that stand for them (`old_of`): each
+/// snow keeps its mass, in equal parts. That of a snow without new particles goes to all.
+std::vector<double> share_masses(const ParticleState& old, const std::vector<std::size_t>& old_of,
+                                 std::size_t snows) {
+  std::vector<double> mass(snows), count(snows);
+  for (std::size_t i = 0; i < old.masses.size(); ++i) mass[kind_of(old, i)] += old.masses[i];
+  for (const std::size_t i : old_of) ++count[kind_of(old, i)];
+  double placed = 0, left = 0;
+  for (std::size_t k = 0; k < snows; ++k) (count[k] > 0 ? placed : left) += mass[k];
+  std::vector<double> masses;
+  for (const std::size_t i : old_of) {
+    const int kind = kind_of(old, i);
+    masses.push_back(mass[kind] / count[kind] * (1 + left / placed));
+  }
+  return masses;
 }
 
 /// Geometry knows no scene; gives its errors the place in it.
@@ -95,9 +115,14 @@ std::string body_path(std::size_t i) { return "/bodies/" + std::to_string(i) + "
 /// Where in the scene the bodies of `assemble_bodies` stand.
 std::vector<std::string> body_paths(const Scene& scene, int event) {
   std::vector<std::string> paths;
-  if (scene.slab) paths.push_back("/slab");
+  if (scene.slab) {
+    const auto& layers = scene.slab->layers;
+    if (layers.empty()) paths.push_back("/slab");
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      if (is_laid_in(layers[i], event)) paths.push_back("/slab/layers/" + std::to_string(i));
+  }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (scene.bodies[i].event == 0 || scene.bodies[i].event == event) paths.push_back(body_path(i));
+    if (is_laid_in(scene.bodies[i], event)) paths.push_back(body_path(i));
   return paths;
 }
 
@@ -124,16 +149,31 @@ std::vector<double> count_particles(const Scene& scene, const std::filesystem::p
     if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
     if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
     for (int event = 1; event <= scene.events.count; ++event)
-      if (body.event == 0 || body.event == event) counts[std::size_t(event - 1)] += count;
+      if (is_laid_in(body, event)) counts[std::size_t(event - 1)] += count;
   }
   return counts;
+}
+
+/// Of the slab laid at the start of an event, kg.
+double slab_mass(const Scene& scene, int event) {
+  double mass = 0;
+  for (const BodySpec& layer : assemble_slab(scene, event))
+    mass += snow_of(scene, layer).density * shape_volume(layer.shape, scene.dimension).value();
+  return mass;
+}
+
+/// Whether a point lies above or below the panel's face, seen along its normal.
+bool is_over(const PanelFrame& panel, const Vec3& point, int dimension) {
+  const Vec3 x = point - panel.center;
+  return std::abs(panel.slope.dot(x)) < 0.5 * panel.length &&
+         (dimension == 2 || std::abs(x.y()) < 0.5 * panel.width);
 }
 
 SolverOptions solver_options(const Scene& scene) {
   SolverOptions o;
   o.dimension = scene.dimension;
   o.gravity = scene.gravity;
-  o.snow = scene.snow;
+  o.snows = assemble_snows(scene);
   o.numerics = scene.numerics;
   o.energy = scene.output.energy;
   return o;
@@ -143,6 +183,7 @@ SolverOptions solver_options(const Scene& scene) {
 
 Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir)
     : scene_(resolve(scene)),
+      snows_(assemble_snows(scene_)),
       base_dir_(base_dir),
       cost_(forecast(scene_, count_particles(scene_, base_dir))),
       rest_(scene.events.rest_speed, scene.events.rest_time) {
@@ -163,13 +204,18 @@ std::optional<Reseeding> Simulation::begin_event() {
   if (running_) throw SimulationError("the present event has not ended yet");
   std::optional<Reseeding> reseeding;
   if (event_ > 0 && scene_.events.between == Between::reseed) reseeding = reseed_stack();
-  const double lift = event_ > 0 ? lift_of_next_slab(solver_->state()) : 0.0;
+  const double lift = lift_of_next_slab();
   const auto bodies = assemble_bodies(scene_, event_ + 1, lift);
   event_mass_ = 0;
   const auto paths = body_paths(scene_, event_ + 1);
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    event_mass_ +=
+  const std::size_t layers = assemble_slab(scene_, event_ + 1).size();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Laid laid =
         lay(bodies[i], paths[i], scene_.seeding.seed + 1000003u * std::uint64_t(event_ + 1) + i);
+    event_mass_ += laid.mass;
+    if (i >= layers) laid_height_ += laid.height;
+  }
+  if (scene_.slab) laid_height_ += slab_thickness(*scene_.slab, event_ + 1);
   ++event_;
   running_ = true;
   event_start_ = solver_->time();
@@ -177,27 +223,32 @@ std::optional<Reseeding> Simulation::begin_event() {
   return reseeding;
 }
 
-/// Seeds a body of snow; returns its mass.
-double Simulation::lay(const BodySpec& body, const std::string& path, std::uint64_t seed) {
+/// Seeds a body of snow.
+Simulation::Laid Simulation::lay(const BodySpec& body, const std::string& path,
+                                 std::uint64_t seed) {
   return naming(path, [&] {
     const Shape shape = build_shape(body.shape, scene_.dimension, path, base_dir_);
     ParticleBatch batch;
     batch.positions =
         snowshed::seed(*shape, scene_.dimension, scene_.numerics.dx,
                        scene_.seeding.particles_per_voxel, scene_.seeding.pattern, seed);
-    const double mass = scene_.snow.density * measure(*shape, scene_.dimension, scene_.numerics.dx);
+    const Snow& snow = snow_of(scene_, body);
+    const double mass = snow.density * measure(*shape, scene_.dimension, scene_.numerics.dx);
     batch.mass = mass / double(batch.positions.size());
     batch.velocity = body.velocity;
     batch.event = event_ + 1;
+    batch.kind = snowshed::kind_of(snow, snows_);
     solver_->add(batch);
-    return mass;
+    return Laid{mass, height_over_panel(batch.positions)};
   });
 }
 
 /// Later slabs lie on the snow that stayed on the panel; stray grains do not count.
-double Simulation::lift_of_next_slab(const ParticleState& state) const {
-  if (!scene_.panel || !scene_.slab) return 0.0;
+double Simulation::lift_of_next_slab() const {
+  const double next_mass = slab_mass(scene_, event_ + 1);
+  if (event_ == 0 || next_mass == 0) return 0.0;
   const PanelFrame frame = panel_frame(scene_);
+  const ParticleState state = solver_->state();
   const std::vector<bool> there = on_panel(state.positions);
   double mass = 0, top = 0;
   for (std::size_t i = 0; i < there.size(); ++i) {
@@ -205,7 +256,21 @@ double Simulation::lift_of_next_slab(const ParticleState& state) const {
     mass += state.masses[i];
     top = std::max(top, frame.normal.dot(state.positions[i] - frame.center));
   }
-  return mass > 0.02 * event_mass_ ? top + 0.5 * scene_.numerics.dx : 0.0;
+  const double last_mass = event_mass_ > 0 ? event_mass_ : next_mass;
+  return mass > 0.02 * std::min(last_mass, next_mass) ? top + 0.5 * scene_.numerics.dx : 0.0;
+}
+
+double Simulation::height_over_panel(const std::vector<Vec3>& positions) const {
+  if (!scene_.panel) return 0.0;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const PanelFrame frame = panel_frame(scene_);
+  for (const Vec3& x : positions) {
+    if (!is_over(frame, x, scene_.dimension)) continue;
+    const double above = frame.normal.dot(x - frame.center);
+    low = std::min(low, above);
+    high = std::max(high, above);
+  }
+  return std::max(0.0, high - low);
 }
 
 std::vector<bool> Simulation::on_panel(const std::vector<Vec3>& positions) const {
@@ -213,13 +278,11 @@ std::vector<bool> Simulation::on_panel(const std::vector<Vec3>& positions) const
   if (!scene_.panel) return there;
   const PanelFrame frame = panel_frame(scene_);
   const double dx = scene_.numerics.dx;
-  // Above the face, no higher than all slabs so far together could lie.
-  const double height = 2 * dx + (scene_.slab ? scene_.slab->thickness : 0.0) * std::max(event_, 1);
+  // Above the face, no higher than all snow so far together could lie.
+  const double height = 2 * dx + laid_height_;
   for (std::size_t i = 0; i < there.size(); ++i) {
-    const Vec3 x = positions[i] - frame.center;
-    const double above = frame.normal.dot(x);
-    there[i] = above > -dx && above < height && std::abs(frame.slope.dot(x)) < 0.5 * frame.length &&
-               (scene_.dimension == 2 || std::abs(x.y()) < 0.5 * frame.width);
+    const double above = frame.normal.dot(positions[i] - frame.center);
+    there[i] = above > -dx && above < height && is_over(frame, positions[i], scene_.dimension);
   }
   return there;
 }
@@ -244,14 +307,28 @@ Reseeding Simulation::reseed_stack() try {
   Reseeding::Cloud after;
   after.positions = seed(*solid, scene_.dimension, dx, s.particles_per_voxel, s.pattern,
                          s.seed + 1000003u * std::uint64_t(event_) + 500000u);
-  const double mass = std::accumulate(old.masses.begin(), old.masses.end(), 0.0);
-  after.masses.assign(after.positions.size(), mass / double(after.positions.size()));
   after.on_panel = on_panel(after.positions);
+  const auto old_of = nearest_particles(after.positions, old.positions, 1.5 * dx);
+  after.masses = share_masses(old, old_of, snows_.size());
 
+  std::map<std::pair<int, int>, ParticleBatch> batches;  // by event and kind
+  for (std::size_t i = 0; i < old_of.size(); ++i) {
+    const int event = old.events[old_of[i]], kind = kind_of(old, old_of[i]);
+    ParticleBatch& batch = batches[{event, kind}];
+    batch.positions.push_back(after.positions[i]);
+    batch.mass = after.masses[i];
+    batch.event = event;
+    batch.kind = kind;
+    after.densities.push_back(snows_[std::size_t(kind)].density);
+  }
   solver_->clear();
-  for (auto& [event, positions] : by_nearest_event(after.positions, old, 1.5 * dx))
-    solver_->add({std::move(positions), Vec3::Zero(), after.masses.front(), event});
-  Reseeding::Cloud before{std::move(old.positions), std::move(old.masses), {}};
+  for (const auto& [_, batch] : batches) solver_->add(batch);
+
+  Reseeding::Cloud before;
+  for (std::size_t i = 0; i < old.masses.size(); ++i)
+    before.densities.push_back(snows_[std::size_t(kind_of(old, i))].density);
+  before.positions = std::move(old.positions);
+  before.masses = std::move(old.masses);
   before.on_panel = on_panel(before.positions);
   return {std::move(before), std::move(after)};
 } catch (const InputError& error) {
@@ -265,10 +342,11 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
   bool pausing = false;
   while (true) {
     if (pausing && solver_->at_safe_point()) return RunEnd::paused;
-    if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_, scene_.snow);
+    if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
     if (rest_.due(solver_->time())) {
       const MotionSummary m = solver_->motion(scene_.events.rest_speed);
-      const double speed = m.rms_speed * std::sqrt(m.mass / std::max(event_mass_, 1e-300));
+      const double brought = event_mass_ > 0 ? event_mass_ : m.mass;
+      const double speed = m.rms_speed * std::sqrt(m.mass / std::max(brought, 1e-300));
       const bool rests = rest_.at_rest(solver_->time(), speed);
       if (rests || event_time() >= scene_.events.max_time) {
         running_ = false;
@@ -307,7 +385,7 @@ void Simulation::write_snapshots(const std::filesystem::path& folder, double int
 }
 
 void Simulation::write_vtp(const std::filesystem::path& file) const {
-  write_particles(file, *solver_, scene_.snow);
+  write_particles(file, *solver_);
 }
 
 }  // namespace snowshed

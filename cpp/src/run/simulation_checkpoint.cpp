@@ -14,7 +14,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   out.add("event", std::vector<std::int64_t>{event_, running_});
   const RestDetector::State r = rest_.state();
   out.add("run", std::vector<double>{event_start_, event_mass_, r.since, r.speed_at_start, r.speed,
-                                     r.next});
+                                     r.next, laid_height_});
   solver_->save(out);
   out.save(checkpoint);
 }
@@ -30,10 +30,11 @@ std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkp
                                               std::to_string(sim->scene_.events.count));
   sim->event_ = int(event[0]);
   sim->running_ = event[1] != 0;
-  const auto run = in.get<double>("run", 6);
+  const auto run = in.get<double>("run", 7);
   sim->event_start_ = run[0];
   sim->event_mass_ = run[1];
   sim->rest_.restore({run[2], run[3], run[4], run[5]});
+  sim->laid_height_ = run[6];
   sim->solver_->load(in);
   return sim;
 }

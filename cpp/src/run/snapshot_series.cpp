@@ -15,24 +15,25 @@ std::vector<To> converted(const std::vector<From>& from) {
 
 }  // namespace
 
-void write_particles(const std::filesystem::path& file, const Solver& solver, const Snow& snow) {
+void write_particles(const std::filesystem::path& file, const Solver& solver) {
   const ParticleState s = solver.state();
   std::vector<std::array<float, 3>> points;
-  std::vector<float> velocity, density;
+  std::vector<float> velocity;
   points.reserve(s.positions.size());
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     const Eigen::Vector3f x = s.positions[i].cast<float>(), v = s.velocities[i].cast<float>();
     points.push_back({x[0], x[1], x[2]});
     velocity.insert(velocity.end(), {v[0], v[1], v[2]});
-    density.push_back(float(snow.density / s.volume_ratios[i]));
   }
-  write_vtp(file, points,
-            {{"velocity", 3, std::move(velocity)},
-             {"event", 1, s.events},
-             {"density", 1, std::move(density)},
-             {"pressure", 1, converted<float>(s.pressures)},
-             {"volumetric_plastic_strain", 1, converted<float>(s.plastic_strains)},
-             {"id", 1, converted<std::int32_t>(s.ids)}});
+  std::vector<PointArray> arrays{
+      {"velocity", 3, std::move(velocity)},
+      {"event", 1, s.events},
+      {"density", 1, converted<float>(s.densities)},
+      {"pressure", 1, converted<float>(s.pressures)},
+      {"volumetric_plastic_strain", 1, converted<float>(s.plastic_strains)},
+      {"id", 1, converted<std::int32_t>(s.ids)}};
+  if (!s.kinds.empty()) arrays.push_back({"snow", 1, s.kinds});
+  write_vtp(file, points, arrays);
 }
 
 SnapshotSeries::SnapshotSeries(std::filesystem::path folder, double interval, double time)
@@ -43,11 +44,11 @@ SnapshotSeries::SnapshotSeries(std::filesystem::path folder, double interval, do
       series_((std::filesystem::create_directories(folder_),
                PvdSeries::reopen(folder_ / "snapshots.pvd", next_))) {}
 
-void SnapshotSeries::write(const Solver& solver, const Snow& snow) {
+void SnapshotSeries::write(const Solver& solver) {
   char name[32];
   std::snprintf(name, sizeof name, "snapshot_%06lld.vtp",
                 static_cast<long long>(std::llround(next_ / interval_)));
-  write_particles(folder_ / name, solver, snow);
+  write_particles(folder_ / name, solver);
   series_.append(solver.time(), name);
   while (next_ <= solver.time()) next_ += interval_;
 }

@@ -5,13 +5,12 @@
 
 #include "snowshed/io/pvd_series.hpp"
 #include "snowshed/mpm/solver.hpp"
-#include "snowshed/scene/scene.hpp"
 
 namespace snowshed {
 
 /// Writes all of a solver's particles with velocity, event, density (kg/m3), pressure (Pa),
-/// volumetric plastic strain and id.
-void write_particles(const std::filesystem::path& file, const Solver&, const Snow&);
+/// volumetric plastic strain, id and, where there are several, which snow it is.
+void write_particles(const std::filesystem::path& file, const Solver&);
 
 class SnapshotSeries {
  public:
@@ -19,7 +18,7 @@ class SnapshotSeries {
   SnapshotSeries(std::filesystem::path folder, double interval, double time);
 
   bool due(double time) const { return time >= next_; }
-  void write(const Solver&, const Snow&);
+  void write(const Solver&);
 
  private:
   std::filesystem::path folder_;

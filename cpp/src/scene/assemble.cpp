@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/support/error.hpp"
@@ -47,20 +48,35 @@ ObstacleSpec panel_obstacle(const Scene& scene) {
   return obstacle;
 }
 
-BodySpec slab_body(const Scene& scene, double lift) {
+/// A layer of the slab whose underside is `height` above the panel.
+BodySpec layer_body(const Scene& scene, const Layer& layer, double height) {
   const Slab& slab = *scene.slab;
   const PanelFrame frame = panel_frame(scene);
   ShapeSpec box;
   box.type = "box";
-  box.size = {slab.length, scene.dimension == 3 ? slab.width : 0.0, slab.thickness};
+  box.size = {slab.length, scene.dimension == 3 ? slab.width : 0.0, layer.thickness};
   BodySpec body;
-  body.event = 0;
+  body.event = layer.event;
+  body.snow = layer.snow;
   body.shape.type = "transform";
   body.shape.shapes = {box};
   body.shape.axis = Vec3::UnitY();
   body.shape.angle = scene.panel->tilt;
-  body.shape.translate = frame.center + (lift + slab.thickness / 2.0) * frame.normal;
+  body.shape.translate = frame.center + (height + layer.thickness / 2.0) * frame.normal;
   return body;
+}
+
+/// The slab's layers; one that is given by its thickness has one of them.
+std::vector<Layer> layers_of(const Slab& slab) {
+  return slab.layers.empty() ? std::vector<Layer>{{slab.thickness, std::nullopt, 0}} : slab.layers;
+}
+
+bool are_same(const Snow& a, const Snow& b) {
+  const auto values = [](const Snow& s) {
+    return std::tie(s.model, s.density, s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
+                    s.preconsolidation_pressure, s.cohesion, s.hardening_factor);
+  };
+  return values(a) == values(b);
 }
 
 }  // namespace
@@ -90,12 +106,51 @@ std::vector<ObstacleSpec> assemble_obstacles(const Scene& scene) {
   return obstacles;
 }
 
-std::vector<BodySpec> assemble_bodies(const Scene& scene, int event, double lift) {
+std::vector<BodySpec> assemble_slab(const Scene& scene, int event, double lift) {
   std::vector<BodySpec> bodies;
-  if (scene.slab) bodies.push_back(slab_body(resolve(scene), lift));
-  for (const auto& body : scene.bodies)
-    if (body.event == 0 || body.event == event) bodies.push_back(body);
+  if (!scene.slab) return bodies;
+  const Scene resolved = resolve(scene);
+  double height = lift;
+  for (const Layer& layer : layers_of(*scene.slab)) {
+    if (!is_laid_in(layer, event)) continue;
+    bodies.push_back(layer_body(resolved, layer, height));
+    height += layer.thickness;
+  }
   return bodies;
+}
+
+double slab_thickness(const Slab& slab, int event) {
+  double thickness = 0.0;
+  for (const Layer& layer : layers_of(slab))
+    if (is_laid_in(layer, event)) thickness += layer.thickness;
+  return thickness;
+}
+
+std::vector<BodySpec> assemble_bodies(const Scene& scene, int event, double lift) {
+  std::vector<BodySpec> bodies = assemble_slab(scene, event, lift);
+  for (const auto& body : scene.bodies)
+    if (is_laid_in(body, event)) bodies.push_back(body);
+  return bodies;
+}
+
+std::vector<Snow> assemble_snows(const Scene& scene) {
+  std::vector<Snow> snows;
+  const auto meet = [&](const auto& part) {
+    const Snow& snow = snow_of(scene, part);
+    if (std::none_of(snows.begin(), snows.end(),
+                     [&](const Snow& known) { return are_same(known, snow); }))
+      snows.push_back(snow);
+  };
+  if (scene.slab)
+    for (const Layer& layer : layers_of(*scene.slab)) meet(layer);
+  for (const BodySpec& body : scene.bodies) meet(body);
+  return snows;
+}
+
+int kind_of(const Snow& snow, const std::vector<Snow>& snows) {
+  const auto found = std::find_if(snows.begin(), snows.end(),
+                                  [&](const Snow& known) { return are_same(known, snow); });
+  return int(found - snows.begin());
 }
 
 }  // namespace snowshed

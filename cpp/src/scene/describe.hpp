@@ -133,6 +133,7 @@ void describe(V& v, BodySpec& b) {
   v.vector("velocity", b.velocity, "m/s", allowed::speed, "Initial velocity");
   v.integer("event", b.event, non_negative.up_to(1000),
             "Event at whose start it appears, 1 the first; 0: at the start of every event");
+  v.optional("snow", b.snow, "Snow of its own; what it leaves out is as in the scene's snow");
 }
 
 template <class V>
@@ -151,12 +152,22 @@ void describe(V& v, Panel& p) {
 }
 
 template <class V>
-void describe(V& v, Slab& s) {
-  v.number("thickness", s.thickness, "m", allowed::size.required(),
+void describe(V& v, Layer& l) {
+  v.number("thickness", l.thickness, "m", allowed::size.required(),
            "Thickness, normal to the panel");
+  v.optional("snow", l.snow, "Snow of its own; what it leaves out is as in the scene's snow");
+  v.integer("event", l.event, non_negative.up_to(1000),
+            "Event at whose start it is laid, 1 the first; 0: at the start of every event");
+}
+
+template <class V>
+void describe(V& v, Slab& s) {
+  v.number("thickness", s.thickness, "m", allowed::size_or_zero,
+           "Thickness, normal to the panel; 0: that of the layers");
   v.number("length", s.length, "m", allowed::size_or_zero, "Length; 0: as long as the panel");
   v.number("width", s.width, "m", allowed::size_or_zero,
            "Width; 0: two thirds of the panel's; ignored in 2D");
+  v.list("layers", s.layers, between(0, 1000), "In place of a thickness, layers from the panel up");
 }
 
 template <class V>
@@ -231,7 +242,7 @@ void describe(V& v, Scene& s) {
   v.object("snow", s.snow, Need::optional, "The material");
   v.optional("panel", s.panel,
              "The panel; its centre is the origin of x, which points down the slide direction");
-  v.optional("slab", s.slab, "The slab that lies centred on the panel in every event");
+  v.optional("slab", s.slab, "The slab laid on the panel, centred, at the start of every event");
   v.optional("ground", s.ground, "An inclined plane through the origin");
   v.list("obstacles", s.obstacles, between(0, 10000), "Further solids that snow collides with");
   v.list("bodies", s.bodies, between(0, 10000), "Further bodies of snow");

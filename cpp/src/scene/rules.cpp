@@ -1,6 +1,7 @@
 #include "scene/rules.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "scene/locator.hpp"
@@ -23,6 +24,7 @@ class Rules {
     for (const auto& obstacle : scene_.obstacles) check_obstacle(obstacle);
     check_names();
     for (const auto& body : scene_.bodies) check_body(body);
+    check_snows();
     check_seeding(scene_.seeding);
     if (scene_.events.rest_time > scene_.events.max_time)
       fail(scene_.events.rest_time, show(scene_.events.rest_time) + " s is longer than an event (" +
@@ -59,7 +61,49 @@ class Rules {
     if (!scene_.panel) fail(slab, "there is no " + path_of(scene_, scene_.panel) + " to lie on");
     check_fits(slab.length, scene_.panel->length);
     if (in_3d()) check_fits(slab.width, scene_.panel->width);
-    check_in_domain(slab, assemble_bodies(scene_, 1).front().shape);
+    check_layers(slab);
+    check_in_domain(slab, thickest_slab());
+  }
+
+  void check_layers(const Slab& slab) const {
+    if (slab.layers.empty() && slab.thickness == 0.0)
+      fail(slab.thickness,
+           "missing: a thickness, or " + path_of(scene_, slab.layers) + ", is required");
+    if (!slab.layers.empty() && slab.thickness > 0.0)
+      fail(slab.thickness, show(slab.thickness) + " m and " + path_of(scene_, slab.layers) +
+                               " are both given; the slab is as thick as its layers together");
+    for (const auto& layer : slab.layers) check_event(layer.event);
+  }
+
+  /// Of all events, as one solid.
+  ShapeSpec thickest_slab() const {
+    const auto& layers = scene_.slab->layers;
+    double always = scene_.slab->thickness;
+    std::map<int, double> of_event;
+    for (const auto& layer : layers) {
+      double& thickness = layer.event == 0 ? always : of_event[layer.event];
+      thickness += layer.thickness;
+    }
+    double most = 0.0;
+    for (const auto& [event, thickness] : of_event) most = std::max(most, thickness);
+    Scene whole = scene_;
+    whole.slab->layers.clear();
+    whole.slab->thickness = always + most;
+    return assemble_slab(whole, 1).front().shape;
+  }
+
+  void check_event(const int& event) const {
+    if (event > scene_.events.count)
+      fail(event, show(event) + " is beyond the last event (" +
+                      path_of(scene_, scene_.events.count) + " = " + show(scene_.events.count) +
+                      ")");
+  }
+
+  void check_snows() const {
+    const std::size_t snows = assemble_snows(scene_).size();
+    if (snows > most_snows)
+      fail(scene_, std::to_string(snows) + " different snows in slab and bodies; at most " +
+                       std::to_string(most_snows) + " are allowed");
   }
 
   void check_fits(const double& slab, const double& panel) const {
@@ -74,13 +118,13 @@ class Rules {
                            " m below the ground, which is steeper");
   }
 
-  /// Written in full, a shape takes up to 13 values: a scene must not grow, by its defaults, beyond
-  /// what the JSON parser reads (max_values), or no run of it could be resumed.
+  /// Written in full, a shape takes up to 13 values, and snow fewer: a scene must not grow, by its
+  /// defaults, beyond what the JSON parser reads (max_values), or no run of it could be resumed.
   void check_number_of_shapes() const {
     constexpr std::size_t most = 50'000;
     std::size_t shapes = 0;
     for (const auto& obstacle : scene_.obstacles) shapes += count(obstacle.shape);
-    for (const auto& body : scene_.bodies) shapes += count(body.shape);
+    for (const auto& body : scene_.bodies) shapes += count(body.shape) + body.snow.has_value();
     if (shapes > most)
       fail(scene_, std::to_string(shapes) + " shapes in all; at most " + std::to_string(most) +
                        " are allowed");
@@ -117,10 +161,7 @@ class Rules {
     if (bounds && !bounds->sizes().allFinite())
       fail(body.shape, "an unbounded shape cannot be filled with snow");
     check_in_domain(body.shape, body.shape);
-    if (body.event > scene_.events.count)
-      fail(body.event, show(body.event) + " is beyond the last event (" +
-                           path_of(scene_, scene_.events.count) + " = " +
-                           show(scene_.events.count) + ")");
+    check_event(body.event);
   }
 
   template <class T>

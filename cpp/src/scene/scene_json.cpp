@@ -32,6 +32,24 @@ void look_in(const std::filesystem::path& folder, ShapeSpec& shape) {
   for (auto& part : shape.shapes) look_in(folder, part);
 }
 
+/// Completes snow of a layer or body by the scene's, both as they were given.
+void complete_snow(const nlohmann::json& of_scene, nlohmann::json& part) {
+  if (!part.is_object() || !part.contains("snow") || !part["snow"].is_object()) return;
+  nlohmann::json whole = of_scene;
+  whole.update(part["snow"]);
+  part["snow"] = std::move(whole);
+}
+
+void complete_snow(nlohmann::json& scene) {
+  if (!scene.is_object() || !scene.contains("snow") || !scene["snow"].is_object()) return;
+  const nlohmann::json of_scene = scene["snow"];
+  for (const char* list : {"/slab/layers", "/bodies"}) {
+    const nlohmann::json::json_pointer place(list);
+    if (!scene.contains(place) || !scene[place].is_array()) continue;
+    for (auto& part : scene[place]) complete_snow(of_scene, part);
+  }
+}
+
 InputError naming_file(const InputError& error, const std::string& file) {
   if (error.where().rfind(file, 0) == 0) return error;
   const std::string message = error.what();
@@ -42,7 +60,9 @@ InputError naming_file(const InputError& error, const std::string& file) {
 
 Scene parse_scene(const std::string& text, const std::string& name) {
   Scene scene;
-  Reader::read(parse_json(text, name), "", scene.dimension, scene);
+  nlohmann::json json = parse_json(text, name);
+  complete_snow(json);
+  Reader::read(json, "", scene.dimension, scene);
   check_rules(scene);
   return scene;
 }
@@ -66,6 +86,11 @@ std::string write_scene(const Scene& scene) {
   validate(scene);
   Scene copy = scene;  // visitors see members they may write to
   return pretty(Writer::write(copy, copy.dimension));
+}
+
+std::string write_snow(const Snow& snow) {
+  Snow copy = snow;
+  return pretty(Writer::write(copy, 3));
 }
 
 void validate(const Scene& scene) {

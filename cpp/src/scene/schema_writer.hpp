@@ -86,7 +86,10 @@ class SchemaWriter {
 
   template <class T>
   void optional(const char* key, std::optional<T>&, const char* doc) {
-    add(key, schema_of<T>(), doc);
+    json schema = schema_of<T>();
+    if constexpr (std::is_same_v<T, Snow>)  // of a part: there the defaults are the scene's snow
+      for (auto& [name, property] : schema["properties"].items()) property.erase("default");
+    add(key, std::move(schema), doc);
   }
 
   template <class T>

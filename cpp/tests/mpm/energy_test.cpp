@@ -79,8 +79,8 @@ TEST(Energy, BooksOfACollapsingColumnClose) {
                          Way{3, Precision::float32}}) {
     SolverOptions o = options_for(way);
     o.energy = true;
-    o.snow.preconsolidation_pressure = 200;  // too weak to stand
-    o.snow.cohesion = 0;
+    o.snows[0].preconsolidation_pressure = 200;  // too weak to stand
+    o.snows[0].cohesion = 0;
     const auto solver =
         make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     const double height = way.dimension == 2 ? 0.25 : 0.12;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mpm/snow_kind.hpp"
 #include "mpm/solver_testing.hpp"
 #include "snowshed/mpm/particles.hpp"
 
@@ -40,8 +41,8 @@ void expect_exact_sums(const Way& way) {
       select_kernels<T>({D, way.transfer, way.basis, SnowModel::cam_clay, false});
   const int nodes = tile_nodes<D>(way.basis), edge = tile_edge<D>(way.basis);
   AlignedVector<T> tile(std::size_t(nodes) * node_values, T(7));  // scatter must clear it
-  StepParameters<T> step{
-      T(1e-4), T(0.01), T(9.81), T(0.99), T(1 / 210.0), T(0.02), {1e6, 0.3, 0.5, 0.2, 0.1}};
+  const auto snow = snow_constants<T>(Snow(), D);
+  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99), T(0.02), &snow};
   BlockStats stats;
   kernels.scatter(step, particles.view(), 0, n, tile.data(), stats);
   ASSERT_FALSE(stats.escaped);
@@ -89,8 +90,8 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
   const Kernels<float> kernels =
       select_kernels<float>({2, Transfer::flip, Basis::quadratic, SnowModel::cam_clay, false});
   AlignedVector<float> tile(std::size_t(tile_nodes<2>(Basis::quadratic)) * node_values);
-  const StepParameters<float> step{
-      1e-4f, 0.01f, 9.81f, 0.99f, 1 / 210.0f, 0.02f, {1e6, 0.3, 0.5, 0.2, 0.1}};
+  const auto snow = snow_constants<float>(Snow(), 2);
+  const StepParameters<float> step{1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, &snow};
   for (float cell : {-1.01f, 9.0f, std::nanf("")}) {
     particles.cell[1][2] = cell;
     BlockStats stats;

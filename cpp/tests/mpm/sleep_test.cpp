@@ -15,15 +15,13 @@ const Way two_d{2, Precision::float32}, three_d{3, Precision::float32};
 
 SolverOptions sleepy(const Way& way, double speed = sleep_speed) {
   SolverOptions o = options_for(way);
-  o.snow.model = SnowModel::cam_clay;
+  o.snows[0].model = SnowModel::cam_clay;
   o.numerics.sleep_speed = speed;
   o.energy = true;
   return o;
 }
 
-Obstacle floor() {
-  return fixed(make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1)), Condition::sticky);
-}
+Obstacle floor() { return fixed(make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1)), Condition::sticky); }
 
 /// A low wall of snow, resting on the floor.
 ParticleBatch wall(const Way& way) {
@@ -144,7 +142,8 @@ TEST(Sleep, AKickWakes) {
 }
 
 TEST(Sleep, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const auto one = wall_under_lump(three_d, sleep_speed), two = wall_under_lump(three_d, sleep_speed, 2);
+  const auto one = wall_under_lump(three_d, sleep_speed),
+             two = wall_under_lump(three_d, sleep_speed, 2);
   for (const auto* solver : {&one, &two}) run_until(**solver, 0.2);
   EXPECT_GT(one->counters().slept_updates, 0);
   EXPECT_EQ(two->counters().slept_updates, one->counters().slept_updates);

@@ -130,7 +130,7 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
     SolverOptions o = options_for(way);
     o.gravity = 0;
     o.numerics.flip_ratio = 1;  // each percent of PIC damps a spin of so few cells visibly
-    o.snow.model = SnowModel::elastic;
+    o.snows[0].model = SnowModel::elastic;
     const auto solver = make_solver(o, {});
     const ParticleBatch box =
         filled_box(2, Vec3(-radius, 0, -radius), Vec3(radius, 0, radius), 0.005);
@@ -165,9 +165,9 @@ TEST(Solver, AnElasticBarVibratesAtItsNaturalFrequency) {
   constexpr double length = 0.6, amplitude = 0.05;
   SolverOptions o = options_for({2, Precision::float64});
   o.gravity = 0;
-  o.snow.model = SnowModel::elastic;
-  o.snow.poissons_ratio = 0;
-  const double c = std::sqrt(o.snow.youngs_modulus / o.snow.density);
+  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].poissons_ratio = 0;
+  const double c = std::sqrt(o.snows[0].youngs_modulus / o.snows[0].density);
   const double frequency = c / (2 * length);
   const auto solver = make_solver(o, {});
   const ParticleBatch bar = filled_box(2, Vec3(0, 0, 0), Vec3(length, 0, 0.03), 0.005);
@@ -210,11 +210,11 @@ TEST(Solver, AColumnCarriesItsWeight) {
   // longest periods, 4 H/c, is the static state, for the weight sin^2 filters all modes out.
   constexpr double height = 0.2, width = 0.04, spacing = 0.005;
   SolverOptions o = options_for({2, Precision::float64});
-  o.snow.model = SnowModel::elastic;
-  o.snow.youngs_modulus = 1e5;
-  const double nu = o.snow.poissons_ratio, mu = 1e5 / (2 * (1 + nu));
+  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].youngs_modulus = 1e5;
+  const double nu = o.snows[0].poissons_ratio, mu = 1e5 / (2 * (1 + nu));
   const double lambda = 1e5 * nu / ((1 + nu) * (1 - 2 * nu)), s = lambda + 2 * mu;
-  const double weight = o.snow.density * o.gravity;
+  const double weight = o.snows[0].density * o.gravity;
   const auto solver =
       make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
                       fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::slip),
@@ -223,7 +223,7 @@ TEST(Solver, AColumnCarriesItsWeight) {
   const ParticleState start = solver->state();
   const std::size_t n = start.positions.size();
   std::vector<double> pressure(n), settlement(n);
-  const double duration = 16 * height / std::sqrt(s / o.snow.density);
+  const double duration = 16 * height / std::sqrt(s / o.snows[0].density);
   double covered = 0;
   while (solver->time() < duration) {
     run_steps(*solver, 8);
@@ -315,7 +315,7 @@ TEST_F(SolverFiles, GoesOnFromACheckpointWithTheSameBits) {
 TEST(Solver, AViolentImpactStaysFinite) {
   for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
     SolverOptions o = options_for({2, Precision::float32, transfer});
-    o.snow.youngs_modulus = 1e4;
+    o.snows[0].youngs_modulus = 1e4;
     const auto solver =
         make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     ParticleBatch batch = filled_box(2, Vec3(0, 0, 0.02), Vec3(0.1, 0, 0.12), 0.005);

@@ -52,7 +52,7 @@ TEST(TimeStep, FastSnowMovesLessThanHalfACell) {
 double pressure_from_round_off(Transfer transfer, Basis basis, double fraction, double factor) {
   SolverOptions o = options_for({2, Precision::float64, transfer, basis});
   o.gravity = 0;
-  o.snow.model = SnowModel::elastic;
+  o.snows[0].model = SnowModel::elastic;
   o.numerics.step_factor = factor;
   o.numerics.strain_limit = 1e6;
   const auto solver = make_solver(o, {});

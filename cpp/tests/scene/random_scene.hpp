@@ -105,6 +105,11 @@ inline Scene random_scene(std::uint64_t seed) {
   if (scene.slab) {
     scene.slab->length = std::min(scene.slab->length, scene.panel->length);
     scene.slab->width = std::min(scene.slab->width, scene.panel->width);
+    for (auto& layer : scene.slab->layers) layer.event = std::min(layer.event, scene.events.count);
+    if (!scene.slab->layers.empty())
+      scene.slab->thickness = 0.0;
+    else if (scene.slab->thickness == 0.0)
+      scene.slab->thickness = 0.1;
   }
   if (!scene.slab) describe(randomizer, scene.bodies.emplace_back());
   for (auto& body : scene.bodies) body.event = std::min(body.event, scene.events.count);

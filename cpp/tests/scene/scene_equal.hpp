@@ -26,16 +26,20 @@ inline auto tied(const ObstacleSpec& s) {
   return std::tie(a, b, c, d, e);
 }
 inline auto tied(const BodySpec& s) {
-  auto& [a, b, c] = s;
-  return std::tie(a, b, c);
+  auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
 }
 inline auto tied(const Panel& s) {
   auto& [a, b, c, d, e, f, g] = s;
   return std::tie(a, b, c, d, e, f, g);
 }
-inline auto tied(const Slab& s) {
+inline auto tied(const Layer& s) {
   auto& [a, b, c] = s;
   return std::tie(a, b, c);
+}
+inline auto tied(const Slab& s) {
+  auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
 }
 inline auto tied(const Ground& s) {
   auto& [a, b, c] = s;

@@ -34,6 +34,23 @@ TEST(SceneJson, MissingKeysTakeTheMembersDefaults) {
   EXPECT_TRUE(parse_scene(smallest) == expected);
 }
 
+TEST(SceneJson, SnowOfAPartLeavesTheRestToTheScenes) {
+  const Scene scene = parse_scene(R"({"snowshed": 1,
+    "slab": {"layers": [{"thickness": 0.1}, {"thickness": 0.2, "event": 1, "snow": {"density": 90}}]},
+    "bodies": [{"shape": {"type": "sphere", "radius": 1}, "snow": {"model": "elastic"}}],
+    "snow": {"cohesion": 0.3, "density": 300},
+    "panel": {"height": 1, "length": 1, "width": 1}})");
+  ASSERT_EQ(scene.slab->layers.size(), 2u);
+  EXPECT_FALSE(scene.slab->layers[0].snow);
+  EXPECT_EQ(scene.slab->layers[0].event, 0);
+  Snow light = scene.snow, elastic = scene.snow;
+  light.density = 90;
+  elastic.model = SnowModel::elastic;
+  EXPECT_EQ(light.cohesion, 0.3);
+  EXPECT_TRUE(scene.slab->layers[1] == (Layer{0.2, light, 1}));
+  EXPECT_TRUE(scene.bodies[0].snow == elastic);
+}
+
 TEST(SceneJson, EveryFieldIsRead) {
   const Scene scene = parse_scene(R"({
     "snowshed": 1, "dimension": 3, "title": "all", "gravity": 1.62,
@@ -68,9 +85,8 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(*scene.ground == (Ground{-5, Condition::slip, 0.4}));
   EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
   EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
-  EXPECT_TRUE(scene.numerics ==
-              (Numerics{0.02, Precision::float64, Transfer::apic, 0.5, Basis::cubic, 0.3, 0.1, 0.4,
-                        0.7, 3}));
+  EXPECT_TRUE(scene.numerics == (Numerics{0.02, Precision::float64, Transfer::apic, 0.5,
+                                          Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, true, 30}));
 

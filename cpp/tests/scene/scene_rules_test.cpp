@@ -55,6 +55,28 @@ INSTANTIATE_TEST_SUITE_P(
          [](Scene& s) { s.slab->length = 2.5; }},
         {"/slab/width", "3.5 m is more than the panel has (/panel/width = 3 m)",
          [](Scene& s) { s.slab->width = 3.5; }},
+        {"/slab/thickness", "missing: a thickness, or /slab/layers, is required",
+         [](Scene& s) { s.slab->thickness = 0; }},
+        {"/slab/thickness", "0.1 m and /slab/layers are both given",
+         [](Scene& s) { s.slab->layers.emplace_back().thickness = 0.1; }},
+        {"/slab/layers/1/event", "2 is beyond the last event (/events/count = 1)",
+         [](Scene& s) {
+           s.slab->thickness = 0;
+           s.slab->layers = {{0.1, {}, 1}, {0.1, {}, 2}};
+         }},
+        {"/slab", "from z = 1 to 2.55563 m, beyond the domain (0 to 2.5 m)",
+         [](Scene& s) {
+           s.slab->thickness = 0;
+           s.slab->layers = {{0.1, {}, 0}, {0.1, {}, 1}, {0.1, {}, 2}};
+           s.events.count = 2;
+           s.domain->max.z() = 2.5;
+         }},
+        {"/", "257 different snows in slab and bodies; at most 256 are allowed",
+         [](Scene& s) {
+           s.slab->thickness = 0;
+           s.slab->layers.resize(600, {1e-4, s.snow, 0});
+           for (std::size_t i = 0; i < 256; ++i) s.slab->layers[2 * i].snow->density += 1.0 + i;
+         }},
         {"/slab", "from z = 1 to 2.48492 m, beyond the domain (0 to 2.4 m)",
          [](Scene& s) { s.domain->max.z() = 2.4; }},
         {"/bodies/0/shape", "beyond the domain (-1.9 to 2 m)",

@@ -1,8 +1,8 @@
 """The scene of a season: one slide-off for every release, each with its own slab.
 
-A scene has one snow, and its slab is the same in every event. Here every event brings a body of its
-own instead, and all have one density: the mean over what was released, by volume. Each slab has the
-mass that gathered; its thickness is what that mass has at the mean density.
+Every event brings a body of its own, and all have one density: the mean over what was released, by
+volume. Each slab has the mass that gathered; its thickness is what that mass has at the mean
+density.
 """
 
 from __future__ import annotations

@@ -200,7 +200,13 @@ def _slab_thickness(data: Mapping[str, Any]) -> float:
         raise InputError(
             "--accuracy: the scene has no slab, and dx is chosen by its thickness; give --dx"
         )
-    return float(data["slab"]["thickness"])
+    slab = data["slab"]
+    events = {layer["event"] for layer in slab["layers"]}
+    of_each = [
+        sum(layer["thickness"] for layer in slab["layers"] if layer["event"] in (0, event))
+        for event in (events - {0} or {1})
+    ]
+    return float(slab["thickness"] or min(of_each))
 
 
 def _nearest(stacks: list[RecordedStack], data: Mapping[str, Any]) -> list[RecordedStack]:

@@ -200,7 +200,6 @@ class _Tape:
     def __init__(self, simulation: _core.Simulation, scene: Mapping[str, Any]) -> None:
         self._simulation = simulation
         self._dx = float(scene["numerics"]["dx"])
-        self._initial_density = float(scene["snow"]["density"])
 
     def measure_present(self) -> StackMeasure:
         """Measure the stack as it is."""
@@ -215,7 +214,7 @@ class _Tape:
                 reseeded[f"positions_{when}"],
                 masses[when],
                 reseeded[f"on_panel_{when}"],
-                np.full(len(masses[when]), self._initial_density),
+                reseeded[f"densities_{when}"],
             )
             for when in masses
         }

@@ -18,13 +18,16 @@ struct PQ {
   V p, q;
 };
 
-template <class T>
+/// The constants are scalars, the same for all lanes of a state, or lanes themselves, where each
+/// particle has its own.
+template <class C>
 struct CamClay {
-  Elasticity<T> elastic;
-  T m2 = 0;         ///< M^2, M the slope of the critical state line
-  T beta = 0;       ///< cohesion: tensile strength over p0
-  T xi = 1;         ///< hardening factor
-  T hardening = 0;  ///< K, Pa
+  using T = Scalar<C>;
+  Elasticity<C> elastic;
+  C m2{};         ///< M^2, M the slope of the critical state line
+  C beta{};       ///< cohesion: tensile strength over p0
+  C xi{};         ///< hardening factor
+  C hardening{};  ///< K, Pa
 
   static constexpr bool plastic = true;
 
@@ -34,11 +37,11 @@ struct CamClay {
                       double cohesion, double hardening_factor, int dimension) {
     const double slope = critical_state_slope > 1e-4 ? critical_state_slope : 1e-4;
     CamClay c;
-    c.elastic = Elasticity<T>::from(youngs_modulus, poissons_ratio, dimension);
-    c.m2 = T(slope * slope);
-    c.beta = T(cohesion);
-    c.xi = T(hardening_factor);
-    c.hardening = T(youngs_modulus / (3 - 6 * poissons_ratio));
+    c.elastic = Elasticity<C>::from(youngs_modulus, poissons_ratio, dimension);
+    c.m2 = C(slope * slope);
+    c.beta = C(cohesion);
+    c.xi = C(hardening_factor);
+    c.hardening = C(youngs_modulus / (3 - 6 * poissons_ratio));
     return c;
   }
 
@@ -148,7 +151,7 @@ struct CamClay {
                          const V& far, const V& skip) const {
     constexpr T tolerance = sizeof(T) == 4 ? T(3e-7) : T(1e-15);
     const V zero = broadcast<V>(T(0));
-    const T c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
+    const C c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
     // Close to the root a change of pressures that rounding hides ends the search.
     const V unseen = T(0.2) * tolerance * (abs(trial.p) + beta * p0_old);
     V near = zero, end = far;
@@ -203,8 +206,9 @@ struct CamClay {
       const auto usable = (newton > lo) & (newton < hi) & before_centre;
       const V next = select(usable, newton, V(T(0.5) * (near + end)));
       const V change = abs(V(next - d));
-      const auto moved = (change > tolerance * abs(next)) &
-                         ((change * (elastic.bulk - p0_slope) > unseen) | (abs(y) > T(0.01) * size));
+      const auto moved =
+          (change > tolerance * abs(next)) &
+          ((change * (elastic.bulk - p0_slope) > unseen) | (abs(y) > T(0.01) * size));
       active = active & !found;
       d = select(active, next, d);
       active = active & moved;

@@ -8,12 +8,12 @@
 SNOWSHED_VARIANT_BEGIN
 
 /// Elastic constants in `dimension` D. Two dimensions are plane strain with all invariants taken
-/// in the plane, as in the thesis: p = -tr(tau)/D.
+/// in the plane, as in the thesis: p = -tr(tau)/D. T is a scalar, or lanes that each have theirs.
 template <class T>
 struct Elasticity {
-  T lambda = 0;  ///< Lame's first parameter, Pa
-  T mu = 0;      ///< shear modulus, Pa
-  T bulk = 0;    ///< K_d = lambda + 2 mu/d, Pa
+  T lambda{};  ///< Lame's first parameter, Pa
+  T mu{};      ///< shear modulus, Pa
+  T bulk{};    ///< K_d = lambda + 2 mu/d, Pa
 
   /// From Young's modulus (Pa) and Poisson's ratio. The thesis's (1.1.34) prints mu on both
   /// sides; E is meant.

@@ -52,19 +52,22 @@ struct ParticleView {
   T* strain[6];  // b - I, b the elastic left Cauchy-Green tensor
   T* plastic;    // volumetric plastic strain; plastic laws only
   T* mass;
+  const std::uint8_t* kind;  // several snows only: which of them
 };
 
-/// Constants of the material, in double; kernels derive theirs.
-struct MaterialConstants {
-  double youngs_modulus, poissons_ratio, critical_state_slope, cohesion, hardening_factor;
+/// What the kernels need of a snow. C is a scalar, or lanes: of the particles of a chunk.
+template <class C>
+struct SnowConstants {
+  C lambda, mu, bulk;         // Pa, see Elasticity
+  C m2, beta, xi, hardening;  // see CamClay
+  C specific_volume;          // m3/kg, before any deformation
 };
 
 template <class T>
 struct StepParameters {
   T dt, dx, gravity, flip_ratio;
-  T specific_volume;  // initial, m3/kg
-  T friction_rate;    // dt over the friction memory, see NodeKernels::apply
-  MaterialConstants material;
+  T friction_rate;                // dt over the friction memory, see NodeKernels::apply
+  const SnowConstants<T>* snows;  // by kind
 };
 
 /// Largest norm of the elastic Hencky strain that single precision still resolves: compression to
@@ -98,8 +101,8 @@ struct NodeStats {
 
 /// How the nodes of a step would have moved a block of particles that sleeps: means over its mass.
 struct CarriedMotion {
-  double speed_squared = 0;               // m2/s2
-  double change[3] = {0.0, 0.0, 0.0};     // of its velocity in the step, by all forces, m/s
+  double speed_squared = 0;            // m2/s2
+  double change[3] = {0.0, 0.0, 0.0};  // of its velocity in the step, by all forces, m/s
 };
 
 /// A node that an obstacle constrains.
@@ -146,6 +149,7 @@ struct KernelChoice {
   Basis basis;
   SnowModel model;
   bool energy;
+  bool several_snows = false;  // of whatever model
 };
 
 /// The best build of the chosen kernels for this machine.

@@ -30,8 +30,9 @@ struct Particles {
   AlignedVector<T> mass;                             // kg (per metre of width in 2D)
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;  // in which each was released
+  AlignedVector<std::uint8_t> kind;    // several snows only: which of them each is
 
-  bool has_affine = false, has_plastic = false;
+  bool has_affine = false, has_plastic = false, has_kind = false;
 
   std::size_t size() const { return mass.size(); }
 
@@ -59,6 +60,7 @@ struct Particles {
     for (int k = 0; k < D * D; ++k) v.affine[k] = affine[k].data();
     v.plastic = plastic.data();
     v.mass = mass.data();
+    v.kind = kind.data();
     return v;
   }
 
@@ -115,6 +117,7 @@ struct Particles {
     f("mass", self.mass);
     f("id", self.id);
     f("event", self.event);
+    if (self.has_kind) f("kind", self.kind);
   }
 };
 

@@ -18,18 +18,19 @@ class BinaryReader;
 
 struct SolverOptions {
   int dimension = 3;
-  double gravity = 9.81;  // m/s2, along -z
-  Snow snow;
+  double gravity = 9.81;            // m/s2, along -z
+  std::vector<Snow> snows{Snow()};  // by kind; at least one, at most `most_snows`
   Numerics numerics;
   bool energy = false;  // keep energy books
 };
 
-/// Particles to add: equal masses, one velocity.
+/// Particles to add: equal masses, one velocity, one kind of snow.
 struct ParticleBatch {
   std::vector<Vec3> positions;   // m
   Vec3 velocity = Vec3::Zero();  // m/s
   double mass = 0;               // kg each (per metre of width in 2D)
   int event = 1;
+  int kind = 0;
 };
 
 /// A copy of the particles for the outside, in double, ordered by id.
@@ -37,11 +38,13 @@ struct ParticleState {
   std::vector<Vec3> positions, velocities;  // m, m/s
   std::vector<double> masses;               // kg
   std::vector<double> volume_ratios;        // current over initial volume
+  std::vector<double> densities;            // kg/m3, current
   std::vector<double> plastic_strains;      // volumetric, compaction negative
   std::vector<double> pressures;            // Kirchhoff, Pa, compression positive
   std::vector<Mat3> affine;                 // APIC's C, 1/s; empty with FLIP
   std::vector<std::uint32_t> ids;
   std::vector<std::uint16_t> events;
+  std::vector<std::uint8_t> kinds;  // which of the snows each is; empty where there is only one
 };
 
 /// How much the snow moves.
@@ -56,7 +59,7 @@ struct StepCounters {
   std::int64_t steps = 0, rejected = 0, sorts = 0;
   std::int64_t particle_updates = 0;  // of particles that were awake
   std::int64_t slept_updates = 0;     // that sleeping particles did not need
-  double smallest_dt = 0;  // s
+  double smallest_dt = 0;             // s
 };
 
 class Solver {

@@ -11,7 +11,7 @@ namespace snowshed {
 struct Forecast {
   std::vector<double> particles;  // new in each event
   double total_particles = 0.0;   // sum over the events, what the last one carries
-  double wave_speed = 0.0;        // m/s, elastic, of the initial snow
+  double wave_speed = 0.0;        // m/s, elastic, of the initial snow; the fastest
   double time_step = 0.0;         // s
   bool slides = false;            // gravity overcomes the panel's friction
   double slide_time = 0.0;        // s, until the slab's rear leaves the panel
@@ -28,7 +28,7 @@ struct Forecast {
 Forecast forecast(const Scene& scene);
 Forecast forecast(const Scene& scene, std::vector<double> particles);
 
-/// The first time step of a scene at rest (mpm/time_step.hpp), s.
+/// The first time step of a scene at rest, of its stiffest snow (mpm/time_step.hpp), s.
 double stable_time_step(const Scene& scene);
 
 /// Throws InputError naming both numbers when `bytes` exceeds `available`; by default the memory

@@ -35,8 +35,9 @@ struct RunReport {
 /// The conversion of the stack between events with between = "reseed".
 struct Reseeding {
   struct Cloud {
-    std::vector<Vec3> positions;  // m
-    std::vector<double> masses;   // kg
+    std::vector<Vec3> positions;    // m
+    std::vector<double> masses;     // kg
+    std::vector<double> densities;  // kg/m3, initial
     std::vector<bool> on_panel;
   };
   Cloud before, after;
@@ -49,10 +50,11 @@ class Simulation {
   explicit Simulation(const Scene& scene, const std::filesystem::path& base_dir = ".");
   ~Simulation();
 
-  /// Lays the next event's snow: the slab on the panel (above what remained there) and the
-  /// scene's bodies. With between = "reseed", from the second event on the stack is first turned
-  /// into a solid and seeded afresh at rest, in its initial state, with its mass; the event of a
-  /// new particle is that of the old one nearest to it. Throws InputError where the snow of this
+  /// Lays the next event's snow: the slab on the panel (above what remained there, unless that is
+  /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
+  /// "reseed", from the second event on the stack is first turned into a solid and seeded afresh at
+  /// rest, in its initial state, with its mass; event and snow of a new particle are those of the
+  /// old one nearest to it, and each snow keeps its mass. Throws InputError where the snow of this
   /// event cannot be seeded, SimulationError where the stack cannot be converted.
   std::optional<Reseeding> begin_event();
 
@@ -74,6 +76,7 @@ class Simulation {
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint);
 
   const Scene& scene() const { return scene_; }
+  const std::vector<Snow>& snows() const { return snows_; }  ///< by ParticleState::kinds
   const Forecast& cost() const { return cost_; }
   const Solver& solver() const { return *solver_; }
   int event() const { return event_; }
@@ -92,12 +95,18 @@ class Simulation {
   void write_vtp(const std::filesystem::path&) const;
 
  private:
-  double lift_of_next_slab(const ParticleState&) const;
-  double lay(const BodySpec&, const std::string& path, std::uint64_t seed);
+  double lift_of_next_slab() const;
+  struct Laid {
+    double mass;    // kg
+    double height;  // m, along the panel's normal, of what lies over the panel
+  };
+  Laid lay(const BodySpec&, const std::string& path, std::uint64_t seed);
+  double height_over_panel(const std::vector<Vec3>& positions) const;
   Reseeding reseed_stack();
   RunReport report(double rms_speed) const;
 
   Scene scene_;
+  std::vector<Snow> snows_;  // by kind
   std::filesystem::path base_dir_;
   Forecast cost_;
   std::vector<Obstacle> obstacles_;  // those of the scene's list
@@ -108,6 +117,7 @@ class Simulation {
   bool running_ = false;
   double event_start_ = 0;  // s
   double event_mass_ = 0;   // kg, laid by the present event
+  double laid_height_ = 0;  // m, on the panel, of all snow laid so far had none of it left
 };
 
 }  // namespace snowshed

@@ -34,9 +34,33 @@ double height_above_ground(const Scene& scene, const Vec3& point);
 /// "ground", "panel", then the scene's own obstacles. The domain's sides are not among them.
 std::vector<ObstacleSpec> assemble_obstacles(const Scene& scene);
 
-/// What appears at the start of `event` (1 is the first): the slab, then the scene's bodies of
-/// that event. The slab's underside is `lift` metres (>= 0) above the panel, measured along the
-/// normal: later slabs lie on what remained there.
+/// Whether a layer or body is laid at the start of `event` (1 is the first).
+template <class Part>
+bool is_laid_in(const Part& part, int event) {
+  return part.event == 0 || part.event == event;
+}
+
+/// The slab laid at the start of `event`, from the panel upwards, a body for each of its layers.
+/// Its underside is `lift` metres (>= 0) above the panel, measured along the normal: later slabs
+/// lie on what remained there.
+std::vector<BodySpec> assemble_slab(const Scene& scene, int event, double lift = 0.0);
+
+/// Its thickness, m.
+double slab_thickness(const Slab& slab, int event);
+
+/// What appears at the start of `event`: the slab, then the scene's bodies of that event.
 std::vector<BodySpec> assemble_bodies(const Scene& scene, int event, double lift = 0.0);
+
+/// The different snows of the slab and the bodies, in order of their first appearance.
+std::vector<Snow> assemble_snows(const Scene& scene);
+
+/// The snow of a body or layer.
+template <class Part>
+const Snow& snow_of(const Scene& scene, const Part& part) {
+  return part.snow ? *part.snow : scene.snow;
+}
+
+/// Where in `snows` a snow is, which must be among them.
+int kind_of(const Snow& snow, const std::vector<Snow>& snows);
 
 }  // namespace snowshed

@@ -11,4 +11,7 @@ enum class Condition { sticky, slip, separate };
 enum class SeedPattern { regular, jittered, poisson };
 enum class Between { carry, reseed };
 
+/// Different snows that a scene may have: a particle's is a byte.
+inline constexpr int most_snows = 256;
+
 }  // namespace snowshed

@@ -74,6 +74,7 @@ struct BodySpec {
   ShapeSpec shape;
   Vec3 velocity = Vec3::Zero();  // m/s
   int event = 1;
+  std::optional<Snow> snow;  // none: the scene's
 };
 
 /// The panel of Figure 3.1.1: x points down the slide direction, z up, the origin of x is
@@ -88,11 +89,19 @@ struct Panel {
   double friction = 0.3;
 };
 
-/// The slab on the panel that slides off in every event.
+/// A layer of the slab, over its whole length and width.
+struct Layer {
+  double thickness = 0.0;    // m
+  std::optional<Snow> snow;  // none: the scene's
+  int event = 0;             // at whose start it is laid, 1 the first; 0: of every event
+};
+
+/// The slab laid on the panel at the start of every event: of the scene's snow, or layer by layer.
 struct Slab {
-  double thickness = 0.0;  // m
-  double length = 0.0;     // m; 0: as long as the panel
-  double width = 0.0;      // m; 0: two thirds of the panel's width
+  double thickness = 0.0;     // m; 0: that of the layers together
+  double length = 0.0;        // m; 0: as long as the panel
+  double width = 0.0;         // m; 0: two thirds of the panel's width
+  std::vector<Layer> layers;  // from the panel upwards
 };
 
 /// An inclined plane through the origin; positive tilt falls in the slide direction.
@@ -118,7 +127,7 @@ struct Numerics {
   double step_factor = 0.9;   // of the stable time step
   double strain_limit = 0.2;  // largest |dt grad v| a step may impose on a particle
   double sleep_speed = 0.02;  // m/s, snow slower than this drops out of the steps; 0: never
-  double sleep_time = 0.01;    // s, for how long it must have been slower
+  double sleep_time = 0.01;   // s, for how long it must have been slower
   int threads = 0;            // 0: all
 };
 

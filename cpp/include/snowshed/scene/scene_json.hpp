@@ -9,7 +9,8 @@
 
 namespace snowshed {
 
-/// Reads and validates a scene. Throws InputError whose `where` is the JSON pointer of the
+/// Reads and validates a scene. What the snow of a layer or body leaves out is taken from the
+/// scene's. Throws InputError whose `where` is the JSON pointer of the
 /// offending value ("/snow/density", "/" for the whole), or "name:line:column" when the text
 /// is not JSON. The text need not be trusted: its size, depth and number of values are limited.
 Scene parse_scene(const std::string& text, const std::string& name = "scene");
@@ -24,6 +25,9 @@ Scene load_scene(const std::filesystem::path& file);
 /// The complete JSON of a valid scene, defaults included: parse_scene gives back the same scene.
 /// Of a shape only the fields its type uses are written, and in 2D only x and z of a vector.
 std::string write_scene(const Scene& scene);
+
+/// The complete JSON of a snow.
+std::string write_snow(const Snow& snow);
 
 /// JSON Schema (2020-12) of the form; units stand under "x-unit". Rules between several fields
 /// are beyond a schema: `validate` has them.

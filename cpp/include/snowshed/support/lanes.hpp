@@ -69,6 +69,24 @@ SNOWSHED_INLINE V broadcast(Scalar<V> x) {
     return x;
 }
 
+/// A constant as lanes: all equal to it, or those it has.
+template <class V, class C>
+SNOWSHED_INLINE V spread(const C& c) {
+  if constexpr (std::is_same_v<V, C>)
+    return c;
+  else
+    return broadcast<V>(c);
+}
+
+/// What a constant is in lane l: the same in all, or each its own.
+template <class C>
+SNOWSHED_INLINE Scalar<C> in_lane(const C& c, int l) {
+  if constexpr (is_lanes<C>)
+    return c[l];
+  else
+    return c;
+}
+
 /// mask ? a : b, lane by lane.
 template <class M, class V>
 SNOWSHED_INLINE V select(const M& mask, const V& a, const V& b) {

@@ -6,24 +6,14 @@
 #pragma once
 
 #include "mpm/kernels/chunk.hpp"
+#include "mpm/kernels/snow.hpp"
 #include "mpm/kernels/tile.hpp"
-#include "snowshed/material/cam_clay.hpp"
-#include "snowshed/material/elastic.hpp"
 
 SNOWSHED_VARIANT_BEGIN
 
-template <class T>
-CamClay<T> make_material(const MaterialConstants& m, int dimension, CamClay<T>*) {
-  return CamClay<T>::from(m.youngs_modulus, m.poissons_ratio, m.critical_state_slope, m.cohesion,
-                          m.hardening_factor, dimension);
-}
-template <class T>
-Elastic<T> make_material(const MaterialConstants& m, int dimension, Elastic<T>*) {
-  return {Elasticity<T>::from(m.youngs_modulus, m.poissons_ratio, dimension)};
-}
-
-template <class T, int D, Transfer transfer, Basis basis, class Material, bool energy>
+template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
 struct ParticleKernels {
+  using Snow = typename Snows::Chunk;
   using V = Lanes<T>;
   using Tensor = Sym<V, D>;
   static constexpr int W = lane_count<T>;
@@ -35,14 +25,11 @@ struct ParticleKernels {
 
   const StepParameters<T>& step;
   const ParticleView<T>& p;
-  const Material material;
+  const Snows snows;
   BlockStats& stats;
 
   ParticleKernels(const StepParameters<T>& s, const ParticleView<T>& v, BlockStats& b)
-      : step(s),
-        p(v),
-        material(make_material<T>(s.material, D, static_cast<Material*>(nullptr))),
-        stats(b) {}
+      : step(s), p(v), snows(s.snows), stats(b) {}
 
   /// One chunk's state in registers.
   struct State {
@@ -58,7 +45,7 @@ struct ParticleKernels {
     for (int k = 0; k < Tensor::size; ++k) s.strain.c[k] = load(p.strain[k] + at, n);
     if constexpr (apic)
       for (int k = 0; k < D * D; ++k) s.affine[k] = load(p.affine[k] + at, n);
-    if constexpr (Material::plastic) s.plastic = load(p.plastic + at, n);
+    if constexpr (Snow::plastic) s.plastic = load(p.plastic + at, n);
     s.mass = load(p.mass + at, n);
   }
 
@@ -70,7 +57,7 @@ struct ParticleKernels {
     for (int k = 0; k < Tensor::size; ++k) store(p.strain[k] + at, s.strain.c[k], n);
     if constexpr (apic)
       for (int k = 0; k < D * D; ++k) store(p.affine[k] + at, s.affine[k], n);
-    if constexpr (Material::plastic) store(p.plastic + at, s.plastic, n);
+    if constexpr (Snow::plastic) store(p.plastic + at, s.plastic, n);
   }
 
   // --- grid to particles ------------------------------------------------------------------
@@ -171,20 +158,20 @@ struct ParticleKernels {
 
   /// Kirchhoff stress of the present elastic strain; for plastic laws after bringing the strain
   /// back to the yield surface, unless `committed` says that it is there already.
-  SNOWSHED_INLINE Tensor stress(State& s, int n, bool committed) const {
-    const auto& el = material.elastic;
+  SNOWSHED_INLINE Tensor stress(State& s, const Snow& snow, int n, bool committed) const {
+    const auto& el = snow.law.elastic;
     Tensor e = hencky_strain(s.strain);
     const V volumetric = trace(e);
     const V third = volumetric * (T(1) / T(D));
     Tensor dev = e;
     for (int k = 0; k < D; ++k) dev.c[k] -= third;
     V p_now = -el.bulk * volumetric;
-    V shear_scale = broadcast<V>(T(2) * el.mu);
-    if constexpr (Material::plastic || energy) {
+    V shear_scale = spread<V>(T(2) * el.mu);
+    if constexpr (Snow::plastic || energy) {
       const V q_trial = sqrt(V(T(6) * norm_squared(dev))) * el.mu;  // q = sqrt(3/2 s:s)
       PQ<V> pq{p_now, q_trial};
-      if constexpr (Material::plastic) {
-        if (!committed && material.return_map(pq, s.plastic)) {
+      if constexpr (Snow::plastic) {
+        if (!committed && snow.law.return_map(pq, s.plastic)) {
           const auto sheared = q_trial > T(0);
           const V keep = select(sheared, V(pq.q / select(sheared, q_trial, broadcast<V>(T(1)))),
                                 broadcast<V>(T(1)));
@@ -198,7 +185,7 @@ struct ParticleKernels {
           shear_scale *= keep;
         }
       }
-      if constexpr (energy) book(PQ<V>{p_now, q_trial}, pq, s.mass, n);
+      if constexpr (energy) book(PQ<V>{p_now, q_trial}, pq, s.mass, snow, n);
       p_now = pq.p;
     }
     Tensor tau;
@@ -210,24 +197,26 @@ struct ParticleKernels {
   /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work of the
   /// return, stress times plastic strain. (The trial's elastic energy less the present one would
   /// count the square of each step's plastic strain on top, an error that does not fade with time.)
-  void book(const PQ<V>& trial, const PQ<V>& now, const V& mass, int n) const {
-    const auto& el = material.elastic;
+  void book(const PQ<V>& trial, const PQ<V>& now, const V& mass, const Snow& snow, int n) const {
+    const auto& el = snow.law.elastic;
     for (int l = 0; l < n; ++l) {
-      const double volume = double(mass[l]) * double(step.specific_volume);
-      const double p = now.p[l], q = now.q[l], bulk = el.bulk, mu = el.mu;
+      const double volume = double(mass[l]) * double(in_lane(snow.specific_volume, l));
+      const double p = now.p[l], q = now.q[l];
+      const double bulk = in_lane(el.bulk, l), mu = in_lane(el.mu, l);
       stats.elastic += volume * (p * p / (2 * bulk) + q * q / (6 * mu));
       stats.plastic += volume * (p * (trial.p[l] - p) / bulk + q * (trial.q[l] - q) / (3 * mu));
     }
   }
 
   /// Of the new stresses along the motion just made.
-  void book_power(const State& s, const Motion& m, const Tensor& tau, int n) const {
+  void book_power(const State& s, const Motion& m, const Tensor& tau, const Snow& snow,
+                  int n) const {
     V work = broadcast<V>(T(0));
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j) work += tau(i, j) * m.gradient[i][j];
     for (int l = 0; l < n; ++l)
-      stats.stress_power -=
-          double(s.mass[l]) * double(step.specific_volume) * double(work[l]) / double(step.dt);
+      stats.stress_power -= double(s.mass[l]) * double(in_lane(snow.specific_volume, l)) *
+                            double(work[l]) / double(step.dt);
   }
 
   void book_motion(const State& s, int n) const {
@@ -247,9 +236,9 @@ struct ParticleKernels {
 
   /// Adds a chunk to the tile: mass, momentum, and the force -V0 tau grad w (1.2.13).
   SNOWSHED_INLINE void scatter_chunk(const Stencil<T, D, basis>& stencil, const State& s,
-                                     const Tensor& tau, int n, T* tile) const {
+                                     const Tensor& tau, const Snow& snow, int n, T* tile) const {
     V momentum[D], force[D][D], shear[D][D];
-    const V force_scale = s.mass * (-step.specific_volume / step.dx);
+    const V force_scale = s.mass * (-snow.specific_volume / step.dx);
     for (int i = 0; i < D; ++i) {
       momentum[i] = s.mass * s.velocity[i];
       for (int j = 0; j < D; ++j) {
@@ -279,12 +268,12 @@ struct ParticleKernels {
   }
 
   /// |e|^2 of the Hencky strain that goes with a stress.
-  SNOWSHED_INLINE V elastic_strain_squared(const Tensor& tau) const {
+  SNOWSHED_INLINE V elastic_strain_squared(const Tensor& tau, const Snow& snow) const {
     const V mean = trace(tau) * (T(1) / T(D));
-    const V volumetric = mean / material.elastic.bulk;
+    const V volumetric = mean / snow.law.elastic.bulk;
     Tensor dev = tau;
     for (int k = 0; k < D; ++k) dev.c[k] -= mean;
-    for (int k = 0; k < Tensor::size; ++k) dev.c[k] *= T(0.5) / material.elastic.mu;
+    for (int k = 0; k < Tensor::size; ++k) dev.c[k] *= T(0.5) / snow.law.elastic.mu;
     return norm_squared(dev) + volumetric * volumetric * (T(1) / T(D));
   }
 
@@ -319,8 +308,9 @@ struct ParticleKernels {
         stats.escaped = true;
         return;
       }
-      const Tensor tau = stress(s, n, true);
-      scatter_chunk(stencil, s, tau, n, tile);
+      const Snow& snow = snows.of(p, at, n);
+      const Tensor tau = stress(s, snow, n, true);
+      scatter_chunk(stencil, s, tau, snow, n, tile);
       reach |= stencil.reach;
       if constexpr (energy) book_motion(s, n);
     });
@@ -339,7 +329,8 @@ struct ParticleKernels {
       interpolate(stencil, velocities, n, m);
       move(s, m);
       stretch(s, m);
-      const Tensor tau = stress(s, n, false);
+      const Snow& snow = snows.of(p, at, n);
+      const Tensor tau = stress(s, snow, n, false);
       write(s, at, n);
 
       V v2 = s.velocity[0] * s.velocity[0], u2 = m.pic[0] * m.pic[0];
@@ -348,14 +339,14 @@ struct ParticleKernels {
         u2 += m.pic[d] * m.pic[d];
       }
       speed = max(speed, max(v2, u2));
-      if constexpr (energy) book_power(s, m, tau, n);
-      check(elastic_strain_squared(tau) + T(0) * v2, at, n);
+      if constexpr (energy) book_power(s, m, tau, snow, n);
+      check(elastic_strain_squared(tau, snow) + T(0) * v2, at, n);
       if constexpr (energy) book_motion(s, n);
 
       stencil.place(s.cell, n);
       reach |= stencil.reach;
       if (stencil.inside)
-        scatter_chunk(stencil, s, tau, n, tile);
+        scatter_chunk(stencil, s, tau, snow, n, tile);
       else
         stats.escaped = true;
     });

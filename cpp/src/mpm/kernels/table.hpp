@@ -6,27 +6,30 @@
 
 SNOWSHED_VARIANT_BEGIN
 
-template <class T, int D, Transfer transfer, Basis basis, class Material, bool energy>
+template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
 Kernels<T> kernels_for() {
-  using P = ParticleKernels<T, D, transfer, basis, Material, energy>;
+  using P = ParticleKernels<T, D, transfer, basis, Snows, energy>;
+  using Motion = ParticleKernels<T, D, transfer, basis, OneSnow<T, Elastic>, false>;  // of any snow
   using G = NodeKernels<T, D, basis, transfer == Transfer::flip, energy>;
-  return {&P::scatter, &P::advance, &P::probe, &G::gather, &G::update, &G::carry};
+  return {&P::scatter, &P::advance, &Motion::probe, &G::gather, &G::update, &G::carry};
 }
 
-template <class T, int D, Transfer transfer, Basis basis, class Material>
+template <class T, int D, Transfer transfer, Basis basis, class Snows>
 Kernels<T> with_energy(const KernelChoice& c) {
-  return c.energy ? kernels_for<T, D, transfer, basis, Material, true>()
-                  : kernels_for<T, D, transfer, basis, Material, false>();
+  return c.energy ? kernels_for<T, D, transfer, basis, Snows, true>()
+                  : kernels_for<T, D, transfer, basis, Snows, false>();
 }
 template <class T, int D, Transfer transfer, Basis basis>
-Kernels<T> with_material(const KernelChoice& c) {
-  return c.model == SnowModel::cam_clay ? with_energy<T, D, transfer, basis, CamClay<T>>(c)
-                                        : with_energy<T, D, transfer, basis, Elastic<T>>(c);
+Kernels<T> with_snow(const KernelChoice& c) {
+  if (c.several_snows) return with_energy<T, D, transfer, basis, SeveralSnows<T>>(c);
+  return c.model == SnowModel::cam_clay
+             ? with_energy<T, D, transfer, basis, OneSnow<T, CamClay>>(c)
+             : with_energy<T, D, transfer, basis, OneSnow<T, Elastic>>(c);
 }
 template <class T, int D, Transfer transfer>
 Kernels<T> with_basis(const KernelChoice& c) {
-  return c.basis == Basis::quadratic ? with_material<T, D, transfer, Basis::quadratic>(c)
-                                     : with_material<T, D, transfer, Basis::cubic>(c);
+  return c.basis == Basis::quadratic ? with_snow<T, D, transfer, Basis::quadratic>(c)
+                                     : with_snow<T, D, transfer, Basis::cubic>(c);
 }
 template <class T, int D>
 Kernels<T> table(const KernelChoice& c) {

@@ -1,0 +1,86 @@
+// What the tests of simulations share: a small scene, and running it in one go or in pieces.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "mpm/solver_testing.hpp"
+#include "snowshed/run/simulation.hpp"
+
+namespace snowshed {
+
+/// A slab that slides off a small panel onto the ground, in some 2000 steps per event.
+inline Scene small_scene(Transfer transfer = Transfer::flip) {
+  Scene scene;
+  scene.dimension = 2;
+  scene.panel.emplace();
+  scene.panel->height = 0.05;
+  scene.panel->length = 0.1;
+  scene.panel->tilt = 50;
+  scene.panel->friction = 0.2;
+  scene.slab.emplace();
+  scene.slab->thickness = 0.03;
+  scene.ground.emplace();
+  scene.numerics.transfer = transfer;
+  scene.numerics.threads = 1;
+  scene.events.count = 3;
+  scene.events.max_time = 0.3;
+  scene.output.energy = true;
+  return scene;
+}
+
+inline const auto go_on = [](const RunReport&) { return true; };
+inline constexpr double never = 1e9;
+
+inline void expect_same_bits(const Simulation& a, const Simulation& b) {
+  const ParticleState x = a.solver().state(), y = b.solver().state();
+  EXPECT_TRUE(x.positions == y.positions);
+  EXPECT_TRUE(x.velocities == y.velocities);
+  EXPECT_EQ(x.plastic_strains, y.plastic_strains);
+  EXPECT_EQ(x.pressures, y.pressures);
+  EXPECT_EQ(x.events, y.events);
+  EXPECT_EQ(x.kinds, y.kinds);
+  EXPECT_EQ(a.solver().time(), b.solver().time());
+  EXPECT_EQ(a.solver().counters().steps, b.solver().counters().steps);
+  EXPECT_EQ(a.solver().energy().friction, b.solver().energy().friction);
+  EXPECT_EQ(a.event(), b.event());
+}
+
+/// Runs all events.
+inline std::unique_ptr<Simulation> run_all(const Scene& scene) {
+  auto sim = std::make_unique<Simulation>(scene);
+  for (int event = 0; event < scene.events.count; ++event) {
+    sim->begin_event();
+    sim->run(go_on, never);
+  }
+  return sim;
+}
+
+/// Runs all events, saving and loading `times` times within each and once between them.
+inline std::unique_ptr<Simulation> with_interruptions(const Scene& scene, int times,
+                                                      const std::filesystem::path& file) {
+  auto sim = std::make_unique<Simulation>(scene);
+  const auto reload = [&] {
+    sim->save(file);
+    sim = Simulation::load(file);
+  };
+  for (int event = 0; event < scene.events.count; ++event) {
+    sim->begin_event();
+    for (int i = 0; i < times; ++i) {
+      int steps = 0;
+      const RunEnd end = sim->run([&](const RunReport&) { return ++steps < 300; }, 0.0);
+      EXPECT_EQ(end, RunEnd::paused);
+      reload();
+      EXPECT_TRUE(sim->event_running());
+    }
+    EXPECT_NE(sim->run(go_on, never), RunEnd::paused);
+    EXPECT_FALSE(sim->event_running());
+    reload();
+    EXPECT_EQ(sim->event(), event + 1);
+  }
+  return sim;
+}
+
+}  // namespace snowshed
