@@ -10,12 +10,14 @@ from snowshed import Body, InputError, Layer, Scene, Shape, Snow, _core, run_eve
 from snowshed.caption import scene_caption
 from snowshed.cli import main
 
-LIGHT = Snow(density=100, youngs_modulus=3e5)
+
+def light_snow() -> Snow:
+    return Snow(density=100, youngs_modulus=3e5)
 
 
 def layered_scene(**values: object) -> Scene:
     """A light layer below the scene's snow, and in the second event another one on top."""
-    layers = [Layer(thickness=0.02, snow=LIGHT), Layer(thickness=0.02)]
+    layers = [Layer(thickness=0.02, snow=light_snow()), Layer(thickness=0.02)]
     layers.append(Layer(thickness=0.02, snow=Snow(density=150), event=2))
     scene = tiny_scene(**values)
     return scene.update({"slab.thickness": None, "slab.layers": layers})
@@ -72,7 +74,7 @@ def test_bodies_may_have_snow_of_their_own():
     scene = Scene(dimension=2)
     for x in (0.0, 1.0):
         scene.append("bodies", Body(shape=Shape.sphere((x, 1.0), 0.1)))
-    scene.set("bodies.1.snow", LIGHT).set("numerics.dx", 0.02)
+    scene.set("bodies.1.snow", light_snow()).set("numerics.dx", 0.02)
     simulation = _core.Simulation(scene.initialise().json)
     simulation.begin_event()
     right = simulation.positions()[:, 0] > 0.5

@@ -17,11 +17,6 @@ namespace {
 /// vibration of a slab a few cells thick, shorter than the time snow takes to slide over a cell.
 constexpr double friction_memory = 40;
 
-bool any_yields(const std::vector<Snow>& snows) {
-  return std::any_of(snows.begin(), snows.end(),
-                     [](const Snow& s) { return s.model == SnowModel::cam_clay; });
-}
-
 /// Whether the particles of a block reach the nodes of the one that sees them as its neighbour k.
 template <int D>
 bool reaches_into(int reach, int k) {
@@ -48,8 +43,9 @@ SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obs
       grid_(options.numerics.basis),
       sleep_(options.numerics.sleep_speed, options.numerics.sleep_time) {
   particles_.has_affine = options.numerics.transfer == Transfer::apic;
-  particles_.has_plastic = any_yields(options.snows);
   particles_.has_kind = options.snows.size() > 1;
+  particles_.has_plastic =
+      particles_.has_kind || options.snows.front().model == SnowModel::cam_clay;
   for (const Snow& snow : options.snows) {
     kinds_.emplace_back(snow, D, options.numerics);
     constants_.push_back(snow_constants<T>(snow, D));

@@ -26,7 +26,7 @@ struct Particles {
   std::array<AlignedVector<T>, D> velocity;    // m/s
   std::array<AlignedVector<T>, D * D> affine;  // APIC only, 1/s
   std::array<AlignedVector<T>, strain_size> strain;  // b - I
-  AlignedVector<T> plastic;                          // plastic laws only
+  AlignedVector<T> plastic;                          // plastic laws and several snows only
   AlignedVector<T> mass;                             // kg (per metre of width in 2D)
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;  // in which each was released
