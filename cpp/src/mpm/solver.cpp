@@ -43,7 +43,7 @@ SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obs
                                        options.numerics.basis)),
       contacts_(std::move(obstacles), options.numerics.dx),
       grid_(options.numerics.basis),
-      sleep_(options.numerics.sleep_speed, options.numerics.sleep_time) {
+      sleep_(options.numerics.sleep_speed, options.numerics.sleep_time, options.gravity) {
   particles_.has_affine = options.numerics.transfer == Transfer::apic;
   particles_.has_plastic = options.snow.model == SnowModel::cam_clay;
   counters_.smallest_dt = elastic_limit_;
