@@ -18,6 +18,9 @@ constexpr double noise = 0.1;
 /// must be in flight.
 constexpr double flight = 0.5;
 
+/// Looks that the mean of a half takes, however long the steps are.
+constexpr double least_looks = 4;
+
 template <int D>
 std::vector<std::int32_t> particle_counts(const BlockLayout<D>& layout) {
   std::vector<std::int32_t> counts;
@@ -117,7 +120,7 @@ template <int D>
 bool Sleep<D>::falls_asleep(State& s, double now, const VecD<D>& velocity) const {
   s.sum += velocity;
   s.looks += 1;
-  if (now - s.since < 0.5 * time_) return false;
+  if (s.looks < least_looks || now - s.since < 0.5 * time_) return false;
   if (s.halfway && now - s.since < time_) return false;
   const VecD<D> mean = s.sum / s.looks;
   const VecD<D> change = mean - s.first_half;
