@@ -157,18 +157,18 @@ slab and at 0.005 m it does not. Lengths are 2 to 9 % larger.
 
 The damping of FLIP is the second large error. The share of PIC, 1 - flip_ratio, is taken in every
 step, so the damping per second depends on the time step. At dx 0.01 m after five slabs a flip_ratio
-of 0.95, 0.99 or 0.999 gives heights of 0.20, 0.15 and 0.11 m, and lengths of 0.31, 0.42 and 0.75 m.
-A third of the time step (step_factor 0.3) does almost what 0.95 does: 0.20 and 0.34 m. With
+of 0.95, 0.99 or 0.999 gives heights of 0.20, 0.14 and 0.11 m, and lengths of 0.31, 0.41 and 0.72 m.
+A third of the time step (step_factor 0.3) does almost what 0.95 does: 0.20 and 0.33 m. With
 flip_ratio raised to 0.9967 along with it, the same share per second, the stack is what it was. APIC
-is not so sensitive: 0.13 and 0.46 m, and with a third of the step 0.13 and 0.42 m. Stacks can be
+is not so sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m. Stacks can be
 compared only at equal flip_ratio and equal time step.
 
 Random seeding moves the height by 2 to 5 % and the length by 2 to 11 % (one standard deviation, 2D)
 after one to four slabs. After the fifth, when a 2D pile may or may not give way, it is 8 to 16 % in
 height and 3 to 8 % in length. In space piles give way more evenly: 0.5 to 4 % in height and about 1
 % in length at dx 0.01 m. A difference of less than two standard deviations between two single runs
-means nothing. Neither precision nor basis nor the number of particles per voxel changes the stack by
-more than the noise.
+means nothing. Neither precision nor basis nor the number of particles per voxel changes the stack
+by more than the noise.
 
 Snow that is slower than sleep_speed may drop out of the steps. What that saves and what it changes
 depends on this speed. The same seeds with sleep and without were compared, five slabs in the plane
