@@ -188,15 +188,6 @@ def test_cases_are_found_by_module_and_by_name(monkeypatch):
         suite.load_cases(["third"])
 
 
-@pytest.mark.parametrize("line", [b"no json\n", b"[1]\n", b'{"case": "a"}\n', b"\xff\n"])
-def test_damaged_measurements_are_named(file, line):
-    file.append(Measurement("a", {}, []))
-    with file.path.open("ab") as appended:
-        appended.write(line)
-    with pytest.raises(InputError, match=", line 2: damaged: "):
-        file.read()
-
-
 def test_measurements_survive_json():
     one = Measurement("a", {"dx": 0.1}, [Measured("b", float("inf"), 1.0, float("nan"))])
     text = json.dumps(one.to_json(), allow_nan=False)

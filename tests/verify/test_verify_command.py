@@ -108,18 +108,6 @@ def test_measurements_can_be_recorded(cases, tmp_path):
     assert [one.case for one in load_recorded(path)] == ["made_up"] * 4
 
 
-@pytest.mark.parametrize(
-    "content", ["no json", "[]", '{"measurements": 1}', '{"measurements": [{"case": "a"}]}']
-)
-def test_a_damaged_record_is_named_before_anything_is_measured(cases, tmp_path, capsys, content):
-    path = tmp_path / "recorded.json"
-    path.write_text(content)
-    assert verify(tmp_path / "out", "-q", "--record", str(path)) == 2
-    error = capsys.readouterr().err
-    assert error.startswith(f"error: {path}: ") and "damaged" in error and error.count("\n") == 1
-    assert not (tmp_path / "out").exists()
-
-
 def test_the_stress_suite_runs_once_and_is_reported(cases, tmp_path, capsys, monkeypatch):
     import pandas as pd
 
