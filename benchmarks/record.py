@@ -104,7 +104,7 @@ def lab(dimension: int, **more: float) -> Scene:
 
 def geometry(**more: float) -> Scene:
     """Return a panel of chapter 5: 2 m high, 2 m long, five events in 2D."""
-    panel = {"panel.height": 2.0, "panel.length": 2.0, "slab.length": 2.0, "numerics.dx": 0.01}
+    panel = {"panel.height": 2.0, "panel.length": 2.0, "numerics.dx": 0.01}
     return lab(2, **more).update(panel)
 
 

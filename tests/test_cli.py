@@ -200,3 +200,23 @@ def test_python_m(tmp_path):
     )
     assert done.returncode == 0
     assert _core.version in done.stdout
+
+
+def test_commands_of_packages_are_imported_when_they_run():
+    packages = tuple(
+        {f"snowshed.{package}" for _, package, _ in cli.DEFERRED if package != "verify"}
+    )
+    code = (
+        "import sys; from snowshed.cli import main; main(['--help']); "
+        f"print([name for name in sys.modules if name.startswith({packages})])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.endswith("[]\n")
+
+
+@pytest.mark.parametrize("name", [name for name, _, _ in cli.DEFERRED])
+def test_deferred_commands_show_their_own_help(capsys, name):
+    assert main([name, "--help"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith(f"Usage: snowshed {name} ")
+    assert cli.cli.commands[name].load().name == name

@@ -1,3 +1,5 @@
+import re
+
 import pytest
 
 from snowshed import InputError
@@ -88,3 +90,57 @@ def test_columns_of_the_events_table(finished):
 def test_no_results(tmp_path):
     with pytest.raises(InputError, match="no results"):
         read_events(tmp_path)
+
+
+DAMAGED = {
+    "empty": b"",
+    "no text": b"\xff\xfe\x00\x01",
+    "another table": b"hello world\nthis, is not, it\n",
+    "no numbers": b"event,height_m\none,high\n",
+    "one column": b"12345",
+    "names that are not": b"1," * 900,
+    "a line without end": b"1," * 100_000,
+}
+
+
+@pytest.mark.parametrize("content", DAMAGED.values(), ids=DAMAGED.keys())
+def test_a_damaged_table_of_events_is_named(tmp_path, content):
+    (tmp_path / "events.csv").write_bytes(content)
+    with pytest.raises(InputError, match=r"events\.csv: not a table") as caught:
+        read_events(tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"\xff\xfe\x00\x01", "can't decode"),
+        (b"event,mass\n1,2,3\n", "a row that has not"),
+        (b"event,mass\n1\n", "a row that has not"),
+        (b"mass\n1\n", "a row without the number of its event"),
+        (b"event,mass\nfirst,1\n", "a row without the number of its event"),
+        (b"event,load\n1,1\n", "its columns are not event, mass"),
+        (b"event,mass\n1,heavy\n", "no numbers in the column mass"),
+    ],
+)
+def test_a_damaged_table_is_not_continued(tmp_path, content, message):
+    (tmp_path / "t.csv").write_bytes(content)
+    with pytest.raises(InputError, match=rf"t\.csv: damaged: .*{message}"):
+        Table(tmp_path / "t.csv", ["event", "mass"]).total("mass")
+
+
+@pytest.mark.parametrize("name", ["run.json", "scene.json"])
+@pytest.mark.parametrize("content", [b"", b"\xff\x00", b"[" * 100_000, b"[]", b'{"wall_s": '])
+def test_a_damaged_file_of_a_folder_to_resume_is_named(tmp_path, tiny, name, content):
+    folder = Results.create(tmp_path, tiny.initialise())
+    folder.write_run({"wall_s": 2.5})
+    assert Results.reopen(tmp_path, tiny.initialise()).earlier_wall_s() == 2.5
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=rf"{re.escape(name)}: damaged: "):
+        Results.reopen(tmp_path, tiny.initialise()).earlier_wall_s()
+
+
+def test_a_computing_time_that_is_no_number(tmp_path):
+    (tmp_path / "run.json").write_text('{"wall_s": "long"}')
+    with pytest.raises(InputError, match=r"run\.json: damaged: /wall_s: 'long' is not a number"):
+        Results(tmp_path).earlier_wall_s()

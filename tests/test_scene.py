@@ -146,7 +146,7 @@ def test_defaults_live_in_the_core():
 
 def test_lab_presets_are_table_2_3_1():
     for tilt in (40, 50):
-        data = Scene.preset(f"lab-{tilt}").to_data()
+        data = Scene.preset(f"lab-{tilt}").initialise().data
         panel, slab = data["panel"], data["slab"]
         assert panel["tilt"] == tilt
         assert (panel["height"], panel["length"], panel["width"]) == (0.33, 0.245, 0.213)
@@ -167,6 +167,12 @@ def test_geometry_preset_is_table_5_1_1():
     assert (panel["height"], panel["length"], panel["tilt"]) == (2, 2, 40)
     assert (data["slab"]["thickness"], data["numerics"]["dx"]) == (0.05, 0.01)
     assert (data["dimension"], data["events"]["count"]) == (2, 5)
+
+
+def test_the_slab_of_a_preset_is_as_long_as_another_panel():
+    for name in ("lab-40", "lab-50", "sensitivity", "geometry"):
+        data = Scene.preset(name).set("panel.length", 4.0).initialise().data
+        assert data["slab"]["length"] == 4.0
 
 
 def test_calibrated_snow_is_table_4_3_1():

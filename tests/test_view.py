@@ -6,7 +6,8 @@ from matplotlib.image import imread
 from piles import triangle
 
 from snowshed import Scene, StackMeasure, measure_stack, read_events
-from snowshed.view import growth_figure, save, stack_figure
+from snowshed.figure_style import save
+from snowshed.view import growth_figure, stack_figure
 
 
 class Snow:

@@ -1,4 +1,9 @@
-"""The command line: ``snowshed panel|run|plan|scene|schema|compare|lua|study|verify``.
+"""The command line.
+
+One event loop: ``snowshed panel|run|lua``; scenes and forecasts: ``scene|plan|schema``; many runs:
+``study``; a winter: ``season``; questions about them: ``compare|sensitivity|calibrate``; the data
+set of panels: ``geometry|regress|predict``; what it can be trusted in:
+``verify|reproduce``.
 
 Exit codes: 0 done, 1 verified and something does not hold, 2 bad input, 3 the simulation could not
 go on, 130 interrupted. Errors are one line on stderr.
@@ -17,15 +22,11 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 import click
 
 from snowshed import _core
-from snowshed.calibration.command import calibrate
 from snowshed.interrupt import Interrupted
-from snowshed.regression.command import geometry, predict, regress
 from snowshed.scene import InitialisedScene, Scene
 from snowshed.scene_options import in_terms_of_options, scene_from_options, scene_options
-from snowshed.season.command import season
-from snowshed.sensitivity.command import sensitivity
+from snowshed.stops import Stopped
 from snowshed.verify.accuracy import accuracy_option, check_alone, choose
-from snowshed.verify.command import verify
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -173,50 +174,52 @@ def lua(
         run_all(runs, folder, partial(_run, quiet=quiet), resume=resume, quiet=quiet)
 
 
-class DeferredGroup(click.Group):
-    """A group whose commands are imported when it is used, so that all others start quickly.
+class Deferred(click.Command):
+    """A command, or group of commands, that is imported when it is used; all others start quickly.
 
     Parameters
     ----------
-    name, help
-        As of any group.
+    name
+        As of the command it stands for, and of the function that makes it.
     module
-        The module that defines the group under the same name.
+        The module that defines it.
+    short_help
+        What the list of commands says of it, which does not import it.
     """
 
-    def __init__(self, name: str, module: str, help: str) -> None:
-        super().__init__(name, help=help)
+    def __init__(self, name: str, module: str, short_help: str) -> None:
+        super().__init__(name, short_help=short_help)
         self._module = module
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names of the group's commands."""
-        return self._group().list_commands(ctx)
+    def make_context(
+        self,
+        info_name: Optional[str],
+        args: list[str],
+        parent: Optional[click.Context] = None,
+        **extra: Any,
+    ) -> click.Context:
+        """Return the context of the command itself, which takes over from here."""
+        return self.load().make_context(info_name, args, parent, **extra)
 
-    def get_command(self, ctx: click.Context, cmd_name: str) -> Optional[click.Command]:
-        """Return a command of the group."""
-        return self._group().get_command(ctx, cmd_name)
-
-    def _group(self) -> click.Group:
-        group: click.Group = getattr(importlib.import_module(self._module), str(self.name))
-        return group
+    def load(self) -> click.Command:
+        """Return the command itself."""
+        command: click.Command = getattr(importlib.import_module(self._module), str(self.name))
+        return command
 
 
-STUDY_HELP = """Compute many runs: one scene, and parameters that vary.
-
-\b
-Example:
-  snowshed study template -o study.toml
-  snowshed study run study.toml -o results
-  snowshed study export results -o table.csv
-"""
-cli.add_command(DeferredGroup("study", "snowshed.study.command", STUDY_HELP))
-cli.add_command(verify)
-cli.add_command(geometry)
-cli.add_command(regress)
-cli.add_command(predict)
-cli.add_command(season)
-cli.add_command(sensitivity)
-cli.add_command(calibrate)
+DEFERRED = (
+    ("study", "study", "Compute many runs: one scene, and parameters that vary."),
+    ("reproduce", "reproduce", "Reproduce the thesis: its tables, figures and claims."),
+    ("verify", "verify", "Solve problems with known answers, and report the errors."),
+    ("geometry", "regression", "Write the study of panel geometries that regress takes."),
+    ("regress", "regression", "Regress stacks on panels: models, tables and figures."),
+    ("predict", "regression", "Predict a stack's height and length without simulating it."),
+    ("season", "season", "Let the snow of a season gather, let go and pile up."),
+    ("sensitivity", "sensitivity", "Find which snow parameters matter for the stack."),
+    ("calibrate", "calibration", "Find the snow whose simulated stacks are those measured."),
+)
+for name, package, short_help in DEFERRED:
+    cli.add_command(Deferred(name, f"snowshed.{package}.command", short_help))
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:
@@ -234,12 +237,6 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     except (KeyboardInterrupt, click.Abort):
         return _fail("interrupted", 130)
     return 0
-
-
-class _Stopped(click.ClickException):
-    """An interrupted run; click would swallow the exception itself and its message."""
-
-    exit_code = 130
 
 
 def _fail(message: str, code: int) -> int:
@@ -280,7 +277,7 @@ def _run(ready: InitialisedScene, folder: Path, resume: bool, quiet: bool) -> No
         with _progress(quiet) as progress:
             table = run_events(ready, folder, resume=resume, progress=progress)
     except Interrupted as interrupted:
-        raise _Stopped(str(interrupted)) from None
+        raise Stopped(str(interrupted)) from None
     if not quiet:
         _show(table, folder)
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
-from rich.progress import Progress as Bar
+from rich.progress import TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from snowshed.compare import RULE_OF_THUMB
+from snowshed.terminal import one_bar, plain_table, wide_console
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,39 +37,26 @@ EVENT_TABLE = {
 @contextmanager
 def progress_bar() -> Iterator[Reporter]:
     """Show one bar over all events, with the time that is left, on stderr."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeRemainingColumn(),
-        TextColumn("{task.fields[speed]}"),
-    )
-    bar = Bar(*columns, console=Console(stderr=True))
-    task = bar.add_task("starting", total=1.0, speed="")
+    columns = (TimeRemainingColumn(), TextColumn("{task.fields[speed]}"))
+    with one_bar(*columns, speed="") as bar:
 
-    def report(progress: Progress) -> None:
-        speed = progress.updates_per_s / 1e6
-        bar.start()  # with the first report, so that a refused scene shows its error only
-        bar.update(
-            task,
-            completed=(progress.event - 1 + progress.fraction) / progress.count,
-            description=f"event {progress.event}/{progress.count}, {progress.time:.2f} s",
-            speed=f"{speed:.1f} M updates/s" if speed else "",
-        )
+        def report(progress: Progress) -> None:
+            speed = progress.updates_per_s / 1e6
+            bar.show(
+                (progress.event - 1 + progress.fraction) / progress.count,
+                f"event {progress.event}/{progress.count}, {progress.time:.2f} s",
+                speed=f"{speed:.1f} M updates/s" if speed else "",
+            )
 
-    try:
         yield report
-    finally:
-        if bar.live.is_started:  # else stopping it would print an empty line
-            bar.stop()
 
 
 def print_events(table: pd.DataFrame, folder: Path) -> None:
     """Print the measures of the stack after each event."""
-    shown = _table("Stack after each event", EVENT_TABLE)
+    shown = plain_table("Stack after each event", EVENT_TABLE, padding=0)
     for row in table.to_dict("records"):
         shown.add_row(*(form.format(row[name]) for name, form in EVENT_TABLE.values()))
-    _print(shown)
+    wide_console(120).print(shown)
     Console().print(f"results, stack.png and growth.png in {folder}", highlight=False)
 
 
@@ -105,22 +91,8 @@ def plan_rows(plan: dict[str, Any]) -> dict[str, str]:
 def print_ratios(ratios: pd.DataFrame) -> None:
     """Print 3D over 2D heights beside the thesis's rule of thumb."""
     headings = ("event", "3D, m", "2D, m", "3D/2D", "rule of thumb")
-    shown = _table("Stack height in 3D and in 2D", headings)
+    shown = plain_table("Stack height in 3D and in 2D", headings, padding=0)
     for event, three, two, ratio in ratios.itertuples(index=False):
         cells = (f"{three:.3f}", f"{two:.3f}", f"{ratio:.2f}", f"{RULE_OF_THUMB:.2f}")
         shown.add_row(str(event), *cells)
-    _print(shown)
-
-
-def _print(table: Table) -> None:
-    """Print a table; what is not a terminal, which rich takes for 80 columns, gets it in full."""
-    console = Console()
-    console.width = console.width if console.is_terminal else 120
-    console.print(table)
-
-
-def _table(title: str, headings: Iterable[str]) -> Table:
-    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=0)
-    for heading in headings:
-        table.add_column(heading, justify="right", no_wrap=True)
-    return table
+    wide_console(120).print(shown)

@@ -155,7 +155,7 @@ class _EventLoop:
         self.report = report
         self.stack: Optional[StackMeasure] = None
         self.checkpoint_at = time.monotonic()
-        self.started = time.monotonic() - float(results.read_run().get("wall_s", 0.0))
+        self.started = time.monotonic() - results.earlier_wall_s()
         if interval := self.scene["output"]["snapshot_interval"]:
             simulation.set_snapshots(str(results.snapshots), interval)
 
@@ -175,12 +175,13 @@ class _EventLoop:
 
     def draw(self) -> None:
         """Draw the pictures of the stack as it is now."""
-        from snowshed import view
+        from snowshed.figure_style import save
+        from snowshed.view import growth_figure, stack_figure
 
         stack = self.stack or self._measure()
-        view.save(view.stack_figure(self.simulation, stack), self.results.stack_picture)
+        save(stack_figure(self.simulation, stack), self.results.stack_picture)
         table = read_events(self.results.folder)
-        view.save(view.growth_figure(table, self.simulation.scene), self.results.growth_picture)
+        save(growth_figure(table, self.simulation.scene), self.results.growth_picture)
 
     def _begin(self) -> None:
         if not self.simulation.event_running:

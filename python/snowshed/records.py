@@ -7,6 +7,7 @@ import sys
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
 from typing import Any, TypeVar
 
 from snowshed._core import InputError
@@ -65,7 +66,14 @@ class Record:
     @classmethod
     def record_type(cls, key: str) -> type[Record] | None:
         """Return the record class held, singly or in a list, under `key`, if any."""
-        return _find_record(typing.get_type_hints(cls)[cls.keys()[key]])
+        # mypy takes the class for one of its instances, which have no hash.
+        return _record_types(cls)[cls.keys()[key]]  # type: ignore[arg-type]
+
+
+@cache
+def _record_types(record: type[Record]) -> dict[str, type[Record] | None]:
+    """Return the record class of every field; the hints are evaluated once, which is slow."""
+    return {name: _find_record(hint) for name, hint in typing.get_type_hints(record).items()}
 
 
 def _find_record(hint: Any) -> type[Record] | None:

@@ -26,9 +26,10 @@ from snowshed._core import InputError
 from snowshed.arrays import Floats
 from snowshed.atomic import write_text
 from snowshed.conversion import CONVERSION_COLUMNS
+from snowshed.json_file import read_object
 from snowshed.scene import InitialisedScene, PathLike
 from snowshed.stack import StackMeasure
-from snowshed.tables import Table
+from snowshed.tables import Table, read_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -110,7 +111,7 @@ class Results:
         folder = Path(folder)
         if not (folder / "scene.json").is_file():
             raise InputError(f"{folder}: nothing to resume; it holds no scene.json")
-        earlier = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
+        earlier = read_object(folder / "scene.json")
         if differing := _differences(earlier, scene.data):
             raise InputError(
                 f"{folder}: made by another scene, which differs in {', '.join(differing)}; "
@@ -153,10 +154,14 @@ class Results:
 
     def read_run(self) -> dict[str, Any]:
         """Read run.json; empty before its first writing."""
-        if not self.run.exists():
-            return {}
-        facts: dict[str, Any] = json.loads(self.run.read_text(encoding="utf-8"))
-        return facts
+        return read_object(self.run) if self.run.exists() else {}
+
+    def earlier_wall_s(self) -> float:
+        """Return the computing time of the run so far, s."""
+        seconds = self.read_run().get("wall_s", 0.0)
+        if not isinstance(seconds, (int, float)):
+            raise InputError(f"{self.run}: damaged: /wall_s: {seconds!r} is not a number")
+        return float(seconds)
 
 
 def check_empty(folder: PathLike) -> None:
@@ -174,14 +179,16 @@ def read_events(folder: PathLike) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the folder holds no events.csv.
+        If the folder holds no events.csv, or it is no table of events.
     """
-    import pandas as pd
-
     path = Path(folder) / "events.csv"
     if not path.is_file():
         raise InputError(f"{folder}: no results; it holds no events.csv")
-    return pd.read_csv(path)
+    table = read_csv(path)
+    for name in ("event", "height_m"):
+        if name not in table or table[name].dtype.kind not in "if":
+            raise InputError(f"{path}: not a table of events; no numbers in a column {name}")
+    return table
 
 
 def _differences(one: Any, other: Any, path: str = "") -> list[str]:

@@ -103,7 +103,7 @@ def json_object(text: str) -> Any:
         if not text.lstrip().startswith("{"):
             text = Path(text).read_text(encoding="utf-8")
         return json.loads(text)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise click.BadParameter(f"{error}; give a JSON object, or its file") from None
 
 

@@ -1,4 +1,4 @@
-"""Tables that grow row by row and are whole on disk after every row."""
+"""Tables in CSV files: those that grow row by row, whole on disk after every row, and any other."""
 
 from __future__ import annotations
 
@@ -7,9 +7,16 @@ import io
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from snowshed._core import InputError
 from snowshed.atomic import write_text
+from snowshed.quoting import quoted
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST_COLUMNS = 1000  # pandas takes minutes for a line of a hundred thousand names
 
 
 class Table:
@@ -21,6 +28,11 @@ class Table:
         The file. Rows already in it are kept.
     columns
         Column names; taken from the first row if empty.
+
+    Raises
+    ------
+    InputError
+        If the file is no such table.
 
     Examples
     --------
@@ -37,8 +49,7 @@ class Table:
         self.columns = list(columns)
         self.rows: list[dict[str, str]] = []
         if path.exists():
-            with path.open(newline="", encoding="utf-8") as file:
-                self.rows = list(csv.DictReader(file))
+            self.rows = self._read()
         if self.rows and not self.columns:
             self.columns = list(self.rows[0])
 
@@ -58,7 +69,28 @@ class Table:
 
     def total(self, column: str) -> float:
         """Return the sum of a column."""
-        return math.fsum(float(row[column]) for row in self.rows)
+        try:
+            return math.fsum(float(row[column]) for row in self.rows)
+        except (KeyError, ValueError):
+            raise self._damaged(f"no numbers in the column {column}") from None
+
+    def _read(self) -> list[dict[str, str]]:
+        try:
+            with self.path.open(newline="", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file, strict=True))
+        except (UnicodeDecodeError, csv.Error) as error:
+            raise self._damaged(str(error)) from None
+        for row in rows:
+            if None in row or None in row.values():
+                raise self._damaged(f"a row that has not {len(row)} cells")
+            if self.columns and not set(row) <= set(self.columns):
+                raise self._damaged(f"its columns are not {', '.join(self.columns)}")
+            if not row.get("event", "").isdecimal():
+                raise self._damaged("a row without the number of its event")
+        return rows
+
+    def _damaged(self, what: str) -> InputError:
+        return InputError(f"{self.path}: damaged: {what}")
 
     def _write(self) -> None:
         text = io.StringIO()
@@ -73,3 +105,39 @@ def _cell(value: Any) -> str:
     if isinstance(value, float):
         return "" if math.isnan(value) else f"{value:.9g}"
     return str(value)
+
+
+def read_csv(path: Path, **options: Any) -> pd.DataFrame:
+    """Return a table from a CSV file that may hold anything.
+
+    Parameters
+    ----------
+    path
+        The file.
+    **options
+        As of `pandas.read_csv`.
+
+    Raises
+    ------
+    InputError
+        If it is no table in UTF-8, a column has no name of its own, or there are too many.
+    OSError
+        If it cannot be read.
+    """
+    import pandas as pd
+
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            _check_names(next(csv.reader(file), []))
+        table: pd.DataFrame = pd.read_csv(path, **options)
+        return table
+    except (ValueError, csv.Error) as error:  # of pandas all errors on content are ValueErrors
+        raise InputError(f"{path}: not a table: {error}") from None
+
+
+def _check_names(names: Sequence[str]) -> None:
+    if len(names) > MOST_COLUMNS:
+        raise ValueError(f"{len(names)} columns; at most {MOST_COLUMNS} are allowed")
+    for number, name in enumerate(names):
+        if name in names[:number]:
+            raise ValueError(f"the column {quoted(name)} is there twice")

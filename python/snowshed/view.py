@@ -3,20 +3,29 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from snowshed import _core
 from snowshed.arrays import Floats
-from snowshed.atomic import replacing
 from snowshed.caption import scene_caption
+from snowshed.figure_style import (
+    BODY,
+    FAINT,
+    FIRST,
+    GRID,
+    INK,
+    LAST,
+    STACK,
+    blank,
+    describe,
+    quiet,
+)
 from snowshed.stack import Extent, StackMeasure, level
 
 if TYPE_CHECKING:
@@ -24,19 +33,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 PICTURED_PARTICLES = 100_000  # at most; a regular choice of them beyond
-INK, FAINT, STACK, BODY = "#22303c", "#8a97a3", "#2b6a8f", "#c8553d"
 MEASURES = ("height", "length", "head", "tail")
-FIRST, LAST = 0.08, 0.86  # part of the colour map that reads well on white
 WIDTH, VIEW_WIDTH = 9.0, 8.1  # inches, of the figure and of the views in it
 LOWEST, HIGHEST = 1.6, 5.0  # inches, of a view
 
 Limits = tuple[float, float, float, float]  # left, right, bottom, top
-
-
-def save(figure: Figure, path: Path, *, dpi: int = 160) -> None:
-    """Write a figure to a file, whole or not at all."""
-    with replacing(path) as beside:
-        figure.savefig(beside, dpi=dpi)
 
 
 def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
@@ -56,11 +57,11 @@ def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
     tilt, frame = simulation.ground_tilt_deg, simulation.panel_frame()
     views = [_filling(x) for x in (_scene_limits(stack, tilt, frame), _stack_limits(stack, tilt))]
     heights = [VIEW_WIDTH * _steepness(view) for view in views]
-    figure = _blank_figure(WIDTH, sum(heights) + 1.9)
+    figure = blank(WIDTH, sum(heights) + 1.9)
     overview, enlarged = figure.subplots(2, 1, height_ratios=heights)
     for axes, view in zip((overview, enlarged), views):
         axes.set(xlim=view[:2], ylim=view[2:], aspect="equal", ylabel="z, m")
-        _quiet(axes)
+        quiet(axes)
         _draw_ground(axes, tilt)
         _draw_obstacles(axes, simulation)
         _draw_particles(axes, simulation)
@@ -87,7 +88,7 @@ def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
     scene
         The scene as JSON text, for the caption.
     """
-    figure = _blank_figure(WIDTH, 6.6)
+    figure = blank(WIDTH, 6.6)
     for axes, name in zip(np.ravel(figure.subplots(2, 2, sharex=True)), MEASURES):
         stack, body = table[f"{name}_m"], table[f"body_{name}_m"]
         axes.plot(table["event"], stack, "o-", color=STACK, linewidth=2, label="stack (97 %)")
@@ -100,29 +101,15 @@ def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
             axes.set_ylim(0.0, 1.15 * max(stack.max(), body.max()) or 1.0)
         else:
             axes.set_xlabel("event")
-        axes.grid(color="#e6eaee", linewidth=0.8)
-        _quiet(axes)
+        axes.grid(color=GRID, linewidth=0.8)
+        quiet(axes)
     figure.axes[0].legend(frameon=False, fontsize=9, loc="lower right")
     _caption(figure, scene, "Growth of the stack")
     return figure
 
 
-def _blank_figure(width: float, height: float) -> Figure:
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
-
-
 def _caption(figure: Figure, scene: str, title: str) -> None:
-    text = f"{title}\n{scene_caption(json.loads(scene))}"
-    figure.suptitle(text, x=0.02, ha="left", color=INK, fontsize=9, linespacing=1.5)
-
-
-def _quiet(axes: Axes) -> None:
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(FAINT)
-    axes.tick_params(colors=INK, labelsize=9)
-    axes.set_axisbelow(True)
+    describe(figure, f"{title}\n{scene_caption(json.loads(scene))}")
 
 
 def _shades(count: int) -> list[Any]:

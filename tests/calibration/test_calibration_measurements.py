@@ -50,6 +50,7 @@ def test_rounds_repeat_an_experiment(tmp_path):
         ("", "is empty; `snowshed calibrate --template FILE`"),
         (b"\xff\xfe\x00", "not a text in UTF-8"),
         ("tilt_deg;event\n", "line 1: 'tilt_deg;event' is no column; allowed: tilt_deg, event"),
+        ("[" * 20_000, f"line 1: {'[' * 60!r}... is no column; allowed: tilt_deg"),
         ("tilt_deg,event,height_cm\n", "line 1: 'height_cm' is no column"),
         ("event,height_m,height_std_m\n", "line 1: no column tilt_deg"),
         ("tilt_deg,event\n", "line 1: no column of a measured value"),

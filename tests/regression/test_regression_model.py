@@ -210,7 +210,7 @@ ENSEMBLE = "ratio/rbf"
         ),
         (
             lambda a, f: f["members"][ENSEMBLE]["spread"].update(factors=[[0.5, 1]]),
-            f"members.{ENSEMBLE}.spread.factors: must be positive",
+            f"members.{ENSEMBLE}.spread.factors: must be given, and not negative",
         ),
     ],
 )

@@ -1,6 +1,7 @@
 """Season files: what they may hold, and what is said of those that hold something else."""
 
 import datetime
+import re
 
 import pytest
 
@@ -68,6 +69,7 @@ def test_bad_rows_are_named_with_file_and_place(tmp_path, row, message):
 
 BAD_HEADERS = [
     ("date,snow,temperature_c", "line 1: unknown column 'snow'; allowed: date, snowfall_m"),
+    ("[" * 20_000, rf"line 1: unknown column '{re.escape('[' * 60)}'\.\.\.; allowed: "),
     ("date,snowfall_m", "line 1: no column 'temperature_c'; needed: date, snowfall_m"),
     ("date,date,snowfall_m,temperature_c", "line 1: the column 'date' is given twice"),
 ]

@@ -116,6 +116,14 @@ def test_what_is_wrong_is_said(tmp_path, capsys):
         assert message in capsys.readouterr().err
 
 
+def test_a_damaged_store_is_named(tmp_path, capsys):
+    (tmp_path / "store.sqlite").write_bytes(b"no database at all" * 100)
+    assert run("sensitivity", "--stored", tmp_path, "-o", tmp_path / "out") == 3
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: {tmp_path / 'store.sqlite'}: file is not a database")
+    assert error.count("\n") == 1
+
+
 def test_plan_says_how_many_runs(tmp_path, capsys):
     options = ("--quick", "--plan", "-o", tmp_path)
     assert run("sensitivity", "--method", "fixation", *options) == 0

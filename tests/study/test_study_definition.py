@@ -72,7 +72,7 @@ def test_the_thesis_geometry_set():
         axis("panel.height", [2, 3, 4]),
         axis("panel.length", [0.5, 1.5, 2, 4, 8]),
     ]
-    scene = Scene.preset("geometry").set("slab.length", 0)  # as long as the panel
+    scene = Scene.preset("geometry")
     runs = Study(scene, [flat, steep]).runs()
     assert sum(json.loads(run.scene)["events"]["count"] for run in runs) == 610
 

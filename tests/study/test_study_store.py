@@ -198,6 +198,17 @@ def test_databases_that_are_no_store(tmp_path):
         Store.open(tmp_path)
 
 
+def test_a_damaged_store_whose_error_is_no_text(tmp_path):
+    connection = sqlite3.connect(tmp_path / FILE)
+    connection.execute("CREATE TABLE run (distance REAL)")
+    connection.execute("PRAGMA writable_schema = ON")
+    connection.execute("UPDATE sqlite_master SET name = CAST(x'9e' AS TEXT), sql = 'damaged'")
+    connection.commit()
+    connection.close()
+    with pytest.raises(StudyError, match=r"store\.sqlite: "):
+        Store.open(tmp_path)
+
+
 def test_a_store_of_another_form_is_refused(opened):
     opened.read("PRAGMA user_version = 99")
     with pytest.raises(InputError, match="another version of snowshed"):

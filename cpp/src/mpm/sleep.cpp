@@ -10,9 +10,16 @@ namespace {
 /// How much faster than the limit a single particle of a slow block may be.
 constexpr double most_over_mean = 5;
 
-/// Growth of the mean velocity from one half of a quiet spell to the other, over the limit, that
-/// is still taken for the noise of vibrations.
+/// Growth of the mean velocity from one half of a quiet spell to the other, along the latter and
+/// over the limit, that is still taken for the noise of vibrations.
 constexpr double noise = 0.1;
+
+/// Change of the mean velocity from one half to the other, over that of free fall, of snow that
+/// must be in flight.
+constexpr double flight = 0.5;
+
+/// Looks that the mean of a half takes, however long the steps are.
+constexpr double least_looks = 4;
 
 template <int D>
 std::vector<std::int32_t> particle_counts(const BlockLayout<D>& layout) {
@@ -106,18 +113,23 @@ bool Sleep<D>::is_pushed(State& s, int steps, double dt, const CarriedMotion& ca
   return carried.speed_squared > limit_ * limit_ || s.sum.norm() > limit_;
 }
 
-/// Whether a slow block has been slow for long enough, and did not speed up from the first half of
-/// that time to the second. Means over time tell motion from vibration.
+/// Whether a slow block has been slow for long enough and is neither setting off nor in flight:
+/// from the first half of that time to the second it did not speed up along its motion, nor change
+/// its velocity as gravity alone would. Means over time tell motion from vibration.
 template <int D>
 bool Sleep<D>::falls_asleep(State& s, double now, const VecD<D>& velocity) const {
   s.sum += velocity;
   s.looks += 1;
-  if (now - s.since < 0.5 * time_) return false;
-  const double mean = s.sum.norm() / s.looks;
-  if (s.first_half >= 0 && now - s.since < time_) return false;
-  if (s.first_half >= 0 && mean < s.first_half + noise * limit_) return true;
+  if (s.looks < least_looks || now - s.since < 0.5 * time_) return false;
+  if (s.halfway && now - s.since < time_) return false;
+  const VecD<D> mean = s.sum / s.looks;
+  const VecD<D> change = mean - s.first_half;
+  const bool sets_off = change.dot(mean) > noise * limit_ * mean.norm();
+  const bool flies = gravity_ > 0 && change.norm() > flight * gravity_ * 0.5 * time_;
+  if (s.halfway && !sets_off && !flies) return true;
   // The end of the first half, or the second half becomes the first one.
   s.since = now - 0.5 * time_;
+  s.halfway = true;
   s.first_half = mean;
   s.sum.setZero();
   s.looks = 0;

@@ -41,7 +41,7 @@ SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obs
       max_threads_(options.numerics.threads > 0 ? options.numerics.threads : omp_get_num_procs()),
       contacts_(std::move(obstacles), options.numerics.dx),
       grid_(options.numerics.basis),
-      sleep_(options.numerics.sleep_speed, options.numerics.sleep_time) {
+      sleep_(options.numerics.sleep_speed, options.numerics.sleep_time, options.gravity) {
   particles_.has_affine = options.numerics.transfer == Transfer::apic;
   particles_.has_kind = options.snows.size() > 1;
   particles_.has_plastic =

@@ -26,12 +26,14 @@ double bytes_of_grid(const BlockLayout<D>& layout, int tile_size) {
 }
 
 template <int D>
-constexpr std::size_t sleep_values = 4 + D;
+constexpr std::size_t sleep_values = 4 + 2 * D;
 
 template <int D>
 std::array<double, sleep_values<D>> sleep_record(const typename Sleep<D>::State& s) {
-  std::array<double, sleep_values<D>> record{double(s.asleep), s.since, s.looks, s.first_half};
+  std::array<double, sleep_values<D>> record{double(s.asleep), s.since, s.looks,
+                                               double(s.halfway)};
   std::copy_n(s.sum.data(), D, record.begin() + 4);
+  std::copy_n(s.first_half.data(), D, record.begin() + 4 + D);
   return record;
 }
 
@@ -41,8 +43,9 @@ typename Sleep<D>::State sleep_state(const double* record) {
   s.asleep = record[0] != 0;
   s.since = record[1];
   s.looks = record[2];
-  s.first_half = record[3];
+  s.halfway = record[3] != 0;
   std::copy_n(record + 4, D, s.sum.data());
+  std::copy_n(record + 4 + D, D, s.first_half.data());
   return s;
 }
 

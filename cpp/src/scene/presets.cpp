@@ -35,8 +35,7 @@ Scene lab_scene(double tilt) {
   panel.tilt = tilt;
   panel.condition = Condition::slip;
   Slab& slab = scene.slab.emplace();
-  slab.thickness = 0.02;
-  slab.length = panel.length;
+  slab.thickness = 0.02;  // its length stays 0: as long as the panel, also if that is changed
   slab.width = 0.142;
   scene.ground.emplace().condition = Condition::sticky;
   scene.numerics.dx = 0.01;
@@ -63,7 +62,6 @@ Scene geometry_scene() {
   scene.panel->length = 2.0;
   scene.panel->width = 0.0;
   scene.slab->thickness = 0.05;
-  scene.slab->length = scene.panel->length;
   scene.slab->width = 0.0;
   return scene;
 }

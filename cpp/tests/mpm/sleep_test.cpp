@@ -91,6 +91,20 @@ TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
   EXPECT_NEAR(fallen, 0.5 * o.gravity * solver->time() * solver->time(), 0.01 * fallen);
 }
 
+TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
+  // Speed is the same before and after the top of a throw, and when a blow takes one component
+  // while gravity adds another.
+  SolverOptions o = sleepy(two_d, 0.2);
+  for (const Vec3& thrown : {Vec3(0, 0, 0.05), Vec3(0.1, 0, 0.05), Vec3(-0.15, 0, 0.02)}) {
+    const auto solver = make_solver(o, {});
+    ParticleBatch lump = filled_box(2, Vec3(0, 0, 0), Vec3(0.1, 0.1, 0.1), 0.005);
+    lump.velocity = thrown;
+    solver->add(lump);
+    run_until(*solver, 0.05);
+    EXPECT_EQ(solver->counters().slept_updates, 0);
+  }
+}
+
 TEST(Sleep, AnImpactWakes) {
   for (const Way& way : {two_d, three_d}) {
     const auto sleeping = wall_under_lump(way, sleep_speed), awake = wall_under_lump(way, 0.0);

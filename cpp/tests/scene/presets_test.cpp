@@ -42,7 +42,7 @@ TEST(Presets, LaboratoryIsThatOfTables231And411) {
     EXPECT_EQ(scene.panel->length, 0.245);
     EXPECT_EQ(scene.panel->width, 0.213);
     EXPECT_EQ(scene.panel->tilt, tilt);
-    EXPECT_TRUE(*scene.slab == (Slab{0.02, 0.245, 0.142}));
+    EXPECT_TRUE(*resolve(scene).slab == (Slab{0.02, 0.245, 0.142}));
     EXPECT_EQ(scene.events.count, 5);
     EXPECT_TRUE(scene.snow == preset_snow("calibrated"));
     expect_conditions(scene);
@@ -56,7 +56,7 @@ TEST(Presets, SensitivityIsThatOfTable321) {
   EXPECT_EQ(scene.panel->length, 0.245);
   EXPECT_EQ(scene.panel->width, 0.213);
   EXPECT_EQ(scene.panel->tilt, 40.0);
-  EXPECT_TRUE(*scene.slab == (Slab{0.02, 0.245, 0.142}));
+  EXPECT_TRUE(*resolve(scene).slab == (Slab{0.02, 0.245, 0.142}));
   EXPECT_EQ(scene.events.count, 3);
   EXPECT_TRUE(scene.snow == preset_snow("reference"));
   expect_conditions(scene);
@@ -69,10 +69,20 @@ TEST(Presets, GeometryIsThatOfTable511) {
   EXPECT_EQ(scene.panel->length, 2.0);
   EXPECT_EQ(scene.panel->tilt, 40.0);
   EXPECT_EQ(scene.slab->thickness, 0.05);
-  EXPECT_EQ(scene.slab->length, 2.0);
+  EXPECT_EQ(resolve(scene).slab->length, 2.0);
   EXPECT_EQ(scene.events.count, 5);
   EXPECT_TRUE(scene.snow == preset_snow("calibrated"));
   expect_conditions(scene);
+}
+
+TEST(Presets, SlabsAreAsLongAsAnotherPanel) {
+  for (const auto& name : scene_preset_names()) {
+    Scene scene = preset_scene(name);
+    for (const double length : {0.2, 4.0}) {
+      scene.panel->length = length;
+      EXPECT_EQ(resolve(scene).slab->length, length) << name;
+    }
+  }
 }
 
 TEST(Presets, AllAreListedValidAndStorable) {

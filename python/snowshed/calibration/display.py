@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
 from snowshed.calibration.misfit import RANKED
 from snowshed.calibration.report import Calibration
 from snowshed.parameter_words import word
+from snowshed.terminal import plain_table, wide_console
 
-WIDTH = 100  # columns, of what is not a terminal
 SHOWN = 5  # parameter sets
 POOR = 0.5  # part of the runs' variance that a surrogate should explain
 OPEN = {
@@ -26,8 +24,7 @@ OPEN = {
 
 def print_calibration(found: Calibration) -> None:
     """Print ranking and ranges, and what to beware of."""
-    console = Console(highlight=False)
-    console.width = console.width if console.is_terminal else WIDTH
+    console = wide_console()
     console.print(_ranking(found))
     console.print(_ranges(found))
     if any(found.ranges["open"]):
@@ -41,7 +38,9 @@ def _ranking(found: Calibration) -> Table:
     measured = [q for q in RANKED if f"{q}_rmse_m" in found.ranked]
     headings = ["rank", *(word(path).label for path in paths)]
     headings += [f"{q}\nRMSE, m" for q in measured] + [f"{q}\nerror" for q in measured]
-    shown = _table("Parameter sets by mean rescaled RMSE", [*headings, "rescaled\nRMSE"])
+    shown = plain_table(
+        "Parameter sets by mean rescaled RMSE", [*headings, "rescaled\nRMSE"], padding=(0, 1)
+    )
     for _, row in found.ranked.head(SHOWN).iterrows():
         cells = [f"{row['rank']:.0f}", *(word(path).value(row[path]) for path in paths)]
         cells += [f"{row[f'{q}_rmse_m']:.4f}" for q in measured]
@@ -51,8 +50,9 @@ def _ranking(found: Calibration) -> Table:
 
 
 def _ranges(found: Calibration) -> Table:
-    headings = ["parameter", "best set", "median", "68 %", "95 %", ""]
-    shown = _table("Parameters that the measurements allow", headings)
+    headings = ["parameter", "best set", "median", "68 %", "95 %"]
+    shown = plain_table("Parameters that the measurements allow", headings, padding=(0, 1))
+    shown.add_column("", no_wrap=True)
     for _, row in found.ranges.iterrows():
         known = word(str(row["parameter"]))
         cells = [known.label, known.value(row["best_set"]), known.value(row["median"])]
@@ -89,10 +89,3 @@ def warnings(found: Calibration) -> list[str]:
         median = float(np.median(found.posterior.discrepancy[:, number]))
         said.append(f"error of the model in {quantity}: about {100 * median:.0f} % (median)")
     return said
-
-
-def _table(title: str, headings: list[str]) -> Table:
-    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=(0, 1))
-    for heading in headings:
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
-    return table

@@ -15,9 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from snowshed.calibration.comparison import SET
 from snowshed.calibration.misfit import RANKED
 from snowshed.calibration.posterior import Posterior
-from snowshed.figure_style import COLOURS, STYLE, blank, headline
+from snowshed.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.parameter_words import word
-from snowshed.view import BODY, FAINT, INK
 
 if TYPE_CHECKING:
     import pandas as pd

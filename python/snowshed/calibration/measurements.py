@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.quoting import quoted
 from snowshed.scene import PathLike
 
 if TYPE_CHECKING:
@@ -188,7 +189,7 @@ def _check_header(names: Sequence[str], number: int) -> None:
     for name in names:
         if name not in COLUMNS:
             raise InputError(
-                f"{where}: {name!r} is no column; allowed: {', '.join(COLUMNS)} "
+                f"{where}: {quoted(name)} is no column; allowed: {', '.join(COLUMNS)} "
                 "(separated by commas)"
             )
         if names.count(name) > 1:
@@ -286,7 +287,7 @@ class _Row:
         except ValueError:
             number = math.nan
         if not math.isfinite(number):
-            raise self._error(f"{column}: {cell!r} is not a number")
+            raise self._error(f"{column}: {quoted(cell)} is not a number")
         return number
 
     def _error(self, message: str) -> InputError:

@@ -142,7 +142,7 @@ def evaluate(
 def write(found: Calibration, folder: Path) -> None:
     """Write the tables and figures of a calibration into a folder."""
     from snowshed.calibration import figures
-    from snowshed.view import save
+    from snowshed.figure_style import save
 
     folder.mkdir(parents=True, exist_ok=True)
     posterior, parameters = found.posterior, found.stacks.parameters

@@ -9,13 +9,9 @@ from typing import Optional
 
 import click
 
+from snowshed.stops import Stopped
+
 PATH = click.Path(path_type=Path)
-
-
-class _Stopped(click.ClickException):
-    """An interrupted regression."""
-
-    exit_code = 130
 
 
 @click.command()
@@ -135,7 +131,7 @@ def regress(
                 progress=progress,
             )
     except RegressionInterrupted as interrupted:
-        raise _Stopped(str(interrupted)) from None
+        raise Stopped(str(interrupted)) from None
     if not quiet:
         print_reports(reports)
         click.echo(f"tables, figures and {MODEL} in {folder}")

@@ -7,64 +7,47 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
-from rich.progress import Progress as Bar
 from rich.table import Table
 
 from snowshed.regression.nested import FoldProgress, Reporter
 from snowshed.regression.pipeline import TargetReport
 from snowshed.regression.rows import TARGETS
 from snowshed.regression.summary import QUARTILES
+from snowshed.terminal import one_bar, plain_table, wide_console
 
 if TYPE_CHECKING:
     from snowshed.regression.predictor import Prediction
 
 SPEED_PERIOD_S = 3600.0  # folds take many seconds, and the time left should not jump
-WIDTH = 100  # columns, of what is not a terminal
 TARGET_WORDS = {"ratio": "height / length", "height": "height", "length": "length"}
 
 
 @contextmanager
 def progress_bar() -> Iterator[Reporter]:
     """Show one bar over all outer folds, with the time that is left, on stderr."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeRemainingColumn(),
-    )
-    console = Console(stderr=True, highlight=False)
-    bar = Bar(*columns, console=console, speed_estimate_period=SPEED_PERIOD_S)
-    task = bar.add_task("starting", total=1.0)
+    with one_bar(speed_period_s=SPEED_PERIOD_S) as bar:
 
-    def report(progress: FoldProgress) -> None:
-        bar.start()
-        what = f"{progress.done}/{progress.count} folds; {progress.doing}"
-        bar.update(task, completed=progress.fraction, description=what)
+        def report(progress: FoldProgress) -> None:
+            what = f"{progress.done}/{progress.count} folds; {progress.doing}"
+            bar.show(progress.fraction, what)
 
-    try:
         yield report
-    finally:
-        if bar.live.is_started:
-            bar.stop()
 
 
 def print_reports(reports: Sequence[TargetReport]) -> None:
     """Print Tables 5.3.1 and 5.3.2 for each target."""
     for report in reports:
         unit = f", {TARGETS[report.target]}" if TARGETS[report.target] else ""
-        _print(_error_table(report, unit))
+        wide_console().print(_error_table(report, unit))
         shown = _table(f"Quartiles of the predicted {report.target}{unit}", ["model", *QUARTILES])
         for model, row in report.quartiles.iterrows():
             shown.add_row(str(model), *(f"{row[name]:.3f}" for name in QUARTILES))
-        _print(shown)
+        wide_console().print(shown)
         for check in report.checks:
-            _console().print(f" {check}", highlight=False, markup=False)
+            wide_console().print(f" {check}", markup=False)
         if report.expression:
-            _console().print(f" {report.expression}\n", highlight=False)
+            wide_console().print(f" {report.expression}\n")
 
 
 def _error_table(report: TargetReport, unit: str) -> Table:
@@ -93,7 +76,7 @@ def print_prediction(prediction: Prediction, title: str) -> None:
     rows = prediction.table
     targets = list(dict.fromkeys(rows["target"]))
     units = {target: f", {TARGETS[target]}" if TARGETS[target] else "" for target in targets}
-    _console().print(f"{title}\n", highlight=False, markup=False)
+    wide_console().print(f"{title}\n", markup=False)
     shown = _table("", ["event", *(f"{TARGET_WORDS[name]}{units[name]}" for name in targets)])
     for event, answers in rows.groupby("event"):
         cells = [
@@ -102,8 +85,8 @@ def print_prediction(prediction: Prediction, title: str) -> None:
         ]
         mark = "\nEXTRAPOLATED" if prediction.extrapolated else ""
         shown.add_row(f"{event}{mark}", *map(escape, cells))
-    _print(shown)
-    _console().print(" 68 % of the stacks lie within ±, 90 % within [ ].", markup=False)
+    wide_console().print(shown)
+    wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].", markup=False)
 
 
 def prediction_json(prediction: Prediction) -> str:
@@ -118,17 +101,9 @@ def prediction_json(prediction: Prediction) -> str:
 
 
 def _table(title: str, headings: Sequence[str]) -> Table:
-    table = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD, padding=(0, 1))
-    for number, heading in enumerate(headings):
-        table.add_column(heading, justify="right" if number else "left", no_wrap=True)
+    first, *numbers = headings
+    table = plain_table(title, padding=(0, 1))
+    table.add_column(first, no_wrap=True)
+    for heading in numbers:
+        table.add_column(heading, justify="right", no_wrap=True)
     return table
-
-
-def _print(table: Table) -> None:
-    _console().print(table)
-
-
-def _console() -> Console:
-    console = Console()
-    console.width = console.width if console.is_terminal else WIDTH
-    return console

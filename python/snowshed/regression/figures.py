@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
+from snowshed import figure_style
 from snowshed.arrays import Floats
+from snowshed.figure_style import FAINT, INK, STYLE, blank, headline
 from snowshed.regression.fold_result import FoldResult
 from snowshed.regression.model_file import Member
 from snowshed.regression.rows import INPUT_UNITS, INPUT_WORDS, TARGETS, StackRows
 from snowshed.regression.scaling import Scaling
-from snowshed.view import FAINT, INK
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,38 +26,19 @@ if TYPE_CHECKING:
 Elected = Mapping[str, Sequence[FoldResult]]
 Titles = Mapping[str, str]
 
-#: Colours that stay apart for colour-blind eyes (Okabe and Ito), one for each kind of model.
-COLOURS = {
-    "linear": "#d55e00",
-    "rbf": "#0072b2",
-    "gaussian-process": "#009e73",
-    "gradient-boosting": "#cc79a7",
-}
+#: One for each kind of model.
+COLOURS = dict(
+    zip(("rbf", "linear", "gaussian-process", "gradient-boosting"), figure_style.COLOURS)
+)
 REFERENCE_PANEL = (2.0, 2.0, 40.0)  # height and length in m, tilt in degrees; Table 5.1.1
 DIFFERENT = 12  # values of a hyper-parameter that get a bar each
 ALONG = 80  # points of a predicted curve
-STYLE: dict[Any, Any] = {
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": FAINT,
-    "axes.labelcolor": INK,
-    "axes.titlecolor": INK,
-    "axes.titlelocation": "left",
-    "axes.titlesize": 10.5,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#e6eaee",
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "legend.frameon": False,
-    "font.size": 9,
-}
 
 
 def selection(elected: Elected, titles: Titles, target: str) -> Figure:
     """Draw the scores of the elected models over the rounds, as Figure 5.3.1."""
     with matplotlib.rc_context(STYLE):
-        figure = _blank(7.5, 4.2)
+        figure = blank(7.5, 4.2)
         axes = figure.subplots()
         for shift, (kind, results) in enumerate(elected.items()):
             validation = _by_round(results, "validation_score")
@@ -70,6 +51,7 @@ def selection(elected: Elected, titles: Titles, target: str) -> Figure:
                 )
         axes.set(xlabel="round", ylabel=f"median absolute error of {_quantity(target)}")
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.set_xlim(0.5, len(validation) + 0.5)
         axes.set_ylim(bottom=0)
         axes.set_title("Scores of the elected models: mean and standard deviation over the folds")
         keys = [Line2D([], [], color=COLOURS[kind], label=titles[kind]) for kind in elected]
@@ -86,7 +68,7 @@ def hyperparameters(elected: Elected, titles: Titles, target: str) -> Figure:
     names = {kind: list(results[0].parameters) for kind, results in elected.items()}
     columns = max(len(listed) for listed in names.values())
     with matplotlib.rc_context(STYLE):
-        figure = _blank(1.2 + 1.9 * columns, 0.6 + 1.75 * len(names))
+        figure = blank(1.2 + 1.9 * columns, 0.6 + 1.75 * len(names))
         grid = figure.subplots(len(names), columns, squeeze=False)
         for row, (kind, results) in zip(grid, elected.items()):
             for axes, name in zip(row, names[kind]):
@@ -96,20 +78,14 @@ def hyperparameters(elected: Elected, titles: Titles, target: str) -> Figure:
             for axes in row[len(names[kind]) :]:
                 axes.set_visible(False)
             row[0].set_ylabel(f"{titles[kind]}\nmodels")
-        figure.suptitle(
-            f"Hyper-parameters that the search chose, {target}",
-            x=0.01,
-            ha="left",
-            color=INK,
-            fontsize=10.5,
-        )
+        headline(figure, f"Hyper-parameters that the search chose, {target}")
     return figure
 
 
 def quantiles(elected: Elected, titles: Titles, values: Floats, target: str) -> Figure:
     """Draw sorted mean predictions over sorted data, with the models' deviation: Figure 5.3.3."""
     with matplotlib.rc_context(STYLE):
-        figure = _blank(1 + 2.6 * len(elected), 3.4)
+        figure = blank(1 + 2.6 * len(elected), 3.4)
         grid = figure.subplots(1, len(elected), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (kind, results) in zip(grid, elected.items()):
             everything = np.array([result.predictions for result in results])
@@ -146,7 +122,7 @@ def predictions(
         return None
     events = np.unique(rows.inputs[:, 0])
     with matplotlib.rc_context(STYLE):
-        figure = _blank(1 + 2.9 * len(varying), 1.0 + 2.6 * len(members))
+        figure = blank(1 + 2.9 * len(varying), 1.0 + 2.6 * len(members))
         grid = figure.subplots(len(members), len(varying), sharey=True, sharex="col", squeeze=False)
         for row, (kind, member) in zip(grid, members.items()):
             for axes, number in zip(row, varying):
@@ -171,7 +147,7 @@ def predictions(
 def cost(errors: pd.DataFrame, titles: Titles, target: str) -> Figure:
     """Draw the error on rows and panels that were not trained on, over fitting time."""
     with matplotlib.rc_context(STYLE):
-        figure = _blank(6.5, 4.0)
+        figure = blank(6.5, 4.0)
         axes = figure.subplots()
         axes.set(xscale="log", yscale="log")
         for kind, row in errors.iterrows():
@@ -289,9 +265,3 @@ def _at(number: int, reference: Floats) -> str:
 
 def _shades(count: int) -> list[Any]:
     return list(matplotlib.colormaps["viridis"](np.linspace(0.08, 0.86, count)))
-
-
-def _blank(width: float, height: float) -> Figure:
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure

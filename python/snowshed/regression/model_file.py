@@ -238,8 +238,10 @@ def _spread(facts: dict[str, Any], where: str) -> Spread:
         factors = {float(part): float(factor) for part, factor in listed}
     except (TypeError, ValueError):
         raise InputError(f"{where}.factors: not pairs of numbers") from None
-    if set(factors) != {SPREAD, INTERVAL} or not all(0 < x < 1e12 for x in factors.values()):
-        raise InputError(f"{where}.factors: must be positive, for the parts {SPREAD}, {INTERVAL}")
+    if set(factors) != {SPREAD, INTERVAL} or not all(0 <= x < 1e12 for x in factors.values()):
+        raise InputError(
+            f"{where}.factors: must be given, and not negative, for the parts {SPREAD}, {INTERVAL}"
+        )
     slope = _number(facts, "slope", where)
     if slope < 0:
         raise InputError(f"{where}.slope: {slope} is negative")

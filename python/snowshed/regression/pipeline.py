@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Optional
 from snowshed._core import InputError
 from snowshed.arrays import Floats
 from snowshed.atomic import replacing, write_text
+from snowshed.figure_style import save
 from snowshed.regression import figures, summary
 from snowshed.regression.ensemble import Ensemble
 from snowshed.regression.fold_result import FoldResult
@@ -21,7 +22,6 @@ from snowshed.regression.rows import TARGETS, StackRows
 from snowshed.regression.spread import Spread, unseen_panels
 from snowshed.regression.threads import one_thread
 from snowshed.scene import PathLike
-from snowshed.view import save
 
 if TYPE_CHECKING:
     import pandas as pd

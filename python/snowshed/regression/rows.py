@@ -13,7 +13,9 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.arrays import Booleans, Floats, Integers
 from snowshed.extras import require
+from snowshed.quoting import shortened
 from snowshed.scene import PathLike
+from snowshed.tables import read_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -130,14 +132,15 @@ def _read(path: Path) -> pd.DataFrame:
     import pandas as pd
 
     try:
-        if path.suffix == ".parquet":
-            require("pyarrow", "study", "reading Parquet")
-            return pd.read_parquet(path)
-        with path.open(encoding="utf-8") as text:
-            return pd.read_csv(text, dtype=str, keep_default_na=False)
+        if path.suffix != ".parquet":
+            return read_csv(path, dtype=str, keep_default_na=False)
+        require("pyarrow", "study", "reading Parquet")
+        return pd.read_parquet(path)
+    except InputError:
+        raise
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}") from None
-    except (ValueError, UnicodeDecodeError, pd.errors.ParserError) as error:
+    except ValueError as error:
         raise InputError(f"{path}: not a table: {error}") from None
 
 
@@ -185,7 +188,7 @@ def _check_columns(table: pd.DataFrame, needed: Sequence[str]) -> None:
 
 
 def _names(table: pd.DataFrame) -> str:
-    return ", ".join(map(str, table))
+    return shortened(", ".join(map(str, table)), 300)
 
 
 def _check_same(table: pd.DataFrame) -> None:

@@ -12,6 +12,7 @@ from snowshed.interrupt import Interrupted
 from snowshed.scene import Scene
 from snowshed.scene_options import in_terms_of_options, scene_from_options, scene_options
 from snowshed.season.settings import SeasonSettings
+from snowshed.stops import Stopped
 
 if TYPE_CHECKING:
     from snowshed.events import Reporter
@@ -23,12 +24,6 @@ DEFAULTS = SeasonSettings()
 
 # What the season file decides, so that a bare panel need not be given it.
 DECIDED = {"slab.thickness": 0.1}
-
-
-class _Stopped(click.ClickException):
-    """An interrupted season."""
-
-    exit_code = 130
 
 
 @click.command()
@@ -154,4 +149,4 @@ def _run(
         with progress_bar() as progress:
             return run(progress)
     except Interrupted:
-        raise _Stopped("interrupted; go on with the same command and --resume") from None
+        raise Stopped("interrupted; go on with the same command and --resume") from None

@@ -6,11 +6,8 @@ import math
 from pathlib import Path
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.table import Table
-
 from snowshed.season.driver import SeasonResult
+from snowshed.terminal import plain_table, wide_console
 
 SEASON_TABLE = {
     "date": ("date", "{}"),
@@ -30,20 +27,17 @@ SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
 
 def print_season(result: SeasonResult, folder: Path) -> None:
     """Print the table, the event that buries the panel, and what to know of them."""
-    console = Console()
-    console.width = console.width if console.is_terminal else 120
+    console = wide_console(120)
     columns = dict(SEASON_TABLE)
     if (result.table["settled_height_m"] < result.table["stack_height_m"]).any():
         columns.update(SETTLED)
-    shown = Table(title="Season", title_justify="left", box=SIMPLE_HEAD, padding=0)
-    for heading in columns:
-        shown.add_column(heading, justify="right", no_wrap=True)
+    shown = plain_table("Season", columns, padding=0)
     for row in result.table.to_dict("records"):
         shown.add_row(*(_cell(row[name], form) for name, form in columns.values()))
     console.print(shown)
     for line in (*verdict(result), *(f"note: {note}" for note in result.notes)):
-        console.print(line, highlight=False)
-    console.print(f"season.csv and season.png in {folder}", highlight=False)
+        console.print(line)
+    console.print(f"season.csv and season.png in {folder}")
 
 
 def verdict(result: SeasonResult) -> list[str]:

@@ -20,6 +20,7 @@ from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.table import season_table
 from snowshed.season.weather import Weather, read_season
+from snowshed.tables import read_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -205,7 +206,7 @@ def _cut_short(events: pd.DataFrame) -> list[str]:
 def _table_or_empty(path: Any, columns: Sequence[str]) -> pd.DataFrame:
     import pandas as pd
 
-    return pd.read_csv(path) if path.is_file() else pd.DataFrame(columns=list(columns))
+    return read_csv(path) if path.is_file() else pd.DataFrame(columns=list(columns))
 
 
 def _notes(
@@ -252,8 +253,8 @@ def _write(
     write_text(folder.table, result.table.to_csv(index=False, float_format="%.6g"))
     write_text(folder.summary, text + "\n")
     if pictures:
+        from snowshed.figure_style import save
         from snowshed.season.figure import season_figure
-        from snowshed.view import save
 
         outlines = _table_or_empty(folder.run.outlines.path, ("event", "x", "z"))
         save(season_figure(result, outlines, scene.data), folder.figure)

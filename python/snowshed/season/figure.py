@@ -8,14 +8,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
 from matplotlib.figure import Figure
 
 from snowshed.arrays import Floats
 from snowshed.caption import scene_caption
+from snowshed.figure_style import (
+    BODY,
+    FAINT,
+    FIRST,
+    GRID,
+    INK,
+    LAST,
+    STACK,
+    blank,
+    describe,
+    quiet,
+)
 from snowshed.season.clearance import panel_ends
-from snowshed.view import BODY, FAINT, FIRST, INK, LAST, STACK
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,8 +49,7 @@ def season_figure(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[s
     scene
         The complete scene of the slide-offs.
     """
-    figure = Figure(figsize=SIZE, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = blank(*SIZE)
     panel, stack, side = figure.subplots(3, 1, height_ratios=(1.0, 1.1, 1.2))
     moments = [datetime.fromisoformat(date) for date in result.table["date"]]
     dates: Floats = date2num(moments)  # type: ignore[no-untyped-call]
@@ -58,9 +67,7 @@ def season_figure(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[s
     first, last = (f"{moment:%Y-%m-%d}" for moment in (moments[0], moments[-1]))
     title = f"Season from {first} to {last}, {result.releases} releases{_verdict(result)}"
     caption = scene_caption(dict(scene))
-    figure.suptitle(
-        f"{title}\n{caption}", x=0.02, ha="left", color=INK, fontsize=9, linespacing=1.5
-    )
+    describe(figure, f"{title}\n{caption}")
     return figure
 
 
@@ -163,8 +170,5 @@ def _draw_outlines(axes: Axes, outlines: pd.DataFrame, scene: Mapping[str, Any])
 
 
 def _plain(axes: Axes) -> None:
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(FAINT)
-    axes.tick_params(colors=INK, labelsize=9)
-    axes.set_axisbelow(True)
-    axes.grid(color="#e6eaee", linewidth=0.8)
+    quiet(axes)
+    axes.grid(color=GRID, linewidth=0.8)

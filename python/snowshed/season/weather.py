@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.quoting import quoted
 from snowshed.scene import PathLike
 
 
@@ -126,7 +127,9 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
 def _header(cells: Sequence[str], where: str) -> list[str]:
     for name in cells:
         if name not in ALLOWED:
-            raise InputError(f"{where}: unknown column {name!r}; allowed: {', '.join(ALLOWED)}")
+            raise InputError(
+                f"{where}: unknown column {quoted(name)}; allowed: {', '.join(ALLOWED)}"
+            )
         if cells.count(name) > 1:
             raise InputError(f"{where}: the column {name!r} is given twice")
     required = ("date", *(name for name, column in COLUMNS.items() if column.required))
@@ -165,9 +168,9 @@ def _number(text: str, column: _Column, where: str) -> Optional[float]:
     try:
         value = float(text)
     except ValueError:
-        raise InputError(f"{where}: {text!r} is not a number ({_range(column)})") from None
+        raise InputError(f"{where}: {quoted(text)} is not a number ({_range(column)})") from None
     if not (math.isfinite(value) and column.low <= value <= column.high):
-        raise InputError(f"{where}: {text} is outside the allowed range ({_range(column)})")
+        raise InputError(f"{where}: {value:g} is outside the allowed range ({_range(column)})")
     return value
 
 
@@ -181,7 +184,7 @@ def _date(text: str, where: str) -> datetime:
         date = datetime.fromisoformat(text.replace("Z", "+00:00"))
     except ValueError:
         raise InputError(
-            f"{where}: {text!r} is not a date such as 2024-12-31 or 2024-12-31T18:00"
+            f"{where}: {quoted(text)} is not a date such as 2024-12-31 or 2024-12-31T18:00"
         ) from None
     return date if date.tzinfo is None else date.astimezone(timezone.utc).replace(tzinfo=None)
 

@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.table import Table
-
 from snowshed.parameter_words import word
 from snowshed.sensitivity.stored import TARGETS
+from snowshed.terminal import plain_table, wide_console
 
 if TYPE_CHECKING:
     import pandas as pd
 
 WIDE = 0.25  # half of an interval that says little of an index between 0 and 1
-WIDTH = 100  # columns, of what is not a terminal
 
 
 def _local(row: Any) -> str:
@@ -54,10 +50,9 @@ def print_table(method: str, table: pd.DataFrame) -> None:
     """Print a method's table."""
     title, cell = CELLS[method]
     events = list(dict.fromkeys(table["event"]))
-    console = Console(highlight=False)
-    console.width = console.width if console.is_terminal else WIDTH
+    console = wide_console()
     for target in TARGETS:
-        shown = Table(title=f"{title}: {target}", title_justify="left", box=SIMPLE_HEAD)
+        shown = plain_table(f"{title}: {target}")
         shown.add_column("parameter", no_wrap=True)
         for event in events:
             shown.add_column(f"event {event}", justify="right", no_wrap=True)

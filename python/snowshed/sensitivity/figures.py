@@ -13,11 +13,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from snowshed.arrays import Floats
-from snowshed.figure_style import COLOURS, STYLE, blank, headline
+from snowshed.figure_style import COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.parameter_words import word
 from snowshed.sensitivity.single_parameter import CONFIDENT
 from snowshed.sensitivity.stored import SEED, TARGETS
-from snowshed.view import FAINT, INK
 
 if TYPE_CHECKING:
     import pandas as pd

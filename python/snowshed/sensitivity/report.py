@@ -62,7 +62,7 @@ def evaluate(
     InputError
         If there is no such study, or its runs do not serve for the method.
     """
-    from snowshed.view import save
+    from snowshed.figure_style import save
 
     if method not in EVALUATIONS:
         raise InputError(f"method: {method!r} is unknown; allowed: {', '.join(EVALUATIONS)}")

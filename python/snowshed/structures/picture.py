@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from snowshed import _core
 from snowshed.arrays import Floats
 from snowshed.caption import scene_caption
+from snowshed.figure_style import FAINT, INK, STACK, blank, describe, quiet
 from snowshed.scene import InitialisedScene, Scene
 from snowshed.structures.slope import BOARD_CELLS
-from snowshed.view import FAINT, INK, STACK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,11 +41,7 @@ def scene_figure(scene: Union[Scene, InitialisedScene]) -> Figure:
     simulation.begin_event()
     data = ready.data
     left, right, bottom, top = _limits(simulation, data)
-    figure = Figure(
-        figsize=(WIDTH, min(1.2 + (WIDTH - 1) * (top - bottom) / (right - left), 9.0)),
-        layout="constrained",
-    )
-    FigureCanvasAgg(figure)
+    figure = blank(WIDTH, min(1.2 + (WIDTH - 1) * (top - bottom) / (right - left), 9.0))
     axes = figure.subplots()
     axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     _draw_obstacles(axes, simulation)
@@ -64,12 +59,10 @@ def scene_figure(scene: Union[Scene, InitialisedScene]) -> Figure:
     )
     _draw_panel(axes, simulation, data)
     axes.legend(frameon=False, fontsize=9, loc="upper right", markerscale=3)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(FAINT)
-    axes.tick_params(colors=INK, labelsize=9)
+    quiet(axes)
     axes.set_xlabel("x, m", color=INK, fontsize=9)
     axes.set_ylabel("z, m", color=INK, fontsize=9)
-    figure.suptitle(scene_caption(data), x=0.02, ha="left", color=INK, fontsize=9, linespacing=1.5)
+    describe(figure, scene_caption(data))
     return figure
 
 

@@ -10,26 +10,15 @@ from typing import Any, Optional, TypeVar
 import click
 
 from snowshed.atomic import write_text
+from snowshed.stops import Failed, Stopped
 from snowshed.study.definition import Study
-from snowshed.study.errors import StudyError, StudyInterrupted
+from snowshed.study.errors import StudyInterrupted
 from snowshed.study.store import Store
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 PATH = click.Path(path_type=Path)
 LISTED = 5  # failed runs that an error names; the output has them all
-
-
-class _Failed(click.ClickException):
-    """Runs have failed, or the study cannot go on."""
-
-    exit_code = 3
-
-
-class _Stopped(click.ClickException):
-    """An interrupted study."""
-
-    exit_code = 130
 
 
 def _computing_options(command: Command) -> Command:
@@ -52,7 +41,14 @@ def _computing_options(command: Command) -> Command:
 
 @click.group()
 def study() -> None:
-    """Hold the commands; what help says of them as a group is in `snowshed.cli`."""
+    """Compute many runs: one scene, and parameters that vary.
+
+    \b
+    Example:
+      snowshed study template -o study.toml
+      snowshed study run study.toml -o results
+      snowshed study export results -o table.csv
+    """  # noqa: D301 - click wants the control character
 
 
 @study.command()
@@ -169,10 +165,8 @@ def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
 def _outcome_as_exit_code() -> Iterator[None]:
     try:
         yield
-    except StudyError as error:
-        raise _Failed(str(error)) from None
     except StudyInterrupted as interrupted:
-        raise _Stopped(str(interrupted)) from None
+        raise Stopped(str(interrupted)) from None
 
 
 def _progress(quiet: bool) -> Any:
@@ -200,7 +194,7 @@ def _finish(folder: Path, names: list[str], quiet: bool) -> None:
     if failed:
         listed = ", ".join(run.hash[:12] for run in failed[:LISTED])
         listed += ", ..." if len(failed) > LISTED else ""
-        raise _Failed(f"{len(failed)} of {len(runs)} runs failed: {listed}")
+        raise Failed(f"{len(failed)} of {len(runs)} runs failed: {listed}")
 
 
 def _warn_of_missing(folder: Path, name: Optional[str]) -> None:

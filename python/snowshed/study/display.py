@@ -8,12 +8,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
-from rich.progress import Progress as Bar
 
 from snowshed.study.owner import is_alive
 from snowshed.study.session import Reporter, StudyProgress
 from snowshed.study.store import Store, StoredRun
+from snowshed.terminal import one_bar
 
 #: Up to how many seconds a duration is told in which unit, of how many seconds, to what digit.
 UNITS = (
@@ -44,27 +43,14 @@ def in_words(seconds: float) -> str:
 @contextmanager
 def progress_bar() -> Iterator[Reporter]:
     """Say what will be computed and how long that should take; then show one bar, on stderr."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeRemainingColumn(),
-    )
-    console = Console(stderr=True, highlight=False)
-    bar = Bar(*columns, console=console, speed_estimate_period=SPEED_PERIOD_S)
-    task = bar.add_task("starting", total=1.0)
+    with one_bar(speed_period_s=SPEED_PERIOD_S) as bar:
 
-    def report(progress: StudyProgress) -> None:
-        if not bar.live.is_started:
-            console.print(announcement(progress))
-            bar.start()
-        bar.update(task, completed=progress.fraction, description=description(progress))
+        def report(progress: StudyProgress) -> None:
+            if not bar.started:
+                bar.console.print(announcement(progress))
+            bar.show(progress.fraction, description(progress))
 
-    try:
         yield report
-    finally:
-        if bar.live.is_started:
-            bar.stop()
 
 
 def announcement(progress: StudyProgress) -> str:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from snowshed._core import SimulationError
 
-class StudyError(RuntimeError):
+
+class StudyError(SimulationError):
     """The study cannot go on, for a reason that lies in the machine; what is stored is safe."""
 
     def __init__(self, reason: str) -> None:

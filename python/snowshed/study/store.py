@@ -354,5 +354,5 @@ def _translated(folder: Path) -> Iterator[None]:
     """Turn errors of the database into what the user can do about them."""
     try:
         yield
-    except sqlite3.Error as error:
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter: SQLite quotes damaged text
         raise StudyError(f"{folder / FILE}: {error}") from None

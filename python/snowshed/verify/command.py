@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Optional
 
 import click
 
+from snowshed.stops import Stopped
+
 if TYPE_CHECKING:
     from snowshed.verify.case import Case
     from snowshed.verify.folder import SuiteFolder
@@ -17,12 +19,6 @@ if TYPE_CHECKING:
     from snowshed.verify.report import Stress
 
 PATH = click.Path(path_type=Path)
-
-
-class _Stopped(click.ClickException):
-    """An interrupted suite."""
-
-    exit_code = 130
 
 
 @click.command()
@@ -64,11 +60,13 @@ def verify(
       snowshed verify --quick -o verification
     """  # noqa: D301 - click wants the control character
     from snowshed.verify.folder import SuiteFolder
-    from snowshed.verify.recorded import record
+    from snowshed.verify.recorded import load_recorded, record
     from snowshed.verify.report import Suite, problems, write_report
     from snowshed.verify.suite import load_cases
 
     cases = load_cases(names)
+    if recorded is not None:
+        load_recorded(recorded)  # so that a damaged file is known before hours have passed
     stress = not names if stress is None else stress
     open_folder = SuiteFolder.reopen if resume else SuiteFolder.create
     results = open_folder(folder)
@@ -79,7 +77,7 @@ def verify(
         stressed = _stress(results, full=not quick, seed=seed, quiet=quiet) if stress else None
     except KeyboardInterrupt:
         command = _resume_command(quick, names, stress, seed, folder)
-        raise _Stopped(f"interrupted; go on with: {command}") from None
+        raise Stopped(f"interrupted; go on with: {command}") from None
     suite = Suite(cases, measurements, full=not quick, stress=stressed)
     bars = write_report(suite, folder)
     if not quiet:

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bar
-from rich.table import Table
+from rich.progress import TextColumn, TimeElapsedColumn
 
+from snowshed.terminal import one_bar, plain_table, wide_console
 from snowshed.verify import sections, wording
 from snowshed.verify.analysis import Bar as Demand
 from snowshed.verify.case import Case
@@ -22,25 +19,9 @@ STYLES = {"holds": "none", "does not hold": "bold red", "not measured": "dim"}
 @contextmanager
 def progress_bar() -> Iterator[Callable[[float, str, str], None]]:
     """Show one bar on stderr; what it yields takes the part that is done, 0 to 1, and two texts."""
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(bar_width=24),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[left]}"),
-        TimeElapsedColumn(),
-    )
-    bar = Bar(*columns, console=Console(stderr=True), transient=True)
-    task = bar.add_task("starting", total=1.0, left="")
-
-    def show(fraction: float, what: str, left: str) -> None:
-        bar.start()
-        bar.update(task, completed=fraction, description=what, left=left)
-
-    try:
-        yield show
-    finally:
-        if bar.live.is_started:  # else stopping it would print an empty line
-            bar.stop()
+    columns = (TextColumn("{task.fields[left]}"), TimeElapsedColumn())
+    with one_bar(*columns, width=24, transient=True, left="") as bar:
+        yield lambda fraction, what, left: bar.show(fraction, what, left=left)
 
 
 @contextmanager
@@ -74,11 +55,9 @@ def print_bars(bars: Sequence[Demand], cases: Sequence[Case]) -> None:
     grid = sections.bars_grid(bars, cases)
     if not grid.rows:
         return
-    table = Table(title="What holds", title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table = plain_table("What holds", padding=(0, 1, 0, 0))
     for title, align in zip(grid.head, grid.align):
         table.add_column(title, justify="right" if align == "r" else "left")
     for row in grid.rows:
         table.add_row(*row, style=STYLES[row[0]])
-    console = Console()
-    console.width = console.width if console.is_terminal else 160
-    console.print(table)
+    wide_console(160).print(table)

@@ -12,19 +12,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from snowshed.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank
 from snowshed.verify import wording
 from snowshed.verify.analysis import Convergence, Solution, key_of, pareto_front, varying
 from snowshed.verify.case import Quantity, Settings, Value
-from snowshed.view import BODY, FAINT, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
 
 #: For a setting's name, how each of its values is drawn.
 Looks = Mapping[str, Mapping[Optional[Value], Any]]
@@ -32,8 +31,6 @@ Looks = Mapping[str, Mapping[Optional[Value], Any]]
 #: The settings that make a problem, and the ways in which it was solved.
 Problem = Tuple[Settings, Sequence[Solution]]
 
-#: Colours that stay apart for colour-blind eyes and in print (Okabe and Ito).
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
 #: Which settings get colours before others get markers and dashes.
@@ -46,28 +43,6 @@ MOST_FRONTS = 3
 SHORTEST = 1e-6
 #: Errors of exact answers are zero; on a logarithmic axis they lie here.
 ZERO = 1e-17
-
-STYLE: dict[Any, Any] = {
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": FAINT,
-    "axes.labelcolor": INK,
-    "axes.titlecolor": INK,
-    "axes.titlelocation": "left",
-    "axes.titlesize": 10.5,
-    "axes.labelsize": 9,
-    "axes.axisbelow": True,
-    "axes.grid": True,
-    "grid.color": "#e6eaee",
-    "grid.linewidth": 0.7,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "xtick.labelsize": 8.5,
-    "ytick.labelsize": 8.5,
-    "legend.frameon": False,
-    "legend.fontsize": 8,
-    "font.size": 9,
-}
 
 
 class KeyLine(NamedTuple):
@@ -197,8 +172,7 @@ def _entry(keyword: str, shape: Any, label: str) -> Line2D:
 def _figure(look: Look, drawn: Sequence[Settings], *, rows: int) -> Iterator[Figure]:
     """Yield a figure for some rows of panels; what the look of what is drawn means is added."""
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(8.2, 2.9 * rows + 0.6), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = blank(8.2, 2.9 * rows + 0.6)
         yield figure
         if key := look.key(drawn):
             lines = -(-len(key) // 8)

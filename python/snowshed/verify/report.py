@@ -19,7 +19,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed.atomic import replacing, write_text
+from snowshed.atomic import write_text
+from snowshed.html_page import template, write_pictures
 from snowshed.verify import analysis, sections, wording
 from snowshed.verify.case import Case
 from snowshed.verify.measurements import Measurement, to_table
@@ -86,7 +87,8 @@ def write_report(suite: Suite, folder: Path) -> list[analysis.Bar]:
         sections.section(case, [m for m in suite.measurements if m.case == case.name], table)
         for case in suite.cases
     ]
-    _write_pictures(about_cases, folder / "figures")
+    pictures = [picture for about in about_cases for picture in about.pictures]
+    write_pictures(pictures, folder / "figures")
     write_text(folder / "results.csv", table.to_csv(index=False, float_format="%.9g"))
     write_text(folder / "results.json", json_text(suite, table, bars, answers))
     if suite.stress is not None:
@@ -123,16 +125,7 @@ def render(
     about_cases: Sequence[sections.Section],
 ) -> str:
     """Return the report as HTML."""
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("snowshed.verify"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    return environment.get_template(TEMPLATE).render(
+    return template("snowshed.verify", TEMPLATE).render(
         facts=suite.facts(),
         counts=Counter(bar.holds for bar in bars),
         problems=problems(suite, bars),
@@ -174,13 +167,6 @@ def _orders(suite: Suite, table: pd.DataFrame) -> list[dict[str, Any]]:
             quantity.order_in,
         )
     ]
-
-
-def _write_pictures(about_cases: Sequence[sections.Section], folder: Path) -> None:
-    folder.mkdir(exist_ok=True)
-    for picture in (one for section in about_cases for one in section.pictures):
-        with replacing(folder / f"{picture.name}.png") as beside:
-            beside.write_bytes(picture.png)
 
 
 def _plain(value: Any) -> Any:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
+from snowshed.html_page import Grid, Picture
 from snowshed.verify import figures, wording
 from snowshed.verify.analysis import (
     Bar,
@@ -31,9 +30,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-#: Tables with more rows than this are folded.
-LONG = 12
-DPI = 130
 #: What a measurement costs, in words.
 COSTS: Mapping[str, Callable[[Measurement], str]] = {
     "time": lambda one: wording.duration(one.wall_s),
@@ -53,55 +49,6 @@ WORK_PRECISION = (
     "Left is quick, low is accurate; no other way of solving the same problem beats the points "
     "with letters in both. Red, where there is one: the largest error allowed."
 )
-
-
-@dataclass(frozen=True)
-class Grid:
-    """A table of texts.
-
-    Attributes
-    ----------
-    head, rows
-        Texts; every row as long as the head.
-    align
-        A letter for each column: "l" for words, at the left, "r" for numbers.
-    groups
-        Headings over several columns, with the number of columns; none if empty.
-    """
-
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    align: str
-    groups: Sequence[tuple[str, int]] = ()
-
-    @property
-    def long(self) -> bool:
-        """Whether it should be folded."""
-        return len(self.rows) > LONG
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A figure.
-
-    Attributes
-    ----------
-    name, title, caption
-        Of the file without its ending; what it shows, in a few words and in a sentence.
-    png, width
-        The picture, and how wide it should be, in CSS pixels.
-    """
-
-    name: str
-    title: str
-    caption: str
-    png: bytes
-    width: int
-
-    @property
-    def base64(self) -> str:
-        """The PNG as a page can hold it."""
-        return base64.b64encode(self.png).decode()
 
 
 @dataclass(frozen=True)
@@ -345,10 +292,8 @@ def _compared(quantity: Quantity, problems: Sequence[tuple[Settings, Sequence[So
 
 
 def _picture(figure: Figure, case: Case, title: str, caption: str) -> Picture:
-    file = io.BytesIO()
-    figure.savefig(file, format="png", dpi=DPI)
     name = f"{case.name}-{title.lower()}".replace(" ", "-")
-    return Picture(name, title, caption, file.getvalue(), round(96 * figure.get_figwidth()))
+    return Picture.drawn(figure, name, title, caption)
 
 
 def _cheapest_rows(

@@ -1,7 +1,8 @@
 // Snow at rest: which blocks of particles sleep, and which blocks of nodes are then not needed.
 //
 // A block of particles falls asleep when it has been slower than a limit for some time, and its
-// mean velocity has not grown meanwhile: what is just setting off is slow, too. Its speed is the
+// snow did not speed up along its motion meanwhile, nor change its velocity as snow in flight does:
+// what is just setting off, or turns in the air, is slow, too. Its speed is the
 // root of the mean square over its particles; no single one may be several times faster. A sleeping
 // block takes no part in a step, but keeps its mass and its stresses on its tile, so that its
 // neighbours rest on it. It wakes when nodes that it shares with awake snow would carry it faster
@@ -21,8 +22,9 @@ namespace snowshed {
 template <int D>
 class Sleep {
  public:
-  /// Speed limit (m/s; 0: nothing ever sleeps) and time (s).
-  Sleep(double speed, double time) : limit_(speed), time_(time) {}
+  /// Speed limit (m/s; 0: nothing ever sleeps), time (s), and gravity (m/s2), which tells flight.
+  Sleep(double speed, double time, double gravity)
+      : limit_(speed), time_(time), gravity_(gravity) {}
 
   /// What must be known of a particle block to let it fall asleep or to wake it.
   struct Look {
@@ -61,7 +63,8 @@ class Sleep {
     /// would have given it lately. m/s
     VecD<D> sum = VecD<D>::Zero();
     double looks = 0;                     // their number
-    double first_half = -1;               // speed of the mean in the first half; before its end: -1
+    bool halfway = false;                 // whether the first half of the spell is over, and
+    VecD<D> first_half = VecD<D>::Zero();  // the mean velocity in it, m/s
   };
   const std::vector<State>& states() const { return states_; }
   /// States from a checkpoint, one for each particle block of the layout.
@@ -74,7 +77,7 @@ class Sleep {
   bool falls_asleep(State& state, double now, const VecD<D>& velocity) const;
   void list_blocks(const BlockLayout<D>& layout);
 
-  double limit_, time_;
+  double limit_, time_, gravity_;
   std::vector<BlockKey> keys_;        // of the layout that `states_` belongs to
   std::vector<std::int32_t> counts_;  // particles in each of its blocks
   std::vector<State> states_;

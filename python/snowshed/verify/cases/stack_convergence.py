@@ -157,33 +157,32 @@ slab and at 0.005 m it does not. Lengths are 2 to 9 % larger.
 
 The damping of FLIP is the second large error. The share of PIC, 1 - flip_ratio, is taken in every
 step, so the damping per second depends on the time step. At dx 0.01 m after five slabs a flip_ratio
-of 0.95, 0.99 or 0.999 gives heights of 0.20, 0.15 and 0.11 m, and lengths of 0.31, 0.42 and 0.75 m.
-A third of the time step (step_factor 0.3) does almost what 0.95 does: 0.20 and 0.34 m. With
+of 0.95, 0.99 or 0.999 gives heights of 0.20, 0.14 and 0.11 m, and lengths of 0.31, 0.41 and 0.72 m.
+A third of the time step (step_factor 0.3) does almost what 0.95 does: 0.20 and 0.33 m. With
 flip_ratio raised to 0.9967 along with it, the same share per second, the stack is what it was. APIC
-is not so sensitive: 0.13 and 0.46 m, and with a third of the step 0.13 and 0.42 m. Stacks can be
+is not so sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m. Stacks can be
 compared only at equal flip_ratio and equal time step.
 
 Random seeding moves the height by 2 to 5 % and the length by 2 to 11 % (one standard deviation, 2D)
 after one to four slabs. After the fifth, when a 2D pile may or may not give way, it is 8 to 16 % in
 height and 3 to 8 % in length. In space piles give way more evenly: 0.5 to 4 % in height and about 1
 % in length at dx 0.01 m. A difference of less than two standard deviations between two single runs
-means nothing. Round-off is not the cause: single and double precision give the same stacks to four
-digits. Neither the basis nor the number of particles per voxel changes the stack by more than the
-noise.
+means nothing. Neither precision nor basis nor the number of particles per voxel changes the stack
+by more than the noise.
 
 Snow that is slower than sleep_speed may drop out of the steps. What that saves and what it changes
 depends on this speed. The same seeds with sleep and without were compared, five slabs in the plane
-at dx 0.01 m (12 seeds). At 2 mm/s sleep saved 24 % of the time, at 5 mm/s 33 % and at 20 mm/s 50 %.
-Up to 5 mm/s the mean height changed by 0.6 % at most and the mean length by 1.2 %, a tenth and a
-third of a standard deviation between seedings. At 20 mm/s the change is no longer noise. Snow falls
-asleep while it still creeps: stacks in the plane became up to 6 % shorter; stacks in space at dx
-0.02 m became 4 to 10 % higher from the third slab on, where seedings differ by 1 to 6 %; and with
-APIC, whose snow creeps more, a first stack became 15 % higher, more than four standard deviations.
-In space at 5 mm/s heights changed by up to 2 % (two seeds); sleep saved 11 % of the time at dx 0.02
-m and 24 % at 0.01 m.
+at dx 0.01 m (12 seeds). At 2 mm/s sleep saved 30 % of the time, at 5 mm/s 38 % and at 20 mm/s, the
+default, 56 %. Up to 5 mm/s mean height and length changed by 0.6 % at most. At 20 mm/s the height
+grew by 5 % and the length fell by 3 %, a third and two fifths of a standard deviation between
+seedings. APIC's snow creeps more: 11 % and 7 % at 20 mm/s (0.7 and 1 standard deviations), 4 % and
+2 % at 5 mm/s; a first stack stays the same to 0.5 %. In space at dx 0.01 m one stack became 1.5 %
+lower and 0.9 % shorter and took half of the time. At dx 0.02 m, one cell to the slab, stacks in
+space became 8 % higher and 3 % shorter at 20 mm/s, which is more than another seeding does; at 5
+mm/s they did not change, but only 8 % of the time was saved.
 
 3D stacks at dx 0.01 m are as high as 2D ones after up to three slabs (ratio 1.03, 1.02, 1.03), then
-0.88 and 0.73. The rule of thumb of two thirds is met when a pile is as high as it is wide enough to
+0.88 and 0.74. The rule of thumb of two thirds is met when a pile is as high as it is wide enough to
 give way sideways.
 
 Chunks that roll metres away, and grains more than two or three cells from their neighbours that no

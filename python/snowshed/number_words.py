@@ -1,0 +1,81 @@
+"""Numbers, parts and durations as people read them."""
+
+from __future__ import annotations
+
+from math import isnan
+from typing import Optional
+
+#: What stands where there is no number.
+NOTHING = "\N{EN DASH}"
+TIMES = "\N{MULTIPLICATION SIGN}"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+#: Parts below this are shown as they are, not in percent.
+SMALL = 1e-5
+
+
+def number(value: Optional[float], digits: int = 3) -> str:
+    """Return a number with a few significant digits, very large and small ones with powers of ten.
+
+    Examples
+    --------
+    >>> [number(x) for x in (0.123456, 12.0, 0.0, 123456.0)]
+    ['0.123', '12', '0', '123,000']
+    """
+    if value is None or isnan(value):
+        return NOTHING
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1e3 <= abs(float(text)) < 1e6:
+        return f"{float(text):,.0f}"
+    if "e" in text:
+        mantissa, _, exponent = text.partition("e")
+        power = f"10{str(int(exponent)).translate(SUPERSCRIPTS)}"
+        return power if mantissa == "1" else f"{mantissa}{TIMES}{power}"
+    return text
+
+
+def percent(value: Optional[float], digits: int = 3) -> str:
+    """Return a part as a percentage; very small ones as they are.
+
+    Examples
+    --------
+    >>> [percent(x) for x in (0.05, 0.012345, 0.0)]
+    ['5 %', '1.23 %', '0 %']
+    """
+    if value is None or isnan(value):
+        return NOTHING
+    if 0 < abs(value) < SMALL:
+        return number(value, digits)
+    return f"{number(100 * value, digits)} %"
+
+
+def duration(seconds: Optional[float]) -> str:
+    """Return a time.
+
+    Examples
+    --------
+    >>> [duration(t) for t in (0.00123, 0.5, 75.3, 100.2, 400.0, 8000.0)]
+    ['1.2 ms', '0.5 s', '75 s', '100 s', '6 min 40 s', '2 h 13 min']
+    """
+    if seconds is None or isnan(seconds):
+        return NOTHING
+    if seconds < 0.1:
+        return f"{number(1e3 * seconds, 2)} ms"
+    if seconds < 120:
+        return f"{number(seconds, 2 if seconds < 99.5 else 3)} s"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 120:
+        return f"{minutes} min {rest} s"
+    return f"{minutes // 60} h {minutes % 60} min"
+
+
+def count(value: Optional[float]) -> str:
+    """Return how many there are.
+
+    Examples
+    --------
+    >>> [count(n) for n in (950, 12345)]
+    ['950', '12,345']
+    """
+    if value is None or isnan(value) or value >= 1e6:
+        return number(value)
+    return f"{value:,.0f}"

@@ -1,0 +1,1 @@
+"""The thesis reproduced: its tables, figures and claims beside our own numbers."""

@@ -1,0 +1,1 @@
+"""The thesis's claims as functions of tables: data in, verdict and sentence out."""

@@ -1,0 +1,191 @@
+"""Claims of section 3.4: what stacks do, on average over all other parameters.
+
+The data are the table of `snowshed.sensitivity.fixation` with a column ``noise_m``: the standard
+deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING
+
+from snowshed.number_words import percent
+from snowshed.parameter_words import word
+from snowshed.reproduce.claims.judging import (
+    Claim,
+    Estimate,
+    Finding,
+    all_of,
+    mean_of,
+    negative,
+    positive,
+    small,
+)
+from snowshed.reproduce.claims.s_index import COHESION, HARDENING, MODULUS, PRESSURE, SLOPE
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Part of the stack by which it may change over the whole range of a parameter that hardly matters.
+HARDLY = 0.1
+YIELD = (SLOPE, PRESSURE, COHESION)
+
+
+def effect(table: pd.DataFrame, parameter: str, target: str) -> Estimate:
+    """Return by how much the mean stack changes over the range of a parameter, last event, m."""
+    rows = _last(_of(table, target), parameter)
+    low, high = (Estimate(row["mean_m"], row["noise_m"]) for row in (rows.iloc[0], rows.iloc[-1]))
+    return high - low
+
+
+def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
+    """Whether the stack grows over the range of a parameter."""
+    return positive(effect(table, parameter, target), _change(parameter, target), "m")
+
+
+def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
+    """Whether the stack shrinks over the range of a parameter."""
+    return negative(effect(table, parameter, target), _change(parameter, target), "m")
+
+
+def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
+    """Whether the stack changes little over the ranges of both hardening parameters."""
+    findings = []
+    for parameter in (HARDENING, MODULUS):
+        mean = _last(_of(table, target), parameter)["mean_m"].mean()
+        found = effect(table, parameter, target).scaled(1 / mean)
+        findings.append(small(found, HARDLY, _change(parameter, target), "%"))
+    return all_of(findings)
+
+
+def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
+    """Whether the events change the stack more than any parameter does over its range."""
+    first, last = _ends(_of(table, target))
+    found = {one: effect(table, one, target) for one in dict.fromkeys(table["parameter"])}
+    rival = max(found, key=lambda one: abs(found[one].value))
+    strongest = Estimate(abs(found[rival].value), found[rival].noise)
+    lead = (last - first) - strongest
+    words = f"{target}, growth by the events minus change by {word(rival).symbol}, the strongest"
+    return positive(lead, words, "m")
+
+
+def second_event_adds_most_length(table: pd.DataFrame) -> Finding:
+    """Whether the second event adds more length than the third."""
+    rows = _of(table, "length")
+    events = sorted(rows["event"].unique())
+    if len(events) < 3:
+        raise LookupError("three events")
+    one, two, three = (_mean(rows[rows["event"] == event]) for event in events[:3])
+    more = 2 * two.value - one.value - three.value
+    noise = math.sqrt(one.noise**2 + 4 * two.noise**2 + three.noise**2)
+    return positive(Estimate(more, noise), "length, growth at the second minus at the third", "m")
+
+
+def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
+    """Whether heights scatter more at the highest value of each yield parameter than at the lowest.
+
+    They scatter over the values of the other parameters.
+    """
+    findings = []
+    for parameter in YIELD:
+        rows = _last(_of(table, "height"), parameter)
+        low, high = (_deviation(row) for row in (rows.iloc[0], rows.iloc[-1]))
+        what = f"scatter at the highest {word(parameter).symbol} minus at the lowest"
+        findings.append(positive(high - low, what, "m"))
+    return all_of(findings)
+
+
+def _of(table: pd.DataFrame, target: str) -> pd.DataFrame:
+    return table[table["target"] == target]
+
+
+def _last(rows: pd.DataFrame, parameter: str) -> pd.DataFrame:
+    rows = rows[(rows["parameter"] == parameter) & (rows["event"] == rows["event"].max())]
+    if rows["value"].nunique() < 2:
+        raise LookupError(f"two values of {word(parameter).symbol}")
+    return rows.sort_values("value")
+
+
+def _ends(rows: pd.DataFrame) -> tuple[Estimate, Estimate]:
+    """Return the mean stack after the first and the last event."""
+    first, last = rows["event"].min(), rows["event"].max()
+    return _mean(rows[rows["event"] == first]), _mean(rows[rows["event"] == last])
+
+
+def _mean(rows: pd.DataFrame) -> Estimate:
+    """Return the mean over the values of the first parameter, which covers all of its group."""
+    rows = rows[rows["parameter"] == rows["parameter"].iloc[0]]
+    return mean_of([Estimate(m, n) for m, n in zip(rows["mean_m"], rows["noise_m"])])
+
+
+def _deviation(row: pd.Series[float]) -> Estimate:
+    """Return a deviation over n points, with the standard error that n leaves."""
+    if row["points"] < 2:
+        raise LookupError("several points at each value")
+    deviation = float(row["deviation_m"])
+    return Estimate(deviation, deviation / math.sqrt(2 * (float(row["points"]) - 1)))
+
+
+def _change(parameter: str, target: str) -> str:
+    return f"{target}, highest minus lowest {word(parameter).symbol}"
+
+
+RAISE = "mean over the others higher at the highest value than at the lowest, last event"
+FIXATION: tuple[Claim[pd.DataFrame], ...] = (
+    *(
+        Claim(
+            "3.4.1",
+            f"{word(one).symbol} raises the stack.",
+            RAISE,
+            partial(raises, parameter=one, target="height"),
+        )
+        for one in YIELD
+    ),
+    *(
+        Claim(
+            "3.4.1",
+            f"{word(one).symbol} shortens the stack.",
+            RAISE.replace("higher", "lower"),
+            partial(lowers, parameter=one, target="length"),
+        )
+        for one in (SLOPE, COHESION)
+    ),
+    Claim(
+        "3.4.1",
+        "p₀ lengthens the stack.",
+        RAISE,
+        partial(raises, parameter=PRESSURE, target="length"),
+    ),
+    *(
+        Claim(
+            "3.4.2, 3.5",
+            f"ξ and E hardly matter for the {target}.",
+            f"over the whole range of each the mean changes by less than {percent(HARDLY)}",
+            partial(hardly_matter, target=target),
+        )
+        for target in ("height", "length")
+    ),
+    *(
+        Claim(
+            "3.4",
+            f"Events matter more for the {target} than snow parameters.",
+            "growth from the first event to the last above the largest change over a parameter",
+            partial(events_matter_more, target=target),
+        )
+        for target in ("height", "length")
+    ),
+    Claim(
+        "3.4.1",
+        "The length grows more at the second event than at the third.",
+        "mean over the yield parameters",
+        second_event_adds_most_length,
+    ),
+    Claim(
+        "3.4.1",
+        "The more cohesive the snow, the more sensitive the height.",
+        "deviation over the other parameters larger at the highest value than at the lowest, for "
+        "M, p₀ and β",
+        cohesive_snow_is_more_sensitive,
+    ),
+)

@@ -1,0 +1,199 @@
+"""Claims of section 5.1: how stacks depend on the panel.
+
+The data have one row per panel and event: ``event``, ``panel_height``, ``panel_length`` (m),
+``panel_tilt`` (degrees), and ``ratio``, ``height``, ``length`` of the stack. Each input is looked
+at among rows that share all others, relative to the mean of these rows. The noise is the standard
+error of a fitted slope, from the scatter about the fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from snowshed.arrays import Floats
+from snowshed.number_words import percent
+from snowshed.reproduce.claims.judging import (
+    CONFIRMED,
+    CONTRADICTED,
+    UNDECIDED,
+    Claim,
+    Estimate,
+    Finding,
+    negative,
+    positive,
+    small,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+INPUTS = ("event", "panel_height", "panel_length", "panel_tilt")
+#: A shape fits better if it leaves so many times less variance.
+FITS_BETTER = 1.5
+#: Part of a straight line's change by which a parabola may depart from it.
+STRAIGHT = 0.25
+#: Part of the ratio by which it may change over all tilts and still hardly depend on them.
+HARDLY = 0.1
+
+Shape = Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Slopes that all groups share, with an offset for each group.
+
+    Attributes
+    ----------
+    slopes
+        Part of the group's mean per unit of each shape.
+    variance
+        What the fit leaves, per degree of freedom.
+    span
+        From the lowest to the highest input.
+    """
+
+    slopes: Sequence[Estimate]
+    variance: float
+    span: float
+
+
+def fit(table: pd.DataFrame, varied: str, target: str, *shapes: Shape) -> Fit:
+    """Fit a target to functions of one input, among rows that share all others.
+
+    Raises
+    ------
+    LookupError
+        If there are too few such rows.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> table = pd.DataFrame({name: 1.0 for name in INPUTS}, index=range(4))
+    >>> table["panel_height"] = [1.0, 2.0, 3.0, 4.0]
+    >>> table["ratio"] = 5 - table["panel_height"]
+    >>> round(fit(table, "panel_height", "ratio", straight).slopes[0].value, 6)  # of a mean of 2.5
+    -0.4
+    """
+    others = [name for name in INPUTS if name != varied]
+    groups = [rows for _, rows in table.groupby(others) if rows[varied].nunique() > 1]
+    count = sum(map(len, groups))
+    freedom = count - len(groups) - len(shapes)
+    if freedom < 1:
+        raise LookupError(f"enough rows that differ in nothing but {varied.replace('_', ' ')}")
+    inputs = [rows[varied].to_numpy(float) for rows in groups]
+    columns = np.concatenate([_centred([shape(x) for shape in shapes]) for x in inputs], axis=1).T
+    targets = np.concatenate([_relative(rows[target].to_numpy(float)) for rows in groups])
+    slopes, *_ = np.linalg.lstsq(columns, targets, rcond=None)
+    variance = float(((targets - columns @ slopes) ** 2).sum() / freedom)
+    errors = np.sqrt(variance * np.diag(np.linalg.pinv(columns.T @ columns)))
+    found = [Estimate(float(one), float(error)) for one, error in zip(slopes, errors)]
+    return Fit(found, variance, float(np.ptp(np.concatenate(inputs))))
+
+
+def straight(x: Floats) -> Floats:
+    """Return the input itself."""
+    return x
+
+
+def _centred(columns: Sequence[Floats]) -> Floats:
+    return np.array([column - column.mean() for column in columns])
+
+
+def _relative(values: Floats) -> Floats:
+    return np.asarray(values / values.mean() - 1)
+
+
+def grows_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
+    """Whether a target grows with an input."""
+    found = fit(table, varied, target, np.log if varied == "panel_length" else straight)
+    unit = "per unit of ln L" if varied == "panel_length" else f"per m of {_name(varied)}"
+    slope = found.slopes[0]
+    return positive(slope, f"relative change of {_name(target)} {unit}")
+
+
+def falls_with_height(table: pd.DataFrame) -> Finding:
+    """Whether H/L falls with the panel's height."""
+    slope = fit(table, "panel_height", "ratio", straight).slopes[0]
+    return negative(slope, "relative change of H/L per m of panel height")
+
+
+def is_logarithmic(table: pd.DataFrame) -> Finding:
+    """Whether a logarithm of the panel's length fits H/L better than a straight line."""
+    line = fit(table, "panel_length", "ratio", straight).variance
+    logarithm = fit(table, "panel_length", "ratio", np.log).variance
+    better = line / logarithm
+    verdict = UNDECIDED
+    if better > FITS_BETTER:
+        verdict = CONFIRMED
+    elif better < 1 / FITS_BETTER:
+        verdict = CONTRADICTED
+    words = "variance left by a straight line over that left by a logarithm"
+    return Finding(verdict, f"{words}: {better:.2f}")
+
+
+def is_linear_in_height(table: pd.DataFrame) -> Finding:
+    """Whether a parabola bends H/L away from a straight line by a small part of its change."""
+    middle = (table["panel_height"].min() + table["panel_height"].max()) / 2
+    found = fit(table, "panel_height", "ratio", straight, lambda x: (x - middle) ** 2)
+    slope, bend = found.slopes
+    change = slope.value * found.span
+    departure = bend.scaled((found.span / 2) ** 2 / change)
+    return small(departure, STRAIGHT, "departure from a line, of the line's change", "%")
+
+
+def hardly_depends_on_tilt(table: pd.DataFrame) -> Finding:
+    """Whether H/L changes little over the whole range of tilts."""
+    found = fit(table, "panel_tilt", "ratio", straight)
+    change = found.slopes[0].scaled(found.span)
+    return small(change, HARDLY, "relative change of H/L over all tilts", "%")
+
+
+def _name(column: str) -> str:
+    names = {"ratio": "H/L", "height": "stack height", "length": "stack length"}
+    return names.get(column, column.replace("_", " "))
+
+
+GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
+    Claim(
+        "5.1.2",
+        "H/L grows with the panel's length.",
+        "slope on ln L above zero",
+        partial(grows_with, varied="panel_length", target="ratio"),
+    ),
+    Claim(
+        "5.1.2",
+        "It grows like a logarithm.",
+        f"a logarithm leaves {FITS_BETTER} times less variance than a straight line",
+        is_logarithmic,
+    ),
+    Claim(
+        "5.1.2",
+        "The stack's height grows with the panel's length.",
+        "slope on ln L above zero",
+        partial(grows_with, varied="panel_length", target="height"),
+    ),
+    Claim(
+        "5.1.2",
+        "The stack's length grows with the panel's height.",
+        "slope above zero",
+        partial(grows_with, varied="panel_height", target="length"),
+    ),
+    Claim("5.1.2", "H/L falls with the panel's height.", "slope below zero", falls_with_height),
+    Claim(
+        "5.1.2",
+        "It falls linearly.",
+        f"a parabola departs from the line by less than {percent(STRAIGHT)} of the line's change",
+        is_linear_in_height,
+    ),
+    Claim(
+        "5.1.2",
+        "H/L hardly depends on the tilt.",
+        f"it changes by less than {percent(HARDLY)} of itself over all tilts",
+        hardly_depends_on_tilt,
+    ),
+)

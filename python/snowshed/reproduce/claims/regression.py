@@ -1,0 +1,163 @@
+"""Claims of section 5.3, about the two support vector regressions of H/L."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from snowshed.number_words import percent
+from snowshed.regression.summary import (
+    LINEAR_WORSE,
+    QUARTILES_OFF,
+    THESIS_ERRORS,
+    THESIS_QUARTILES,
+    THESIS_ROWS,
+)
+from snowshed.reproduce.claims.judging import (
+    UNDECIDED,
+    Claim,
+    Estimate,
+    Finding,
+    all_of,
+    near,
+    positive,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: "Sub-centimetre": H/L has no unit, so that its error is compared with the plain number.
+SUB_CENTIMETRE = 0.01
+#: Part by which a number may differ and still be about another.
+ABOUT = 0.25
+
+
+@dataclass(frozen=True)
+class Regressed:
+    """What the nested cross-validation gave for H/L.
+
+    Attributes
+    ----------
+    rows
+        How many rows the data have.
+    scores
+        One row per outer fold: ``model``, ``round``, ``fold``, ``validation_score``.
+    errors
+        Table 5.3.2, by model: ``mean_absolute_error``, ``standard_deviation``.
+    quartiles
+        Table 5.3.1, by model: ``Q1`` to ``Q4``.
+    """
+
+    rows: int
+    scores: pd.DataFrame
+    errors: pd.DataFrame
+    quartiles: pd.DataFrame
+
+
+def validation(data: Regressed, model: str) -> Estimate:
+    """Return the mean validation score of a model, with its standard error over the folds."""
+    scores = data.scores.loc[data.scores["model"] == model, "validation_score"].to_numpy(float)
+    if not len(scores):
+        raise LookupError(f"the model {model}")
+    spread = float(scores.std(ddof=1)) if len(scores) > 1 else math.nan
+    return Estimate(float(scores.mean()), spread / math.sqrt(len(scores)))
+
+
+def rbf_is_better(data: Regressed) -> Finding:
+    """Whether the RBF kernel's median absolute error on validation sets is the smaller one."""
+    lead = validation(data, "linear") - validation(data, "rbf")
+    return positive(lead, "validation score, linear minus RBF")
+
+
+def rbf_is_so_much_better(data: Regressed) -> Finding:
+    """Whether the linear kernel's validation score is about 2.5 times the RBF kernel's."""
+    linear, rbf = validation(data, "linear"), validation(data, "rbf")
+    ratio = linear.value / rbf.value
+    noise = ratio * math.hypot(linear.noise / linear.value, rbf.noise / rbf.value)
+    words = "validation score, linear over RBF"
+    return near(Estimate(ratio, noise), LINEAR_WORSE, ABOUT * LINEAR_WORSE, words)
+
+
+def is_sub_centimetre(data: Regressed) -> Finding:
+    """Whether the RBF models' mean absolute error is below 0.01."""
+    error = float(data.errors["mean_absolute_error"]["rbf"])
+    noise = validation(data, "rbf").noise
+    left = Estimate(SUB_CENTIMETRE - error, noise)
+    return Finding(
+        positive(left, "").verdict,
+        f"mean absolute error of H/L: {Estimate(error, noise).in_words()}",
+    )
+
+
+def error_is_the_thesis(data: Regressed, model: str) -> Finding:
+    """Whether a model's mean absolute error is about that of Table 5.3.2."""
+    error = float(data.errors["mean_absolute_error"][model])
+    aim = THESIS_ERRORS[model][0]
+    noise = validation(data, model).noise
+    words = f"mean absolute error (thesis {aim})"
+    found = near(Estimate(error, noise), aim, ABOUT * aim, words)
+    return found if data.rows == THESIS_ROWS else _of_other_rows(found, data.rows)
+
+
+def quartiles_are_the_thesis(data: Regressed) -> Finding:
+    """Whether the quartiles of the predictions are those of Table 5.3.1."""
+    findings = []
+    for model, printed in THESIS_QUARTILES.items():
+        ours = data.quartiles.loc[model, ["Q1", "Q2", "Q3", "Q4"]].to_numpy(float)
+        off = np.abs(ours / np.array(printed) - 1)
+        scatter = math.hypot(
+            data.errors["mean_absolute_error"][model], data.errors["standard_deviation"][model]
+        )
+        noise = scatter / math.sqrt(data.rows) / printed[int(off.argmax())]
+        worst = Estimate(float(off.max()), noise)
+        findings.append(near(worst, 0.0, QUARTILES_OFF, f"{model}, worst quartile off by", "%"))
+    found = all_of(findings)
+    return found if data.rows == THESIS_ROWS else _of_other_rows(found, data.rows)
+
+
+def _of_other_rows(found: Finding, rows: int) -> Finding:
+    words = f"{found.sentence}, but of {rows} rows, not the thesis's {THESIS_ROWS}"
+    return Finding(UNDECIDED, words)
+
+
+REGRESSION: tuple[Claim[Regressed], ...] = (
+    Claim(
+        "5.3.1",
+        "The RBF kernel predicts better than the linear one.",
+        "smaller median absolute error on validation sets",
+        rbf_is_better,
+    ),
+    Claim(
+        "5.3.1",
+        f"It is about {LINEAR_WORSE} times better.",
+        f"ratio of validation scores within {percent(ABOUT)} of {LINEAR_WORSE}",
+        rbf_is_so_much_better,
+    ),
+    Claim(
+        "5.3",
+        "The RBF kernel predicts with sub-centimetre accuracy.",
+        f"mean absolute error of H/L below {SUB_CENTIMETRE}",
+        is_sub_centimetre,
+    ),
+    Claim(
+        "Table 5.3.2",
+        f"The RBF kernel's mean absolute error is {THESIS_ERRORS['rbf'][0]}.",
+        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        lambda data: error_is_the_thesis(data, "rbf"),
+    ),
+    Claim(
+        "Table 5.3.2",
+        f"The linear kernel's mean absolute error is {THESIS_ERRORS['linear'][0]}.",
+        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        lambda data: error_is_the_thesis(data, "linear"),
+    ),
+    Claim(
+        "Table 5.3.1",
+        "The quartiles of the predicted H/L.",
+        f"all within {percent(QUARTILES_OFF)}, for a data set of {THESIS_ROWS} rows",
+        quartiles_are_the_thesis,
+    ),
+)

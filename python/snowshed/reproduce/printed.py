@@ -1,0 +1,118 @@
+"""What the thesis prints in the tables of chapters 2 to 5."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A row of a table of parameters.
+
+    Attributes
+    ----------
+    name, unit
+        As they are shown.
+    path
+        Of the parameter in a scene.
+    text
+        The values as the thesis prints them; what it does not print says so.
+    scale
+        By how much values in SI units are divided to be shown.
+    zero
+        What stands for zero, if it means something else.
+    """
+
+    name: str
+    path: str
+    text: str
+    unit: str = ""
+    scale: float = 1.0
+    zero: str = "0"
+
+
+NOT_PRINTED = "not printed"
+_PANEL_CONDITION = Printed("panel, boundary condition", "panel.condition", "SLIP")
+_GROUND_CONDITION = Printed("ground, boundary condition", "ground.condition", "STICKY")
+_FRICTION = Printed("panel, friction", "panel.friction", NOT_PRINTED)
+_DENSITY = Printed("density", "snow.density", "210", "kg/m³")
+_POISSON = Printed("Poisson's ratio", "snow.poissons_ratio", "0.3")
+_GRID = Printed("grid size dx", "numerics.dx", "0.01", "m")
+_GROUND = Printed("ground tilt Ψ", "ground.tilt", "0", "°")
+_SEED = Printed("seedings (their seeds)", "seeding.seed", NOT_PRINTED)
+
+
+def _snow(slope: str, pressure: str, cohesion: str, hardening: str, modulus: str) -> list[Printed]:
+    return [
+        Printed("internal friction M", "snow.critical_state_slope", slope),
+        Printed(
+            "preconsolidation pressure p₀", "snow.preconsolidation_pressure", pressure, "kPa", 1e3
+        ),
+        Printed("cohesion factor β", "snow.cohesion", cohesion),
+        Printed("hardening factor ξ", "snow.hardening_factor", hardening),
+        Printed("Young's modulus E", "snow.youngs_modulus", modulus, "MPa", 1e6),
+    ]
+
+
+def _scene(height: str, length: str, tilt: str, thickness: str, events: str) -> list[Printed]:
+    return [
+        Printed("dimension", "dimension", "3D"),
+        Printed("panel height", "panel.height", height, "m"),
+        Printed("panel length", "panel.length", length, "m"),
+        Printed("panel tilt Φ", "panel.tilt", tilt, "°"),
+        _GROUND,
+        Printed("slab thickness", "slab.thickness", thickness, "m"),
+        Printed("events", "events.count", events),
+    ]
+
+
+_NUMERICS = [_GRID, _PANEL_CONDITION, _FRICTION, _GROUND_CONDITION, _SEED]
+
+#: Tables 2.3.1 and 4.3.1.
+LABORATORY: Sequence[Printed] = [
+    *_scene("0.33", "0.245", "30, 40, 50", "0.02", "5"),
+    Printed("slab length", "slab.length", "0.245", "m", zero="as the panel"),
+    Printed("slab width", "slab.width", "0.142", "m"),
+    _DENSITY,
+    *_snow("0.5", "7", "0.2", "0.1", "1"),
+    *_NUMERICS,
+]
+#: Table 3.2.1.
+SENSITIVITY: Sequence[Printed] = [
+    *_scene("0.5", "0.245", "40", "0.02", "3"),
+    _DENSITY,
+    _POISSON,
+    *_snow("0.3, 0.5, 0.7", "2, 5, 8", "0.1, 0.2, 0.3", "0.1, 0.2, 1", "1, 2, 3"),
+    *_NUMERICS,
+]
+#: Table 4.1.1.
+CALIBRATION: Sequence[Printed] = [
+    *_scene("0.33", "0.245", "40, 50", "0.02", "5"),
+    _DENSITY,
+    _POISSON,
+    *_snow("0.4, 0.5, 0.6, 0.7", "4, 5, 6, 7", "0.05, 0.1, 0.2", "0.1", "1"),
+    *_NUMERICS,
+]
+#: Tables 5.1.1 and 5.2.1: the inputs.
+PANELS: Mapping[str, str] = {
+    "event": "1, 2, 3, 4, 5",
+    "panel height, m": "1, 1.5, 2, 2.5, 3, 3.5, 4; at 50 to 70°: 2, 3, 4",
+    "panel length, m": "0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 6, 8, 10; at 50 to 70°: 0.5, 1.5, 2, 4, 8",
+    "panel tilt, °": "40, 50, 60, 70; at the reference panel also 45, 55, 65",
+}
+PANEL_ROWS = "610 (385 at 40°, 225 steeper)"
+#: Table 4.2.1: RMSE over the 48 triplets against the measured stacks, m.
+RMSE_STATISTICS: Mapping[str, Mapping[str, float]] = {
+    "height": {"min": 0.009, "max": 0.067, "mean": 0.028, "median": 0.029},
+    "length": {"min": 0.034, "max": 0.118, "mean": 0.068, "median": 0.063},
+}
+#: Table 4.3.1: the calibrated snow's scores, m (the last one has no unit).
+CALIBRATED_SCORES: Mapping[str, float] = {
+    "height_mean_error_m": 0.010,
+    "length_mean_error_m": 0.061,
+    "height_rmse_m": 0.014,
+    "length_rmse_m": 0.067,
+    "rescaled_rmse": 0.237,
+}
+CALIBRATED_RANKS = "8 for the height, 26 for the length"

@@ -1,0 +1,74 @@
+"""Section 5.1: stacks below panels of other sizes and tilts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from snowshed._core import InputError
+from snowshed.html_page import Grid, Picture
+from snowshed.regression.rows import StackRows
+from snowshed.reproduce import printed
+from snowshed.reproduce.claims.geometry import GEOMETRY, INPUTS
+from snowshed.reproduce.claims.judging import judge
+from snowshed.reproduce.figures import geometry_figure
+from snowshed.reproduce.reproduction import Reproduction
+from snowshed.reproduce.section import Section
+from snowshed.reproduce.studies import TILTS
+from snowshed.study.table import read_table
+
+TEXT = (
+    "Panels in 2D with the calibrated snow, a slab 5 cm thick and as long as the panel, level "
+    "ground. The thesis prints the single variations as a figure only (5.1.1), so that its words "
+    "are judged: each over all rows that share the other inputs, not only at the reference panel.",
+)
+TRIAL = (
+    "These are the rows of a trial on a coarse grid (dx 5 cm) with short panels: they show the "
+    "way, and their verdicts mean little.",
+)
+CAPTION = "As Figure 5.1.1: each input in turn, the others at the reference panel."
+
+
+def build(found: Reproduction) -> Section:
+    """Return the section; raises InputError if the rows are not there."""
+    rows = found.rows.read()
+    table = geometry_table(rows)
+    drawn = pd.concat([table, *_more_tilts(found)], ignore_index=True)
+    picture = Picture.drawn(geometry_figure(drawn), "geometry", "Single variations", CAPTION)
+    source = f"Rows of the table {found.table.name}." if found.table is not None else ""
+    text = [*TEXT, *([source] if source else [])]
+    if found.table is None and not found.size.whole_geometry:
+        text += TRIAL
+    tables = [("Tables 5.1.1 and 5.2.1: the data set", inputs_grid(table))]
+    claims = judge(GEOMETRY, table)
+    return Section("geometry", "Panels (5.1)", text, tables, [picture], claims)
+
+
+def geometry_table(rows: StackRows) -> pd.DataFrame:
+    """Return rows as claims and figures take them; see `snowshed.reproduce.claims.geometry`."""
+    return pd.DataFrame(rows.inputs, columns=list(INPUTS)).assign(**rows.targets)
+
+
+def inputs_grid(table: pd.DataFrame) -> Grid:
+    """Return the values of the inputs, the thesis's beside ours."""
+    ours = {
+        name: ", ".join(f"{value:g}" for value in np.unique(table[column]))
+        for name, column in zip(printed.PANELS, INPUTS)
+    }
+    rows = [[name, thesis, ours[name]] for name, thesis in printed.PANELS.items()]
+    rows.append(["rows", printed.PANEL_ROWS, str(len(table))])
+    return Grid(["input", "thesis", "here"], rows, "lll")
+
+
+def _more_tilts(found: Reproduction) -> list[pd.DataFrame]:
+    """Return the panels of Table 5.1.1 that are not in the data set, if they are computed."""
+    if found.table is not None or not found.size.whole_geometry:
+        return []
+    try:
+        table = read_table(found.folder.runs, TILTS).dropna(subset=["height_m", "length_m"])
+    except InputError:
+        return []
+    names = {"panel.height": "panel_height", "panel.length": "panel_length"}
+    names.update({"panel.tilt": "panel_tilt", "height_m": "height", "length_m": "length"})
+    table = table.rename(columns=names)[["event", *names.values()]]
+    return [table.assign(ratio=table["height"] / table["length"])]

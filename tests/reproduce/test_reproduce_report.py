@@ -1,0 +1,126 @@
+"""The report: what it holds with everything, and what it says is missing."""
+
+import base64
+import re
+from html.parser import HTMLParser
+
+import pandas as pd
+import pytest
+from reproduce_helpers import TINY, fill, geometry_table
+
+from snowshed.html_page import STATES
+from snowshed.reproduce.folder import ReproductionFolder
+from snowshed.reproduce.report import write_report
+from snowshed.reproduce.reproduction import Reproduction
+
+VOID = {"meta", "br", "img", "link", "hr", "input"}
+
+
+class Page(HTMLParser):
+    """Checks that tags are balanced, and gathers what the page shows."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.open, self.ids, self.sources, self.links, self.text = [], [], [], [], []
+        self.feed(html)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag, attributes):
+        found = dict(attributes)
+        self.ids += [found["id"]] if "id" in found else []
+        self.links += [found["href"]] if "href" in found else []
+        self.sources += [found["src"]] if "src" in found else []
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if "style" not in self.open:
+            self.text.append(data)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The folder of a reproduction with made-up stacks in all stages."""
+    folder = tmp_path_factory.mktemp("reproduce")
+    table = geometry_table(folder / "rows.csv")
+    found = Reproduction(ReproductionFolder.claim(folder / "out", "quick"), TINY, table)
+    fill(found)
+    found.regression.compute(1, lambda fraction, words: None)
+    return found, write_report(found)
+
+
+def page_of(found):
+    return Page(found.folder.report.read_text(encoding="utf-8"))
+
+
+def test_it_needs_no_other_file(whole):
+    found, _ = whole
+    page = page_of(found)
+    assert all(link.startswith("#") and link[1:] in page.ids for link in page.links)
+    assert len(page.sources) == 1 + 1 + 2 + 4 + 1 + 4
+    for source in page.sources:
+        head, _, data = source.partition(",")
+        assert head == "data:image/png;base64"
+        assert base64.b64decode(data).startswith(b"\x89PNG\r\n\x1a\n")
+
+
+def test_every_table_of_the_thesis_is_there(whole):
+    text = " ".join(page_of(whole[0]).text)
+    for number in ("2.3.1", "3.2.1", "3.3.1", "4.1.1", "4.2.1", "4.3.1"):
+        assert re.search(rf"Tables? [^:]*{re.escape(number)}", text), number
+    for number in ("5.1.1", "5.2.1", "5.3.1", "5.3.2"):
+        assert re.search(rf"Tables? [^:]*{re.escape(number)}", text), number
+    for printed in ("0.067", "0.118", "0.237", "0.240", "0.255", "0.015"):
+        assert printed in text
+    assert "synthetic truth" in text and "Missing" not in text
+
+
+def test_every_claim_has_a_verdict_and_a_rule(whole):
+    found, claims = whole
+    table = pd.read_csv(found.folder.claims)
+    assert len(table) == len(claims) > 40
+    assert set(table["verdict"]) <= set(STATES)
+    assert table.notna().all().all()
+    text = " ".join(page_of(found).text)
+    assert "exceeds 2 standard deviations" in text
+    for one in claims:
+        assert one.rule in text and one.finding.sentence in text
+
+
+def test_made_up_stacks_give_the_verdicts_they_must(whole):
+    _, claims = whole
+    found = {one.text: one.finding.verdict for one in claims}
+    assert found["The head walks back toward the panel."] == "confirmed"
+    assert found["The effect of β on the height is positive."] == "confirmed"
+    assert found["M shortens the stack."] == "confirmed"
+    assert found["p₀ lengthens the stack."] == "confirmed"
+    assert found["H/L grows with the panel's length."] == "confirmed"
+    assert found["At 30 degrees it depends on the friction whether the slab slides off."] == (
+        "confirmed"
+    )
+    lowers = "p₀ lowers the height (the thesis says the opposite in 3.4.1)."
+    assert found[lowers] == "contradicted"
+
+
+def test_it_says_what_is_missing(tmp_path):
+    found = Reproduction(ReproductionFolder.claim(tmp_path / "out", "quick"), TINY, None)
+    fill(found, ["s-index"])
+    claims = write_report(found)
+    text = " ".join(page_of(found).text)
+    decided = {one.source for one in claims if one.finding.verdict != "undecided"}
+    assert decided == {"3.3"}
+    unfinished = [one for one in claims if one.source.startswith("3.4")]
+    assert all("the stage is not finished" in one.finding.sentence for one in unfinished)
+    assert "stage lab: 0 of 10 simulations done" in text
+    assert "stage geometry: 0 of 9 simulations done" in text
+    assert "stage s-index" not in text
+
+
+def test_nothing_at_all(tmp_path):
+    found = Reproduction(ReproductionFolder.claim(tmp_path / "out", "quick"), TINY, None)
+    assert write_report(found) == []
+    assert "Nothing is computed yet" in " ".join(page_of(found).text)
