@@ -26,7 +26,7 @@ TEST_F(SnapshotSeriesTest, WritesOneSnapshotForEachInterval) {
   const auto solver = falling_snow();
   SnapshotSeries series(path("snapshots"), 0.01, solver->time());
   while (solver->time() < 0.035) {
-    if (series.due(solver->time())) series.write(*solver, Snow{});
+    if (series.due(solver->time())) series.write(*solver);
     solver->step();
   }
   for (const char* name : {"000000", "000001", "000002", "000003"})
@@ -41,22 +41,22 @@ TEST_F(SnapshotSeriesTest, AResumedSeriesGoesOnWithoutRepetition) {
   const auto solver = falling_snow();
   {
     SnapshotSeries series(path("snapshots"), 0.01, 0.0);
-    series.write(*solver, Snow{});
+    series.write(*solver);
     run_until(*solver, 0.01);
-    series.write(*solver, Snow{});
+    series.write(*solver);
   }
   SnapshotSeries series(path("snapshots"), 0.01, solver->time());
   EXPECT_FALSE(series.due(solver->time()));
   run_until(*solver, 0.02);
   EXPECT_TRUE(series.due(solver->time()));
-  series.write(*solver, Snow{});
+  series.write(*solver);
   EXPECT_TRUE(std::filesystem::exists(path("snapshots") / "snapshot_000002.vtp"));
   EXPECT_EQ(occurrences(content(path("snapshots") / "snapshots.pvd"), "<DataSet"), 3u);
 }
 
 TEST_F(SnapshotSeriesTest, FilesHoldAllQuantities) {
   const auto solver = falling_snow();
-  write_particles(path("snow.vtp"), *solver, Snow{});
+  write_particles(path("snow.vtp"), *solver);
   const std::string file = content(path("snow.vtp"));
   EXPECT_NE(file.find("NumberOfPoints=\"16\""), std::string::npos);
   for (const char* name :

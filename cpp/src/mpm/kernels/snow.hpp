@@ -51,19 +51,20 @@ struct SeveralSnows {
 
   /// Of `n` particles from `first`; as in `load`, lanes beyond repeat the first.
   SNOWSHED_INLINE Chunk of(const ParticleView<T>& p, int first, int n) const {
-    SnowConstants<Lanes<T>> lanes{};
-    for (int l = 0; l < lane_count<T>; ++l) {
-      const SnowConstants<T>& own = snows[p.kind[first + (l < n ? l : 0)]];
-      lanes.lambda[l] = own.lambda;
-      lanes.mu[l] = own.mu;
-      lanes.bulk[l] = own.bulk;
-      lanes.m2[l] = own.m2;
-      lanes.beta[l] = own.beta;
-      lanes.xi[l] = own.xi;
-      lanes.hardening[l] = own.hardening;
-      lanes.specific_volume[l] = own.specific_volume;
-    }
-    return cam_clay_snow(lanes);
+    const SnowConstants<T>* own[lane_count<T>];
+    for (int l = 0; l < lane_count<T>; ++l) own[l] = &snows[p.kind[first + (l < n ? l : 0)]];
+    using K = SnowConstants<T>;
+    return cam_clay_snow(SnowConstants<Lanes<T>>{
+        lanes_of(own, &K::lambda), lanes_of(own, &K::mu), lanes_of(own, &K::bulk),
+        lanes_of(own, &K::m2), lanes_of(own, &K::beta), lanes_of(own, &K::xi),
+        lanes_of(own, &K::hardening), lanes_of(own, &K::specific_volume)});
+  }
+
+  SNOWSHED_INLINE static Lanes<T> lanes_of(const SnowConstants<T>* const* own,
+                                           T SnowConstants<T>::*constant) {
+    auto lanes = broadcast<Lanes<T>>(own[0]->*constant);
+    for (int l = 1; l < lane_count<T>; ++l) lanes[l] = own[l]->*constant;
+    return lanes;
   }
 
   const SnowConstants<T>* snows;
