@@ -24,6 +24,7 @@ from snowshed.scene import InitialisedScene, Scene
 from snowshed.scene_options import in_terms_of_options, scene_from_options, scene_options
 from snowshed.season.command import season
 from snowshed.sensitivity.command import sensitivity
+from snowshed.vdb.command import vdb
 from snowshed.verify.accuracy import accuracy_option, check_alone, choose
 from snowshed.verify.command import verify
 
@@ -217,6 +218,7 @@ cli.add_command(predict)
 cli.add_command(season)
 cli.add_command(sensitivity)
 cli.add_command(calibrate)
+cli.add_command(vdb)
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:

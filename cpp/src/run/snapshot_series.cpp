@@ -28,6 +28,7 @@ void write_particles(const std::filesystem::path& file, const Solver& solver, co
   }
   write_vtp(file, points,
             {{"velocity", 3, std::move(velocity)},
+             {"mass", 1, converted<float>(s.masses)},
              {"event", 1, s.events},
              {"density", 1, std::move(density)},
              {"pressure", 1, converted<float>(s.pressures)},

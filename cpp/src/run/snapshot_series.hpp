@@ -9,8 +9,8 @@
 
 namespace snowshed {
 
-/// Writes all of a solver's particles with velocity, event, density (kg/m3), pressure (Pa),
-/// volumetric plastic strain and id.
+/// Writes all of a solver's particles with velocity, mass (kg), event, density (kg/m3), pressure
+/// (Pa), volumetric plastic strain and id.
 void write_particles(const std::filesystem::path& file, const Solver&, const Snow&);
 
 class SnapshotSeries {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "snowshed/geometry/level_set.hpp"
+#include "snowshed/geometry/sampled_grid.hpp"
 
 namespace snowshed {
 
@@ -26,5 +27,9 @@ double particle_radius(int dimension, double voxel, double per_voxel);
 /// or if the cloud's bounds need too large a grid.
 Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, double voxel,
                              double radius);
+
+/// The samples that solid is made of, at a spacing of half a voxel; a single one along y in 2D.
+GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension, double voxel,
+                                 double radius);
 
 }  // namespace snowshed
