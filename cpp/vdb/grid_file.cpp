@@ -1,7 +1,5 @@
 #include "grid_file.hpp"
 
-#include <openvdb/io/io.h>
-
 #include <algorithm>
 
 #include "snowshed/support/error.hpp"
@@ -22,8 +20,7 @@ std::string name_of(const openvdb::io::GridDescriptor& grid) {
 // The order of io::File::open.
 GridFile::GridFile(const std::string& path) : stream_(path, std::ios::binary) {
   stream_.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
-  openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
-  openvdb::io::setStreamMetadataPtr(stream_, metadata, /*transfer=*/false);
+  openvdb::io::setStreamMetadataPtr(stream_, metadata_, /*transfer=*/false);
   readHeader(stream_);
   setFormatVersion(stream_);
   setLibraryVersion(stream_);

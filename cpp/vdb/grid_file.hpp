@@ -5,6 +5,7 @@
 // After the above, on which it depends.
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
+#include <openvdb/io/io.h>
 
 #include <fstream>
 #include <string>
@@ -27,6 +28,8 @@ class GridFile : private openvdb::io::Archive {
   const openvdb::io::GridDescriptor& find(const std::string& name) const;
   std::string list() const;
 
+  // The stream keeps a pointer to this pointer.
+  openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
   std::ifstream stream_;
   std::vector<openvdb::io::GridDescriptor> grids_;
 };

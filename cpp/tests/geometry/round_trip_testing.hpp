@@ -26,7 +26,7 @@ struct Snow {
 
 /// A dome cut from a ball (in 2D a disc), as high as a quarter of its length.
 inline Snow dome(int dimension) {
-  const double radius = 0.25, height = 0.1;
+  const double height = dimension == 2 ? 0.1 : 0.06, radius = 2.5 * height;
   const Shape ball = make_sphere({0, 0, height - radius}, radius);
   const double half = std::sqrt(radius * radius - (radius - height) * (radius - height));
   const double section =
@@ -38,7 +38,7 @@ inline Snow dome(int dimension) {
 
 /// A slab with sharp edges.
 inline Snow slab(int dimension) {
-  const double height = 0.05, length = 0.3, width = 0.2;
+  const double height = 0.05, length = dimension == 2 ? 0.3 : 0.15, width = 0.1;
   return {"slab",
           dimension,
           make_box({0, 0, height / 2}, {length, dimension == 2 ? 1e9 : width, height}),
@@ -101,10 +101,11 @@ inline void expect_kept(const Snow& snow, const Solidify& solidify) {
   const Shape solid = solidify(before, snow);
   EXPECT_NEAR(measure(*solid, snow.dimension, voxel) / snow.volume, 1, 0.02);
   const std::vector<Vec3> after = particles_of(*solid, snow.dimension, 4);
-  EXPECT_NEAR(double(after.size()) / before.size(), 1, 0.02);
+  EXPECT_NEAR(double(after.size()) / double(before.size()), 1, 0.02);
   EXPECT_NEAR(top(after), top(before), voxel / 2);
   EXPECT_NEAR(top(after), snow.height, voxel / 2);
   EXPECT_NEAR(extent(after, 0), extent(before, 0), voxel / 2);
+  EXPECT_NEAR(extent(after, 0), snow.length, voxel);  // the sharp rim of a dome stays empty
   EXPECT_LT(outline_difference(before, after), voxel / 2);
 }
 
