@@ -37,6 +37,13 @@ class NearestSeed {
         for (std::int64_t k = 0; k < counts_[2]; ++k) visit(Index{i, j, k});
   }
 
+  template <class Visit>
+  void for_each_node_backwards(Visit visit) const {
+    for (std::int64_t i = counts_[0] - 1; i >= 0; --i)
+      for (std::int64_t j = counts_[1] - 1; j >= 0; --j)
+        for (std::int64_t k = counts_[2] - 1; k >= 0; --k) visit(Index{i, j, k});
+  }
+
   /// Offers the seeds, of which there must be one, to the corners of their cells and sweeps
   /// them over the grid. They must live as long as distances are asked for.
   void spread(const std::vector<Vec3>& seeds);

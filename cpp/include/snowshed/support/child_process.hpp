@@ -14,7 +14,7 @@ struct ChildResult {
   std::string output;  // what it wrote to its standard output
 };
 
-/// Runs a program and waits for it. Throws FileError if it cannot be started.
+/// Runs a program and waits for it; what it writes to its standard error is dropped. Throws FileError if it cannot be started.
 ChildResult run_child(const std::filesystem::path& program,
                       const std::vector<std::string>& arguments);
 
