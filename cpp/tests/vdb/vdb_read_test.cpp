@@ -32,7 +32,7 @@ openvdb::FloatGrid::Ptr fog() {
 TEST(ReadVdb, LevelSetIsADistanceEverywhere) {
   const TempDir folder;
   const std::string path = write(folder, {sphere()});
-  for (const std::string& name : {"", "ball"}) {
+  for (const char* name : {"", "ball"}) {
     const Shape ball = make_sampled_grid(read_vdb({path, name}), "ball");
     // Chords of the ten voxels along the radius cut off half a per cent.
     EXPECT_NEAR(measure(*ball, 3, voxel) / (4 * pi / 3 * std::pow(radius, 3)), 1, 0.01);
