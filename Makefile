@@ -26,7 +26,7 @@ COMPILER_LINES := '/^ *\[[0-9]+\/[0-9]+\]|warning:|error/ { print; fflush() }'
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 
-CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/include cpp/src -type f)
+CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/include cpp/src cpp/vdb -type f)
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS = $(wildcard python tests tools examples benchmarks lua_compat)
 
@@ -67,7 +67,7 @@ $(VENV)/.installed: $(VENV)/.build-tools $(CORE)
 	@mkdir -p build
 	@$(PIP) --verbose --no-build-isolation \
 	  --config-settings=build-dir=$(TREE) \
-	  --config-settings=build.targets="_core;snowshed-run" \
+	  --config-settings=build.targets="_core;snowshed-run;snowshed-vdb" \
 	  --editable . 2>&1 | tee build/install.log | awk $(COMPILER_LINES) || { cat build/install.log; exit 1; }
 	touch $@
 

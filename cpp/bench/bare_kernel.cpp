@@ -87,15 +87,20 @@ void BareKernel::to_grid(int slab) {
     float e[6];
     for (int k = 0; k < 6; ++k) e[k] = 0.5f * strain_[k][p];
     const float pressure = lame * (e[0] + e[1] + e[2]);
-    const float t[6] = {scale * (pressure + 2 * shear * e[0]), scale * (pressure + 2 * shear * e[1]),
-                        scale * (pressure + 2 * shear * e[2]), scale * 2 * shear * e[3],
-                        scale * 2 * shear * e[4],              scale * 2 * shear * e[5]};
-    const Node value = {m, m * velocity_[0][p], m * velocity_[1][p], m * velocity_[2][p], 0, 0, 0, 0};
+    const float t[6] = {scale * (pressure + 2 * shear * e[0]),
+                        scale * (pressure + 2 * shear * e[1]),
+                        scale * (pressure + 2 * shear * e[2]),
+                        scale * 2 * shear * e[3],
+                        scale * 2 * shear * e[4],
+                        scale * 2 * shear * e[5]};
+    const Node value = {m, m * velocity_[0][p], m * velocity_[1][p], m * velocity_[2][p], 0, 0, 0,
+                        0};
     const Node fx = {0, 0, 0, 0, t[0], t[3], t[4], 0};
     const Node fy = {0, 0, 0, 0, t[3], t[1], t[5], 0};
     const Node fz = {0, 0, 0, 0, t[4], t[5], t[2], 0};
     for (int i = 0; i < 3; ++i) {
-      const Node v_i = at.x.w[i] * value + at.x.g[i] * fx, y_i = at.x.w[i] * fy, z_i = at.x.w[i] * fz;
+      const Node v_i = at.x.w[i] * value + at.x.g[i] * fx, y_i = at.x.w[i] * fy,
+                 z_i = at.x.w[i] * fz;
       for (int j = 0; j < 3; ++j) {
         const Node v_ij = at.y.w[j] * v_i + at.y.g[j] * y_i, z_ij = at.y.w[j] * z_i;
         Node* row = nodes + at.node + (i * nodes_y_ + j) * nodes_z_;

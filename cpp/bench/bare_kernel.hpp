@@ -21,8 +21,8 @@ class BareKernel {
   double mass() const;
 
  private:
-  static constexpr int margin = 2;         // empty cells around
-  static constexpr int slab_thickness = 4; // cells along x that one thread takes at a time
+  static constexpr int margin = 2;          // empty cells around
+  static constexpr int slab_thickness = 4;  // cells along x that one thread takes at a time
 
   void to_grid(int slab);
   void update_nodes(int slab);

@@ -217,6 +217,7 @@ DEFERRED = (
     ("season", "season", "Let the snow of a season gather, let go and pile up."),
     ("sensitivity", "sensitivity", "Find which snow parameters matter for the stack."),
     ("calibrate", "calibration", "Find the snow whose simulated stacks are those measured."),
+    ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
 )
 for name, package, short_help in DEFERRED:
     cli.add_command(Deferred(name, f"snowshed.{package}.command", short_help))

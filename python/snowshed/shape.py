@@ -1,4 +1,4 @@
-"""Solids: primitives, meshes, sampled grids, and what can be composed of them."""
+"""Solids: primitives, meshes, sampled grids, OpenVDB files, and what can be composed of them."""
 
 from __future__ import annotations
 
@@ -38,6 +38,8 @@ class Shape(Record):
     scale: Optional[float] = None
     origin: Optional[Vector] = None
     spacing: Optional[float] = None
+    grid_: Optional[str] = None
+    threshold: Optional[float] = None
     translate: Optional[Vector] = None
     axis: Optional[Vector] = None
     angle: Optional[float] = None
@@ -92,6 +94,18 @@ class Shape(Record):
     def grid(cls, file: str, *, origin: Vector, spacing: float) -> Shape:
         """Signed distances sampled on a regular grid (.npy), its first sample at `origin`."""
         return cls(type="grid", file=file, origin=origin, spacing=spacing)
+
+    @classmethod
+    def vdb(
+        cls,
+        file: str,
+        *,
+        grid: Optional[str] = None,
+        scale: Optional[float] = None,
+        threshold: Optional[float] = None,
+    ) -> Shape:
+        """Return a level set, or what is denser than `threshold`, from an OpenVDB file."""
+        return cls(type="vdb", file=file, grid_=grid, scale=scale, threshold=threshold)
 
     @classmethod
     def union(cls, *shapes: Shape) -> Shape:

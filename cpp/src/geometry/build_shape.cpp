@@ -11,6 +11,7 @@
 #include "snowshed/geometry/npy_io.hpp"
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/geometry/sampled_grid.hpp"
+#include "snowshed/geometry/vdb_file.hpp"
 #include "snowshed/support/error.hpp"
 
 namespace snowshed {
@@ -40,6 +41,7 @@ class Builder {
         {"plate", &Builder::plate},
         {"mesh", &Builder::mesh},
         {"grid", &Builder::grid},
+        {"vdb", &Builder::vdb},
         {"union", &Builder::make_union},
         {"difference", &Builder::difference},
         {"transform", &Builder::transformed},
@@ -109,6 +111,12 @@ class Builder {
     samples.counts = {n[0], flat ? 1 : n[1], flat ? n[1] : n[2]};
     samples.values = std::move(array.values);
     return in_scene(make_sampled_grid(std::move(samples), path.string()));
+  }
+
+  Shape vdb() const {
+    const VdbSource source{file(), spec_.grid, length(spec_.threshold, "/threshold"),
+                           length(spec_.scale, "/scale")};
+    return in_scene(make_sampled_grid(read_vdb(source), source.path.string()));
   }
 
   Shape make_union() const { return unite(children(1)); }

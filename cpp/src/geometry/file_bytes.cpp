@@ -1,6 +1,5 @@
 #include "geometry/file_bytes.hpp"
 
-#include <cstdint>
 #include <fstream>
 #include <system_error>
 
@@ -8,7 +7,7 @@
 
 namespace snowshed {
 
-std::string read_bytes(const std::filesystem::path& path) {
+std::uintmax_t check_readable(const std::filesystem::path& path) {
   constexpr std::uintmax_t largest = std::uintmax_t(1) << 30;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -19,7 +18,11 @@ std::string read_bytes(const std::filesystem::path& path) {
   if (error) throw InputError(path.string(), "cannot be read: " + error.message());
   if (size > largest)
     throw InputError(path.string(), std::to_string(size) + " bytes; at most 1 GiB is read");
+  return size;
+}
 
+std::string read_bytes(const std::filesystem::path& path) {
+  const std::uintmax_t size = check_readable(path);
   std::string bytes(static_cast<std::size_t>(size), '\0');
   std::ifstream file(path, std::ios::binary);
   if (!file || !file.read(bytes.data(), static_cast<std::streamsize>(size)))

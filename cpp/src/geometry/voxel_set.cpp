@@ -27,14 +27,14 @@ class Subdivision {
     int levels;
   };
 
-  Subdivision(const LevelSet& shape, int dimension) : shape_(shape), dimension_(dimension) {}
+  Subdivision(const LevelSet& shape, int dimension)
+      : shape_(shape), bounds_(shape.bounds()), dimension_(dimension) {}
 
   /// The smallest cell with edge `edge` * 2^levels that covers the solid and the margin.
   Root root(double edge, double margin) const {
-    const Bounds bounds = shape_.bounds();
-    require_bounded(bounds, dimension_);
-    Root root{(bounds.min + bounds.max) / 2, 0};
-    Vec3 size = bounds.max - bounds.min;
+    require_bounded(bounds_, dimension_);
+    Root root{(bounds_.min + bounds_.max) / 2, 0};
+    Vec3 size = bounds_.max - bounds_.min;
     if (dimension_ == 2) root.center.y() = size.y() = 0;
     while (std::ldexp(edge, root.levels) < size.maxCoeff() + 2 * margin)
       if (++root.levels > max_levels) refuse();
@@ -42,8 +42,8 @@ class Subdivision {
   }
 
   double measure(const Vec3& center, double edge, int levels) {
+    if (misses(center, edge, levels, 0)) return 0;
     const double d = shape_.distance(center), reach = half_diagonal(edge);
-    if (d >= reach) return 0;
     if (d <= -reach) return std::pow(edge, dimension_);
     if (levels == 0) {
       count_cell();
@@ -56,11 +56,10 @@ class Subdivision {
 
   void collect(const Vec3& center, double edge, int levels, double margin,
                std::vector<Voxel>& voxels) {
-    const double d = shape_.distance(center), reach = half_diagonal(edge);
-    if (d >= reach + margin) return;
+    if (misses(center, edge, levels, margin)) return;
     if (levels == 0) {
       count_cell();
-      voxels.push_back({center, d < -reach});
+      voxels.push_back({center, shape_.distance(center) < -half_diagonal(edge)});
       return;
     }
     for_each_child(center, edge,
@@ -71,6 +70,20 @@ class Subdivision {
   [[noreturn]] static void refuse() {
     throw InputError("", "the solid needs more than " + std::to_string(max_boundary_cells) +
                              " voxels; choose a larger voxel size or a smaller solid");
+  }
+
+  /// Whether no part of a cell is within `margin` of the solid. Distances far from the solid may be
+  /// too large (a sampled grid does not know what lies beyond it), so they do not count there.
+  bool misses(const Vec3& center, double edge, int levels, double margin) const {
+    const Vec3 middle = (bounds_.min + bounds_.max) / 2, half = (bounds_.max - bounds_.min) / 2;
+    bool near = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis == 1 && dimension_ == 2) continue;
+      const double away = std::abs(center[axis] - middle[axis]) - half[axis];
+      if (away >= edge / 2 + margin) return true;
+      near = near && away <= 0;
+    }
+    return (near || levels == 0) && shape_.distance(center) >= half_diagonal(edge) + margin;
   }
 
   void count_cell() {
@@ -99,6 +112,7 @@ class Subdivision {
   }
 
   const LevelSet& shape_;
+  const Bounds bounds_;
   const int dimension_;
   std::size_t cells_ = 0;
 };

@@ -72,8 +72,8 @@ void Sleep<D>::restore(const BlockLayout<D>& layout, std::vector<State> states) 
 }
 
 template <int D>
-std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double now,
-                                           int steps, double dt, const Look& look) {
+std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double now, int steps,
+                                           double dt, const Look& look) {
   bool woken = false;
   const auto wake = [&](std::int32_t b) {
     states_[b] = awake_since(now);

@@ -30,8 +30,7 @@ constexpr std::size_t sleep_values = 4 + 2 * D;
 
 template <int D>
 std::array<double, sleep_values<D>> sleep_record(const typename Sleep<D>::State& s) {
-  std::array<double, sleep_values<D>> record{double(s.asleep), s.since, s.looks,
-                                               double(s.halfway)};
+  std::array<double, sleep_values<D>> record{double(s.asleep), s.since, s.looks, double(s.halfway)};
   std::copy_n(s.sum.data(), D, record.begin() + 4);
   std::copy_n(s.first_half.data(), D, record.begin() + 4 + D);
   return record;

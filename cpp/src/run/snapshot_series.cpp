@@ -27,6 +27,7 @@ void write_particles(const std::filesystem::path& file, const Solver& solver) {
   }
   std::vector<PointArray> arrays{
       {"velocity", 3, std::move(velocity)},
+      {"mass", 1, converted<float>(s.masses)},
       {"event", 1, s.events},
       {"density", 1, converted<float>(s.densities)},
       {"pressure", 1, converted<float>(s.pressures)},

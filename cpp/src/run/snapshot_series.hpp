@@ -8,8 +8,8 @@
 
 namespace snowshed {
 
-/// Writes all of a solver's particles with velocity, event, density (kg/m3), pressure (Pa),
-/// volumetric plastic strain, id and, where there are several, which snow it is.
+/// Writes all of a solver's particles with velocity, mass (kg), event, density (kg/m3), pressure
+/// (Pa), volumetric plastic strain, id and, where there are several, which snow it is.
 void write_particles(const std::filesystem::path& file, const Solver&);
 
 class SnapshotSeries {

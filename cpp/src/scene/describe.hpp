@@ -90,6 +90,13 @@ void describe(V& v, ShapeSpec& s) {
     v.vector("origin", s.origin, "m", allowed::coordinate, "Position of the first sample");
     v.number("spacing", s.spacing, "m", allowed::size.required(), "Distance between samples");
   }
+  if (v.variant("vdb", "Level set or fog volume of an OpenVDB file")) {
+    v.file("file", s.file, "VDB file; relative to the scene file");
+    v.text("grid", s.grid, "Name of the grid; empty: the only one of floats");
+    v.number("scale", s.scale, "m", positive.up_to(1e6), "Length of one unit of the file");
+    v.number("threshold", s.threshold, "", positive.up_to(1e6),
+             "Of a fog volume: the solid is where its value is above this");
+  }
   if (v.variant("union", "Everything in any of the shapes")) {
     v.list("shapes", s.shapes, between(1, 10000).required(), "The parts");
   }

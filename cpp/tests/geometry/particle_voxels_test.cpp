@@ -86,13 +86,26 @@ TEST(ParticlesToLevelSet, FillsGapsButKeepsValleys) {
   EXPECT_GT(particles_to_level_set(pair(0.08), 2, voxel, r)->distance({0.04, 0, 0}), 0.01);
 }
 
+TEST(ParticlesToLevelSet, KeepsLoneParticles) {
+  Random random(5);
+  for (const int dimension : {2, 3})
+    for (int n = 0; n < 50; ++n) {
+      Vec3 x = random_point(random, 0.1);
+      if (dimension == 2) x.y() = 0;
+      const Shape ball = particles_to_level_set({x, {0.3, 0, 0}}, dimension, voxel, 1e-3);
+      EXPECT_LT(ball->distance(x), 0) << x.transpose();
+      const auto seeds = seed(*ball, dimension, voxel, 6, SeedPattern::poisson, n);
+      const auto near = [&](const Vec3& grain) { return (grain - x).norm() < 0.6 * voxel; };
+      EXPECT_GE(std::count_if(seeds.begin(), seeds.end(), near), 1) << x.transpose();
+    }
+}
+
 TEST(ParticlesToLevelSet, RefusesBadClouds) {
   const double nan = std::nan("");
   expect_input_error([] { particles_to_level_set({}, 2, voxel, 1e-3); }, "no particles");
   expect_input_error([&] { particles_to_level_set({{0, 0, nan}}, 2, voxel, 1e-3); }, "finite");
   expect_input_error([] { particles_to_level_set({{0, 0, 0}, {900, 900, 900}}, 3, voxel, 1e-3); },
                      "grid nodes");
-  expect_input_error([] { particles_to_level_set({{0, 0, 0}}, 2, voxel, 1e-3); }, "isolated");
   expect_input_error([] { particles_to_level_set({{0, 0, 0}}, 2, 0, 1e-3); }, "voxel size");
   expect_input_error([] { particles_to_level_set({{0, 0, 0}}, 2, voxel, -1); }, "radius");
 }

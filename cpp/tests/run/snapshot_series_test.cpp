@@ -60,7 +60,7 @@ TEST_F(SnapshotSeriesTest, FilesHoldAllQuantities) {
   const std::string file = content(path("snow.vtp"));
   EXPECT_NE(file.find("NumberOfPoints=\"16\""), std::string::npos);
   for (const char* name :
-       {"velocity", "event", "density", "pressure", "volumetric_plastic_strain", "\"id\""})
+       {"velocity", "mass", "event", "density", "pressure", "volumetric_plastic_strain", "\"id\""})
     EXPECT_NE(file.find(name), std::string::npos) << name;
 }
 

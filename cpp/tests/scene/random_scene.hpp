@@ -60,7 +60,7 @@ class Randomizer {
   }
   void variants(const char*, std::string& type, const char*) {
     static const std::vector<const char*> solid = {"box",   "sphere", "cylinder", "capsule",
-                                                   "plate", "mesh",   "grid"};
+                                                   "plate", "mesh",   "grid",     "vdb"};
     static const std::vector<const char*> nested = {"union", "difference", "transform"};
     const auto& kinds = depth_ < 4 && chance(0.3) ? nested : solid;
     type_ = type = kinds[random_() % kinds.size()];

@@ -14,8 +14,8 @@ inline auto tied(const Snow& s) {
   return std::tie(a, b, c, d, e, f, g, h);
 }
 inline auto tied(const ShapeSpec& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u);
 }
 inline auto tied(const MotionSpec& s) {
   auto& [a, b, c, d, e] = s;

@@ -188,7 +188,8 @@ INSTANTIATE_TEST_SUITE_P(
         {R"(, "obstacles": [{"shape": {"type": "spere"}}])", "/obstacles/0/shape/type",
          "\"spere\" is none of \"plane\", \"box\", \"sphere\", \"cylinder\", \"capsule\", "
          "\"plate\", "
-         "\"mesh\", \"grid\", \"union\", \"difference\", \"transform\"; did you mean \"sphere\"?"},
+         "\"mesh\", \"grid\", \"vdb\", \"union\", \"difference\", \"transform\"; did you mean "
+         "\"sphere\"?"},
         {R"(, "obstacles": [{"shape": {"type": "sphere", "radius": 1, "size": [1, 1, 1]}}])",
          "/obstacles/0/shape/size", "unknown key; allowed: \"type\", \"center\", \"radius\""},
         {R"(, "obstacles": [{"shape": {"type": "sphere"}}])", "/obstacles/0/shape/radius",

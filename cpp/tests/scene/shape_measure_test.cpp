@@ -107,6 +107,7 @@ TEST(ShapeMeasure, UnboundedStaysUnbounded) {
 TEST(ShapeMeasure, FilesAreNotOpened) {
   EXPECT_FALSE(shape_bounds(make("mesh")));
   EXPECT_FALSE(shape_volume(make("grid"), 3));
+  EXPECT_FALSE(shape_volume(make("vdb"), 3));
   ShapeSpec both = make("union");
   both.shapes = {box({0, 0, 0}, {2, 2, 2}), make("mesh")};
   EXPECT_FALSE(shape_bounds(both));

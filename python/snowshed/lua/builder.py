@@ -111,15 +111,10 @@ class Builder:
         self.runs.append(LuaRun(name, scene))
 
     def _check_file(self, where: str, file: Any) -> None:
-        """Refuse files that scripts have no business with, and those that nothing reads."""
+        """Refuse files that scripts have no business with."""
         path = (self._folder / str(file)).resolve()
         if self._folder not in path.parents:
             raise InputError(f"{where}: {file!r} is not in the scripts' folder {self._folder}")
-        if path.suffix == ".vdb":
-            raise InputError(
-                f"{where}: {file!r}: OpenVDB files are not read; export the surface as a mesh, or "
-                "save the distances as .npy"
-            )
         if not path.is_file():
             raise InputError(f"{where}: there is no file {file!r} in {self._folder}")
 

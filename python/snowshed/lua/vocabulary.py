@@ -33,7 +33,7 @@ SYMBOLS = MappingProxyType(
     }
 )
 
-# Functions that make shapes, and the type of the shape. A VDB is a grid of sampled distances.
+# Functions that make shapes, and the type of the shape.
 SHAPES = MappingProxyType(
     {
         "plane": "plane",
@@ -44,7 +44,7 @@ SHAPES = MappingProxyType(
         "plate": "plate",
         "mesh": "mesh",
         "grid": "grid",
-        "vdb": "grid",
+        "vdb": "vdb",
         "union": "union",
         "difference": "difference",
         "transform": "transform",

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "snowshed/geometry/level_set.hpp"
+#include "snowshed/geometry/sampled_grid.hpp"
 
 namespace snowshed {
 
@@ -20,11 +21,16 @@ double particle_radius(int dimension, double voxel, double per_voxel);
 /// per voxel, but does not move the outline, which stays `radius` beyond the outermost
 /// particles, nor fills valleys wider than about two voxels. Heights and lengths thus exceed
 /// those of the particle centres by `radius` at each end.
-/// Single particles apart from the rest are too small for the grid and vanish.
+/// Particles apart from the rest are too small for the grid; each becomes a ball about half a
+/// voxel in radius.
 ///
-/// Throws InputError if there are no points, if all of them vanish, if a point is not finite,
-/// or if the cloud's bounds need too large a grid.
+/// Throws InputError if there are no points, if a point is not finite, or if the cloud's bounds
+/// need too large a grid.
 Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, double voxel,
                              double radius);
+
+/// The samples that solid is made of, at a spacing of half a voxel; a single one along y in 2D.
+GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension, double voxel,
+                                 double radius);
 
 }  // namespace snowshed

@@ -28,11 +28,11 @@ class Sleep {
 
   /// What must be known of a particle block to let it fall asleep or to wake it.
   struct Look {
-    std::function<double(std::int32_t)> fastest;       // speed of its fastest particle, m/s
-    std::function<double(std::int32_t)> speed;         // root of the mean square, m/s
-    std::function<VecD<D>(std::int32_t)> velocity;     // mean, m/s
+    std::function<double(std::int32_t)> fastest;         // speed of its fastest particle, m/s
+    std::function<double(std::int32_t)> speed;           // root of the mean square, m/s
+    std::function<VecD<D>(std::int32_t)> velocity;       // mean, m/s
     std::function<CarriedMotion(std::int32_t)> carried;  // how its nodes would have moved it
-    std::function<bool(std::int32_t)> obstacle_moves;  // whether one does, through its nodes
+    std::function<bool(std::int32_t)> obstacle_moves;    // whether one does, through its nodes
   };
 
   /// Looks at all blocks, at a time, after some steps of dt; returns the blocks that fall asleep.
@@ -58,12 +58,12 @@ class Sleep {
   /// What is known of one block of particles.
   struct State {
     bool asleep = false;
-    double since = 0;                     // start of the present quiet spell, s
+    double since = 0;  // start of the present quiet spell, s
     /// Awake: sum of mean velocities in this half of the spell. Asleep: the velocity that forces
     /// would have given it lately. m/s
     VecD<D> sum = VecD<D>::Zero();
-    double looks = 0;                     // their number
-    bool halfway = false;                 // whether the first half of the spell is over, and
+    double looks = 0;                      // their number
+    bool halfway = false;                  // whether the first half of the spell is over, and
     VecD<D> first_half = VecD<D>::Zero();  // the mean velocity in it, m/s
   };
   const std::vector<State>& states() const { return states_; }

@@ -30,7 +30,8 @@ struct Snow {
 
 /// A solid. `type` selects which of the other fields count.
 struct ShapeSpec {
-  std::string type;  // plane box sphere cylinder capsule plate mesh grid union difference transform
+  // plane box sphere cylinder capsule plate mesh grid vdb union difference transform
+  std::string type;
   Vec3 center = Vec3::Zero();   // box, sphere; a point on a plane; middle of a plate's face
   Vec3 size = Vec3::Zero();     // box: edge lengths (y is unbounded in 2D)
   Vec3 normal = Vec3::UnitZ();  // plane, plate: outward normal
@@ -40,10 +41,12 @@ struct ShapeSpec {
   double length = 0.0;            // plate: along the slope
   double width = 0.0;             // plate: across (ignored in 2D)
   double thickness = 0.0;         // plate: below its face
-  std::string file;               // mesh (.stl .obj .ply), grid (.npy)
-  double scale = 1.0;             // mesh: file units to metres
+  std::string file;               // mesh (.stl .obj .ply), grid (.npy), vdb
+  double scale = 1.0;             // mesh, vdb: file units to metres
   Vec3 origin = Vec3::Zero();     // grid: position of the first sample
   double spacing = 0.0;           // grid: metres between samples
+  std::string grid;               // vdb: name of the grid; empty: the only one of floats
+  double threshold = 0.5;         // vdb, a fog volume: the solid is where it is above this
   Vec3 translate = Vec3::Zero();  // transform: applied after the rotation
   Vec3 axis = Vec3::UnitY();      // transform: rotation axis
   double angle = 0.0;             // transform: degrees

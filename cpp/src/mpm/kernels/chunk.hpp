@@ -32,7 +32,7 @@ struct Stencil {
   alignas(64) T gradient[D][S][W];  // per cell
   alignas(64) T fraction[D][W];
   alignas(64) std::int32_t node[W];
-  bool inside;  // every particle's nodes lie in the tile
+  bool inside;        // every particle's nodes lie in the tile
   LaneMask<T> reach;  // in each lane, the bits of BlockStats::reach
 
   SNOWSHED_INLINE void place(const Lanes<T> (&cell)[D], int n) {

@@ -61,7 +61,7 @@ struct SeveralSnows {
   }
 
   SNOWSHED_INLINE static Lanes<T> lanes_of(const SnowConstants<T>* const* own,
-                                           T SnowConstants<T>::*constant) {
+                                           T SnowConstants<T>::* constant) {
     auto lanes = broadcast<Lanes<T>>(own[0]->*constant);
     for (int l = 1; l < lane_count<T>; ++l) lanes[l] = own[l]->*constant;
     return lanes;

@@ -1,0 +1,193 @@
+#include <openvdb/tools/LevelSetSphere.h>
+#include <openvdb/tools/LevelSetUtil.h>
+
+#include <limits>
+
+#include "snowshed/geometry/build_shape.hpp"
+#include "snowshed/geometry/voxel_set.hpp"
+#include "vdb/vdb_testing.hpp"
+
+namespace snowshed {
+namespace {
+
+using namespace geometry_testing;
+using namespace vdb_testing;
+
+constexpr float radius = 0.5f, voxel = 0.05f;
+const Vec3 center(0.3, -0.2, 0.7);
+
+openvdb::FloatGrid::Ptr sphere(float band = 3) {
+  openvdb::initialize();
+  return named(openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
+                   radius, {float(center.x()), float(center.y()), float(center.z())}, voxel, band),
+               "ball");
+}
+
+openvdb::FloatGrid::Ptr fog() {
+  auto grid = sphere();
+  openvdb::tools::sdfToFogVolume(*grid);  // 1 deep inside, 0 on the surface
+  return named(grid, "mist");
+}
+
+TEST(ReadVdb, LevelSetIsADistanceEverywhere) {
+  const TempDir folder;
+  const std::string path = write(folder, {sphere()});
+  for (const char* name : {"", "ball"}) {
+    const Shape ball = make_sampled_grid(read_vdb({path, name}), "ball");
+    // Chords of the ten voxels along the radius cut off half a per cent.
+    EXPECT_NEAR(measure(*ball, 3, voxel) / (4 * pi / 3 * std::pow(radius, 3)), 1, 0.01);
+    // From the middle, ten voxels deep, to what is beyond the stored box.
+    for (const double part : {0.01, 0.3, 0.6, 0.95, 1.0, 1.05, 1.2}) {
+      const Vec3 x = center + part * radius * Vec3(1, 2, -2) / 3;
+      EXPECT_NEAR(ball->distance(x), (part - 1) * radius, 0.1 * voxel) << part;
+      if (part > 0.1) EXPECT_LT((ball->normal(x) - Vec3(1, 2, -2) / 3).norm(), 0.1) << part;
+    }
+  }
+}
+
+TEST(ReadVdb, HalfPrecisionAndScale) {
+  const TempDir folder;
+  auto grid = sphere();
+  grid->setSaveFloatAsHalf(true);
+  const VdbSource centimetres{write(folder, {grid}), "ball", 0.5, 0.01};
+  const Shape ball = make_sampled_grid(read_vdb(centimetres), "ball");
+  EXPECT_NEAR(ball->distance(0.01 * (center + Vec3(0.6, 0, 0))), 0.001, 2e-5);
+}
+
+TEST(ReadVdb, FogVolumeIsSnowAboveTheThreshold) {
+  const TempDir folder;
+  const std::string path = write(folder, {fog()});
+  // It grows from 0 to 1 over three voxels.
+  for (const double threshold : {0.2, 0.5, 0.8}) {
+    const Shape ball = make_sampled_grid(read_vdb({path, "mist", threshold}), "mist");
+    const double expected = radius - 3 * voxel * threshold;
+    const double volume = measure(*ball, 3, voxel);
+    EXPECT_NEAR(std::cbrt(volume * 3 / 4 / pi), expected, 0.25 * voxel) << threshold;
+    EXPECT_NEAR(ball->distance(center + Vec3(0, 0, 1)), 1 - expected, 0.25 * voxel);
+  }
+}
+
+TEST(ReadVdb, AShapeOfAScene) {
+  const TempDir folder;
+  write(folder, {sphere(), fog()});
+  ShapeSpec spec;
+  spec.type = "vdb";
+  spec.file = "test.vdb";
+  spec.grid = "ball";
+  EXPECT_NEAR(build_shape(spec, 3, "/x", folder.path())->distance(center), -radius, 0.1 * voxel);
+  // The section of the plane y = 0, 0.2 m from the centre.
+  const double section = std::sqrt(radius * radius - 0.04);
+  EXPECT_NEAR(measure(*build_shape(spec, 2, "/x", folder.path()), 2, voxel), pi * section * section,
+              0.02);
+}
+
+TEST(ReadVdb, RefusesWhatIsNoUniformScalarGrid) {
+  const TempDir folder;
+  openvdb::initialize();
+  const auto refused = [&](const openvdb::GridBase::Ptr& grid, const std::string& why,
+                           const std::string& name = "") {
+    const std::string path = write(folder, {grid});
+    expect_input_error([&] { read_vdb({path, name}); }, path);
+    expect_input_error([&] { read_vdb({path, name}); }, why);
+  };
+  const auto vectors = openvdb::Vec3SGrid::create();
+  vectors->setName("velocity");
+  vectors->tree().setValueOn({0, 0, 0}, openvdb::Vec3s(1));
+  refused(vectors, "no grid of floats; the file holds 'velocity' (Tree_vec3s_5_4_3)");
+  refused(vectors, "grid 'velocity': a grid of type Tree_vec3s_5_4_3; allowed: Tree_float_5_4_3",
+          "velocity");
+  refused(sphere(), "grid 'cube': no such grid; the file holds 'ball' (Tree_float_5_4_3)", "cube");
+  auto grid = sphere();
+  grid->setGridClass(openvdb::GRID_UNKNOWN);
+  refused(grid, "class 'unknown'; allowed: level set, fog volume");
+  grid = sphere();
+  grid->transform().postRotate(0.1);
+  refused(grid, "no cubes along the axes");
+  grid = sphere();
+  grid->transform().postScale(openvdb::Vec3d(1, 1, 2));
+  refused(grid, "no cubes along the axes");
+  grid = sphere();
+  grid->transform().postScale(100.0);  // distances of another unit than positions
+  refused(grid, "background");
+  refused(openvdb::createLevelSet<openvdb::FloatGrid>(0.1, 3), "no active voxels");
+  const std::string two = write(folder, {sphere(), fog()});
+  expect_input_error([&] { read_vdb({two, ""}); }, "more than one grid of floats; give the name");
+}
+
+TEST(ReadVdb, RefusesHugeExtentsAtOnce) {
+  const TempDir folder;
+  auto grid = sphere();
+  grid->tree().setValueOn({2'000'000'000, 0, 0}, 0.1f);
+  grid->tree().setValueOn({-2'000'000'000, 0, 2'000'000'000}, 0.1f);
+  const std::string far = write(folder, {grid});
+  expect_input_error([&] { read_vdb({far, "ball"}); }, "at most 5e+07 are read");
+  // All of index space as one active tile.
+  grid = openvdb::FloatGrid::create(0.0f);
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  grid->tree().root().addTile(openvdb::Coord(0), 1.0f, true);
+  const std::string wide = write(folder, {grid});
+  expect_input_error([&] { read_vdb({wide, ""}); }, "at most 5e+07 are read");
+}
+
+TEST(ReadVdb, RefusesValuesThatAreNoNumbers) {
+  const TempDir folder;
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    auto grid = sphere();
+    for (auto value = grid->beginValueOn(); value; ++value) value.setValue(bad);
+    const std::string path = write(folder, {grid});
+    expect_input_error([&] { read_vdb({path, "ball"}); }, path + ": grid 'ball': the value at");
+    const std::string empty = write(folder, {openvdb::createLevelSet<openvdb::FloatGrid>(bad, 3)});
+    expect_input_error([&] { read_vdb({empty, ""}); }, empty);
+  }
+}
+
+TEST(ReadVdb, ValuesTooSteepForTheBandAreRebuilt) {
+  const TempDir folder;
+  auto grid = sphere();
+  for (auto value = grid->beginValueOn(); value; ++value) value.setValue(100.0f * *value);
+  const Shape ball = make_sampled_grid(read_vdb({write(folder, {grid}), ""}), "ball");
+  for (const double part : {0.5, 0.9, 1.1, 1.5})
+    EXPECT_NEAR(ball->distance(center + part * radius * Vec3::UnitX()), (part - 1) * radius,
+                0.35 * voxel);
+}
+
+TEST(ReadVdb, RefusesDamagedFiles) {
+  const TempDir folder;
+  expect_input_error([] { read_vdb({"/no/such.vdb", ""}); }, "no such file");
+  expect_input_error([&] { read_vdb({folder.write("none", ""), ""}); }, "ends too early");
+  expect_input_error([&] { read_vdb({folder.write("text", std::string(5000, 'x')), ""}); },
+                     "not a sound OpenVDB file");
+  const std::string path = write(folder, {sphere()});
+  std::ifstream stream(path, std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+  for (std::size_t part = 1; part < 10; ++part) {
+    const auto cut = folder.write("cut.vdb", whole.substr(0, whole.size() * part / 10));
+    expect_input_error([&] { read_vdb({cut, "ball"}); }, "cut.vdb: grid 'ball': ");
+  }
+}
+
+/// Refused or read, but never a crash of this process, and soon.
+TEST(ReadVdb, SurvivesFlippedBytes) {
+  const TempDir folder;
+  const std::string path = write(folder, {sphere()});
+  std::ifstream stream(path, std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+  Random random(11);
+  for (int n = 0; n < 20; ++n) {
+    std::string damaged = whole;
+    // Most of what matters stands at the beginning.
+    const std::size_t reach = n % 2 ? damaged.size() : 700;
+    for (int flips = 0; flips < 3; ++flips)
+      damaged[std::size_t(random.uniform() * reach)] = char(random.uniform() * 256);
+    const auto file = folder.write("flipped.vdb", damaged);
+    try {
+      make_sampled_grid(read_vdb({file, ""}), "flipped.vdb");
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("flipped.vdb"), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snowshed

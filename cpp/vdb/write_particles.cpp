@@ -1,0 +1,173 @@
+#include "write_particles.hpp"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/points/PointAttribute.h>
+#include <openvdb/points/PointConversion.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "snowshed/geometry/particle_voxels.hpp"
+#include "snowshed/geometry/sampled_grid.hpp"
+#include "snowshed/geometry/voxel_set.hpp"
+
+namespace snowshed {
+namespace {
+
+using openvdb::Coord;
+using openvdb::FloatGrid;
+
+constexpr double half_band = 3;  // voxels, as OpenVDB's own tools make it
+
+openvdb::math::Transform::Ptr lattice(double spacing, const Vec3& origin) {
+  auto transform = openvdb::math::Transform::createLinearTransform(spacing);
+  transform->postTranslate({origin.x(), origin.y(), origin.z()});
+  return transform;
+}
+
+/// Of the sheet -width/2 <= y <= width/2 above the plane, the signed distance to the part whose
+/// section has the signed distance `d`.
+double drawn_out(double d, double y, double width) {
+  const double outside = std::abs(y) - width / 2;
+  return d > 0 && outside > 0 ? std::hypot(d, outside) : std::max(d, outside);
+}
+
+FloatGrid::Ptr surface_grid(const GridSamples& samples, const VdbWriting& how) {
+  const double band = half_band * samples.spacing;
+  const bool flat = how.dimension == 2;
+  // In 2D as many layers along y as the strip and a margin need, its middle on y = 0.
+  const int side = flat ? int(std::ceil(how.width / 2 / samples.spacing + half_band)) : 0;
+  const int layers = flat ? 2 * side + 1 : int(samples.counts[1]);
+  auto grid = FloatGrid::create(float(band));
+  grid->setName("surface");
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setTransform(lattice(samples.spacing, samples.origin));
+  auto nodes = grid->getAccessor();
+  for (int i = 0; i < int(samples.counts[0]); ++i)
+    for (int j = 0; j < layers; ++j)
+      for (int k = 0; k < int(samples.counts[2]); ++k) {
+        const std::size_t row = std::size_t(i) * samples.counts[1] + (flat ? 0 : std::size_t(j));
+        double value = samples.values[row * samples.counts[2] + std::size_t(k)];
+        if (flat) value = drawn_out(value, (j - side) * samples.spacing, how.width);
+        if (std::abs(value) < band) nodes.setValueOn(Coord(i, j - side, k), float(value));
+      }
+  openvdb::tools::signedFloodFill(grid->tree());
+  return grid;
+}
+
+/// Shares of the two nodes on either side of a coordinate in units of the spacing.
+struct Shares {
+  int low;
+  double part[2];
+  explicit Shares(double u) : low(int(std::floor(u))) {
+    part[1] = u - low;
+    part[0] = 1 - part[1];
+  }
+};
+
+/// Adds a mass per node to the eight (in 2D four in each layer) nodes around `x`.
+template <class Add>
+void spread(const Vec3& x, double spacing, int layers, Add add) {
+  const Shares a(x.x() / spacing), b(x.y() / spacing), c(x.z() / spacing);
+  for (int i = 0; i < 2; ++i)
+    for (int k = 0; k < 2; ++k) {
+      const double share = a.part[i] * c.part[k];
+      if (layers == 0) {
+        for (int j = 0; j < 2; ++j) add(Coord(a.low + i, b.low + j, c.low + k), share * b.part[j]);
+      } else {
+        for (int j = 0; j < layers; ++j) add(Coord(a.low + i, j - layers / 2, c.low + k), share);
+      }
+    }
+}
+
+FloatGrid::Ptr density_grid(const ParticleCloud& cloud, const VdbWriting& how) {
+  const int layers = how.dimension == 2 ? std::max(1, int(std::lround(how.width / how.voxel))) : 0;
+  // Summed in double: single precision would lose a part of the mass for each particle.
+  openvdb::DoubleGrid sums;
+  auto nodes = sums.getAccessor();
+  const double volume = std::pow(how.voxel, how.dimension);
+  for (std::size_t n = 0; n < cloud.positions.size(); ++n)
+    spread(cloud.positions[n], how.voxel, layers, [&](const Coord& at, double share) {
+      if (share > 0) nodes.setValueOn(at, nodes.getValue(at) + share * cloud.masses[n] / volume);
+    });
+  auto grid = FloatGrid::create(0.0f);
+  grid->setName("density");
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  grid->setTransform(lattice(how.voxel, Vec3::Zero()));
+  auto out = grid->getAccessor();
+  for (auto node = sums.cbeginValueOn(); node; ++node)
+    out.setValueOn(node.getCoord(), float(node.getValue()));
+  return grid;
+}
+
+/// The name that Houdini expects of a quantity.
+std::string attribute_name(const std::string& name) { return name == "velocity" ? "v" : name; }
+
+using PointTree = openvdb::points::PointDataTree;
+using PointIndex = openvdb::tools::PointIndexGrid;
+
+template <class Value, class Component>
+void add_attribute(PointTree& tree, const PointIndex& index, const std::string& name,
+                   const std::vector<Component>& components) {
+  constexpr std::size_t width = sizeof(Value) / sizeof(Component);
+  std::vector<Value> values(components.size() / width);
+  std::copy(components.begin(), components.end(), reinterpret_cast<Component*>(values.data()));
+  using Attribute = openvdb::points::TypedAttributeArray<Value>;
+  openvdb::points::appendAttribute(tree, name, Attribute::attributeType());
+  openvdb::points::populateAttribute(tree, index.tree(), name,
+                                     openvdb::points::PointAttributeVector<Value>(values));
+}
+
+void add_attribute(PointTree& tree, const PointIndex& index, const PointArray& array) {
+  const std::string name = attribute_name(array.name);
+  if (const auto* floats = std::get_if<std::vector<float>>(&array.values)) {
+    if (array.components == 3)
+      add_attribute<openvdb::Vec3f>(tree, index, name, *floats);
+    else
+      add_attribute<float>(tree, index, name, *floats);
+  } else {
+    add_attribute<std::int32_t>(tree, index, name,
+                                std::get<std::vector<std::int32_t>>(array.values));
+  }
+}
+
+openvdb::points::PointDataGrid::Ptr point_grid(const ParticleCloud& cloud, const VdbWriting& how) {
+  std::vector<openvdb::Vec3f> positions;
+  for (const Vec3& x : cloud.positions) positions.emplace_back(x.x(), x.y(), x.z());
+  const openvdb::points::PointAttributeVector<openvdb::Vec3f> all(positions);
+  const auto transform = lattice(how.voxel, Vec3::Zero());
+  const auto index = openvdb::tools::createPointIndexGrid<PointIndex>(all, *transform);
+  auto grid =
+      openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
+                                           openvdb::points::PointDataGrid>(*index, all, *transform);
+  grid->setName("particles");
+  for (const PointArray& array : cloud.attributes) add_attribute(grid->tree(), *index, array);
+  openvdb::points::appendAttribute<float>(grid->tree(), "pscale", float(how.radius));
+  return grid;
+}
+
+}  // namespace
+
+VdbSummary write_particles(const std::string& path, const ParticleCloud& cloud,
+                           const VdbWriting& how) {
+  GridSamples samples = particles_to_samples(cloud.positions, how.dimension, how.voxel, how.radius);
+  const FloatGrid::Ptr surface = surface_grid(samples, how), density = density_grid(cloud, how);
+  openvdb::io::File file(path);
+  file.write(openvdb::GridCPtrVec{surface, density, point_grid(cloud, how)});
+  file.close();
+  VdbSummary summary;
+  summary.surface_voxels = surface->activeVoxelCount();
+  summary.density_voxels = density->activeVoxelCount();
+  // As that of a body is measured, so that one made of the file has the same.
+  summary.volume =
+      measure(*make_sampled_grid(std::move(samples), "surface"), how.dimension, how.voxel) *
+      (how.dimension == 2 ? how.width : 1.0);
+  for (auto node = density->cbeginValueOn(); node; ++node)
+    summary.mass += node.getValue() * std::pow(how.voxel, 3);
+  return summary;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,42 @@
+"""The program snowshed-vdb, the only part that is built with OpenVDB."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+from snowshed import _core
+
+PROGRAM = Path(_core.__file__).with_name("snowshed-vdb")
+REFUSED = 2  # exit code; the reason is on standard output
+
+
+def available() -> bool:
+    """Say whether this snowshed was built with OpenVDB."""
+    return os.access(PROGRAM, os.X_OK)
+
+
+def run_writer(path: Path, request: bytes) -> bytes:
+    """Have the program write a file and return what it answers.
+
+    Raises
+    ------
+    InputError
+        If it is not there or refuses.
+    OSError
+        If it cannot be run or dies.
+    """
+    if not available():
+        raise _core.InputError(
+            "writing OpenVDB files needs OpenVDB, without which this snowshed was built; install "
+            "it (Debian, Ubuntu: libopenvdb-dev libboost-dev) and build snowshed again"
+        )
+    done = subprocess.run(
+        [PROGRAM, "write", path], input=request, stdout=subprocess.PIPE, check=False
+    )
+    if done.returncode == REFUSED:
+        raise _core.InputError(done.stdout.decode(errors="replace"))
+    if done.returncode != 0:
+        raise OSError(f"{PROGRAM} ended with exit code {done.returncode}")
+    return done.stdout

@@ -1,0 +1,75 @@
+"""Reading the particles that a run stored (.vtp), in the form that the core writes them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Union
+from xml.etree import ElementTree
+
+import numpy as np
+from numpy.typing import NDArray
+
+from snowshed._core import InputError
+
+TYPES = MappingProxyType(
+    {
+        "Float32": "<f4",
+        "Float64": "<f8",
+        "Int32": "<i4",
+        "UInt16": "<u2",
+        "UInt8": "<u1",
+    }
+)
+APPENDED = b'<AppendedData encoding="raw">\n_'
+LENGTH_BYTES = 8  # before each block
+
+
+def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]]:
+    """Read the particles after an event, or of a snapshot.
+
+    Parameters
+    ----------
+    path
+        A file of a results folder's ``particles/`` or ``snapshots/``.
+
+    Returns
+    -------
+    dict
+        ``position`` (n, 3), m, and the quantities of the particles, (n,) or (n, 3), in SI units.
+
+    Raises
+    ------
+    InputError
+        If the file is not one that snowshed wrote, or is damaged.
+    OSError
+        If it cannot be read.
+    """
+    content = Path(path).read_bytes()
+    head, found, data = content.partition(APPENDED)
+    try:
+        if not found:
+            raise ValueError("it has no appended raw data")
+        if not data.rstrip().endswith(b"</VTKFile>"):
+            raise ValueError("it ends too early")
+        piece = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece")
+        if piece is None:
+            raise ValueError("it has no points")
+        count = int(piece.attrib["NumberOfPoints"])
+        arrays = [*piece.iterfind("Points/DataArray"), *piece.iterfind("PointData/DataArray")]
+        return {array.attrib["Name"]: _values(array, data, count) for array in arrays}
+    except (ValueError, KeyError, ElementTree.ParseError) as error:
+        raise InputError(f"{path}: not particles that snowshed wrote: {error}") from None
+
+
+def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]:
+    """Return the values of one array; ValueError or KeyError where the file does not hold them."""
+    components = int(array.attrib["NumberOfComponents"])
+    values = np.frombuffer(
+        data,
+        TYPES[array.attrib["type"]],
+        count * components,
+        int(array.attrib["offset"]) + LENGTH_BYTES,
+    )
+    return values.reshape(count, components) if components > 1 else values

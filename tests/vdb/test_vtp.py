@@ -1,0 +1,52 @@
+"""Stored particles, read back."""
+
+import numpy as np
+import pytest
+
+from snowshed import InputError, Scene, _core
+from snowshed.vtp import read_particles
+
+
+@pytest.fixture
+def stored(tmp_path):
+    scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
+    simulation = _core.Simulation(scene.initialise().json)
+    simulation.begin_event()
+    simulation.step(5)
+    path = tmp_path / "snow.vtp"
+    simulation.write_vtk(str(path))
+    return simulation, path
+
+
+def test_particles_come_back_as_they_were(stored):
+    simulation, path = stored
+    particles = read_particles(path)
+    assert set(particles) == {
+        "position", "velocity", "mass", "event", "density", "pressure",
+        "volumetric_plastic_strain", "id",
+    }  # fmt: skip
+    for name, expected in {
+        "position": simulation.positions(),
+        "velocity": simulation.velocities(),
+        "mass": simulation.masses(),
+        "event": simulation.events(),
+        "density": simulation.density(),
+        "pressure": simulation.pressures(),
+    }.items():
+        assert np.allclose(particles[name], expected, rtol=1e-6, atol=1e-7), name
+
+
+@pytest.mark.parametrize("part", [0.0, 0.2, 0.5, 0.9])
+def test_damaged_files_are_named(stored, part):
+    _, path = stored
+    content = path.read_bytes()
+    path.write_bytes(content[: int(part * len(content))])
+    with pytest.raises(InputError, match=r"snow\.vtp: not particles that snowshed wrote"):
+        read_particles(path)
+
+
+def test_other_types_are_named(stored):
+    _, path = stored
+    path.write_bytes(path.read_bytes().replace(b"Float32", b"Complex"))
+    with pytest.raises(InputError, match=r"snow\.vtp: not particles"):
+        read_particles(path)
