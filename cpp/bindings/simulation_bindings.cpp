@@ -163,6 +163,7 @@ void bind_simulation(py::module_& m) {
             s.kick(vectors(changes, "velocity changes"));
           },
           "velocity_changes"_a)
+      .def("settle", &Simulation::settle, "drops"_a, "plastic_changes"_a)
       .def(
           "set_snapshots",
           [](Simulation& s, const std::string& dir, double interval) {
@@ -179,6 +180,8 @@ void bind_simulation(py::module_& m) {
       .def("affine", &affine)
       .def("pressures",
            [](const Simulation& s) { return column<double>(s.solver().state().pressures); })
+      .def("plastic_strains",
+           [](const Simulation& s) { return column<double>(s.solver().state().plastic_strains); })
       .def("masses", [](const Simulation& s) { return column<double>(s.solver().state().masses); })
       .def("events",
            [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })

@@ -191,5 +191,5 @@ def test_cases_are_found_by_module_and_by_name(monkeypatch):
 def test_measurements_survive_json():
     one = Measurement("a", {"dx": 0.1}, [Measured("b", float("inf"), 1.0, float("nan"))])
     text = json.dumps(one.to_json(), allow_nan=False)
-    again = Measurement.from_json(json.loads(text))
+    again = Measurement.from_json(json.loads(text), "m.jsonl")
     assert again.to_json() == one.to_json()

@@ -27,6 +27,12 @@ bool reaches_into(int reach, int k) {
   return true;
 }
 
+void check_count(const char* what, std::size_t given, std::size_t particles) {
+  if (given != particles)
+    throw InputError(
+        what, std::to_string(given) + " given for " + std::to_string(particles) + " particles");
+}
+
 /// Fewer particles than this are not worth waking another thread for, twice a step.
 constexpr int particles_per_thread = 2000;
 
@@ -112,11 +118,7 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
     if (particles_.has_kind) particles_.kind[old + i] = std::uint8_t(batch.kind);
   }
   find_elastic_limits();
-  sort_particles(particles_, std::move(blocks), layout_, threads());
-  contacts_.relocate(layout_.grid_blocks, time_, threads());
-  grid_.resize(layout_);
-  sleep_.relocate(layout_, time_);
-  tiles_valid_ = false;
+  place(std::move(blocks));
   speed_ = std::max(speed_, velocity.norm());
   if (options_.energy) {
     books_.gravitational = gravitational_energy();
@@ -127,11 +129,8 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
 }
 
 template <class T, int D>
-void SolverOf<T, D>::clear() {
-  if (options_.energy) books_.added -= energy().stored();
-  books_.kinetic = books_.gravitational = books_.elastic = 0;
-  particles_.resize(0);
-  sort_particles(particles_, {}, layout_, threads());
+void SolverOf<T, D>::place(std::vector<BlockKey> blocks) {
+  sort_particles(particles_, std::move(blocks), layout_, threads());
   contacts_.relocate(layout_.grid_blocks, time_, threads());
   grid_.resize(layout_);
   sleep_.relocate(layout_, time_);
@@ -139,11 +138,17 @@ void SolverOf<T, D>::clear() {
 }
 
 template <class T, int D>
+void SolverOf<T, D>::clear() {
+  if (options_.energy) books_.added -= energy().stored();
+  books_.kinetic = books_.gravitational = books_.elastic = 0;
+  particles_.resize(0);
+  place({});
+}
+
+template <class T, int D>
 void SolverOf<T, D>::kick(const std::vector<Vec3>& velocity_changes) {
   const std::vector<std::size_t> at = places_by_id();
-  if (velocity_changes.size() != at.size())
-    throw InputError("velocity changes", std::to_string(velocity_changes.size()) + " given for " +
-                                             std::to_string(at.size()) + " particles");
+  check_count("velocity changes", velocity_changes.size(), at.size());
   for (const Vec3& change : velocity_changes)
     if (!change.allFinite()) throw InputError("velocity changes", "not finite");
   const double before = options_.energy ? kinetic_energy() : 0.0;
@@ -165,6 +170,35 @@ void SolverOf<T, D>::kick(const std::vector<Vec3>& velocity_changes) {
   }
   sleep_.wake_all(layout_, time_);
   tiles_valid_ = false;
+}
+
+template <class T, int D>
+void SolverOf<T, D>::settle(const std::vector<double>& drops,
+                            const std::vector<double>& plastic_changes) {
+  const std::vector<std::size_t> at = places_by_id();
+  check_count("drops", drops.size(), at.size());
+  check_count("plastic changes", plastic_changes.size(), at.size());
+  for (std::size_t k = 0; k < at.size(); ++k)
+    if (!std::isfinite(drops[k]) || !std::isfinite(plastic_changes[k]))
+      throw InputError("settling", "not finite");
+  const double stored = options_.energy ? energy().stored() : 0.0;
+  std::vector<BlockKey> blocks = blocks_of_particles(layout_);
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const std::size_t i = at[k];
+    VecD<D> x =
+        position_of(particles_, i, blocks[i], options_.numerics.dx, options_.numerics.basis);
+    x[D - 1] -= drops[k];
+    const auto there = Placement<D>::of(x, options_.numerics.dx, options_.numerics.basis);
+    blocks[i] = block_key<D>(there.block);
+    for (int d = 0; d < D; ++d) particles_.cell[d][i] = T(there.cell[d]);
+    if (particles_.has_plastic) particles_.plastic[i] += T(plastic_changes[k]);
+  }
+  place(std::move(blocks));
+  sleep_.wake_all(layout_, time_);
+  if (options_.energy) {
+    books_.gravitational = gravitational_energy();
+    books_.added += books_.stored() - stored;
+  }
 }
 
 template <class T, int D>

@@ -17,6 +17,8 @@ class SolverOf final : public Solver {
   void add(const ParticleBatch&) override;
   void clear() override;
   void kick(const std::vector<Vec3>& velocity_changes) override;
+  void settle(const std::vector<double>& drops,
+              const std::vector<double>& plastic_changes) override;
   void step() override;
   bool at_safe_point() const override { return !tiles_valid_; }
   std::size_t size() const override { return particles_.size(); }
@@ -58,6 +60,7 @@ class SolverOf final : public Solver {
   double elastic_energy() const;
   double kinetic_energy() const;
   void find_elastic_limits();
+  void place(std::vector<BlockKey> blocks);  ///< makes all else follow the particles
   const SnowKind& kind_of(std::size_t particle) const {
     return kinds_[particles_.has_kind ? particles_.kind[particle] : 0];
   }

@@ -273,6 +273,12 @@ double Simulation::height_over_panel(const std::vector<Vec3>& positions) const {
   return std::max(0.0, high - low);
 }
 
+void Simulation::settle(const std::vector<double>& drops,
+                        const std::vector<double>& plastic_changes) {
+  if (running_) throw InputError("settling", "an event is running; snow settles between events");
+  solver_->settle(drops, plastic_changes);
+}
+
 std::vector<bool> Simulation::on_panel(const std::vector<Vec3>& positions) const {
   std::vector<bool> there(positions.size(), false);
   if (!scene_.panel) return there;

@@ -404,6 +404,38 @@ TEST(Solver, AKickAddsToTheVelocitiesAndTheBooks) {
   EXPECT_THROW(solver->kick(changes), InputError);
 }
 
+TEST(Solver, SettlingLowersAndCompacts) {
+  SolverOptions options = options_for({3, Precision::float64});
+  options.energy = true;
+  const auto solver = make_solver(options, {});
+  solver->add(filled_box(3, Vec3(0, 0, 1), Vec3(0.1, 0.04, 1.3), 0.01));
+  run_steps(*solver, 10);
+  const ParticleState before = solver->state();
+  std::vector<double> drops, changes;
+  for (const Vec3& x : before.positions) {
+    drops.push_back(0.5 * (x.z() - 1));
+    changes.push_back(-std::log(2.0));
+  }
+  const double residual = solver->energy().residual();
+  solver->settle(drops, changes);
+  const ParticleState after = solver->state();
+  double fallen = 0;
+  for (std::size_t i = 0; i < drops.size(); ++i) {
+    ASSERT_LT((after.positions[i] - (before.positions[i] - drops[i] * Vec3::UnitZ())).norm(), 1e-9);
+    ASSERT_NEAR(after.densities[i], 2 * before.densities[i], 1e-6);
+    ASSERT_EQ(after.velocities[i], before.velocities[i]);
+    fallen += 9.81 * before.masses[i] * drops[i];
+  }
+  const EnergyBooks books = solver->energy();
+  EXPECT_NEAR(books.added, 9.81 * total_mass(before) * 1.15 - fallen, 0.01 * fallen);
+  EXPECT_NEAR(books.residual(), residual, 1e-9 * books.added);
+  ASSERT_NO_THROW(run_steps(*solver, 10));
+  drops.back() = std::nan("");
+  EXPECT_THROW(solver->settle(drops, changes), InputError);
+  drops.pop_back();
+  EXPECT_THROW(solver->settle(drops, changes), InputError);
+}
+
 TEST(Solver, ReportsItsParticles) {
   const auto solver = make_solver(options_for({3, Precision::float64}), {});
   ParticleBatch batch = filled_box(3, Vec3(-0.05, 0, 0), Vec3(0.05, 0.02, 0.03), 0.01);

@@ -10,6 +10,7 @@ stress.json          the runs of the stress suite, once it is through
 
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Optional
 from snowshed import _core
 from snowshed._core import InputError
 from snowshed.atomic import write_text
+from snowshed.json_file import check_values, read_object
 from snowshed.results import check_empty
 from snowshed.verify.measurements import MeasurementFile
 
@@ -60,18 +62,34 @@ class SuiteFolder:
     def keep_stress(self, runs: pd.DataFrame, *, full: bool, seed: int) -> None:
         """Keep the runs of a stress suite."""
         records = json.loads(runs.to_json(orient="records", double_precision=15))
-        text = json.dumps({**_identity(full, seed), "runs": records})
-        write_text(self._stress, text + "\n")
+        kept = {**_identity(full, seed), "digest": _digest(records), "runs": records}
+        write_text(self._stress, json.dumps(kept) + "\n")
 
     def kept_stress(self, *, full: bool, seed: int) -> Optional[pd.DataFrame]:
-        """Return the runs of this stress suite, if they are there."""
+        """Return the runs of this stress suite, if they are there.
+
+        Raises
+        ------
+        InputError
+            If the file does not hold what `keep_stress` wrote.
+        """
         import pandas as pd
 
         if not self._stress.exists():
             return None
-        kept = json.loads(self._stress.read_text(encoding="utf-8"))
-        runs = pd.DataFrame(kept.pop("runs"))
-        return runs if kept == _identity(full, seed) else None
+        kept = read_object(self._stress)
+        check_values(kept, {"runs": list}, str(self._stress))
+        digest, runs = kept.pop("digest", None), kept.pop("runs")
+        if kept != _identity(full, seed) or digest is None:  # of another suite, or earlier days
+            return None
+        if digest != _digest(runs):
+            raise InputError(f"{self._stress}: damaged: /runs is not what was written")
+        return pd.DataFrame(runs)
+
+
+def _digest(records: list[dict[str, Any]]) -> str:
+    """Return what tells whether runs are as they were written; their columns may be any."""
+    return hashlib.sha256(json.dumps(records, sort_keys=True).encode()).hexdigest()
 
 
 def _identity(full: bool, seed: int) -> dict[str, Any]:

@@ -11,8 +11,11 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any
 
+from snowshed._core import InputError
+from snowshed.json_file import check_values, is_number, parse_object
+from snowshed.quoting import quoted, shortened
 from snowshed.verify.case import Measured, Settings
 
 if TYPE_CHECKING:
@@ -37,6 +40,17 @@ RESULTS = (
     "failure",
 )
 NUMBERS = RESULTS[: RESULTS.index("version")]
+
+#: The keys of a measurement in a file, and of what was measured by it.
+FORM = {
+    "case": str,
+    "settings": dict,
+    "measured": list,
+    **dict.fromkeys(("wall_s", "updates", "steps", "particles"), float),
+    **dict.fromkeys(("peak_memory_mb", "elapsed_s"), float),
+    **dict.fromkeys(("version", "machine", "date", "failure"), str),
+}
+NUMBERS_MEASURED = ("value", "exact", "error")
 
 
 @dataclass(frozen=True)
@@ -92,11 +106,23 @@ class Measurement:
         return data
 
     @classmethod
-    def from_json(cls, data: dict[str, Any]) -> Measurement:
-        """Return the measurement that `to_json` gave."""
+    def from_json(cls, data: Any, where: str) -> Measurement:
+        """Return the measurement that `to_json` gave.
+
+        Raises
+        ------
+        InputError
+            If the data is no such measurement, naming `where` it is.
+        """
+        check_values(data, FORM, where)
+        if unknown := sorted(data.keys() - FORM.keys()):
+            raise InputError(f"{where}: damaged: unknown key {quoted(unknown[0])}")
+        for name, value in data["settings"].items():
+            known = isinstance(value, (str, bool)) or is_number(value)
+            if not known or name in (*IDENTITY, *RESULTS):
+                raise InputError(f"{where}: damaged: /settings/{shortened(name)}: not a setting")
         measured = [
-            Measured(one["quantity"], *(_number(one[k]) for k in ("value", "exact", "error")))
-            for one in data["measured"]
+            _measured(one, f"{where}: /measured/{i}") for i, one in enumerate(data["measured"])
         ]
         return cls(**{**data, "measured": measured})
 
@@ -128,8 +154,19 @@ class MeasurementFile:
         self.path = path
 
     def read(self) -> list[Measurement]:
-        """Return all measurements, in the order in which they were made."""
-        return [Measurement.from_json(json.loads(line)) for line in self._whole().splitlines()]
+        """Return all measurements, in the order in which they were made.
+
+        Raises
+        ------
+        InputError
+            If a line that is whole holds none, naming file and line.
+        """
+        lines = self._whole().split(b"\n")[:-1]
+        places = [f"{self.path}:{number}" for number in range(1, len(lines) + 1)]
+        return [
+            Measurement.from_json(parse_object(line, where), where)
+            for line, where in zip(lines, places)
+        ]
 
     def append(self, measurement: Measurement) -> None:
         """Add a measurement; it is on disk when this returns."""
@@ -193,5 +230,9 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _number(value: Optional[float]) -> float:
-    return math.nan if value is None else value
+def _measured(data: Any, where: str) -> Measured:
+    check_values(data, {"quantity": str}, where)
+    given = [name for name in NUMBERS_MEASURED if data.get(name, math.nan) is not None]
+    check_values(data, dict.fromkeys(given, float), where)
+    numbers = (math.nan if data[name] is None else data[name] for name in NUMBERS_MEASURED)
+    return Measured(data["quantity"], *numbers)

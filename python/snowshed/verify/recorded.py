@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed.atomic import write_text
+from snowshed.json_file import check_values, read_object
 from snowshed.verify.measurements import Measurement
 
 PACKAGED = Path(__file__).with_name("recorded.json")
@@ -22,6 +23,11 @@ PACKAGED = Path(__file__).with_name("recorded.json")
 
 def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
     """Return recorded measurements, those of the package by default; none if there is no file.
+
+    Raises
+    ------
+    InputError
+        If the file holds anything else.
 
     Examples
     --------
@@ -31,8 +37,12 @@ def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
     path = path or PACKAGED
     if not path.exists():
         return []
-    data = json.loads(path.read_text(encoding="utf-8"))
-    return [Measurement.from_json(one) for one in data["measurements"]]
+    data = read_object(path)
+    check_values(data, {"measurements": list}, str(path))
+    return [
+        Measurement.from_json(one, f"{path}: /measurements/{i}")
+        for i, one in enumerate(data["measurements"])
+    ]
 
 
 def record(measurements: Iterable[Measurement], path: Path) -> None:

@@ -72,6 +72,12 @@ class Solver {
   /// Adds to the velocity of each particle, ordered by id; the energy books count it as added.
   virtual void kick(const std::vector<Vec3>& velocity_changes) = 0;
 
+  /// Lowers each particle, ordered by id, by a height (m) and adds to its volumetric plastic
+  /// strain, if its law has one. Elastic strains and velocities stay. The energy books count it as
+  /// added.
+  virtual void settle(const std::vector<double>& drops,
+                      const std::vector<double>& plastic_changes) = 0;
+
   /// One step. Throws SimulationError when it cannot go on; the particles are then as they were
   /// before the step, except after "not finite".
   virtual void step() = 0;

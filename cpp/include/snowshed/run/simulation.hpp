@@ -68,6 +68,10 @@ class Simulation {
   void step(int count = 1);
   void kick(const std::vector<Vec3>& velocity_changes) { solver_->kick(velocity_changes); }
 
+  /// What time does to the snow between two events, see Solver::settle. Throws InputError while an
+  /// event runs.
+  void settle(const std::vector<double>& drops, const std::vector<double>& plastic_changes);
+
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
