@@ -5,7 +5,8 @@ core defines it) for ``events.rest_time``, or until ``events.max_time``, and the
 Between events the particles carry over with their state (``carry``), or the stack is turned into a
 solid and seeded afresh at rest (``reseed``, as in the thesis). Reseeding also makes the bonds in
 the stack whole again, and gives it n times the slab's volume; conversions.csv says how far that
-moved mass, height, length and outline.
+moved mass, height, length and outline. What time does to a stack that is carried over
+(``snowshed.ageing``) is left out unless asked for.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed import _core
+from snowshed.ageing import Ageing
 from snowshed.arrays import Booleans, Floats
 from snowshed.atomic import replacing
 from snowshed.conversion import conversion_row
@@ -63,6 +65,7 @@ def run_events(
     out_dir: PathLike,
     *,
     resume: bool = False,
+    ageing: Optional[Ageing] = None,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
 ) -> pd.DataFrame:
@@ -76,6 +79,8 @@ def run_events(
         The results folder (see ``snowshed.results``); new or empty, unless resuming.
     resume
         Go on from the checkpoint in `out_dir`; the results are those of an uninterrupted run.
+    ageing
+        What time does to the stack between the events; None: nothing. The same when resuming.
     progress
         Called with a `Progress` about twice a second.
     pictures
@@ -107,25 +112,31 @@ def run_events(
     [1]
     """
     ready = scene.initialise() if isinstance(scene, Scene) else scene
+    if ageing is not None and ready.data["events"]["between"] != "carry":
+        raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
     open_run = _reopen if resume else _create
-    simulation, results = open_run(ready, out_dir)
+    simulation, results = open_run(ready, out_dir, ageing)
     with deferred_interrupts() as interrupt:
-        loop = _EventLoop(simulation, results, ready, interrupt, progress)
+        loop = _EventLoop(simulation, results, ready, ageing, interrupt, progress)
         loop.run()
     if pictures:
         loop.draw()
     return read_events(results.folder)
 
 
-def _create(scene: InitialisedScene, folder: PathLike) -> tuple[_core.Simulation, Results]:
+def _create(
+    scene: InitialisedScene, folder: PathLike, ageing: Optional[Ageing]
+) -> tuple[_core.Simulation, Results]:
     check_empty(folder)
     simulation = _core.Simulation(scene.json, scene.base_dir)
     simulation.begin_event()  # seeding may fail too, and then nothing must be left behind
-    return simulation, Results.create(folder, scene)
+    return simulation, Results.create(folder, scene, None if ageing is None else ageing.data)
 
 
-def _reopen(scene: InitialisedScene, folder: PathLike) -> tuple[_core.Simulation, Results]:
-    results = Results.reopen(folder, scene)
+def _reopen(
+    scene: InitialisedScene, folder: PathLike, ageing: Optional[Ageing]
+) -> tuple[_core.Simulation, Results]:
+    results = Results.reopen(folder, scene, None if ageing is None else ageing.data)
     if results.checkpoint.exists():
         simulation = _core.Simulation.load(str(results.checkpoint))
     else:
@@ -144,6 +155,7 @@ class _EventLoop:
         simulation: _core.Simulation,
         results: Results,
         scene: InitialisedScene,
+        ageing: Optional[Ageing],
         interrupt: InterruptRequest,
         report: Optional[Reporter],
     ) -> None:
@@ -151,6 +163,7 @@ class _EventLoop:
         self.results = results
         self.scene = scene.data
         self.count = int(self.scene["events"]["count"])
+        self.ageing = ageing
         self.interrupt = interrupt
         self.report = report
         self.stack: Optional[StackMeasure] = None
@@ -185,11 +198,20 @@ class _EventLoop:
 
     def _begin(self) -> None:
         if not self.simulation.event_running:
+            self._age()
             conversion = self.simulation.begin_event()
             if conversion is not None:
                 row = conversion_row(self.simulation.event, conversion, self._measure_of)
                 self.results.conversions.add([row])
         self._tell(Progress(self.simulation.event, self.count, self.simulation.time_s))
+
+    def _age(self) -> None:
+        """Let the time since the last event pass."""
+        if self.ageing is None or not self.simulation.event:
+            return
+        row = self.ageing.apply(self.simulation, self.simulation.event + 1)
+        if row is not None:
+            self.results.ageings.add([row])
 
     def _advance(self) -> str:
         """Run the event to its end; return how it ended."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from snowshed._core import InputError
 from snowshed.atomic import replacing
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 LONG = 12
 DPI = 130
 CSS_PIXELS = 96  # per inch
+PNG, HEADER = b"\x89PNG", 24  # how a PNG file begins; bytes up to the end of its size
 #: Cells with these words stand out, in the colour of a class of the page's style.
 STATES: Mapping[str, str] = {
     "holds": "good",
@@ -84,8 +86,16 @@ class Picture:
 
     @classmethod
     def read(cls, file: Path, title: str, caption: str, *, dpi: float) -> Picture:
-        """Return a PNG file, drawn with so many dots per inch, as a picture."""
+        """Return a PNG file, drawn with so many dots per inch, as a picture.
+
+        Raises
+        ------
+        InputError
+            If it is no PNG file.
+        """
         png = file.read_bytes()
+        if not png.startswith(PNG) or len(png) < HEADER:
+            raise InputError(f"{file}: damaged: not a PNG file")
         (pixels,) = struct.unpack(">I", png[16:20])  # the header's first field
         return cls(file.stem, title, caption, png, round(CSS_PIXELS * pixels / dpi))
 

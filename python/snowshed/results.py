@@ -5,6 +5,8 @@ scene.json         the complete scene that made the results
 events.csv         one row per event: `EVENT_COLUMNS`
 outline.csv        profile of the stack after each event: event, x, z
 conversions.csv    how far reseeding moved the stack (only with between = "reseed")
+ageing.csv         what time did to the stack between events (only if it aged), and how long it
+                   had: ageing.json
 energy.csv         energy books at the end of each event (only with output.energy)
 run.json           version, machine, size and speed of the run, and its status
 checkpoint.bin     the state from which the run goes on
@@ -20,9 +22,10 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
+from snowshed.ageing import AGEING_COLUMNS
 from snowshed.arrays import Floats
 from snowshed.atomic import write_text
 from snowshed.conversion import CONVERSION_COLUMNS
@@ -94,19 +97,26 @@ class Results:
         self.events = Table(folder / "events.csv", EVENT_COLUMNS)
         self.outlines = Table(folder / "outline.csv", ("event", "x", "z"))
         self.conversions = Table(folder / "conversions.csv", CONVERSION_COLUMNS)
+        self.ageings = Table(folder / "ageing.csv", AGEING_COLUMNS)
         self.energies = Table(folder / "energy.csv")
 
     @classmethod
-    def create(cls, folder: PathLike, scene: InitialisedScene) -> Results:
+    def create(
+        cls, folder: PathLike, scene: InitialisedScene, ageing: Optional[Mapping[str, Any]] = None
+    ) -> Results:
         """Make a results folder for a scene; raises InputError if it holds anything."""
         check_empty(folder)
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         scene.save(folder / "scene.json")
+        if ageing is not None:
+            write_text(folder / "ageing.json", json.dumps(ageing, indent=2) + "\n")
         return cls(folder)
 
     @classmethod
-    def reopen(cls, folder: PathLike, scene: InitialisedScene) -> Results:
+    def reopen(
+        cls, folder: PathLike, scene: InitialisedScene, ageing: Optional[Mapping[str, Any]] = None
+    ) -> Results:
         """Open the folder of an earlier run of the same scene; raises InputError if it is not."""
         folder = Path(folder)
         if not (folder / "scene.json").is_file():
@@ -117,6 +127,9 @@ class Results:
                 f"{folder}: made by another scene, which differs in {', '.join(differing)}; "
                 "resume with the scene.json in it"
             )
+        file = folder / "ageing.json"
+        if (read_object(file) if file.is_file() else None) != ageing:
+            raise InputError(f"{file}: between its events the stack aged in another way")
         return cls(folder)
 
     def keep_through(self, event: int, *, running: bool) -> None:
@@ -125,6 +138,7 @@ class Results:
         for table in (self.events, self.outlines, self.energies):
             table.keep_through(finished)
         self.conversions.keep_through(event)
+        self.ageings.keep_through(event)
 
     def add_outline(self, event: int, outline: Floats) -> None:
         """Add the profile (k, 2) of the stack after an event."""

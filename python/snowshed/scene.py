@@ -74,7 +74,7 @@ class Scene(Record):
         Raises
         ------
         InputError
-            If the file is not JSON or has unknown keys.
+            If the file is not JSON, has unknown keys or numbers that are not finite.
         OSError
             If it cannot be read.
         """
@@ -82,7 +82,11 @@ class Scene(Record):
             data = json.loads(Path(path).read_bytes(), object_pairs_hook=_without_duplicates)
         except (ValueError, RecursionError) as error:
             raise _core.InputError(f"{path}: not JSON: {error}") from None
-        scene = cls.from_data(data)
+        try:
+            scene = cls.from_data(data)
+            scene.to_data()
+        except _core.InputError as error:
+            raise _core.InputError(f"{path}: {error}") from None
         scene._base_dir = os.fspath(Path(path).parent)
         return scene
 

@@ -120,7 +120,8 @@ def read_csv(path: Path, **options: Any) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If it is no table in UTF-8, a column has no name of its own, or there are too many.
+        If it is no table in UTF-8, a column has no name of its own, there are too many, or a row
+        has not a cell for each.
     OSError
         If it cannot be read.
     """
@@ -128,11 +129,21 @@ def read_csv(path: Path, **options: Any) -> pd.DataFrame:
 
     try:
         with path.open(newline="", encoding="utf-8") as file:
-            _check_names(next(csv.reader(file), []))
+            _check_rows(csv.reader(file))
         table: pd.DataFrame = pd.read_csv(path, **options)
         return table
     except (ValueError, csv.Error) as error:  # of pandas all errors on content are ValueErrors
         raise InputError(f"{path}: not a table: {error}") from None
+
+
+def _check_rows(rows: csv._reader) -> None:
+    names = next(rows, [])
+    _check_names(names)
+    for row in rows:
+        if row and len(row) != len(names):
+            raise ValueError(
+                f"line {rows.line_num}: {len(row)} cells, but there are {len(names)} columns"
+            )
 
 
 def _check_names(names: Sequence[str]) -> None:

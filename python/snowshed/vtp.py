@@ -59,13 +59,15 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
         count = int(piece.attrib["NumberOfPoints"])
         arrays = [*piece.iterfind("Points/DataArray"), *piece.iterfind("PointData/DataArray")]
         return {array.attrib["Name"]: _values(array, data, count) for array in arrays}
-    except (ValueError, KeyError, ElementTree.ParseError) as error:
+    except (ValueError, LookupError, OverflowError, ElementTree.ParseError) as error:
         raise InputError(f"{path}: not particles that snowshed wrote: {error}") from None
 
 
 def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]:
     """Return the values of one array; ValueError or KeyError where the file does not hold them."""
     components = int(array.attrib["NumberOfComponents"])
+    if count < 0 or components not in (1, 3):
+        raise ValueError(f"{count} points with {components} values each")
     values = np.frombuffer(
         data,
         TYPES[array.attrib["type"]],

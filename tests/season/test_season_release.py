@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 from snowshed import InputError
 from snowshed.season import SeasonSettings, Weather, accumulate, balance
+from snowshed.season.accumulation import pauses
 from snowshed.season.column import SnowColumn
 from snowshed.season.stack_settling import SettlingStack
 from snowshed.snow_relations import SETTLING_LAWS
@@ -117,14 +118,24 @@ def test_settling_is_off_by_default_and_never_changes_the_mass():
     assert settled[2].load == still[2].load
 
 
-def test_a_stack_settles_between_events_and_grows_with_them():
+def test_a_stack_settles_between_events_and_starts_anew_with_each():
     stack = SettlingStack(SETTLING_LAWS["vionnet-2012"], 9.81)
-    stack.grow(0.5, 150.0)
+    stack.take(0.5, 150.0)
     stack.wait(20 * DAY, -5.0)
-    settled = stack.ratio
-    assert 0.3 < settled < 1.0
-    stack.grow(1.0, 160.0)
-    assert stack.ratio == pytest.approx(0.5 + 0.5 * settled)
+    assert 0.3 < stack.ratio < 1.0
+    stack.take(1.0, 160.0)
+    assert stack.ratio == 1.0
+
+
+def test_pauses_lie_between_events_at_the_temperature_of_the_earlier_row():
+    rows = season(0.3, 0.0, 0.3, 0.3, days=2)
+    days = accumulate(rows, SeasonSettings(friction=0.1), 30.0)
+    assert [day.event for day in days] == [1, None, 2, 3]
+    temperatures = [row.temperature for row in rows]
+    assert pauses(days) == {
+        2: [(2 * DAY, temperatures[0]), (2 * DAY, temperatures[1])],
+        3: [(2 * DAY, temperatures[2])],
+    }
 
 
 @pytest.mark.parametrize(

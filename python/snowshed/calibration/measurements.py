@@ -60,6 +60,8 @@ def uncertainty_column(quantity: str) -> str:
     return f"{quantity}_std_m"
 
 
+LARGEST_NUMBER = 1000  # of an event or a round; a scene has no more events
+
 COLUMNS = (
     *KEYS,
     ROUND,
@@ -276,8 +278,10 @@ class _Row:
         if default and not self.cells.get(column):
             return default
         number = self._number(column)
-        if number < 1 or number % 1:
-            raise self._error(f"{column}: {number:g} is not a whole number, 1 or more")
+        if not 1 <= number <= LARGEST_NUMBER or number % 1:
+            raise self._error(
+                f"{column}: {number:g} is not a whole number from 1 to {LARGEST_NUMBER}"
+            )
         return int(number)
 
     def _number(self, column: str) -> float:

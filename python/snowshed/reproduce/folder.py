@@ -18,6 +18,7 @@ from pathlib import Path
 
 from snowshed._core import InputError
 from snowshed.atomic import write_text
+from snowshed.json_file import read_object
 
 IDENTITY = "reproduction.json"
 
@@ -39,7 +40,7 @@ class ReproductionFolder:
         """
         file = path / IDENTITY
         if file.is_file():
-            there = json.loads(file.read_text(encoding="utf-8")).get("size")
+            there = read_object(file).get("size")
             if there != size:
                 raise InputError(
                     f"{path}: holds a reproduction with --{there}; take a new folder for --{size}"

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Optional
 
+from snowshed.ageing import Interval
 from snowshed.season.column import SnowColumn
 from snowshed.season.release import Balance, balance
 from snowshed.season.settings import SeasonSettings
@@ -86,6 +87,24 @@ def accumulate(
         if released:
             snow.clear()
     return days
+
+
+def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
+    """Return for every event but the first what time passes between it and the one before.
+
+    From a row of the season file to the next the temperature is that of the earlier one.
+    """
+    found: dict[int, list[Interval]] = {}
+    waiting: Optional[list[Interval]] = None
+    for day, earlier in zip(days, [None, *days]):
+        if earlier is not None and waiting is not None:
+            elapsed = (day.weather.date - earlier.weather.date).total_seconds()
+            waiting.append(Interval(elapsed, earlier.weather.temperature))
+        if day.event is not None:
+            if waiting is not None:
+                found[day.event] = waiting
+            waiting = []
+    return found
 
 
 def _density(row: Weather, settings: SeasonSettings) -> Optional[float]:

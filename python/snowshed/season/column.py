@@ -9,14 +9,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed.arrays import Floats
-from snowshed.snow_relations.relation import ICE_DENSITY
-from snowshed.snow_relations.settling import SettlingLaw
-
-LONGEST_STEP = 3600.0  # s
-LARGEST_STRAIN = 0.01  # in one step
-
-# Settling stops where snow turns into firn, for which none of the laws was made.
-DENSEST = 0.6 * ICE_DENSITY
+from snowshed.snow_relations.settling import SettlingLaw, settled_densities
 
 
 @dataclass
@@ -71,10 +64,4 @@ class SnowColumn:
         if law is None or not len(self.masses):
             return
         stress = self.load_factor * (np.cumsum(self.masses[::-1])[::-1] - 0.5 * self.masses)
-        left = seconds
-        while left > 0.0:
-            rate = law(self.densities, stress, temperature)
-            step = min(left, LONGEST_STEP, LARGEST_STRAIN / max(float(rate.max()), 1e-12))
-            settled = self.densities * np.exp(rate * step)
-            self.densities = np.maximum(self.densities, np.minimum(settled, DENSEST))
-            left -= step
+        self.densities = settled_densities(law, self.densities, stress, seconds, temperature)

@@ -65,6 +65,20 @@ DECIDED = {"slab.thickness": 0.1}
     metavar="NAME",
     help="Law by which snow settles between events: vionnet-2012, essery-2013.  [default: none]",
 )
+@click.option(
+    "--sintering",
+    metavar="NAME",
+    help="Law by which broken snow in the stack regains strength between events: "
+    "van-herwijnen-2013, podolskiy-2014.  [default: none]",
+)
+@click.option(
+    "--strength-age",
+    type=float,
+    metavar="HOURS",
+    default=DEFAULTS.strength_age,
+    show_default=True,
+    help="Age of bonds that have the strength of the snow that slides.",
+)
 @click.option("--resume", is_flag=True, help="Go on with an interrupted season.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @scene_options
@@ -77,6 +91,8 @@ def season(
     catch: float,
     new_snow: str,
     settling: Optional[str],
+    sintering: Optional[str],
+    strength_age: float,
     resume: bool,
     quiet: bool,
     preset: Optional[str],
@@ -93,7 +109,9 @@ def season(
     Example:
       snowshed season winter.csv --dim 2 --height 0.8 --length 2 --tilt 40 --dx 0.03 -o results
     """  # noqa: D301 - click wants the control character
-    settings = SeasonSettings(release_friction, adhesion, catch, new_snow, settling)
+    settings = SeasonSettings(
+        release_friction, adhesion, catch, new_snow, settling, sintering, strength_age
+    )
     scene = _scene(scene_file, preset, snow_preset, options)
     result = _run(season_file, scene, folder, settings, resume=resume, quiet=quiet)
     if not quiet:

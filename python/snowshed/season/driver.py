@@ -9,11 +9,12 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed._core import InputError
+from snowshed.ageing import Ageing
 from snowshed.atomic import write_text
 from snowshed.events import Progress, Reporter, run_events
 from snowshed.results import EVENT_COLUMNS, check_empty
 from snowshed.scene import InitialisedScene, PathLike, Scene
-from snowshed.season.accumulation import Day, accumulate
+from snowshed.season.accumulation import Day, accumulate, pauses
 from snowshed.season.clearance import first_reached
 from snowshed.season.results import SeasonFolder
 from snowshed.season.settings import SeasonSettings
@@ -117,7 +118,10 @@ def run_season(
     slides = season_scene(ready, days) if any(day.event for day in days) else None
     blocked = None
     if slides is not None:
-        blocked = _slide(slides, folder, resume=resume, progress=progress, pictures=pictures)
+        ageing = settings.ageing(pauses(days)) if settings.ages else None
+        blocked = _slide(
+            slides, folder, ageing, resume=resume, progress=progress, pictures=pictures
+        )
     folder.folder.mkdir(parents=True, exist_ok=True)
     result = _result(slides or ready, days, settings, folder, blocked)
     _write(result, slides or ready, settings, folder, pictures=pictures)
@@ -135,6 +139,7 @@ class _PanelBlockedError(Exception):
 def _slide(
     scene: InitialisedScene,
     folder: SeasonFolder,
+    ageing: Optional[Ageing],
     *,
     resume: bool,
     progress: Optional[Reporter],
@@ -150,7 +155,14 @@ def _slide(
 
     again = resume and folder.run.scene.is_file()
     try:
-        run_events(scene, folder.run.folder, resume=again, progress=watch, pictures=pictures)
+        run_events(
+            scene,
+            folder.run.folder,
+            resume=again,
+            ageing=ageing,
+            progress=watch,
+            pictures=pictures,
+        )
     except _PanelBlockedError as blocked:
         return blocked.event
     return None
@@ -232,7 +244,15 @@ def _notes(
     else:
         notes.append("no snow let go: friction and adhesion held all of it")
     if settings.settling:
-        notes.append(f"settled heights are an estimate ({settings.settling}) beside the simulation")
+        notes.append(
+            f"the stack settles between events ({settings.settling}), for which a factor of 4 and "
+            "more is published; settled heights are estimates for the time until the next"
+        )
+    if settings.sintering:
+        notes.append(
+            f"broken bonds regain strength ({settings.sintering}), all of it in "
+            f"{settings.strength_age:g} hours"
+        )
     if blocked is not None:
         notes.append(
             f"after event {blocked} snow stayed on the panel; later slide-offs were not simulated"

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.ageing import Ageing, Interval
 from snowshed.snow_relations.new_snow import NEW_SNOW_DENSITY
 from snowshed.snow_relations.relation import choose
 from snowshed.snow_relations.settling import SETTLING_LAWS, SettlingLaw
@@ -30,6 +32,11 @@ class SeasonSettings:
     settling
         Name of a law in `SETTLING_LAWS`, by which the snow on the panel and in the stack settles
         between events; None: it does not.
+    sintering
+        Name of a law in `SINTERING_LAWS`, by which broken snow in the stack regains strength
+        between events; None: it does not.
+    strength_age
+        Age of bonds, hours, that have the strength of the snow that slides.
 
     Raises
     ------
@@ -42,16 +49,24 @@ class SeasonSettings:
     catch: float = 1.0
     density: str = "hedstrom-pomeroy-1998"
     settling: Optional[str] = None
+    sintering: Optional[str] = None
+    strength_age: float = 24.0
 
     def __post_init__(self) -> None:
         _check("release friction", self.friction, 0.0, 10.0, "")
         _check("adhesion", self.adhesion, 0.0, 1e6, "Pa")
         _check("catch", self.catch, 0.0, 1.0, "")
         choose(self.density, NEW_SNOW_DENSITY, "density of new snow")
-        if self.settling is not None and self.settling not in SETTLING_LAWS:
-            raise InputError(
-                f"settling: {self.settling!r} is unknown; allowed: {', '.join(SETTLING_LAWS)}"
-            )
+        self.ageing({})
+
+    def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:
+        """Return what happens to the stack in the pauses before the events."""
+        return Ageing(pauses, self.settling, self.sintering, self.strength_age)
+
+    @property
+    def ages(self) -> bool:
+        """Whether time does anything to the stack."""
+        return bool(self.settling or self.sintering)
 
     @property
     def settling_law(self) -> Optional[SettlingLaw]:

@@ -1,9 +1,9 @@
-"""How far a stack settles between events: an estimate beside the simulation.
+"""How far the stack has settled since the last slide-off, at any time before the next.
 
-The simulated stack keeps its shape between events. Here the snow below its crest is a column: every
-event adds what the crest grew by, with the mean density of the stack, and the column settles under
-its own weight until the next. The ratio of its thickness to the simulated height then lowers the
-whole profile. The simulation itself does not feel it: later slabs slide onto the unsettled stack.
+The simulated stack ages just before the next event (``snowshed.ageing``). For the time until then
+the snow below its crest is taken as a column of its mean density, which settles under its own
+weight; the ratio of its thickness to the simulated height lowers the whole profile. The estimate
+serves the table only.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class SettlingStack:
     Examples
     --------
     >>> stack = SettlingStack(None, 9.81)
-    >>> stack.grow(0.5, 200.0)
+    >>> stack.take(0.5, 200.0)
     >>> stack.ratio
     1.0
     """
@@ -42,10 +42,11 @@ class SettlingStack:
         """Settled over simulated height, at most 1."""
         return min(self._column.thickness / self._height, 1.0) if self._height else 1.0
 
-    def grow(self, height: float, density: float) -> None:
-        """Let an event bring the crest to a height, m; density: of the stack, kg/m3."""
-        self._column.add(max(height - self._height, 0.0) * density, density)
-        self._height = max(height, self._height)
+    def take(self, height: float, density: float) -> None:
+        """Take the stack as an event left it: its height, m, and its density, kg/m3."""
+        self._column.clear()
+        self._column.add(height * density, density)
+        self._height = height
 
     def wait(self, seconds: float, temperature: float) -> None:
         """Let time pass at an air temperature, degrees C."""

@@ -101,7 +101,7 @@ class _Stack:
         below = below_panel(self.scene, self.outline)
         if 0 < len(below) < len(self.outline):
             self.height = min(self.height, float(below[:, 1].max()))
-        self.settling.grow(self.height, float(row["density_kg_m3"]))
+        self.settling.take(self.height, float(row["density_kg_m3"]))
 
     def columns(self) -> dict[str, float]:
         """Return the columns of the table that the stack fills."""

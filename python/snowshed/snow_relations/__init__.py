@@ -13,6 +13,7 @@ Examples
 from snowshed.snow_relations.new_snow import NEW_SNOW_DENSITY
 from snowshed.snow_relations.relation import Relation
 from snowshed.snow_relations.settling import SETTLING_LAWS
+from snowshed.snow_relations.sintering import SINTERING_LAWS
 from snowshed.snow_relations.snow import snow_from_density
 from snowshed.snow_relations.stiffness import YOUNGS_MODULUS
 from snowshed.snow_relations.strength import TENSILE_STRENGTH
@@ -20,6 +21,7 @@ from snowshed.snow_relations.strength import TENSILE_STRENGTH
 __all__ = [
     "NEW_SNOW_DENSITY",
     "SETTLING_LAWS",
+    "SINTERING_LAWS",
     "TENSILE_STRENGTH",
     "YOUNGS_MODULUS",
     "Relation",

@@ -11,6 +11,13 @@ from collections.abc import Callable
 import numpy as np
 
 from snowshed.arrays import Floats
+from snowshed.snow_relations.relation import ICE_DENSITY
+
+LONGEST_STEP = 3600.0  # s
+LARGEST_STRAIN = 0.01  # in one step
+
+# Settling stops where snow turns into firn, for which none of the laws was made.
+DENSEST = 0.6 * ICE_DENSITY
 
 #: Strain rate, 1/s, positive where snow compacts, of layers with given densities, kg/m3, stress
 #: from the snow above, Pa, and temperature, degrees C.
@@ -56,3 +63,40 @@ def essery_2013(density: Floats, stress: Floats, temperature: float) -> Floats:
 
 
 SETTLING_LAWS: dict[str, SettlingLaw] = {"vionnet-2012": vionnet_2012, "essery-2013": essery_2013}
+
+
+def settled_densities(
+    law: SettlingLaw, densities: Floats, stresses: Floats, seconds: float, temperature: float
+) -> Floats:
+    """Return the densities of snow after some time under constant stresses.
+
+    Parameters
+    ----------
+    law
+        How it settles.
+    densities
+        kg/m3, of any shape; those above `DENSEST` stay.
+    stresses
+        From the snow above, Pa, of the same shape.
+    seconds
+        The time.
+    temperature
+        Degrees C.
+
+    Examples
+    --------
+    >>> hour, day = (
+    ...     settled_densities(vionnet_2012, np.array([100.0]), np.array([250.0]), t, -5.0)
+    ...     for t in (3600.0, 86400.0)
+    ... )
+    >>> hour.round(1), day.round(1)  # ever more slowly
+    (array([101.8]), array([130.3]))
+    """
+    left = seconds
+    while left > 0.0 and densities.size:
+        rate = law(densities, stresses, temperature)
+        step = min(left, LONGEST_STEP, LARGEST_STRAIN / max(float(rate.max()), 1e-12))
+        settled = densities * np.exp(rate * step)
+        densities = np.maximum(densities, np.minimum(settled, DENSEST))
+        left -= step
+    return densities

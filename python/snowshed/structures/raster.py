@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,9 @@ from snowshed.extras import require
 from snowshed.scene import PathLike
 
 GEOTIFF = (".tif", ".tiff")
-HEADER = ("ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize",
-          "nodata_value")  # fmt: skip
+CORNERS = ("xllcorner", "yllcorner", "xllcenter", "yllcenter")
+HEADER = ("ncols", "nrows", *CORNERS, "cellsize", "nodata_value")
+LARGEST = 100_000_000  # cells of a raster that is read, 800 MB of heights
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,7 @@ def _read_ascii(path: Path) -> Raster:
             f"{rows * columns}"
         )
     heights = heights.reshape(rows, columns)[::-1]
+    _check_finite(heights, path)
     if "nodata_value" in header:
         heights = np.where(heights == header["nodata_value"], np.nan, heights)
     cell = header["cellsize"]
@@ -155,10 +158,13 @@ def _check_header(header: dict[str, float], path: Path) -> None:
                   ("cellsize",)):  # fmt: skip
         need(*names)
     for name in ("ncols", "nrows"):
-        if header[name] != int(header[name]) or header[name] < 2:
+        if not header[name].is_integer() or header[name] < 2:
             raise InputError(f"{path}: {name} {header[name]:g}; give a whole number of 2 or more")
     if not (math.isfinite(header["cellsize"]) and header["cellsize"] > 0.0):
         raise InputError(f"{path}: cellsize {header['cellsize']:g}; give a length above 0 m")
+    for name in CORNERS:
+        if not math.isfinite(header.get(name, 0.0)):
+            raise InputError(f"{path}: {name} {header[name]:g}; give a map coordinate, m")
 
 
 def _heights(line: str, where: str) -> Floats:
@@ -168,16 +174,41 @@ def _heights(line: str, where: str) -> Floats:
         raise InputError(f"{where}: not a row of heights") from None
 
 
+def _check_band(source: Any, path: Path) -> None:
+    """Refuse what would fill the memory, and what are no heights, before it is read."""
+    if source.width * source.height > LARGEST:
+        raise InputError(
+            f"{path}: {source.width} columns and {source.height} rows; at most {LARGEST} cells "
+            "are allowed; crop it first"
+        )
+    if np.dtype(source.dtypes[0]).kind not in "iuf":
+        raise InputError(f"{path}: holds {source.dtypes[0]} values, which are no heights")
+
+
+def _check_finite(heights: Floats, path: Path) -> None:
+    if np.isinf(heights).any():
+        row, column = np.argwhere(np.isinf(heights))[0]
+        raise InputError(
+            f"{path}: a height that is not finite, {column} cells from the west and {row} from "
+            "the south"
+        )
+
+
 def _read_geotiff(path: Path) -> Raster:
     if not path.is_file():
         raise FileNotFoundError(2, "No such file or directory", str(path))
     rasterio: Any = require("rasterio", "terrain", "reading a GeoTIFF")
     try:
-        with rasterio.open(path) as source:
-            heights = source.read(1, masked=True).astype(np.float64).filled(np.nan)
-            transform, crs = source.transform, source.crs
+        with warnings.catch_warnings():
+            # A raster without a place on the map is refused below.
+            warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+            with rasterio.open(path, driver="GTiff") as source:
+                _check_band(source, path)
+                heights = source.read(1, masked=True).astype(np.float64).filled(np.nan)
+                transform, crs = source.transform, source.crs
     except rasterio.errors.RasterioError as error:
         raise InputError(f"{path}: not a GeoTIFF: {error}") from None
+    _check_finite(heights[::-1], path)
     if crs is not None and crs.is_geographic:
         raise InputError(f"{path}: its map is in degrees ({crs}); project it to metres first")
     if transform.b or transform.d or transform.a <= 0 or not math.isclose(

@@ -7,12 +7,14 @@ step belongs into one factor.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
 from snowshed._core import InputError
 from snowshed.extras import require
+from snowshed.quoting import shortened
 
 LARGEST_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
 SCALES = ("linear", "log")
@@ -102,14 +104,15 @@ def linear(
         _check_count(count)
         return [_tidy(start + (stop - start) * i / (count - 1)) for i in range(count)]
     assert step is not None
-    if not (math.isfinite(step) and step > 0):
+    _check_finite(step)
+    if step <= 0:
         raise InputError(f"the step {step} is not positive")
     if stop < start:
         raise InputError(f"must not fall: from {start} to {stop}")
-    steps = math.floor((stop - start) / step * (1 + 1e-9))
-    if steps >= LARGEST_COUNT:
-        raise InputError(f"has {steps + 1} values; at most {LARGEST_COUNT} are allowed")
-    return [_tidy(start + i * step) for i in range(steps + 1)]
+    steps = (stop - start) / step * (1 + 1e-9)
+    if not steps < LARGEST_COUNT:
+        raise InputError(f"has more than the {LARGEST_COUNT} values that are allowed")
+    return [_tidy(start + i * step) for i in range(math.floor(steps) + 1)]
 
 
 def logarithmic(start: float, stop: float, count: int) -> list[float]:
@@ -171,7 +174,7 @@ def latin_hypercube(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> 
     Raises
     ------
     InputError
-        If the count is not positive, or SciPy (extra ``study``) is not installed.
+        If the count is not positive, the seed negative, or SciPy (extra ``study``) not installed.
 
     Examples
     --------
@@ -201,6 +204,8 @@ def sobol(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
 def _sample(method: str, spans: Mapping[str, Span], count: int, seed: int) -> Factor:
     if not 0 < count <= LARGEST_COUNT:
         raise InputError(f"count {count} is outside the allowed range (1 to {LARGEST_COUNT})")
+    if seed < 0:
+        raise InputError(f"seed {seed} is negative")
     if not spans:
         raise InputError("names no parameter; name at least one")
     qmc = require("scipy.stats.qmc", "study", "sampling")
@@ -220,8 +225,8 @@ def _tidy(value: float) -> float:
 
 def _check_finite(*values: float) -> None:
     for value in values:
-        if not math.isfinite(value):
-            raise InputError(f"{value} is not a finite number")
+        if not abs(value) <= sys.float_info.max:  # nor is an integer that no float can hold
+            raise InputError(f"{shortened(str(value), 20)} is not a finite number")
 
 
 def _check_positive(*values: float) -> None:

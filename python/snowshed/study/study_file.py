@@ -11,9 +11,11 @@ from typing import Any, TypeVar
 from snowshed._core import InputError
 from snowshed.accuracy_settings import ACCURACY
 from snowshed.parts import Snow
+from snowshed.quoting import shortened
 from snowshed.scene import Scene
 from snowshed.study.definition import Part, Study
 from snowshed.study.factors import (
+    LARGEST_COUNT,
     SCALES,
     Factor,
     Span,
@@ -98,13 +100,18 @@ def load(file: Path) -> Study:
         return _study(_read(file), file)
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+    except RecursionError:
+        raise InputError(f"{file}: nested too deep") from None
 
 
 def _read(file: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(file.read_bytes().decode("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"not TOML: {error}") from None
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # of tomllib all errors on content are ValueErrors
+        raise InputError(f"not TOML: {shortened(str(error), 200)}") from None
 
 
 def _study(data: dict[str, Any], file: Path) -> Study:
@@ -174,12 +181,12 @@ def _absolute(value: Any, folder: Path) -> Any:
 
 
 def _seeds(value: Any) -> list[int]:
-    if isinstance(value, int) and not isinstance(value, bool) and value > 0:
+    if type(value) is int and 0 < value <= LARGEST_COUNT:
         return list(range(1, value + 1))
     if isinstance(value, list) and value and all(type(seed) is int for seed in value):
         return value
     raise InputError(
-        f"seeds: {value!r} is neither a number of seeds (1 or more) nor a list of them"
+        f"seeds: {value!r} is neither a number of seeds (1 to {LARGEST_COUNT}) nor a list of them"
     )
 
 
@@ -207,7 +214,7 @@ def _zipped(table: Mapping[str, Any], where: str) -> Factor:
 def _sample(table: Mapping[str, Any], where: str) -> Factor:
     _check_keys(table, SAMPLE_KEYS, f"{where}.")
     method = table.get("method", "latin-hypercube")
-    if method not in SAMPLE_METHODS:
+    if not isinstance(method, str) or method not in SAMPLE_METHODS:
         allowed = ", ".join(SAMPLE_METHODS)
         raise InputError(f"{where}.method: {method!r} is unknown; allowed: {allowed}")
     count = _typed(table.get("count"), int, f"{where}.count", "a whole number")

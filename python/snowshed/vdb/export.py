@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any, Optional
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.scene import PathLike
+from snowshed.scene import InitialisedScene, PathLike
 from snowshed.vdb.writing import WrittenVdb, write_vdb
 from snowshed.vtp import read_particles
 
@@ -72,11 +71,7 @@ def _scene(folder: Path) -> dict[str, Any]:
     path = folder / "scene.json"
     if not path.is_file():
         raise InputError(f"{folder}: no results; it holds no scene.json")
-    try:
-        scene: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise InputError(f"{path}: not JSON: {error}") from None
-    return scene
+    return InitialisedScene.load(path).data
 
 
 def _particle_files(folder: Path, snapshots: bool) -> Iterator[Path]:

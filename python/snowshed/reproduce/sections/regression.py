@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -14,6 +15,7 @@ from snowshed.reproduce.claims.regression import REGRESSION, Regressed, validati
 from snowshed.reproduce.regression_stage import KINDS, TARGET
 from snowshed.reproduce.reproduction import Reproduction
 from snowshed.reproduce.section import SAVED_DPI, Section
+from snowshed.tables import read_csv
 
 TEXT = (
     "ε-SVR of H/L with a linear and an RBF kernel, hyper-parameters in powers of ten, chosen and "
@@ -21,6 +23,7 @@ TEXT = (
     "folds over {rows} rows; the thesis has 10 rounds of 10 and 5 over 610.",
     "The thesis gives the error of H/L in metres; it has no unit.",
 )
+ERRORS = ("mean_absolute_error", "standard_deviation", "held_out_error")
 NAMES = {"rbf": "RBF", "linear": "linear"}
 FIGURES = {
     "selection": ("Scores over the rounds", "As Figure 5.3.1."),
@@ -40,7 +43,7 @@ def build(found: Reproduction) -> Section:
     scheme = found.size.folds
     numbers = {"rounds": scheme.rounds, "folds": scheme.folds, "inner": scheme.inner_folds}
     text = [line.format(rows=data.rows, **numbers) for line in TEXT]
-    formula = (folder / TARGET / "linear.txt").read_text(encoding="utf-8").strip()
+    formula = _text(folder / TARGET / "linear.txt")
     text.append(f"The mean linear model here: {formula}.")
     tables = [
         ("Table 5.3.1: quartiles of the predicted H/L", quartiles_grid(data)),
@@ -56,11 +59,28 @@ def build(found: Reproduction) -> Section:
 
 
 def read_regressed(folder: Path, rows: int) -> Regressed:
-    """Read what `snowshed.regression.regress` has written."""
-    scores = pd.read_csv(folder / "scores.csv")
-    errors = pd.read_csv(folder / TARGET / "errors.csv").set_index("model")
-    quartiles = pd.read_csv(folder / TARGET / "quartiles.csv").set_index("model")
-    return Regressed(rows, scores, errors, quartiles)
+    """Read what `snowshed.regression.regress` has written.
+
+    Raises
+    ------
+    InputError
+        If a table is damaged, naming it.
+    """
+    scores = _by_model(folder / "scores.csv", ("validation_score",))
+    errors = _by_model(folder / TARGET / "errors.csv", ERRORS)
+    quartiles = _by_model(folder / TARGET / "quartiles.csv", QUARTILES, ("data", *KINDS))
+    return Regressed(rows, scores.reset_index(), errors, quartiles)
+
+
+def _by_model(file: Path, columns: Sequence[str], models: Sequence[str] = KINDS) -> pd.DataFrame:
+    """Read a table that has numbers in these columns, and rows of these models."""
+    table = read_csv(file)
+    for name in columns:
+        if name not in table or table[name].dtype.kind not in "if":
+            raise InputError(f"{file}: damaged: no numbers in a column {name}")
+    if "model" not in table or not set(models) <= set(table["model"]):
+        raise InputError(f"{file}: damaged: not a row of each model ({', '.join(models)})")
+    return table.set_index("model")
 
 
 def quartiles_grid(data: Regressed) -> Grid:
@@ -85,6 +105,13 @@ def errors_grid(data: Regressed) -> Grid:
         rows.append([f"{NAMES[model]}, here", *ours, *held_out, validation(data, model).in_words()])
     head = ["model", "mean absolute error", "standard deviation", "on rows not trained on"]
     return Grid([*head, "median absolute error, validation"], rows, "lrrrr")
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_bytes().decode("utf-8").strip()
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: damaged: {error}") from None
 
 
 def _numbers(values: object, digits: int = 3) -> list[str]:

@@ -1,0 +1,210 @@
+"""Settling and sintering of a simulated stack between two slide-offs.
+
+Settling lowers the particles by what the snow below them shortens, and compacts them: the strain
+goes into the volumetric plastic strain, which hardens them as any compaction does. Sintering gives
+back strength to what broke: it lowers the volumetric plastic strain until the yield surface is as
+large as bonds of that age make it, at most as large as it was at first. Elastic stresses stay.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+
+from snowshed import _core
+from snowshed._core import InputError
+from snowshed.ageing.columns import SnowColumns
+from snowshed.arrays import Booleans, Floats
+from snowshed.snow_relations.settling import SETTLING_LAWS, settled_densities
+from snowshed.snow_relations.sintering import SINTERING_LAWS
+
+# Snow that has come apart has a volume that means nothing; the laws were made for snow.
+LIGHTEST = 50.0  # kg/m3
+
+AGEING_COLUMNS = (
+    "event",
+    "hours",
+    "temperature_c",
+    "crest_sank_m",
+    "density_before_kg_m3",
+    "density_kg_m3",
+    "intact_before",
+    "intact",
+)
+
+
+class Interval(NamedTuple):
+    """A time at one temperature: s, degrees C."""
+
+    seconds: float
+    temperature: float
+
+
+@dataclass(frozen=True)
+class Ageing:
+    """How a stack ages before each of the events.
+
+    Attributes
+    ----------
+    pauses
+        For events (2 is the second), what time passes before it.
+    settling
+        A name in `SETTLING_LAWS`; None: the stack does not settle.
+    sintering
+        A name in `SINTERING_LAWS`; None: broken bonds stay broken.
+    strength_age
+        Age of bonds, hours, that have the strength of the slab's snow.
+
+    Raises
+    ------
+    InputError
+        If a value is not allowed.
+
+    Examples
+    --------
+    >>> day = Interval(86400.0, -5.0)
+    >>> Ageing({2: [day], 3: [day, day]}, settling="vionnet-2012").hours(3)
+    48.0
+    """
+
+    pauses: Mapping[int, Sequence[Interval]] = field(default_factory=dict)
+    settling: Optional[str] = None
+    sintering: Optional[str] = None
+    strength_age: float = 24.0
+
+    def __post_init__(self) -> None:
+        check_law("settling", self.settling, SETTLING_LAWS)
+        check_law("sintering", self.sintering, SINTERING_LAWS)
+        if not 0.0 < self.strength_age < np.inf:
+            raise InputError(f"strength age: {self.strength_age} hours; must be positive")
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The same in the form of JSON."""
+        data: dict[str, Any] = json.loads(json.dumps(asdict(self)))
+        return data
+
+    def hours(self, event: int) -> float:
+        """Return the time before an event, h."""
+        return sum(interval.seconds for interval in self.pauses.get(event, ())) / 3600.0
+
+    def apply(self, simulation: _core.Simulation, event: int) -> Optional[dict[str, float]]:
+        """Let the time before an event pass; return its row of ageing.csv, None if there is none.
+
+        Snow that lies on the panel does not age: the next slab is laid on it at once.
+        """
+        seconds = 3600.0 * self.hours(event)
+        if not seconds or not (self.settling or self.sintering):
+            return None
+        snow = _Snow(simulation)
+        strains = self._strains(snow, event)
+        drops = np.zeros(len(snow.masses))
+        drops[snow.stack] = snow.columns.drops(strains)
+        compaction = np.zeros(len(snow.masses))
+        compaction[snow.stack] = snow.columns.at_particles(strains)
+        hardened = snow.plastic_strains - compaction
+        sintered = self._sinter(snow, hardened, seconds)
+        crest = snow.crest(0.0 * drops)
+        row = {
+            "event": event,
+            "hours": seconds / 3600.0,
+            "temperature_c": self._mean_temperature(event),
+            "crest_sank_m": crest - snow.crest(drops),
+            "density_before_kg_m3": snow.mean_density(),
+            "intact_before": snow.intact(snow.plastic_strains),
+            "intact": snow.intact(sintered),
+        }
+        simulation.settle(drops, sintered - snow.plastic_strains)
+        return {**row, "density_kg_m3": _Snow(simulation).mean_density()}
+
+    def _strains(self, snow: _Snow, event: int) -> Floats:
+        """Return by how much the nodes of the columns shorten, as logarithms."""
+        nodes = snow.columns
+        if self.settling is None or not snow.yields.any():  # elastic snow has no density to gain
+            return np.zeros(nodes.densities.shape)
+        before = np.maximum(nodes.densities, LIGHTEST)
+        stress, after = nodes.stresses(snow.gravity), before
+        for interval in self.pauses[event]:
+            after = settled_densities(SETTLING_LAWS[self.settling], after, stress, *interval)
+        strains: Floats = np.log(after / before)
+        return strains
+
+    def _sinter(self, snow: _Snow, plastic_strains: Floats, seconds: float) -> Floats:
+        """Return the plastic strains that snow of its strength after sintering has."""
+        if self.sintering is None:
+            return plastic_strains
+        strength = snow.strengths(plastic_strains)
+        age = seconds / (3600.0 * self.strength_age)
+        grown = SINTERING_LAWS[self.sintering].strengthen(strength, age)
+        healed = (grown > strength) & snow.stack
+        return np.where(healed, snow.plastic_strains_of(grown), plastic_strains)
+
+    def _mean_temperature(self, event: int) -> float:
+        seconds, temperatures = np.array(self.pauses[event]).T
+        return float(np.average(temperatures, weights=seconds))
+
+
+def check_law(what: str, name: Optional[str], laws: Mapping[str, Any]) -> None:
+    """Raise InputError if there is no law of a name; None is none."""
+    if name is not None and name not in laws:
+        raise InputError(f"{what}: {name!r} is unknown; allowed: {', '.join(laws)}")
+
+
+class _Snow:
+    """The snow of a simulation between two events, with its hardening law (1.1.42)."""
+
+    def __init__(self, simulation: _core.Simulation) -> None:
+        scene = json.loads(simulation.scene)
+        self.gravity = float(scene["gravity"])
+        self.masses = simulation.masses()
+        self.plastic_strains = simulation.plastic_strains()
+        self.positions, densities = simulation.positions(), simulation.density()
+        self.stack: Booleans = ~simulation.on_panel()
+        self.columns = SnowColumns(
+            self.positions[self.stack],
+            self.masses[self.stack],
+            densities[self.stack],
+            simulation.dimension,
+            float(scene["numerics"]["dx"]),
+        )
+        snows = [json.loads(snow) for snow in simulation.snows]
+        kinds = simulation.kinds()
+        self.yields = np.array([snow["model"] == "cam_clay" for snow in snows])[kinds]
+        self._p0 = np.array([snow["preconsolidation_pressure"] for snow in snows])[kinds]
+        self._xi = np.array([snow["hardening_factor"] for snow in snows])[kinds]
+        self._bulk = np.array(
+            [snow["youngs_modulus"] / (3.0 - 6.0 * snow["poissons_ratio"]) for snow in snows]
+        )[kinds]
+        self._densities = densities
+
+    def strengths(self, plastic_strains: Floats) -> Floats:
+        """Return p0 over that of undisturbed snow; 1 for snow that does not yield."""
+        compaction = np.clip(-plastic_strains * self._xi, 0.0, 50.0)
+        return np.where(self.yields, self._bulk * np.sinh(compaction) / self._p0, 1.0)
+
+    def plastic_strains_of(self, strengths: Floats) -> Floats:
+        """Return the volumetric plastic strains at which snow has strengths, as `strengths`."""
+        result: Floats = -np.arcsinh(strengths * self._p0 / self._bulk) / self._xi
+        return result
+
+    def intact(self, plastic_strains: Floats) -> float:
+        """Return the mean strength of the stack, nothing counting more than undisturbed snow."""
+        if not self.stack.any():
+            return 1.0
+        strength = np.minimum(self.strengths(plastic_strains), 1.0)
+        return float(np.average(strength[self.stack], weights=self.masses[self.stack]))
+
+    def mean_density(self) -> float:
+        """Return the mean density of the stack, its mass over its volume, kg/m3."""
+        masses = self.masses[self.stack]
+        volume = float((masses / self._densities[self.stack]).sum())
+        return float(masses.sum()) / volume if volume else 0.0
+
+    def crest(self, drops: Floats) -> float:
+        """Return the height of the highest particle of the stack once they have sunk, m."""
+        heights = (self.positions[:, 2] - drops)[self.stack]
+        return float(heights.max()) if len(heights) else 0.0
