@@ -135,7 +135,7 @@ def test_slabs_lie_where_the_core_would_lay_them(season_file):
         )
         simulation.begin_event()
         away = simulation.positions() - frame["center"]
-        thickness = days[0].load / scene.data["snow"]["density"]
+        thickness = days[0].thickness
         for axis, low, high in (
             (frame["normal"], 0.0, thickness),
             (frame["slope"], -0.1225, 0.1225),
@@ -159,8 +159,8 @@ def test_burial_is_the_first_event_that_closes_the_clearance():
     assert first_reached([0.5, 0.2], 0.03) is None
 
 
-def test_snow_that_stays_on_the_panel_ends_the_season(season_file, tmp_path):
-    """Let go by its static friction, it is held by a rougher panel at once."""
+def test_what_stays_on_the_panel_bears_the_next_slabs(season_file, tmp_path):
+    """Let go by its static friction, snow is held by a rougher panel at once."""
     result = run_season(
         season_file,
         panel_scene(**{"panel.friction": 3.0, "events.max_time": 0.2}),
@@ -168,9 +168,10 @@ def test_snow_that_stays_on_the_panel_ends_the_season(season_file, tmp_path):
         settings=SeasonSettings(friction=0.1),
         pictures=False,
     )
-    assert (result.blocked_event, result.simulated, result.releases) == (1, 1, 3)
-    assert math.isnan(result.table["stack_height_m"].iloc[-1])
-    assert any("after event 1 snow stayed on the panel" in note for note in result.notes)
+    assert (result.staying_event, result.simulated, result.releases) == (1, 3, 3)
+    left = result.table["left_on_panel_kg"][result.table["released"] == "yes"].tolist()
+    assert left[0] < left[1] < left[2]
+    assert any("from event 1 on, snow" in note for note in result.notes)
 
 
 def test_scenes_without_a_panel_or_with_snow_of_their_own(season_file, tmp_path):

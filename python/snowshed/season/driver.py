@@ -9,9 +9,8 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed._core import InputError
-from snowshed.ageing import Ageing
 from snowshed.atomic import write_text
-from snowshed.events import Progress, Reporter, run_events
+from snowshed.events import Reporter, run_events
 from snowshed.results import EVENT_COLUMNS, check_empty
 from snowshed.scene import InitialisedScene, PathLike, Scene
 from snowshed.season.accumulation import Day, accumulate, pauses
@@ -26,7 +25,7 @@ from snowshed.tables import read_csv
 if TYPE_CHECKING:
     import pandas as pd
 
-# Part of a slab that may stay on the panel, as in the core's rule for the next slab.
+# Part of a slab that may stay on the panel; beyond it the core lays the next slab on top.
 STAYING = 0.02
 
 
@@ -44,8 +43,8 @@ class SeasonResult:
         First event after which the snow below the panel's lower edge reaches it; None: none.
     crest_event
         First event after which the stack is as high as the lower edge, wherever; None: none.
-    blocked_event
-        Event at which snow stayed on the panel, so that the simulation ended; None: none.
+    staying_event
+        First event after which snow stayed on the panel; None: none.
     notes
         What a reader of the table has to know.
     """
@@ -55,7 +54,7 @@ class SeasonResult:
     simulated: int
     burial_event: Optional[int]
     crest_event: Optional[int]
-    blocked_event: Optional[int]
+    staying_event: Optional[int]
     notes: Sequence[str]
 
 
@@ -116,67 +115,19 @@ def run_season(
     if not resume:
         check_empty(folder.folder)
     slides = season_scene(ready, days) if any(day.event for day in days) else None
-    blocked = None
     if slides is not None:
-        ageing = settings.ageing(pauses(days)) if settings.ages else None
-        blocked = _slide(
-            slides, folder, ageing, resume=resume, progress=progress, pictures=pictures
-        )
-    folder.folder.mkdir(parents=True, exist_ok=True)
-    result = _result(slides or ready, days, settings, folder, blocked)
-    _write(result, slides or ready, settings, folder, pictures=pictures)
-    return result
-
-
-class _PanelBlockedError(Exception):
-    """Snow stayed on the panel, and the next slab could not be laid in its place."""
-
-    def __init__(self, event: int) -> None:
-        self.event = event
-        super().__init__(event)
-
-
-def _slide(
-    scene: InitialisedScene,
-    folder: SeasonFolder,
-    ageing: Optional[Ageing],
-    *,
-    resume: bool,
-    progress: Optional[Reporter],
-    pictures: bool,
-) -> Optional[int]:
-    """Run the slide-offs; return the event after which the panel did not clear, if any."""
-
-    def watch(report: Progress) -> None:
-        if progress is not None:
-            progress(report)
-        if report.fraction == 1.0 and report.event < report.count:
-            _check_cleared(folder, report.event)
-
-    again = resume and folder.run.scene.is_file()
-    try:
         run_events(
-            scene,
+            slides,
             folder.run.folder,
-            resume=again,
-            ageing=ageing,
-            progress=watch,
+            resume=resume and folder.run.scene.is_file(),
+            ageing=settings.ageing(pauses(days)) if settings.ages else None,
+            progress=progress,
             pictures=pictures,
         )
-    except _PanelBlockedError as blocked:
-        return blocked.event
-    return None
-
-
-def _check_cleared(folder: SeasonFolder, event: int) -> None:
-    """Raise if much of what an event brought still lies on the panel."""
-    from snowshed.results import read_events
-
-    rows = read_events(folder.run.folder).set_index("event")
-    total = rows["mass_kg"] + rows["on_panel_kg"]
-    brought = float(total[event] - total.get(event - 1, 0.0))
-    if rows["on_panel_kg"][event] > STAYING * brought:
-        raise _PanelBlockedError(event)
+    folder.folder.mkdir(parents=True, exist_ok=True)
+    result = _result(slides or ready, days, settings, folder)
+    _write(result, slides or ready, settings, folder, pictures=pictures)
+    return result
 
 
 def _result(
@@ -184,7 +135,6 @@ def _result(
     days: Sequence[Day],
     settings: SeasonSettings,
     folder: SeasonFolder,
-    blocked: Optional[int],
 ) -> SeasonResult:
     import pandas as pd
 
@@ -193,15 +143,24 @@ def _result(
     table = season_table(scene.data, days, settings, events, outlines)
     simulated = table[pd.notna(table["event"]) & pd.notna(table["stack_height_m"])]
     dx = float(scene.data["numerics"]["dx"])
+    staying = _first_staying(events)
     return SeasonResult(
         table,
         releases=int(pd.notna(table["event"]).sum()),
         simulated=len(simulated),
         burial_event=first_reached(simulated["clearance_m"].tolist(), dx),
         crest_event=first_reached(simulated["crest_clearance_m"].tolist(), dx),
-        blocked_event=blocked,
-        notes=[*_notes(scene.data, days, settings, blocked), *_cut_short(events)],
+        staying_event=staying,
+        notes=[*_notes(scene.data, days, settings, staying), *_cut_short(events)],
     )
+
+
+def _first_staying(events: pd.DataFrame) -> Optional[int]:
+    """Return the first event after which much of what it brought still lies on the panel."""
+    total = events["mass_kg"] + events["on_panel_kg"]
+    brought = total.diff().fillna(total)
+    stayed = events["event"][events["on_panel_kg"] > STAYING * brought]
+    return int(stayed.iloc[0]) if len(stayed) else None
 
 
 def _cut_short(events: pd.DataFrame) -> list[str]:
@@ -222,7 +181,7 @@ def _table_or_empty(path: Any, columns: Sequence[str]) -> pd.DataFrame:
 
 
 def _notes(
-    scene: dict[str, Any], days: Sequence[Day], settings: SeasonSettings, blocked: Optional[int]
+    scene: dict[str, Any], days: Sequence[Day], settings: SeasonSettings, staying: Optional[int]
 ) -> list[str]:
     notes = []
     released = [day for day in days if day.event is not None]
@@ -230,12 +189,8 @@ def _notes(
     if estimated:
         notes.append(f"{estimated} densities are estimates ({settings.density})")
     if released:
-        density, dx = scene["snow"]["density"], scene["numerics"]["dx"]
-        notes.append(
-            f"all slabs slide with the mean density of the released snow, {density:.0f} kg/m3, and "
-            "the thickness their mass then has"
-        )
-        thinnest = min(day.load for day in released) / density
+        dx = scene["numerics"]["dx"]
+        thinnest = min(day.thickness for day in released)
         if thinnest < 2.0 * dx:
             notes.append(
                 f"the thinnest slab has {1000 * thinnest:.1f} mm, less than two cells of "
@@ -253,9 +208,10 @@ def _notes(
             f"broken bonds regain strength ({settings.sintering}), all of it in "
             f"{settings.strength_age:g} hours"
         )
-    if blocked is not None:
+    if staying is not None:
         notes.append(
-            f"after event {blocked} snow stayed on the panel; later slide-offs were not simulated"
+            f"from event {staying} on, snow that should have left stayed on the panel; later slabs "
+            "are laid on top of it"
         )
     return notes
 

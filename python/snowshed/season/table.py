@@ -38,8 +38,7 @@ def season_table(
     settings
         Say how the stack settles.
     events, outlines
-        The tables of the slide-offs, as in events.csv and outline.csv. Where a slide-off was not
-        simulated, because snow that stayed on the panel ended the season, its measures are empty.
+        The tables of the slide-offs, as in events.csv and outline.csv.
     """
     import pandas as pd
 
@@ -90,10 +89,7 @@ class _Stack:
         self.outline = np.zeros((0, 2))
 
     def take(self, event: int) -> None:
-        """Take what an event left; nothing is known of one that was not simulated."""
-        if event not in self.events:
-            self.height = self.length = self.left = math.nan
-            return
+        """Take what an event left."""
         row = self.events[event]
         self.height, self.length = float(row["height_m"]), float(row["length_m"])
         self.left = float(row["on_panel_kg"])
@@ -105,16 +101,15 @@ class _Stack:
 
     def columns(self) -> dict[str, float]:
         """Return the columns of the table that the stack fills."""
-        ratio = self.settling.ratio if math.isfinite(self.height) else math.nan
+        ratio = self.settling.ratio
         now = clearance(self.scene, self.outline, self.height)
         settled = clearance(self.scene, self.outline * [1.0, ratio], ratio * self.height)
-        known = math.isfinite(self.height)
         return {
             "stack_height_m": self.height,
             "stack_length_m": self.length,
-            "clearance_m": now.below if known else math.nan,
+            "clearance_m": now.below,
             "crest_clearance_m": now.crest,
             "settled_height_m": ratio * self.height,
-            "settled_clearance_m": settled.below if known else math.nan,
+            "settled_clearance_m": settled.below,
             "left_on_panel_kg": self.left,
         }
