@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+MOST_LAYERS = 4  # whose thicknesses are named one by one
+
 
 def scene_caption(scene: dict[str, Any]) -> str:
     """Return what tells one scene from another.
@@ -31,27 +33,34 @@ def scene_caption(scene: dict[str, Any]) -> str:
     if tilt := (scene.get("ground") or {}).get("tilt"):
         parts.append(f"ground tilt {tilt:g}°")
     parts.append(f"dx {scene['numerics']['dx']:g} m")
-    return " · ".join(parts) + "\n" + _snow(scene["snow"]) + f" · events {_between(scene)}"
+    return " · ".join(parts) + "\n" + _snow(scene) + f" · events {_between(scene)}"
 
 
 def _slab(slab: dict[str, Any]) -> str:
     layers = slab["layers"]
     if not layers:
         return f"slab {slab['thickness']:g} m thick"
-    return (
-        "layers "
-        + ", ".join(f"{layer['thickness']:g}" for layer in layers[:5])
-        + (f" m (of {len(layers)})" if len(layers) > 5 else " m")
-    )
+    thicknesses = [f"{layer['thickness']:.3g}" for layer in layers]
+    if len(layers) > MOST_LAYERS:
+        low, high = min(thicknesses, key=float), max(thicknesses, key=float)
+        return f"{len(layers)} layers of {low} to {high} m"
+    return f"layers {', '.join(thicknesses)} m"
 
 
 def _contact(panel: dict[str, Any]) -> str:
     return "sticky" if panel["condition"] == "sticky" else f"friction {panel['friction']:g}"
 
 
-def _snow(snow: dict[str, Any]) -> str:
+def _densities(scene: dict[str, Any]) -> str:
+    layers = (scene.get("slab") or {}).get("layers") or [{}]
+    found = [layer.get("snow", scene["snow"])["density"] for layer in layers]
+    return " to ".join(f"{density:g}" for density in sorted({min(found), max(found)}))
+
+
+def _snow(scene: dict[str, Any]) -> str:
+    snow = scene["snow"]
     text = (
-        f"snow {snow['density']:g} kg/m³, E {snow['youngs_modulus'] / 1e6:g} MPa, "
+        f"snow {_densities(scene)} kg/m³, E {snow['youngs_modulus'] / 1e6:g} MPa, "
         f"nu {snow['poissons_ratio']:g}"
     )
     if snow["model"] == "elastic":
