@@ -20,9 +20,23 @@ PATH = click.Path(path_type=Path)
     default="carry",
     help="What happens to the stack between events: carry or reseed.  [default: carry]",
 )
+@click.option(
+    "--friction",
+    type=click.FloatRange(0.0, 10.0),
+    default=0.7,
+    show_default=True,
+    help="Coulomb coefficient of the panel.",
+)
+@click.option(
+    "--dx",
+    type=click.FloatRange(1e-4, 1.0),
+    default=0.01,
+    show_default=True,
+    help="Size of the grid cells, m.",
+)
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid: minutes, not hours.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
-def geometry(between: str, trial: bool, file: Optional[Path]) -> None:
+def geometry(between: str, friction: float, dx: float, trial: bool, file: Optional[Path]) -> None:
     """Write the study of panel geometries whose table ``regress`` takes.
 
     \b
@@ -35,7 +49,7 @@ def geometry(between: str, trial: bool, file: Optional[Path]) -> None:
     from snowshed.atomic import write_text
     from snowshed.regression.geometry import geometry_study
 
-    text = geometry_study(between, trial=trial)
+    text = geometry_study(between, friction=friction, dx=dx, trial=trial)
     if file is None:
         click.echo(text, nl=False)
     else:

@@ -10,7 +10,14 @@ from snowshed._core import InputError
 BETWEEN = ("carry", "reseed")
 
 
-def geometry_study(between: str = "carry", *, trial: bool = False) -> str:
+#: The panel's friction, which the thesis does not print: of those tried, the one whose stacks have
+#: a ratio of height to length nearest to that of Table 5.3.1.
+FRICTION = 0.7
+
+
+def geometry_study(
+    between: str = "carry", *, friction: float = FRICTION, dx: float = 0.01, trial: bool = False
+) -> str:
     """Return the study file of the geometry data set, Tables 5.1.1 and 5.2.1.
 
     At 40 degrees 7 heights x 11 lengths x 5 events are 385 rows; 3 tilts x 3 heights x 5 lengths x
@@ -21,6 +28,10 @@ def geometry_study(between: str = "carry", *, trial: bool = False) -> str:
     between
         "carry": the stack's particles stay as they are; "reseed": the stack is filled anew, as the
         thesis does.
+    friction
+        Coulomb coefficient of the panel.
+    dx
+        Size of the grid cells, m. The trial has its own.
     trial
         A few panels on a coarse grid, to try the way from study to prediction within minutes; its
         numbers mean nothing.
@@ -35,4 +46,6 @@ def geometry_study(between: str = "carry", *, trial: bool = False) -> str:
     name = "geometry-trial.toml" if trial else "geometry.toml"
     folder = resources.files("snowshed.regression") / "studies"
     text = (folder / name).read_text(encoding="utf-8")
+    for name, value in (("friction", friction), ("dx", dx)):
+        text = text.replace("{" + name + "}", f"{value:g}")
     return text.replace("{between}", between)
