@@ -1,9 +1,11 @@
 import re
+import shutil
 
 import pytest
 
 from snowshed import InputError
 from snowshed.atomic import replacing, write_text
+from snowshed.cli import main
 from snowshed.results import EVENT_COLUMNS, Results, check_empty, read_events
 from snowshed.tables import Table
 
@@ -98,6 +100,10 @@ DAMAGED = {
     "another table": b"hello world\nthis, is not, it\n",
     "no numbers": b"event,height_m\none,high\n",
     "one column": b"12345",
+    "endless stack": b"event,height_m\n1,inf\n",
+    "too high": b"event,height_m\n1,1e999\n",
+    "text for a length": b"event,height_m,length_m\n1,0.1,long\n",
+    "cut off": b"event,height_m,length_m\n1,0.1,0.2\n2,0.1",
     "names that are not": b"1," * 900,
     "a line without end": b"1," * 100_000,
 }
@@ -121,6 +127,8 @@ def test_a_damaged_table_of_events_is_named(tmp_path, content):
         (b"event,mass\nfirst,1\n", "a row without the number of its event"),
         (b"event,load\n1,1\n", "its columns are not event, mass"),
         (b"event,mass\n1,heavy\n", "no numbers in the column mass"),
+        (b"event,mass\n1,nan\n", "no numbers in the column mass"),
+        (b"event,mass\n1,1e308\n2,1e308\n", "no numbers in the column mass"),
     ],
 )
 def test_a_damaged_table_is_not_continued(tmp_path, content, message):
@@ -140,7 +148,35 @@ def test_a_damaged_file_of_a_folder_to_resume_is_named(tmp_path, tiny, name, con
         Results.reopen(tmp_path, tiny.initialise()).earlier_wall_s()
 
 
-def test_a_computing_time_that_is_no_number(tmp_path):
-    (tmp_path / "run.json").write_text('{"wall_s": "long"}')
-    with pytest.raises(InputError, match=r"run\.json: damaged: /wall_s: 'long' is not a number"):
+@pytest.mark.parametrize(
+    ("given", "shown"), [('"long"', "'long'"), ("true", "True"), ("1e999", "inf")]
+)
+def test_a_computing_time_that_is_no_number(tmp_path, given, shown):
+    (tmp_path / "run.json").write_text(f'{{"wall_s": {given}}}')
+    with pytest.raises(InputError, match=rf"run\.json: damaged: /wall_s: {shown} is not a number"):
         Results(tmp_path).earlier_wall_s()
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        (lambda text: "", "holds 0 events, but 2 are done"),
+        (lambda text: text[: text.rindex("\n2,") + 1], "holds 1 events, but 2 are done"),
+        (
+            lambda text: re.sub(r"(?m)^1,[^,]*", "1,inf", text),
+            "no finite numbers in a column height_m",
+        ),
+        (lambda text: text.replace(",rest", ""), "a row that has not"),
+    ],
+)
+def test_a_damaged_table_of_events_is_not_resumed(finished, tmp_path, capsys, damage, message):
+    folder = tmp_path / "results"
+    shutil.copytree(finished, folder)
+    events = folder / "events.csv"
+    events.write_text(damage(events.read_text()))
+    before = sorted(folder.rglob("*"))
+    assert main(["run", str(folder / "scene.json"), "-o", str(folder), "--resume", "-q"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: {events}: ") and said.count("\n") == 1
+    assert re.search(message, said)
+    assert sorted(folder.rglob("*")) == before

@@ -106,8 +106,12 @@ def test_load_says_what_is_no_scene(tmp_path):
     with pytest.raises(InputError, match="/panel/hight: unknown key"):
         Scene.load(path)
     path.write_text('{"panel": 3}')
-    with pytest.raises(InputError, match="/panel: 3 is not an object"):
+    with pytest.raises(InputError, match=r"scene\.json: /panel: 3 is not an object"):
         Scene.load(path)
+    for number in ("NaN", "-Infinity", "1e999", "1" + "0" * 400):
+        path.write_text(f'{{"panel": {{"tilt": {number}}}}}')
+        with pytest.raises(InputError, match=r"scene\.json: /panel/tilt: .* is not a finite"):
+            Scene.load(path)
 
 
 @pytest.mark.parametrize(

@@ -142,8 +142,13 @@ def _reopen(
     else:
         simulation = _core.Simulation(scene.json, scene.base_dir)
     results.keep_through(simulation.event, running=simulation.event_running)
-    if len(results.events.rows) < simulation.event - simulation.event_running:
+    done, listed = simulation.event - simulation.event_running, len(results.events.rows)
+    if done and not results.events.path.exists():
         raise _core.InputError(f"{folder}: made by snowshed-run, which must resume it")
+    if listed < done:
+        raise _core.InputError(
+            f"{results.events.path}: damaged: holds {listed} events, but {done} are done"
+        )
     return simulation, results
 
 

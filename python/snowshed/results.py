@@ -24,12 +24,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
+import numpy as np
+
 from snowshed._core import InputError
 from snowshed.ageing import AGEING_COLUMNS
 from snowshed.arrays import Floats
 from snowshed.atomic import write_text
 from snowshed.conversion import CONVERSION_COLUMNS
-from snowshed.json_file import read_object
+from snowshed.json_file import is_number, read_object
 from snowshed.scene import InitialisedScene, PathLike
 from snowshed.stack import StackMeasure
 from snowshed.tables import Table, read_csv
@@ -59,6 +61,8 @@ EVENT_COLUMNS = (
     "body_head_m",
     "body_tail_m",
 )
+
+ADDED_UP = ("steps", "wall_s")  # over the events so far, when a run goes on
 
 
 def measured_columns(stack: StackMeasure) -> dict[str, float]:
@@ -130,7 +134,12 @@ class Results:
         file = folder / "ageing.json"
         if (read_object(file) if file.is_file() else None) != ageing:
             raise InputError(f"{file}: between its events the stack aged in another way")
-        return cls(folder)
+        results = cls(folder)
+        if results.events.rows:  # so that damage is known before the run goes on
+            read_events(folder)
+            for column in ADDED_UP:
+                results.events.total(column)
+        return results
 
     def keep_through(self, event: int, *, running: bool) -> None:
         """Drop what belongs to events after `event`, or to `event` itself if it still runs."""
@@ -173,7 +182,7 @@ class Results:
     def earlier_wall_s(self) -> float:
         """Return the computing time of the run so far, s."""
         seconds = self.read_run().get("wall_s", 0.0)
-        if not isinstance(seconds, (int, float)):
+        if not is_number(seconds):
             raise InputError(f"{self.run}: damaged: /wall_s: {seconds!r} is not a number")
         return float(seconds)
 
@@ -200,8 +209,11 @@ def read_events(folder: PathLike) -> pd.DataFrame:
         raise InputError(f"{folder}: no results; it holds no events.csv")
     table = read_csv(path)
     for name in ("event", "height_m"):
-        if name not in table or table[name].dtype.kind not in "if":
-            raise InputError(f"{path}: not a table of events; no numbers in a column {name}")
+        if name not in table:
+            raise InputError(f"{path}: not a table of events; no column {name}")
+    for name in table.columns.intersection(list(EVENT_COLUMNS)).drop("ended", errors="ignore"):
+        if table[name].dtype.kind not in "if" or np.isinf(table[name]).any():
+            raise InputError(f"{path}: not a table of events; no finite numbers in a column {name}")
     return table
 
 

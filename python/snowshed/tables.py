@@ -70,9 +70,12 @@ class Table:
     def total(self, column: str) -> float:
         """Return the sum of a column."""
         try:
-            return math.fsum(float(row[column]) for row in self.rows)
-        except (KeyError, ValueError):
-            raise self._damaged(f"no numbers in the column {column}") from None
+            total = math.fsum(float(row[column]) for row in self.rows)
+        except (KeyError, ValueError, OverflowError):
+            total = math.nan
+        if not math.isfinite(total):
+            raise self._damaged(f"no numbers in the column {column}")
+        return total
 
     def _read(self) -> list[dict[str, str]]:
         try:
@@ -129,14 +132,15 @@ def read_csv(path: Path, **options: Any) -> pd.DataFrame:
 
     try:
         with path.open(newline="", encoding="utf-8") as file:
-            _check_rows(csv.reader(file))
+            _check_rows(file)
         table: pd.DataFrame = pd.read_csv(path, **options)
         return table
     except (ValueError, csv.Error) as error:  # of pandas all errors on content are ValueErrors
         raise InputError(f"{path}: not a table: {error}") from None
 
 
-def _check_rows(rows: csv._reader) -> None:
+def _check_rows(file: Iterable[str]) -> None:
+    rows = csv.reader(file)
     names = next(rows, [])
     _check_names(names)
     for row in rows:

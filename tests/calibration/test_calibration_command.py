@@ -1,5 +1,6 @@
 """The command, from measurements to tables and figures; and recovery of real, coarse snow."""
 
+import importlib
 import itertools
 import json
 
@@ -57,6 +58,25 @@ def test_tables_and_figures(evaluated):
     }
     for name in ("relative-error", "rmse", "fit", "posterior"):
         assert (out / f"{name}.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("library", ["emcee", "sklearn"])
+def test_without_a_library_the_error_says_what_to_install(
+    evaluated, tmp_path, capsys, monkeypatch, library
+):
+    real = importlib.import_module
+
+    def missing(name, package=None):
+        if name.partition(".")[0] == library:
+            raise ImportError(f"No module named {name!r}")
+        return real(name, package)
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    options = ("--stored", evaluated / "store", "-o", tmp_path / "out", "-q")
+    assert run("calibrate", evaluated / "stacks.csv", *options) == 2
+    said = capsys.readouterr().err
+    assert f"needs {library}" in said and 'pip install "snowshed[calibration]"' in said
+    assert said.count("\n") == 1
 
 
 def test_what_it_prints(evaluated, capsys):

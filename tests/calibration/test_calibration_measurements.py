@@ -67,6 +67,7 @@ def test_rounds_repeat_an_experiment(tmp_path):
         (f"{HEADER}\n90,1,0.05,0.01,,\n", "line 2: tilt_deg: 90 is outside the allowed range"),
         (f"{HEADER}\n40,0,0.05,0.01,,\n", "line 2: event: 0 is not a whole number from 1 to 1000"),
         (f"{HEADER}\n40,1.5,0.05,0.01,,\n", "line 2: event: 1.5 is not a whole number"),
+        (f"{HEADER}\n40,1e300,0.05,0.01,,\n", "line 2: event: 1e+300 is not a whole number from"),
         (f'{HEADER}\n40,1,"0.05,0.01,,\n', "line 2: not CSV"),
         (f"{ENDS}\n40,1,,,0.3,0.01,0.1,0.01\n", "line 2: tail_m: 0.1 is not beyond head_m, 0.3"),
         (

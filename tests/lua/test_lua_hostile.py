@@ -104,6 +104,47 @@ SCRIPTS = {
     "table as key": ("set('panel', {[{}] = 1})", 1, "both list items and named values"),
     "deep source": ("x = " + "{" * 1000, 0, "C stack overflow"),
     "many locals": ("local a " * 1000, 1, "too many local variables"),
+    "text as code, old": ("loadstring('x = 1')()", 1, "loadstring is not available"),
+    "file as code, old": ("loadfile('init.lua')", 1, "loadfile is not available"),
+    "raw access": ("rawset(_G, 'os', 1)", 1, "rawset is not available"),
+    "old module": ("module('os')", 1, "module is not available"),
+    "upvalue": ("debug.getupvalue(panel, 1)", 1, "debug is not available"),
+    "method of all texts": ("('').format = print", 1, "attempt to index a string value"),
+    "arithmetic of texts": ("local x = 'x' + 1", 1, "attempt to add a 'string'"),
+    "attributes of a word": ("print(panel.__class__)", 1, "attempt to index a function"),
+    "change a word": ("panel.__globals__ = 1", 1, "attempt to index a function"),
+    "Python's files": ("python.builtins.open('/etc/passwd')", 1, "python is not available"),
+    "own environment": ("local _ENV = {}\nos.exit()", 2, "attempt to index a nil value"),
+    "catastrophic pattern": (
+        "string.find(('a'):rep(1e5), ('a?'):rep(1e4) .. ('a'):rep(1e4))",
+        1,
+        "string.find is not available",
+    ),
+    "long fraction": ("string.format('%.99999f', 1)", 1, "invalid conversion"),
+    "width from a value": ("string.format('%*d', 1e9, 1)", 1, "invalid conversion"),
+    "quoted": ("while true do string.format('%q', ('\\0'):rep(2e6)) end", 1, MEMORY),
+    "bytes of a long text": ("string.byte(('x'):rep(7e6), 1, -1)", 1, MEMORY),
+    "insert at the front": (
+        "local t = {}\nfor i = 1, 1e9 do table.insert(t, 1, i) end",
+        2,
+        "stopped after 0.25 s",
+    ),
+    "wrong order": (
+        "local t = {}\nfor i = 1, 1e4 do t[i] = i end\n"
+        "while true do table.sort(t, function() return true end) end",
+        3,
+        "invalid order function",
+    ),
+    "suspended coroutine": ("coroutine.create(print)", 1, "coroutine is not available"),
+    "mutual recursion": (
+        "local f\nlocal function g() return 1 + f() end function f() return 1 + g() end\nf()",
+        2,
+        MEMORY,
+    ),
+    "growing arguments": ("local function f(...)\nlocal x = f(1, ...) end\nf()", 2, MEMORY),
+    "error function": ("error(print)", 1, "error with a function instead of a message"),
+    "run elsewhere": ("run('../elsewhere')", 1, "not '../elsewhere'"),
+    "run with a long name": ("run(('x'):rep(1e5))", 1, "xxx..."),
 }
 
 

@@ -1,5 +1,6 @@
 """The commands, from the study's file to the prediction."""
 
+import importlib
 import json
 
 import numpy as np
@@ -43,6 +44,36 @@ def test_the_trial_is_small(capsys):
     assert shown == geometry_study(trial=True) and "dx = 0.05" in shown
     assert run("geometry", "--between", "melt") == 2
     assert "'melt' is unknown; allowed: carry, reseed" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("library", "arguments"),
+    [
+        ("sklearn", ["rows.csv", "--kind", "linear"]),
+        ("sklearn", ["rows.csv", "--kind", "gaussian-process"]),
+        ("sklearn", ["rows.csv", "--kind", "gradient-boosting"]),
+        ("threadpoolctl", ["rows.csv", "--kind", "linear"]),
+        ("pyarrow", ["rows.parquet"]),
+    ],
+)
+def test_without_a_library_the_error_says_what_to_install(
+    tmp_path, capsys, monkeypatch, library, arguments
+):
+    write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    real = importlib.import_module
+
+    def missing(name, package=None):
+        if name.partition(".")[0] == library:
+            raise ImportError(f"No module named {name!r}")
+        return real(name, package)
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    monkeypatch.chdir(tmp_path)
+    assert run("regress", *arguments, "-o", "out", *FEW, "-q") == 2
+    said = capsys.readouterr().err
+    extra = "study" if library == "pyarrow" else "regression"
+    assert f"needs {library}" in said and said.count("\n") == 1
+    assert f'pip install "snowshed[{extra}]"' in said
 
 
 @pytest.fixture(scope="module")

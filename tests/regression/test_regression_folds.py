@@ -127,6 +127,10 @@ def test_processes_give_the_same_results(tmp_path):
 
 def test_a_folder_of_something_else_is_refused(tmp_path):
     run(tmp_path / "out")
+    (tmp_path / "damaged").mkdir()
+    (tmp_path / "damaged" / "regression.json").write_bytes(b"\xff\x00")
+    with pytest.raises(InputError, match=r"regression\.json: damaged: "):
+        run(tmp_path / "damaged")
     with pytest.raises(InputError, match="holds a regression of another table, or with other"):
         cross_validate(
             made_up_rows(few_inputs(), seed=2),

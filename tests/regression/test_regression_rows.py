@@ -83,6 +83,12 @@ def test_missing_columns_and_few_rows_are_refused(tmp_path):
         read_rows(tmp_path / "binary.csv")
     with pytest.raises(InputError, match="No such file"):
         read_rows(tmp_path / "none.csv")
+    text = (tmp_path / "rows.csv").read_text()
+    (tmp_path / "cut.csv").write_text(text[: text.rindex(",2,")])
+    with pytest.raises(
+        InputError, match=r"cut\.csv: not a table: line 97: 13 cells, but there are"
+    ):
+        read_rows(tmp_path / "cut.csv")
 
 
 def test_the_made_up_rows_look_like_the_thesis_data():

@@ -54,7 +54,13 @@ def test_the_command_line_starts_without_it():
 
 
 def test_bad_input(tmp_path, capsys):
+    geometry_table(tmp_path / "rows.csv")
+    content = (tmp_path / "rows.csv").read_bytes()
+    (tmp_path / "half.csv").write_bytes(content[: len(content) // 2])
+    (tmp_path / "bytes.csv").write_bytes(bytes(range(128, 256)))
     for arguments, message in (
+        (("-o", tmp_path / "c", "--table", tmp_path / "half.csv"), "half.csv: not a table: line "),
+        (("-o", tmp_path / "c", "--table", tmp_path / "bytes.csv"), "bytes.csv: not a table: "),
         ((), "--output"),
         (("-o", tmp_path / "a", "--stage", "x"), "stage: 'x' is unknown"),
         (("-o", tmp_path / "a", "--full"), "take a new folder for --full"),
@@ -62,6 +68,7 @@ def test_bad_input(tmp_path, capsys):
     ):
         assert run(*arguments) == 2
         assert message in capsys.readouterr().err
+    assert not (tmp_path / "c").exists()
 
 
 def small_studies(size):

@@ -1,7 +1,9 @@
 """Stages, their order and names, resuming, and what a folder accepts."""
 
 import json
+import re
 
+import pandas as pd
 import pytest
 from reproduce_helpers import TINY, fill, geometry_table
 
@@ -10,6 +12,7 @@ from snowshed._core import InputError
 from snowshed.reproduce import studies
 from snowshed.reproduce.folder import ReproductionFolder
 from snowshed.reproduce.reproduction import Reproduction, compute
+from snowshed.reproduce.sections.regression import read_regressed
 from snowshed.reproduce.size import FULL, QUICK
 from snowshed.reproduce.stage import State, StudyStage, choose
 from snowshed.study import Study
@@ -79,6 +82,37 @@ def test_a_folder_is_for_one_size(tmp_path):
     (tmp_path / "other" / "file").touch()
     with pytest.raises(InputError, match="not empty, and holds no reproduction"):
         ReproductionFolder.claim(tmp_path / "other", "quick")
+    for content in (b"", b"\xff", b"[]", b"[" * 100_000):
+        (tmp_path / "out" / "reproduction.json").write_bytes(content)
+        with pytest.raises(InputError, match=r"reproduction\.json: damaged: "):
+            ReproductionFolder.claim(tmp_path / "out", "quick")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("scores.csv", b"", "not a table: "),
+        ("scores.csv", b"model\nrbf\nlinear\n", "damaged: no numbers in a column validation_score"),
+        ("ratio/errors.csv", b"\xff\xfe\x00", "not a table: "),
+        (
+            "ratio/errors.csv",
+            b"model,held_out_error\nrbf,x\n",
+            "damaged: no numbers in a column mean",
+        ),
+        ("ratio/quartiles.csv", b"model,Q1,Q2,Q3,Q4\nrbf,1,2,3,4\n", "damaged: not a row of each"),
+    ],
+)
+def test_damaged_tables_of_the_regression_are_named(tmp_path, name, content, message):
+    numbers = {"validation_score": 1.0, "mean_absolute_error": 1.0, "standard_deviation": 1.0}
+    numbers.update({"held_out_error": 1.0, "Q1": 1.0, "Q2": 2.0, "Q3": 3.0, "Q4": 4.0})
+    table = pd.DataFrame([{"model": model, **numbers} for model in ("data", "rbf", "linear")])
+    (tmp_path / "ratio").mkdir()
+    for whole in ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv"):
+        table.to_csv(tmp_path / whole, index=False)
+    assert read_regressed(tmp_path, 96).errors.loc["rbf", "held_out_error"] == 1.0
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=rf"{re.escape(name)}: {message}"):
+        read_regressed(tmp_path, 96)
 
 
 def tiny_studies():

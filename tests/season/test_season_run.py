@@ -211,6 +211,23 @@ def test_the_command_names_bad_files_and_options(season_file, tmp_path, capsys):
     assert not (tmp_path / "a").exists()
 
 
+def test_wrong_values_of_a_scene_file_are_named_with_it(season_file, tmp_path, capsys):
+    scene = panel_scene().initialise().data
+    layered = {**scene, "slab": {"layers": [{"thickness": 0.1}]}}
+    for data, message in [
+        ({**scene, "panel": {**scene["panel"], "length": -1}}, "/panel/length: -1"),
+        ({**layered, "panel": {**scene["panel"], "tilt": 200}}, "/panel/tilt: 200"),
+        ({"panle": {}}, "panle"),
+    ]:
+        file = tmp_path / "scene.json"
+        file.write_text(json.dumps(data))
+        arguments = ["season", str(season_file), "--scene", str(file), "-o", str(tmp_path / "a")]
+        assert main(arguments) == 2
+        error = capsys.readouterr().err
+        assert error.startswith(f"error: {file}: ") and message in error
+        assert error.count(str(file)) == 1
+
+
 def test_the_season_is_not_imported_with_the_package():
     code = "import sys, snowshed; print([m for m in sys.modules if 'season' in m])"
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -1,5 +1,6 @@
 """The command, from a study to tables and figures; evaluation works on any stored study."""
 
+import importlib
 import itertools
 
 import pandas as pd
@@ -44,6 +45,24 @@ def grid(name="grid", seeds=None):
     scene = Scene.preset("sensitivity").update({"dimension": 2, "numerics.dx": 0.03})
     axes = {SLOPE: [0.3, 0.6], COHESION: [0.15, 0.3]}
     return Study.product(scene, axes, name=name, seeds=seeds)
+
+
+@pytest.mark.parametrize("method", ["sobol", "morris"])
+def test_without_salib_the_error_says_what_to_install(tmp_path, capsys, monkeypatch, method):
+    real = importlib.import_module
+
+    def missing(name, package=None):
+        if name.startswith("SALib"):
+            raise ImportError(f"No module named {name!r}")
+        return real(name, package)
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    out = tmp_path / "out"
+    assert run("sensitivity", "--method", method, "--quick", "--plan", "-o", out) == 2
+    said = capsys.readouterr().err
+    assert "needs SALib" in said and 'pip install "snowshed[sensitivity]"' in said
+    assert said.count("\n") == 1 and not out.exists()
+    assert run("sensitivity", "--method", "s", "--quick", "--plan", "-o", out) == 0
 
 
 @pytest.mark.parametrize("method", ["s", "fixation"])

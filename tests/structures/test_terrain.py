@@ -44,6 +44,10 @@ def test_an_ascii_grid_is_read_from_the_south(tmp_path):
         ("4 5", "4 five", "line 8: not a row of heights"),
         ("4 5 ", "4 ", "5 heights; 3 columns and 2 rows need 6"),
         ("ncols 3", "ncols 2.5", "ncols 2.5; give a whole number"),
+        ("ncols 3", "ncols nan", "ncols nan; give a whole number"),
+        ("nrows 2", "nrows 1e999", "nrows inf; give a whole number"),
+        ("xllcorner 1000", "xllcorner nan", "xllcorner nan; give a map coordinate"),
+        ("4 5", "4 inf", "a height that is not finite, 1 cells from the west and 0 from the south"),
     ],
 )
 def test_bad_ascii_grids_are_named(tmp_path, old, new, message):
@@ -52,13 +56,32 @@ def test_bad_ascii_grids_are_named(tmp_path, old, new, message):
         read_raster(tmp_path / "a.asc")
 
 
-def write_geotiff(path, crs):
-    heights = np.array([[1, 2, 3], [4, 5, -9999]], dtype="float32")
-    with rasterio.open(
-        path, "w", driver="GTiff", width=3, height=2, count=1, dtype="float32", nodata=-9999,
-        crs=crs, transform=rasterio.Affine(10, 0, 1000, 0, -10, 2020),
-    ) as out:  # fmt: skip
-        out.write(heights, 1)
+def write_geotiff(path, crs, heights=((1, 2, 3), (4, 5, -9999)), dtype="float32", **more):
+    form = {"driver": "GTiff", "width": 3, "height": 2, "count": 1, "dtype": dtype, "crs": crs}
+    form.update(nodata=-9999, transform=rasterio.Affine(10, 0, 1000, 0, -10, 2020))
+    with rasterio.open(path, "w", **{**form, **more}) as out:
+        if heights is not None:
+            out.write(np.array(heights, dtype=dtype), 1)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (
+            {"heights": None, "width": 100_000, "height": 100_000, "tiled": True,
+             "sparse_ok": True},
+            "100000 columns and 100000 rows; at most 100000000 cells",
+        ),
+        ({"heights": ((1, 2, math.inf), (4, 5, 6))}, "a height that is not finite, 2 cells from"),
+        ({"dtype": "complex64", "nodata": None}, "holds complex64 values"),
+        ({"driver": "PNG", "dtype": "uint8", "nodata": None, "heights": ((1, 2, 3), (4, 5, 6))},
+         "not a GeoTIFF"),
+    ],
+)  # fmt: skip
+def test_geotiffs_that_hold_no_terrain_are_named(tmp_path, more, message):
+    write_geotiff(tmp_path / "a.tif", "EPSG:2056", **more)
+    with pytest.raises(InputError, match=rf"a\.tif: {message}"):
+        read_raster(tmp_path / "a.tif")
 
 
 def test_a_geotiff_holds_the_same_as_the_ascii_grid(tmp_path):

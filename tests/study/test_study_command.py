@@ -67,6 +67,12 @@ def test_the_template_is_a_study(tmp_path, capsys):
     assert "snow.cohesion, snow.critical_state_slope" in shown
 
 
+def test_status_of_a_store_that_lost_everything(tmp_path, capsys):
+    (tmp_path / "store.sqlite").touch()
+    assert run("status", tmp_path) == 2
+    assert capsys.readouterr().err.startswith(f"error: {tmp_path}: holds no study")
+
+
 def test_status_of_an_unfinished_study(tmp_path, capsys):
     with Store.create(tmp_path / "store") as store:
         store.register("tiny", [], tiny_study().runs())

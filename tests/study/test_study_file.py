@@ -244,6 +244,24 @@ def test_files_are_found_from_the_file_that_names_them(load, tmp_path):
             r"part\[1\].seeds: unknown key; allowed: axes, zip, sample",
         ),
         (SCENE + "[[part]]\naxes.numerics.threads = 3", "numerics.threads: cannot be varied"),
+        ("seeds = 1_000_000_000" + SCENE, "seeds: 1000000000 is neither a number of seeds .1 to"),
+        ("seeds = 9" + "9" * 30 + SCENE, "seeds: 9+ is neither"),
+        ("seeds = 9" + "9" * 5000 + SCENE, "not TOML: "),
+        ("name = " + "[" * 50_000, "not TOML: "),
+        (SCENE + "[axes]\n" + ".".join("a" * 3000) + " = 1", "nested too deep"),
+        (
+            SCENE + "[axes]\npanel.tilt = {from=1, to=1" + "0" * 400 + ", count=3}",
+            "panel.tilt: 1000.* is not a finite number",
+        ),
+        (
+            SCENE + "[axes]\npanel.tilt = {from=-1e308, to=1e308, step=1}",
+            "panel.tilt: has too many values; at most 1000000",
+        ),
+        (SCENE + "[[sample]]\nmethod = [1]", r"sample\[1\].method: \[1\] is unknown"),
+        (
+            SCENE + "[[sample]]\ncount = 3\nseed = -1\naxes.panel.tilt = {from=1, to=2}",
+            r"sample\[1\]: seed -1 is negative",
+        ),
     ],
 )
 def test_errors_name_file_key_and_what_is_allowed(load, tmp_path, text, message):

@@ -10,6 +10,7 @@ from snowshed import InputError, _core
 from snowshed.study import StudyError, store
 from snowshed.study.owner import is_alive, ownership, release_dead
 from snowshed.study.store import FILE, MEASURES, Store
+from snowshed.study.table import read_table
 
 RUNS = tiny_study().runs()
 HASHES = [run.hash for run in RUNS]
@@ -36,6 +37,32 @@ def test_a_changed_study_replaces_the_one_of_its_name_and_keeps_what_is_done(ope
     opened.record(outcome(HASHES[0]))
     opened.register("tiny", [], RUNS[:2])
     assert [run.status for run in opened.runs("tiny")] == ["done", "pending"]
+
+
+@pytest.mark.parametrize(
+    ("query", "message"),
+    [
+        ("UPDATE study SET axes = '{'", "damaged: the axes of tiny are no list of names"),
+        ("UPDATE study SET axes = '[1]'", "damaged: the axes of tiny are no list of names"),
+        ("UPDATE study SET axes = x'ff'", "damaged: the axes of tiny are no list of names"),
+        ("UPDATE run SET scene = '{'", "its scene: damaged: Expecting"),
+        ("UPDATE run SET scene = '[]'", "its scene: damaged: not a JSON object"),
+        ("UPDATE run SET scene = '{}'", "its scene: damaged: /dimension is missing"),
+        ("UPDATE run SET scene = x'ff'", "not a text in every column"),
+        ("UPDATE event SET height_m = 'high'", "height_m: 'high'"),
+        ("UPDATE event SET height_m = 9e999", "height_m: inf"),
+        ("UPDATE event SET height_m = x'ff'", "height_m: b'.xff'"),
+        ("UPDATE event SET ended = x'ff'", "ended: b'.xff'"),
+    ],
+)
+def test_what_a_store_cannot_hold_is_named(opened, query, message):
+    opened.record(outcome(HASHES[0]))
+    connection = sqlite3.connect(opened.folder / FILE)
+    with connection:
+        connection.execute(query)
+    connection.close()
+    with pytest.raises(InputError, match=rf"store\.sqlite: .*{message}"):
+        read_table(opened.folder)
 
 
 def test_studies_share_runs(opened):

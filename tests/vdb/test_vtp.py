@@ -1,5 +1,7 @@
 """Stored particles, read back."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -45,8 +47,21 @@ def test_damaged_files_are_named(stored, part):
         read_particles(path)
 
 
-def test_other_types_are_named(stored):
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (rb"Float32", b"Complex"),
+        (rb'NumberOfPoints="\d+"', b'NumberOfPoints="-1"'),
+        (rb'NumberOfPoints="\d+"', b'NumberOfPoints="' + b"9" * 30 + b'"'),
+        (rb'NumberOfComponents="3"', b'NumberOfComponents="-3"'),
+        (rb'offset="\d+"', b'offset="' + b"9" * 30 + b'"'),
+        (rb'<\?xml version="1.0"', b'<?xml version="1.0" encoding="snow"'),
+    ],
+)
+def test_other_numbers_and_types_are_named(stored, old, new):
     _, path = stored
-    path.write_bytes(path.read_bytes().replace(b"Float32", b"Complex"))
+    content = re.sub(old, new, path.read_bytes(), count=1)
+    assert content != path.read_bytes()
+    path.write_bytes(content)
     with pytest.raises(InputError, match=r"snow\.vtp: not particles"):
         read_particles(path)

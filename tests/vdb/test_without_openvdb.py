@@ -61,3 +61,14 @@ def test_reading_says_what_to_install(tmp_path):
     )  # fmt: skip
     assert "heap.vdb: reading it needs OpenVDB" in done.stdout, done.stderr
     assert "libopenvdb-dev" in done.stdout
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\x00", b"[]", b"{}", b"[" * 100_000])
+def test_a_damaged_scene_of_the_results_is_named(finished, tmp_path, capsys, content):
+    (tmp_path / "scene.json").write_bytes(content)
+    shutil.copytree(finished / "particles", tmp_path / "particles")
+    assert main(["vdb", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("error: ") and said.count("\n") == 1
+    assert str(tmp_path / "scene.json") in said
+    assert not (tmp_path / "vdb").exists()

@@ -54,7 +54,10 @@ class TextScanner {
     return value;
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
+  /// What the message quotes of the text may be any bytes; they become printable.
+  [[noreturn]] void fail(std::string what) const {
+    for (char& c : what)
+      if (c < ' ' || c > '~') c = '?';
     throw InputError(path_.string() + ":" + std::to_string(line_), what);
   }
 

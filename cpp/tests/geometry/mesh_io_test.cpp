@@ -167,6 +167,7 @@ TEST_F(MeshIo, RefusesBrokenObj) {
   expect_refused("c.obj", "v 0 0 0\nf 1 2 3\n", "c.obj:2: vertex 2");
   expect_refused("d.obj", "v 0 0 0\nf 0 1 1\n", "vertex 0");
   expect_refused("e.obj", "v 0 0 0\nf -2 1 1\n", "vertex -2");
+  expect_refused("f.obj", "v 0 \xe9\x1b[2J 0\n", "'??[2J' is not a valid number");
   expect_refused("f.obj", "v 0 0 1e999\n", "f.obj:1: '1e999'");
   expect_refused("g.obj", "v 0 0 0\nf 1 1\n", "fewer than three");
   expect_refused("h.obj", "f 99999999999999999999 1 1\n", "h.obj:1");

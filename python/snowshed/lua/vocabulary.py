@@ -16,6 +16,7 @@ from snowshed._core import InputError
 from snowshed.lua.builder import Builder
 from snowshed.lua.sandbox import Call, Place
 from snowshed.parts import Snow
+from snowshed.quoting import shortened
 from snowshed.scene import Scene
 
 Word = Callable[[Builder, Place, Any], None]
@@ -178,7 +179,7 @@ def _run(builder: Builder, call: Call) -> None:
     if not (isinstance(name, str) and RUN_NAME.fullmatch(name)):
         raise InputError(
             f"{call.place}: run needs a name for its folder: up to 100 letters, digits and "
-            f"._+=- after a letter or digit, not {name!r}"
+            f"._+=- after a letter or digit, not {shortened(repr(name))}"
         )
     if any(name == run.name for run in builder.runs):
         raise InputError(f"{call.place}: there is already a run {name!r}")

@@ -17,6 +17,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.atomic import write_text
 from snowshed.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.json_file import read_object
 from snowshed.regression.fold_result import FoldResult
 from snowshed.regression.folds import CrossValidation
 from snowshed.regression.kinds import Kind
@@ -153,11 +154,7 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
     identity = {"format": FORMAT, "rows": rows.digest, "folds": asdict(scheme)}
     path = folder / IDENTITY
     if path.is_file():
-        try:
-            there = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError:
-            there = None
-        if there != identity:
+        if read_object(path) != identity:
             raise InputError(
                 f"{folder}: holds a regression of another table, or with other folds; take a new "
                 "folder"

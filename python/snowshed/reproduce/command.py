@@ -69,12 +69,15 @@ def thesis(
     Example:
       snowshed reproduce thesis --quick -o thesis
     """  # noqa: D301 - click wants the control character
+    from snowshed.regression.rows import read_rows
     from snowshed.reproduce.folder import ReproductionFolder
     from snowshed.reproduce.report import write_report
     from snowshed.reproduce.reproduction import Reproduction
     from snowshed.reproduce.size import FULL, QUICK
     from snowshed.reproduce.stage import choose
 
+    if table is not None:
+        read_rows(table)  # so that a damaged table is known before anything is computed
     size = QUICK if quick else FULL
     results = ReproductionFolder.claim(folder, size.name)
     all_of_it = Reproduction(results, size, table)

@@ -125,12 +125,19 @@ def _scene(
 ) -> InitialisedScene:
     if file is not None and (preset or snow_preset):
         raise click.UsageError("--scene does not go with --preset or --snow")
+    given = _given(options)
     try:
         scene = Scene.load(file) if file else scene_from_options(preset, snow_preset, {})
-        for path, value in {**DECIDED, **_given(options)}.items():
+        if scene.slab is not None:
+            scene.slab.layers = None
+        for path, value in {**DECIDED, **given}.items():
             scene.set(path, value)
         return scene.initialise()
     except InputError as error:
+        where = str(error).partition(":")[0].strip("/").replace("/", ".")
+        if file is not None and where not in given:
+            message = str(error)
+            raise InputError(message if str(file) in message else f"{file}: {message}") from None
         raise in_terms_of_options(error) from None
 
 

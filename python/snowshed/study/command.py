@@ -9,11 +9,12 @@ from typing import Any, Optional, TypeVar
 
 import click
 
+from snowshed._core import InputError
 from snowshed.atomic import write_text
 from snowshed.stops import Failed, Stopped
 from snowshed.study.definition import Study
 from snowshed.study.errors import StudyInterrupted
-from snowshed.study.store import Store
+from snowshed.study.store import NO_STUDY, Store
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -119,6 +120,8 @@ def status(folder: Path) -> None:
     from snowshed.study.display import print_status
 
     with _outcome_as_exit_code(), Store.open(folder) as store:
+        if not store.studies():
+            raise InputError(f"{folder}: {NO_STUDY}")
         print_status(store)
 
 

@@ -111,7 +111,7 @@ def linear(
         raise InputError(f"must not fall: from {start} to {stop}")
     steps = (stop - start) / step * (1 + 1e-9)
     if not steps < LARGEST_COUNT:
-        raise InputError(f"has more than the {LARGEST_COUNT} values that are allowed")
+        raise InputError(f"has too many values; at most {LARGEST_COUNT} are allowed")
     return [_tidy(start + i * step) for i in range(math.floor(steps) + 1)]
 
 

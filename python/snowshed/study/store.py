@@ -27,6 +27,7 @@ from typing import Any, Optional
 
 from snowshed import _core
 from snowshed._core import InputError
+from snowshed.json_file import check_values, parse_object
 from snowshed.results import EVENT_COLUMNS
 from snowshed.scene import PathLike
 from snowshed.study.errors import StudyError
@@ -94,6 +95,8 @@ class StoredRun:
     owner: Optional[str]
 
 
+#: What tells a complete scene from anything else that a damaged store may hold.
+WHOLE_SCENE = {"dimension": float, "seeding": dict, "numerics": dict, "events": dict}
 RUN_COLUMNS = ", ".join(f"run.{name}" for name in StoredRun.__annotations__)
 
 
@@ -182,9 +185,20 @@ class Store:
         return [name for (name,) in self.read("SELECT name FROM study ORDER BY name")]
 
     def axes(self, study: str) -> list[str]:
-        """Return the dotted paths of the parameters that vary in a study."""
+        """Return the dotted paths of the parameters that vary in a study.
+
+        Raises
+        ------
+        InputError
+            If the store is damaged.
+        """
         ((text,),) = self.read("SELECT axes FROM study WHERE name = ?", (self.named(study),))
-        axes: list[str] = json.loads(text)
+        try:
+            axes = json.loads(text)
+        except (ValueError, RecursionError, TypeError):
+            axes = None
+        if not isinstance(axes, list) or not all(isinstance(path, str) for path in axes):
+            raise self.damaged(f"the axes of {study} are no list of names")
         return axes
 
     def named(self, study: Optional[str]) -> str:
@@ -200,13 +214,19 @@ class Store:
         return study
 
     def runs(self, study: str) -> list[StoredRun]:
-        """Return the runs of a study in order."""
+        """Return the runs of a study in order.
+
+        Raises
+        ------
+        InputError
+            If one of them is damaged.
+        """
         rows = self.read(
             f"SELECT {RUN_COLUMNS} FROM study_run JOIN run USING (hash)"
             " WHERE study = ? ORDER BY position",
             (study,),
         )
-        return [StoredRun(*row) for row in rows]
+        return [self._stored(row) for row in rows]
 
     def find(self, beginning: str) -> StoredRun:
         """Return the run whose hash begins so; raises InputError unless there is exactly one."""
@@ -217,7 +237,19 @@ class Store:
         if len(rows) != 1:
             found = "several runs" if rows else "no run"
             raise InputError(f"{self.folder}: {found} with a hash that begins with {beginning!r}")
-        return StoredRun(*rows[0])
+        return self._stored(rows[0])
+
+    def damaged(self, what: str) -> InputError:
+        """Return the error that says what is damaged."""
+        return InputError(f"{self.folder / FILE}: damaged: {what}")
+
+    def _stored(self, row: Sequence[Any]) -> StoredRun:
+        if not all(text is None or isinstance(text, str) for text in row):
+            raise self.damaged(f"run {row[0]!r}: not a text in every column")
+        run = StoredRun(*row)
+        where = f"{self.folder / FILE}: run {run.hash}: its scene"
+        check_values(parse_object(run.scene, where), WHOLE_SCENE, where)
+        return run
 
     def state(self, hash_: str) -> tuple[str, Optional[str]]:
         """Return the status of a run, which may be "unknown", and who computes it."""

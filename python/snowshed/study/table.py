@@ -7,9 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed.accuracy_settings import ACCURACY
+from snowshed.json_file import is_number
+from snowshed.quoting import shortened
 from snowshed.scene import PathLike
 from snowshed.study.definition import SEED
-from snowshed.study.store import COUNTS, MEASURES, TIMING, Store, StoredRun
+from snowshed.study.store import COUNTS, MEASURES, TIMING, WORDS, Store, StoredRun
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -49,7 +51,7 @@ def read_table(
     Raises
     ------
     InputError
-        If there is no such study.
+        If there is no such study, or the store is damaged.
     """
     import pandas as pd
 
@@ -99,7 +101,12 @@ def _events(store: Store, study: str) -> dict[str, list[dict[str, Any]]]:
     )
     events: dict[str, list[dict[str, Any]]] = {}
     for hash_, *values in rows:
-        events.setdefault(hash_, []).append(dict(zip(names, values)))
+        row = dict(zip(names, values))
+        for name, value in row.items():
+            right = isinstance(value, str) if name in WORDS else is_number(value)
+            if not (right or value is None):
+                raise store.damaged(f"run {hash_}, {name}: {shortened(repr(value))}")
+        events.setdefault(hash_, []).append(row)
     return events
 
 

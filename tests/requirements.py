@@ -1,0 +1,49 @@
+"""What snowshed and its extras require, as pyproject.toml says, and what it is imported as."""
+
+import re
+import sys
+from pathlib import Path
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).parents[1]
+
+#: The module of each requirement, but for NumPy.
+MODULES_OF = {
+    "allpairspy": "allpairspy",
+    "click": "click",
+    "dask": "dask",
+    "distributed": "distributed",
+    "emcee": "emcee",
+    "jinja2": "jinja2",
+    "lupa": "lupa",
+    "matplotlib": "matplotlib",
+    "pandas": "pandas",
+    "pyarrow": "pyarrow",
+    "rasterio": "rasterio",
+    "rich": "rich",
+    "SALib": "SALib",
+    "scikit-learn": "sklearn",
+    "scipy": "scipy",
+    "threadpoolctl": "threadpoolctl",
+    "tomli": "tomli",
+    "xarray": "xarray",
+}
+
+
+def required() -> tuple[set[str], dict[str, set[str]]]:
+    """Names of the requirements of snowshed itself, and of each extra that users install."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = {
+        extra: {_name(one) for one in listed}
+        for extra, listed in project["optional-dependencies"].items()
+        if extra != "dev"
+    }
+    return {_name(one) for one in project["dependencies"]}, extras
+
+
+def _name(requirement: str) -> str:
+    return re.match(r"[\w-]+", requirement)[0]
