@@ -113,7 +113,9 @@ def test_a_line_that_was_cut_off_is_measured_again(file):
 
 def test_an_interrupt_ends_the_measurement_and_keeps_the_others(tmp_path):
     code = (
-        "from pathlib import Path; from made_up import made_up_case; import sys\n"
+        "from pathlib import Path; from made_up import made_up_case; import signal, sys\n"
+        # Where the tests run in the background, interrupts are ignored.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "from snowshed.verify.measurements import MeasurementFile\n"
         "from snowshed.verify.runner import run_suite\n"
         "entries = [{'dx': 0.1}, {'mode': 'takes long'}]\n"
