@@ -1,6 +1,10 @@
 """Scenes small enough to run within a second or two."""
 
+import importlib
+from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
+from typing import Optional
 
 import pytest
 
@@ -17,6 +21,22 @@ def tiny_scene(**values: object) -> Scene:
     scene.update({"events": {"count": 2, "max_time": 1.0}, "seeding.particles_per_voxel": 8})
     scene.set("numerics.threads", 1)  # the fastest for so few particles
     return scene.update(values)
+
+
+@pytest.fixture
+def hide(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    """Return a function that hides an optional library, as if it were not installed."""
+    real = importlib.import_module
+
+    def hide_library(library: str) -> None:
+        def without(name: str, package: Optional[str] = None) -> ModuleType:
+            if name.partition(".")[0] == library:
+                raise ImportError(f"No module named {name!r}")
+            return real(name, package)
+
+        monkeypatch.setattr(importlib, "import_module", without)
+
+    return hide_library
 
 
 @pytest.fixture

@@ -1,4 +1,6 @@
 // The return mapping by itself, so that Python can compare it with an independent integration.
+#include <pybind11/numpy.h>
+
 #include "bindings.hpp"
 #include "snowshed/material/cam_clay.hpp"
 #include "snowshed/scene/scene.hpp"
@@ -13,10 +15,10 @@ void bind_material(py::module_& m) {
   py::class_<Law>(m, "CamClay", "Cohesive Modified Cam-Clay snow in the p-q plane, in double.")
       .def(py::init(&Law::from), "youngs_modulus"_a, "poissons_ratio"_a, "critical_state_slope"_a,
            "cohesion"_a, "hardening_factor"_a, "dimension"_a = 3)
-      .def("initial_plastic_strain", &Law::initial_plastic_strain, "p0"_a)
-      .def(
-          "preconsolidation", [](const Law& law, double ev) { return law.preconsolidation(ev); },
-          "ev"_a)
+      .def("initial_plastic_strain", py::vectorize(&Law::initial_plastic_strain), "p0"_a)
+      .def("preconsolidation",
+           py::vectorize([](const Law* law, double ev) { return law->preconsolidation(ev); }),
+           "ev"_a)
       .def(
           "yield_function",
           [](const Law& law, double p, double q, double p0) {

@@ -115,7 +115,7 @@ def run_events(
     if ageing is not None and ready.data["events"]["between"] != "carry":
         raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
     open_run = _reopen if resume else _create
-    simulation, results = open_run(ready, out_dir, ageing)
+    simulation, results = open_run(ready, out_dir, None if ageing is None else ageing.data)
     with deferred_interrupts() as interrupt:
         loop = _EventLoop(simulation, results, ready, ageing, interrupt, progress)
         loop.run()
@@ -125,18 +125,18 @@ def run_events(
 
 
 def _create(
-    scene: InitialisedScene, folder: PathLike, ageing: Optional[Ageing]
+    scene: InitialisedScene, folder: PathLike, ageing: Optional[dict[str, Any]]
 ) -> tuple[_core.Simulation, Results]:
     check_empty(folder)
     simulation = _core.Simulation(scene.json, scene.base_dir)
     simulation.begin_event()  # seeding may fail too, and then nothing must be left behind
-    return simulation, Results.create(folder, scene, None if ageing is None else ageing.data)
+    return simulation, Results.create(folder, scene, ageing)
 
 
 def _reopen(
-    scene: InitialisedScene, folder: PathLike, ageing: Optional[Ageing]
+    scene: InitialisedScene, folder: PathLike, ageing: Optional[dict[str, Any]]
 ) -> tuple[_core.Simulation, Results]:
-    results = Results.reopen(folder, scene, None if ageing is None else ageing.data)
+    results = Results.reopen(folder, scene, ageing)
     if results.checkpoint.exists():
         simulation = _core.Simulation.load(str(results.checkpoint))
     else:

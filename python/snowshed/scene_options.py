@@ -81,12 +81,17 @@ def scene_from_options(
 
 def in_terms_of_options(error: InputError) -> InputError:
     """Return the error with the option in front, if it is about a parameter that has one."""
-    message = str(error)
-    where = message.partition(":")[0]
-    path = where.strip("/").replace("/", ".")
-    if where.startswith("/") and path in {parameter.path for parameter in scene_parameters()}:
-        return InputError(f"{option_name(path)} ({where}){message[len(where) :]}")
+    path = path_of(error)
+    if path in {parameter.path for parameter in scene_parameters()}:
+        where, colon, rest = str(error).partition(":")
+        return InputError(f"{option_name(path)} ({where}){colon}{rest}")
     return error
+
+
+def path_of(error: InputError) -> str:
+    """Return the parameter that an error is about, as ``panel.tilt``; empty if it names none."""
+    where = str(error).partition(":")[0]
+    return where[1:].replace("/", ".") if where.startswith("/") else ""
 
 
 def numbers(text: str) -> list[float]:

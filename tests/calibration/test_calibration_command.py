@@ -1,6 +1,5 @@
 """The command, from measurements to tables and figures; and recovery of real, coarse snow."""
 
-import importlib
 import itertools
 import json
 
@@ -62,16 +61,9 @@ def test_tables_and_figures(evaluated):
 
 @pytest.mark.parametrize("library", ["emcee", "sklearn"])
 def test_without_a_library_the_error_says_what_to_install(
-    evaluated, tmp_path, capsys, monkeypatch, library
+    evaluated, tmp_path, capsys, hide, library
 ):
-    real = importlib.import_module
-
-    def missing(name, package=None):
-        if name.partition(".")[0] == library:
-            raise ImportError(f"No module named {name!r}")
-        return real(name, package)
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+    hide(library)
     options = ("--stored", evaluated / "store", "-o", tmp_path / "out", "-q")
     assert run("calibrate", evaluated / "stacks.csv", *options) == 2
     said = capsys.readouterr().err

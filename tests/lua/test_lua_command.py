@@ -1,6 +1,5 @@
 """The command ``snowshed lua``, and what happens where Lua is missing."""
 
-import importlib
 import json
 import subprocess
 import sys
@@ -93,15 +92,8 @@ def test_bad_input_is_one_line_and_leaves_nothing(scripts, capsys, arguments, me
     assert not (scripts / "out").exists()
 
 
-def test_without_lupa_the_error_says_what_to_install(scripts, capsys, monkeypatch):
-    real = importlib.import_module
-
-    def missing(name, package=None):
-        if name.startswith("lupa"):
-            raise ImportError(f"No module named {name!r}")
-        return real(name, package)
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+def test_without_lupa_the_error_says_what_to_install(scripts, capsys, hide):
+    hide("lupa")
     assert main(["lua", "init.lua", "-o", "out"]) == 2
     error = capsys.readouterr().err
     assert "running Lua scripts needs lupa" in error

@@ -1,6 +1,5 @@
 """The commands, from the study's file to the prediction."""
 
-import importlib
 import json
 
 import numpy as np
@@ -57,17 +56,10 @@ def test_the_trial_is_small(capsys):
     ],
 )
 def test_without_a_library_the_error_says_what_to_install(
-    tmp_path, capsys, monkeypatch, library, arguments
+    tmp_path, capsys, monkeypatch, hide, library, arguments
 ):
     write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
-    real = importlib.import_module
-
-    def missing(name, package=None):
-        if name.partition(".")[0] == library:
-            raise ImportError(f"No module named {name!r}")
-        return real(name, package)
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+    hide(library)
     monkeypatch.chdir(tmp_path)
     assert run("regress", *arguments, "-o", "out", *FEW, "-q") == 2
     said = capsys.readouterr().err

@@ -2,44 +2,16 @@
 
 import base64
 import re
-from html.parser import HTMLParser
 
 import pandas as pd
 import pytest
+from pages import Page
 from reproduce_helpers import TINY, fill, geometry_table
 
 from snowshed.html_page import STATES
 from snowshed.reproduce.folder import ReproductionFolder
 from snowshed.reproduce.report import write_report
 from snowshed.reproduce.reproduction import Reproduction
-
-VOID = {"meta", "br", "img", "link", "hr", "input"}
-
-
-class Page(HTMLParser):
-    """Checks that tags are balanced, and gathers what the page shows."""
-
-    def __init__(self, html):
-        super().__init__()
-        self.open, self.ids, self.sources, self.links, self.text = [], [], [], [], []
-        self.feed(html)
-        self.close()
-        assert not self.open
-
-    def handle_starttag(self, tag, attributes):
-        found = dict(attributes)
-        self.ids += [found["id"]] if "id" in found else []
-        self.links += [found["href"]] if "href" in found else []
-        self.sources += [found["src"]] if "src" in found else []
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        if "style" not in self.open:
-            self.text.append(data)
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,5 @@
 """The command, from a study to tables and figures; evaluation works on any stored study."""
 
-import importlib
 import itertools
 
 import pandas as pd
@@ -48,15 +47,8 @@ def grid(name="grid", seeds=None):
 
 
 @pytest.mark.parametrize("method", ["sobol", "morris"])
-def test_without_salib_the_error_says_what_to_install(tmp_path, capsys, monkeypatch, method):
-    real = importlib.import_module
-
-    def missing(name, package=None):
-        if name.startswith("SALib"):
-            raise ImportError(f"No module named {name!r}")
-        return real(name, package)
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+def test_without_salib_the_error_says_what_to_install(tmp_path, capsys, hide, method):
+    hide("SALib")
     out = tmp_path / "out"
     assert run("sensitivity", "--method", method, "--quick", "--plan", "-o", out) == 2
     said = capsys.readouterr().err

@@ -1,6 +1,5 @@
 """The same runs on a Dask cluster, whose workers may die."""
 
-import importlib
 import os
 import signal
 import time
@@ -80,10 +79,7 @@ def test_no_scheduler_is_bad_input(monkeypatch):
         DaskWorkers("none.json")
 
 
-def test_without_dask_the_error_says_what_to_install(monkeypatch):
-    def missing(name):
-        raise ImportError(f"No module named {name!r}")
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+def test_without_dask_the_error_says_what_to_install(hide):
+    hide("distributed")
     with pytest.raises(InputError, match=r'pip install "snowshed\[cluster\]"'):
         DaskWorkers("tcp://127.0.0.1:9")

@@ -1,7 +1,5 @@
 """Values of axes and samples against expectations made by hand."""
 
-import importlib
-
 import pytest
 
 from snowshed import InputError
@@ -100,10 +98,7 @@ def test_a_seed_is_one_sample_and_another_seed_another():
         assert method(spans, 8, seed=3) != method(spans, 8, seed=4)
 
 
-def test_without_scipy_the_error_says_what_to_install(monkeypatch):
-    def missing(name):
-        raise ImportError(f"No module named {name!r}")
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+def test_without_scipy_the_error_says_what_to_install(hide):
+    hide("scipy")
     with pytest.raises(InputError, match=r'pip install "snowshed\[study\]"'):
         sobol({"a": Span(0, 1)}, 4)

@@ -1,7 +1,5 @@
 """The table of a study, and the files it is exported to."""
 
-import importlib
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -138,12 +136,9 @@ def test_the_form_is_told_by_the_ending_or_given(mixed, tmp_path):
     assert not (tmp_path / "table.xls").exists()
 
 
-@pytest.mark.parametrize("form", ["parquet", "netcdf"])
-def test_without_its_library_a_form_says_what_to_install(mixed, tmp_path, monkeypatch, form):
-    def missing(name):
-        raise ImportError(f"No module named {name!r}")
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+@pytest.mark.parametrize(("form", "library"), [("parquet", "pyarrow"), ("netcdf", "xarray")])
+def test_without_its_library_a_form_says_what_to_install(mixed, tmp_path, hide, form, library):
+    hide(library)
     with pytest.raises(InputError, match=r'pip install "snowshed\[study\]"'):
         export(mixed, tmp_path / "table", form=form)
     assert not (tmp_path / "table").exists()

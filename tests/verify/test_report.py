@@ -2,11 +2,11 @@ import base64
 import json
 import re
 from dataclasses import replace
-from html.parser import HTMLParser
 
 import pandas as pd
 import pytest
 from made_up import DRIFT, HEIGHT, made_up_case
+from pages import Page
 
 from snowshed.verify import sections, wording
 from snowshed.verify.case import Quantity
@@ -16,41 +16,7 @@ from snowshed.verify.report import Stress, Suite, write_report
 from snowshed.verify.runner import run_suite
 from snowshed.verify.stress import SummaryTable
 
-VOID = {"meta", "br", "img", "link", "hr", "input"}
 PNG = b"\x89PNG\r\n\x1a\n"
-
-
-class Page(HTMLParser):
-    """Checks that tags are balanced, and gathers what the page shows."""
-
-    def __init__(self, html):
-        super().__init__()
-        self.open, self.ids, self.links, self.images = [], [], [], []
-        self.rows, self.text, self.loose = [], [], []
-        self.feed(html)
-        self.close()
-        assert not self.open
-
-    def handle_starttag(self, tag, attributes):
-        found = dict(attributes)
-        self.ids += [found["id"]] if "id" in found else []
-        self.links += [found["href"]] if "href" in found else []
-        self.images += [found["src"]] if tag == "img" else []
-        if tag == "tr":
-            self.rows.append([])
-        if tag in ("td", "th"):
-            self.rows[-1].append("")
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        if "style" not in self.open:
-            self.text.append(data)
-        if self.open and self.open[-1] in ("td", "th"):
-            self.rows[-1][-1] += data
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """What the stress suite tries: ranges, coverage of pairs, scenes that the core accepts."""
 
-import importlib
+from collections.abc import Callable
 from itertools import combinations
 from typing import Any
 
@@ -83,11 +83,8 @@ def test_free_flight_ends_before_snow_is_scattered_wide() -> None:
 
 
 def test_without_allpairspy_the_error_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch,
+    hide: Callable[[str], None],
 ) -> None:
-    def missing(name: str) -> Any:
-        raise ImportError(f"No module named {name!r}")
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+    hide("allpairspy")
     with pytest.raises(InputError, match=r'allpairspy.*pip install "snowshed\[verify\]"'):
         trials(full=False)

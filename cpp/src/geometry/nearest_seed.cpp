@@ -1,5 +1,7 @@
 #include "geometry/nearest_seed.hpp"
 
+#include <algorithm>
+
 namespace snowshed {
 
 NearestSeed::NearestSeed(const Vec3& origin, double spacing,
@@ -11,6 +13,7 @@ NearestSeed::NearestSeed(const Vec3& origin, double spacing,
 
 void NearestSeed::spread(const std::vector<Vec3>& seeds) {
   seeds_ = &seeds;
+  std::fill(nearest_.begin(), nearest_.end(), none);
   for (std::uint32_t s = 0; s < seeds.size(); ++s) offer_to_cell(s);
   for (int sweep = 0; sweep < 8; ++sweep)
     this->sweep(sweep & 1 ? -1 : 1, sweep & 2 ? -1 : 1, sweep & 4 ? -1 : 1);
@@ -48,15 +51,11 @@ void NearestSeed::sweep(int di, int dj, int dk) {
 std::vector<Vec3> zero_crossings(const NearestSeed& grid, const std::vector<float>& values) {
   using Index = NearestSeed::Index;
   std::vector<Vec3> crossings;
-  grid.for_each_node([&](const Index& n) {
-    const double a = values[grid.at(n)];
-    for (const Index& next : {Index{n.i + 1, n.j, n.k}, {n.i, n.j + 1, n.k}, {n.i, n.j, n.k + 1}}) {
-      if (!grid.contains(next)) continue;
-      const double b = values[grid.at(next)];
-      if ((a < 0) == (b < 0)) continue;
-      const Vec3 from = grid.position(n), to = grid.position(next);
-      crossings.push_back(from + a / (a - b) * (to - from));
-    }
+  grid.for_each_edge([&](const Index& n, const Index& next) {
+    const double a = values[grid.at(n)], b = values[grid.at(next)];
+    if ((a < 0) == (b < 0)) return;
+    const Vec3 from = grid.position(n), to = grid.position(next);
+    crossings.push_back(from + a / (a - b) * (to - from));
   });
   return crossings;
 }

@@ -50,8 +50,18 @@ class NearestSeed {
         for (std::int64_t k = counts_[2] - 1; k >= 0; --k) visit(Index{i, j, k});
   }
 
+  /// Calls visit(node, next) for all neighbours along the axes.
+  template <class Visit>
+  void for_each_edge(Visit visit) const {
+    for_each_node([&](const Index& n) {
+      for (const Index& next : {Index{n.i + 1, n.j, n.k}, {n.i, n.j + 1, n.k}, {n.i, n.j, n.k + 1}})
+        if (contains(next)) visit(n, next);
+    });
+  }
+
   /// Offers the seeds, of which there must be one, to the corners of their cells and sweeps
-  /// them over the grid. They must live as long as distances are asked for.
+  /// them over the grid, in place of earlier ones. They must live as long as distances are asked
+  /// for.
   void spread(const std::vector<Vec3>& seeds);
 
   double distance(const Index& n) const {

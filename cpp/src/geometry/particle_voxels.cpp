@@ -4,7 +4,7 @@
 // 3. The distance to these, shifted by `closing`, erodes the dilated union again. Shifting the
 //    first distance instead would only make the balls smaller and open the gaps once more.
 // 4. Particles that lie apart, too small for the grid to show, get balls that it does show.
-// Both distances come from sweeping the nearest seed point over the grid.
+// All distances come from sweeping the nearest seed point over the grid.
 #include "snowshed/geometry/particle_voxels.hpp"
 
 #include <algorithm>
@@ -64,8 +64,8 @@ int count_inside(const GridSamples& grid, const NearestSeed& nodes, const Vec3& 
 
 /// Unites the solid with a ball, large enough for the grid to show, around each particle that has
 /// less than a voxel of solid about it.
-void keep_lone_particles(GridSamples& grid, const std::vector<Vec3>& points, int dimension) {
-  NearestSeed nodes(grid.origin, grid.spacing, grid.counts);
+void keep_lone_particles(GridSamples& grid, NearestSeed& nodes, const std::vector<Vec3>& points,
+                         int dimension) {
   std::vector<Vec3> lone;
   for (const Vec3& x : points)
     if (count_inside(grid, nodes, x) < (dimension == 2 ? 4 : 8)) lone.push_back(x);
@@ -100,22 +100,20 @@ GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension,
   GridSamples grid =
       make_grid(bounds_of(points, dimension), dimension, spacing, radius + closing + 2 * spacing);
 
-  NearestSeed to_particles(grid.origin, spacing, grid.counts);
-  to_particles.spread(points);
+  NearestSeed nodes(grid.origin, spacing, grid.counts);
+  nodes.spread(points);
   grid.values.resize(grid.counts[0] * grid.counts[1] * grid.counts[2]);
-  to_particles.for_each_node([&](const NearestSeed::Index& n) {
-    grid.values[to_particles.at(n)] =
-        static_cast<float>(to_particles.distance(n) - radius - closing);
+  nodes.for_each_node([&](const NearestSeed::Index& n) {
+    grid.values[nodes.at(n)] = static_cast<float>(nodes.distance(n) - radius - closing);
   });
 
-  const std::vector<Vec3> surface = zero_crossings(to_particles, grid.values);
-  NearestSeed to_surface(grid.origin, spacing, grid.counts);
-  to_surface.spread(surface);
-  to_surface.for_each_node([&](const NearestSeed::Index& n) {
-    float& value = grid.values[to_surface.at(n)];
-    value = static_cast<float>(std::copysign(to_surface.distance(n), value) + closing);
+  const std::vector<Vec3> surface = zero_crossings(nodes, grid.values);
+  nodes.spread(surface);
+  nodes.for_each_node([&](const NearestSeed::Index& n) {
+    float& value = grid.values[nodes.at(n)];
+    value = static_cast<float>(std::copysign(nodes.distance(n), value) + closing);
   });
-  keep_lone_particles(grid, points, dimension);
+  keep_lone_particles(grid, nodes, points, dimension);
   return grid;
 }
 

@@ -34,13 +34,9 @@ void limit_slope(GridSamples& samples, const NearestSeed& grid, double band) {
 /// Whether values change sign over one spacing by more than a distance can.
 bool cross_too_steeply(const GridSamples& samples, const NearestSeed& grid) {
   bool found = false;
-  grid.for_each_node([&](const Index& n) {
-    const double value = samples.values[grid.at(n)];
-    for (const Index& next : {Index{n.i + 1, n.j, n.k}, {n.i, n.j + 1, n.k}, {n.i, n.j, n.k + 1}}) {
-      if (!grid.contains(next)) continue;
-      const double other = samples.values[grid.at(next)];
-      found |= (value < 0) != (other < 0) && std::abs(other - value) > 1.5 * samples.spacing;
-    }
+  grid.for_each_edge([&](const Index& n, const Index& next) {
+    const double value = samples.values[grid.at(n)], other = samples.values[grid.at(next)];
+    found |= (value < 0) != (other < 0) && std::abs(other - value) > 1.5 * samples.spacing;
   });
   return found;
 }

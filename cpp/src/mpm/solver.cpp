@@ -104,13 +104,8 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
   const VecD<D> velocity = section<D>(batch.velocity);
   const T plastic = T(kinds_.at(std::size_t(batch.kind)).initial_plastic_strain);
   for (std::size_t i = 0; i < batch.positions.size(); ++i) {
-    const auto place = Placement<D>::of(section<D>(batch.positions[i]), options_.numerics.dx,
-                                        options_.numerics.basis);
-    blocks.push_back(block_key<D>(place.block));
-    for (int d = 0; d < D; ++d) {
-      particles_.cell[d][old + i] = T(place.cell[d]);
-      particles_.velocity[d][old + i] = T(velocity[d]);
-    }
+    blocks.push_back(put(old + i, section<D>(batch.positions[i])));
+    for (int d = 0; d < D; ++d) particles_.velocity[d][old + i] = T(velocity[d]);
     if (particles_.has_plastic) particles_.plastic[old + i] = plastic;
     particles_.mass[old + i] = T(batch.mass);
     particles_.id[old + i] = next_id_++;
@@ -126,6 +121,13 @@ void SolverOf<T, D>::add(const ParticleBatch& batch) {
     books_.elastic = elastic_energy();
     books_.added += books_.stored() - stored;
   }
+}
+
+template <class T, int D>
+BlockKey SolverOf<T, D>::put(std::size_t particle, const VecD<D>& position) {
+  const auto place = Placement<D>::of(position, options_.numerics.dx, options_.numerics.basis);
+  for (int d = 0; d < D; ++d) particles_.cell[d][particle] = T(place.cell[d]);
+  return block_key<D>(place.block);
 }
 
 template <class T, int D>
@@ -188,9 +190,7 @@ void SolverOf<T, D>::settle(const std::vector<double>& drops,
     VecD<D> x =
         position_of(particles_, i, blocks[i], options_.numerics.dx, options_.numerics.basis);
     x[D - 1] -= drops[k];
-    const auto there = Placement<D>::of(x, options_.numerics.dx, options_.numerics.basis);
-    blocks[i] = block_key<D>(there.block);
-    for (int d = 0; d < D; ++d) particles_.cell[d][i] = T(there.cell[d]);
+    blocks[i] = put(i, x);
     if (particles_.has_plastic) particles_.plastic[i] += T(plastic_changes[k]);
   }
   place(std::move(blocks));

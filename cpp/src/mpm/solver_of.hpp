@@ -60,6 +60,7 @@ class SolverOf final : public Solver {
   double elastic_energy() const;
   double kinetic_energy() const;
   void find_elastic_limits();
+  BlockKey put(std::size_t particle, const VecD<D>& position);  ///< returns the block it is in
   void place(std::vector<BlockKey> blocks);  ///< makes all else follow the particles
   const SnowKind& kind_of(std::size_t particle) const {
     return kinds_[particles_.has_kind ? particles_.kind[particle] : 0];

@@ -96,6 +96,21 @@ inline void run_steps(Solver& solver, int steps) {
   for (int i = 0; i < steps; ++i) solver.step();
 }
 
+/// Average over a duration for snow that vibrates about its static state: `add` gets each part of
+/// the whole with its state. The weights, 2 sin^2 of the time, filter all modes out that are
+/// several times shorter than the duration.
+template <class Add>
+void average(Solver& solver, double duration, const Add& add) {
+  double covered = 0;
+  while (solver.time() < duration) {
+    run_steps(solver, 8);
+    const double middle = (covered + solver.time()) / 2;
+    const double weight = 2 * std::pow(std::sin(pi * middle / duration), 2);
+    add((solver.time() - covered) / duration * weight, solver.state());
+    covered = solver.time();
+  }
+}
+
 inline double total_mass(const ParticleState& s) {
   double sum = 0;
   for (double m : s.masses) sum += m;

@@ -9,9 +9,9 @@ large as bonds of that age make it, at most as large as it was at first. Elastic
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from snowshed import _core
 from snowshed._core import InputError
 from snowshed.ageing.columns import SnowColumns
 from snowshed.arrays import Booleans, Floats
+from snowshed.snow_relations.relation import choose
 from snowshed.snow_relations.settling import SETTLING_LAWS, settled_densities
 from snowshed.snow_relations.sintering import SINTERING_LAWS
 
@@ -77,8 +78,10 @@ class Ageing:
     strength_age: float = 24.0
 
     def __post_init__(self) -> None:
-        check_law("settling", self.settling, SETTLING_LAWS)
-        check_law("sintering", self.sintering, SINTERING_LAWS)
+        if self.settling is not None:
+            choose(self.settling, SETTLING_LAWS, "settling")
+        if self.sintering is not None:
+            choose(self.sintering, SINTERING_LAWS, "sintering")
         if not 0.0 < self.strength_age < np.inf:
             raise InputError(f"strength age: {self.strength_age} hours; must be positive")
 
@@ -106,20 +109,19 @@ class Ageing:
         drops[snow.stack] = snow.columns.drops(strains)
         compaction = np.zeros(len(snow.masses))
         compaction[snow.stack] = snow.columns.at_particles(strains)
-        hardened = snow.plastic_strains - compaction
-        sintered = self._sinter(snow, hardened, seconds)
-        crest = snow.crest(0.0 * drops)
-        row = {
+        aged = self._sinter(snow, snow.plastic_strains - compaction, seconds)
+        changes = aged - snow.plastic_strains
+        simulation.settle(drops, changes)
+        return {
             "event": event,
             "hours": seconds / 3600.0,
             "temperature_c": self._mean_temperature(event),
-            "crest_sank_m": crest - snow.crest(drops),
-            "density_before_kg_m3": snow.mean_density(),
+            "crest_sank_m": snow.crest(0.0) - snow.crest(drops),
+            "density_before_kg_m3": snow.mean_density(0.0),
+            "density_kg_m3": snow.mean_density(changes),
             "intact_before": snow.intact(snow.plastic_strains),
-            "intact": snow.intact(sintered),
+            "intact": snow.intact(aged),
         }
-        simulation.settle(drops, sintered - snow.plastic_strains)
-        return {**row, "density_kg_m3": _Snow(simulation).mean_density()}
 
     def _strains(self, snow: _Snow, event: int) -> Floats:
         """Return by how much the nodes of the columns shorten, as logarithms."""
@@ -148,12 +150,6 @@ class Ageing:
         return float(np.average(temperatures, weights=seconds))
 
 
-def check_law(what: str, name: Optional[str], laws: Mapping[str, Any]) -> None:
-    """Raise InputError if there is no law of a name; None is none."""
-    if name is not None and name not in laws:
-        raise InputError(f"{what}: {name!r} is unknown; allowed: {', '.join(laws)}")
-
-
 class _Snow:
     """The snow of a simulation between two events, with its hardening law (1.1.42)."""
 
@@ -172,24 +168,30 @@ class _Snow:
             float(scene["numerics"]["dx"]),
         )
         snows = [json.loads(snow) for snow in simulation.snows]
-        kinds = simulation.kinds()
-        self.yields = np.array([snow["model"] == "cam_clay" for snow in snows])[kinds]
-        self._p0 = np.array([snow["preconsolidation_pressure"] for snow in snows])[kinds]
-        self._xi = np.array([snow["hardening_factor"] for snow in snows])[kinds]
-        self._bulk = np.array(
-            [snow["youngs_modulus"] / (3.0 - 6.0 * snow["poissons_ratio"]) for snow in snows]
-        )[kinds]
+        self._kinds = simulation.kinds()
+        self._laws = [_law(snow) for snow in snows]
+        self._p0 = np.array([snow["preconsolidation_pressure"] for snow in snows])[self._kinds]
+        self.yields = np.array([law is not None for law in self._laws])[self._kinds]
         self._densities = densities
 
     def strengths(self, plastic_strains: Floats) -> Floats:
         """Return p0 over that of undisturbed snow; 1 for snow that does not yield."""
-        compaction = np.clip(-plastic_strains * self._xi, 0.0, 50.0)
-        return np.where(self.yields, self._bulk * np.sinh(compaction) / self._p0, 1.0)
+        strengths = np.ones(len(plastic_strains))
+        for law, own in self._kinds_that_yield():
+            strengths[own] = law.preconsolidation(plastic_strains[own]) / self._p0[own]
+        return strengths
 
     def plastic_strains_of(self, strengths: Floats) -> Floats:
         """Return the volumetric plastic strains at which snow has strengths, as `strengths`."""
-        result: Floats = -np.arcsinh(strengths * self._p0 / self._bulk) / self._xi
-        return result
+        strains = self.plastic_strains.copy()
+        for law, own in self._kinds_that_yield():
+            strains[own] = law.initial_plastic_strain(strengths[own] * self._p0[own])
+        return strains
+
+    def _kinds_that_yield(self) -> Iterator[tuple[_core.CamClay, Booleans]]:
+        for kind, law in enumerate(self._laws):
+            if law is not None:
+                yield law, self._kinds == kind
 
     def intact(self, plastic_strains: Floats) -> float:
         """Return the mean strength of the stack, nothing counting more than undisturbed snow."""
@@ -198,13 +200,27 @@ class _Snow:
         strength = np.minimum(self.strengths(plastic_strains), 1.0)
         return float(np.average(strength[self.stack], weights=self.masses[self.stack]))
 
-    def mean_density(self) -> float:
-        """Return the mean density of the stack, its mass over its volume, kg/m3."""
+    def mean_density(self, plastic_changes: Union[Floats, float]) -> float:
+        """Return the mean density of the stack, its mass over its volume, once it has changed."""
         masses = self.masses[self.stack]
-        volume = float((masses / self._densities[self.stack]).sum())
+        volumes = self.masses / self._densities * np.exp(plastic_changes)
+        volume = float(volumes[self.stack].sum())
         return float(masses.sum()) / volume if volume else 0.0
 
-    def crest(self, drops: Floats) -> float:
+    def crest(self, drops: Union[Floats, float]) -> float:
         """Return the height of the highest particle of the stack once they have sunk, m."""
         heights = (self.positions[:, 2] - drops)[self.stack]
         return float(heights.max()) if len(heights) else 0.0
+
+
+def _law(snow: Mapping[str, Any]) -> Optional[_core.CamClay]:
+    """Return the law of snow that yields."""
+    if snow["model"] != "cam_clay":
+        return None
+    return _core.CamClay(
+        snow["youngs_modulus"],
+        snow["poissons_ratio"],
+        snow["critical_state_slope"],
+        snow["cohesion"],
+        snow["hardening_factor"],
+    )

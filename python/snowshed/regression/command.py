@@ -9,6 +9,7 @@ from typing import Optional
 
 import click
 
+from snowshed.regression.geometry import FRICTION
 from snowshed.stops import Stopped
 
 PATH = click.Path(path_type=Path)
@@ -23,7 +24,7 @@ PATH = click.Path(path_type=Path)
 @click.option(
     "--friction",
     type=click.FloatRange(0.0, 10.0),
-    default=0.7,
+    default=FRICTION,
     show_default=True,
     help="Coulomb coefficient of the panel.",
 )

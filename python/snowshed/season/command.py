@@ -10,7 +10,12 @@ import click
 from snowshed._core import InputError
 from snowshed.interrupt import Interrupted
 from snowshed.scene import Scene
-from snowshed.scene_options import in_terms_of_options, scene_from_options, scene_options
+from snowshed.scene_options import (
+    in_terms_of_options,
+    path_of,
+    scene_from_options,
+    scene_options,
+)
 from snowshed.season.settings import SeasonSettings
 from snowshed.stops import Stopped
 
@@ -126,18 +131,16 @@ def _scene(
     if file is not None and (preset or snow_preset):
         raise click.UsageError("--scene does not go with --preset or --snow")
     given = _given(options)
+    scene = Scene.load(file) if file else scene_from_options(preset, snow_preset, {})
+    if scene.slab is not None:
+        scene.slab.layers = None
     try:
-        scene = Scene.load(file) if file else scene_from_options(preset, snow_preset, {})
-        if scene.slab is not None:
-            scene.slab.layers = None
         for path, value in {**DECIDED, **given}.items():
             scene.set(path, value)
         return scene.initialise()
     except InputError as error:
-        where = str(error).partition(":")[0].strip("/").replace("/", ".")
-        if file is not None and where not in given:
-            message = str(error)
-            raise InputError(message if str(file) in message else f"{file}: {message}") from None
+        if file is not None and path_of(error) not in given:
+            raise InputError(f"{file}: {error}") from None
         raise in_terms_of_options(error) from None
 
 

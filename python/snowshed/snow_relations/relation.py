@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Union
+from typing import TypeVar, Union
 
 from snowshed._core import InputError
 
 Span = tuple[float, float]
+Chosen = TypeVar("Chosen")
 
 ICE_DENSITY = 917.0  # kg/m3
 UNITS = {"density": "kg/m3", "temperature": "degrees C", "wind": "m/s"}
@@ -78,8 +79,8 @@ class Relation:
         ]
 
 
-def choose(name: str, relations: Mapping[str, Relation], where: str) -> Relation:
-    """Return the relation of a name.
+def choose(name: str, relations: Mapping[str, Chosen], where: str) -> Chosen:
+    """Return the relation, or law, of a name.
 
     Raises
     ------
