@@ -7,7 +7,7 @@ import zipfile
 
 import numpy as np
 import pytest
-from made_up_rows import few_inputs, made_up_rows, smooth_ratio
+from made_up_rows import few_inputs, made_up_rows, smooth_ratio, thesis_inputs
 
 from snowshed import InputError
 from snowshed.regression import (
@@ -21,8 +21,9 @@ from snowshed.regression import (
 from snowshed.regression.ensemble import Ensemble
 from snowshed.regression.kinds import kinds
 from snowshed.regression.model_file import Member, StackModel
+from snowshed.regression.rows import rows_of
 from snowshed.regression.scaling import Scaling
-from snowshed.regression.spread import INTERVAL, SPREAD, Spread, unseen_panels
+from snowshed.regression.spread import INTERVAL, SPREAD, Spread, stack_spread, unseen_panels
 from snowshed.regression.threads import one_thread
 
 NOISE = 0.003
@@ -48,16 +49,25 @@ def ensemble_model(rows, target="ratio", rounds=2, folds=5):
         inputs, np.array(coefficients), np.array(intercepts), np.full((models, 4), 0.1)
     )
     found, deviation = unseen_panels(kind, [[PARAMETERS] * folds] * rounds, rows, target)
-    spread = Spread.of(found - values, found, deviation)
+    spread = stack_spread(rows, target, found, deviation)
     return Member(ensemble, float(values.mean()), float(values.std()), spread)
+
+
+def model_of(rows):
+    with one_thread():
+        members = {("ratio", "rbf"): ensemble_model(rows)}
+    return StackModel(rows.inputs, members, "made up", "stack")
 
 
 @pytest.fixture(scope="module")
 def model():
-    rows = made_up_rows(noise=NOISE)
-    with one_thread():
-        members = {("ratio", "rbf"): ensemble_model(rows)}
-    return StackModel(rows.inputs, members, "made up", "stack")
+    return model_of(made_up_rows(noise=NOISE))
+
+
+@pytest.fixture(scope="module")
+def model_of_means():
+    """Of rows that are means of four stacks each."""
+    return model_of(made_up_rows(np.tile(thesis_inputs(), (4, 1)), noise=NOISE))
 
 
 @pytest.fixture
@@ -94,8 +104,10 @@ def test_a_prediction_is_near_the_formula(file):
     assert (found.table["low"] < found.table["value"]).all()
 
 
-def test_spread_and_interval_hold_as_many_stacks_as_they_say(model):
+@pytest.mark.parametrize("which", ["model", "model_of_means"])
+def test_spread_and_interval_hold_as_many_stacks_as_they_say(which, request):
     """New panels inside the data, with new noise, that no model has seen."""
+    model = request.getfixturevalue(which)
     rng = np.random.default_rng(5)
     inside = rng.uniform((2, 0.5, 40), (4, 8, 70), (300, 3))
     questions = np.column_stack([rng.integers(1, 6, 300), inside])
@@ -124,10 +136,10 @@ def test_rows_of_a_panel_are_left_out_together():
     rows = made_up_rows(few_inputs(), noise=0.0)
     rng = np.random.default_rng(2)
     offset = rng.normal(0, 0.01, rows.panels.max() + 1)[rows.panels]
-    values = {**rows.targets, "ratio": rows.targets["ratio"] + offset}
-    shifted = type(rows)(rows.inputs, values)
+    length = rows.targets["length"]
+    shifted = rows_of(rows.inputs, (rows.targets["ratio"] + offset) * length, length)
     found, _ = unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
-    assert np.abs(found - values["ratio"]).mean() > 0.006
+    assert np.abs(found - shifted.targets["ratio"]).mean() > 0.006
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 from made_up_rows import few_inputs, made_up_rows, thesis_inputs, write_table
 
 from snowshed import InputError
-from snowshed.regression import read_rows
+from snowshed.regression import read_rows, rows_of
 
 
 def test_a_table_gives_inputs_and_targets(tmp_path):
@@ -39,6 +39,25 @@ def test_failed_runs_are_left_out(tmp_path):
     table.to_csv(tmp_path / "rows.csv", index=False)
     read = read_rows(tmp_path / "rows.csv")
     assert (len(read), read.left_out) == (94, 2)
+
+
+def test_stacks_that_differ_in_their_seeds_make_one_row():
+    single = made_up_rows(few_inputs(), noise=0)
+    noisy = made_up_rows(np.tile(few_inputs(), (16, 1)), noise=0.003)
+    np.testing.assert_array_equal(noisy.inputs, single.inputs)
+    assert noisy.stacks["ratio"].shape == (96, 16)
+    error = np.abs(noisy.targets["ratio"] - single.targets["ratio"]).mean()
+    assert error == pytest.approx(0.0024 / 4, rel=0.2)  # E|x| = 0.8 deviations
+    assert noisy.scatter("ratio") == pytest.approx(0.0024, rel=0.1)
+    assert np.isnan(single.scatter("ratio"))
+
+
+def test_rows_may_have_different_numbers_of_stacks():
+    inputs = np.array([[1, 2, 4, 40], [2, 2, 4, 40], [1, 2, 4, 40]])
+    rows = rows_of(inputs, np.array([1, 2, 3]), np.array([4, 5, 4]))
+    assert rows.targets["height"].tolist() == [2, 2]
+    np.testing.assert_array_equal(rows.stacks["height"], [[1, 3], [2, np.nan]])
+    assert rows.scatter("height") == pytest.approx(np.sqrt(2))
 
 
 def test_conditions_choose_rows(tmp_path):

@@ -35,9 +35,18 @@ PATH = click.Path(path_type=Path)
     show_default=True,
     help="Size of the grid cells, m.",
 )
+@click.option(
+    "--seeds",
+    type=click.IntRange(1, 1000),
+    default=1,
+    show_default=True,
+    help="Stacks for each panel, whose means are regressed.",
+)
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid: minutes, not hours.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
-def geometry(between: str, friction: float, dx: float, trial: bool, file: Optional[Path]) -> None:
+def geometry(
+    between: str, friction: float, dx: float, seeds: int, trial: bool, file: Optional[Path]
+) -> None:
     """Write the study of panel geometries whose table ``regress`` takes.
 
     \b
@@ -50,7 +59,7 @@ def geometry(between: str, friction: float, dx: float, trial: bool, file: Option
     from snowshed.atomic import write_text
     from snowshed.regression.geometry import geometry_study
 
-    text = geometry_study(between, friction=friction, dx=dx, trial=trial)
+    text = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
     if file is None:
         click.echo(text, nl=False)
     else:

@@ -40,6 +40,9 @@ def print_reports(reports: Sequence[TargetReport]) -> None:
     for report in reports:
         unit = f", {TARGETS[report.target]}" if TARGETS[report.target] else ""
         wide_console().print(_error_table(report, unit))
+        scatter = report.errors["seeding_scatter"].max()
+        if scatter == scatter:
+            wide_console().print(f" stacks of single seeds scatter by {scatter:.4f} about the mean")
         shown = _table(f"Quartiles of the predicted {report.target}{unit}", ["model", *QUARTILES])
         for model, row in report.quartiles.iterrows():
             shown.add_row(str(model), *(f"{row[name]:.3f}" for name in QUARTILES))

@@ -16,7 +16,12 @@ FRICTION = 0.7
 
 
 def geometry_study(
-    between: str = "carry", *, friction: float = FRICTION, dx: float = 0.01, trial: bool = False
+    between: str = "carry",
+    *,
+    friction: float = FRICTION,
+    dx: float = 0.01,
+    seeds: int = 1,
+    trial: bool = False,
 ) -> str:
     """Return the study file of the geometry data set, Tables 5.1.1 and 5.2.1.
 
@@ -32,6 +37,8 @@ def geometry_study(
         Coulomb coefficient of the panel.
     dx
         Size of the grid cells, m. The trial has its own.
+    seeds
+        How many stacks for each panel; they differ in the chance placement of the particles.
     trial
         A few panels on a coarse grid, to try the way from study to prediction within minutes; its
         numbers mean nothing.
@@ -46,6 +53,6 @@ def geometry_study(
     name = "geometry-trial.toml" if trial else "geometry.toml"
     folder = resources.files("snowshed.regression") / "studies"
     text = (folder / name).read_text(encoding="utf-8")
-    for name, value in (("friction", friction), ("dx", dx)):
+    for name, value in (("friction", friction), ("dx", dx), ("seeds", seeds)):
         text = text.replace("{" + name + "}", f"{value:g}")
     return text.replace("{between}", between)

@@ -19,7 +19,7 @@ from snowshed.regression.kinds import Kind, kinds_named
 from snowshed.regression.model_file import STORED_KINDS, Member, StackModel, save_model
 from snowshed.regression.nested import Reporter, Results, available_jobs, cross_validate
 from snowshed.regression.rows import TARGETS, StackRows
-from snowshed.regression.spread import Spread, unseen_panels
+from snowshed.regression.spread import stack_spread, unseen_panels
 from snowshed.regression.threads import one_thread
 from snowshed.scene import PathLike
 
@@ -146,7 +146,6 @@ class _Output:
         self, target: str, kind: str, results: Sequence[FoldResult]
     ) -> tuple[Member, Floats]:
         """Return the ensemble with its spread, and its errors on unseen panels."""
-        values = self._rows.targets[target]
         rounds: dict[int, list[Mapping[str, float]]] = {}
         for task, result in self._results.items():
             if (task.target, task.kind) == (target, kind):
@@ -154,8 +153,9 @@ class _Output:
         found, deviation = unseen_panels(
             self._kinds[kind], list(rounds.values()), self._rows, target
         )
-        spread = Spread.of(found - values, found, deviation)
+        spread = stack_spread(self._rows, target, found, deviation)
         ensemble = Ensemble.of(results)
+        values = self._rows.targets[target]
         unit = float(values.std()) or 1.0
         return Member(ensemble, float(values.mean()), unit, spread), found - values
 
@@ -172,7 +172,7 @@ class _Output:
         linear = elected.get("linear")
         quartiles = summary.quartile_table(elected, values, target)
         comparable = target == "ratio" and len(values) == summary.THESIS_ROWS
-        errors = summary.error_table(elected, values, target, unseen)
+        errors = summary.error_table(elected, self._rows, target, unseen)
         report = TargetReport(
             target,
             quartiles,

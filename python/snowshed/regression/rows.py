@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -45,16 +45,36 @@ class StackRows:
     ----------
     inputs
         Shape (n, 4): the columns of `INPUTS`, heights and lengths in m, tilts in degrees.
-    targets
-        For each name of `TARGETS` an array of shape (n,): ratio of stack height to length, stack
-        height in m, stack length in m.
+    stacks
+        For each name of `TARGETS` an array of shape (n, m): ratio of stack height to length, stack
+        height in m, stack length in m, of up to m stacks that differ in their seeds only; NaN where
+        a row has fewer.
     left_out
         How many rows of the table had no measures, because their runs failed.
     """
 
     inputs: Floats
-    targets: Mapping[str, Floats]
+    stacks: Mapping[str, Floats]
     left_out: int = 0
+
+    @property
+    def targets(self) -> Mapping[str, Floats]:
+        """For each name of `TARGETS` what is regressed: the stacks' means, shape (n,)."""
+        return {name: np.nanmean(values, axis=1) for name, values in self.stacks.items()}
+
+    def scatter(self, target: str) -> float:
+        """Return the mean absolute deviation of a single stack from the mean of very many.
+
+        NaN if no row has several stacks.
+        """
+        values = self.stacks[target]
+        count = np.isfinite(values).sum(axis=1)
+        repeated = count > 1
+        if not repeated.any():
+            return float("nan")
+        count, values = count[repeated], values[repeated]
+        deviations = np.nanmean(np.abs(values - np.nanmean(values, axis=1)[:, None]), axis=1)
+        return float((deviations * np.sqrt(count / (count - 1))).mean())
 
     def __len__(self) -> int:
         return len(self.inputs)
@@ -70,7 +90,7 @@ class StackRows:
         """What tells these rows from any others."""
         content = hashlib.sha256(np.ascontiguousarray(self.inputs).tobytes())
         for name in TARGETS:
-            content.update(np.ascontiguousarray(self.targets[name]).tobytes())
+            content.update(np.ascontiguousarray(self.stacks[name]).tobytes())
         return content.hexdigest()[:32]
 
 
@@ -108,7 +128,7 @@ def read_rows(
 
 
 def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
-    """Return rows from arrays.
+    """Return rows from arrays; stacks with the same inputs make one row.
 
     Parameters
     ----------
@@ -119,13 +139,34 @@ def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
 
     Examples
     --------
-    >>> rows = rows_of(np.array([[1, 2, 4, 40], [2, 2, 4, 40]]), np.array([1, 2]), np.array([4, 5]))
+    >>> inputs = np.array([[1, 2, 4, 40], [2, 2, 4, 40], [2, 2, 4, 40]])
+    >>> rows = rows_of(inputs, np.array([1, 2, 3]), np.array([4, 5, 5]))
     >>> rows.targets["ratio"].tolist(), rows.panels.tolist()
-    ([0.25, 0.4], [0, 0])
+    ([0.25, 0.5], [0, 0])
     """
+    inputs = np.asarray(inputs, float)
     height, length = np.asarray(height, float), np.asarray(length, float)
-    targets = {"ratio": height / length, "height": height, "length": length}
-    return StackRows(np.asarray(inputs, float), targets)
+    row, repetition = _repetitions(inputs)
+    first = repetition == 0
+
+    def arranged(values: Floats) -> Floats:
+        stacks = np.full((int(first.sum()), int(repetition.max(initial=0)) + 1), np.nan)
+        stacks[row, repetition] = values
+        return stacks
+
+    measured = {"ratio": height / length, "height": height, "length": length}
+    return StackRows(inputs[first], {name: arranged(values) for name, values in measured.items()})
+
+
+def _repetitions(inputs: Floats) -> tuple[Integers, Integers]:
+    """Return for each stack its row, in the order of appearance, and which of its stacks it is."""
+    rows: dict[tuple[float, ...], list[int]] = {}
+    for number, key in enumerate(map(tuple, inputs)):
+        rows.setdefault(key, []).append(number)
+    row, repetition = np.empty(len(inputs), dtype=np.int64), np.empty(len(inputs), dtype=np.int64)
+    for place, numbers in enumerate(rows.values()):
+        row[numbers], repetition[numbers] = place, np.arange(len(numbers))
+    return row, repetition
 
 
 def _read(path: Path) -> pd.DataFrame:
@@ -163,16 +204,21 @@ def _rows(table: pd.DataFrame, measures: tuple[str, str]) -> StackRows:
     measured = cells.notna().all(axis=1) & (cells.astype(str) != "").all(axis=1)
     left_out = int((~measured).sum())
     table = table.loc[measured]
-    if len(table) < FEWEST_ROWS:
-        lost = f" (and {left_out} without measures)" if left_out else ""
-        raise InputError(f"{len(table)} rows{lost}; at least {FEWEST_ROWS} are needed")
+    _check_count(len(table), left_out)
     _check_same(table)
     inputs = np.column_stack([_numbers(table, name) for name in INPUTS])
     height, length = (_numbers(table, name, positive=True) for name in measures)
     events = inputs[:, 0]
     _complain(table, INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
     found = rows_of(inputs, height, length)
-    return StackRows(found.inputs, found.targets, left_out)
+    _check_count(len(found), left_out)
+    return replace(found, left_out=left_out)
+
+
+def _check_count(rows: int, left_out: int) -> None:
+    if rows < FEWEST_ROWS:
+        lost = f" (and {left_out} without measures)" if left_out else ""
+        raise InputError(f"{rows} rows{lost}; at least {FEWEST_ROWS} are needed")
 
 
 def _check_columns(table: pd.DataFrame, needed: Sequence[str]) -> None:

@@ -118,3 +118,19 @@ def unseen_panels(
             found[number, held_out] = model.predict(inputs[held_out])
     found = found * scaling.deviation[0] + scaling.mean[0]
     return found.mean(axis=0), found.std(axis=0)
+
+
+def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: Floats) -> Spread:
+    """Return the spread of single stacks, each of one seed, about predictions of `unseen_panels`.
+
+    Parameters
+    ----------
+    rows, target
+        The data.
+    predictions, deviations
+        For each row, shape (n,).
+    """
+    stacks = rows.stacks[target]
+    row, repetition = np.nonzero(np.isfinite(stacks))
+    errors = predictions[row] - stacks[row, repetition]
+    return Spread.of(errors, predictions[row], deviations[row])

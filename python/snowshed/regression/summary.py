@@ -100,19 +100,20 @@ def _quartiles(values: Floats) -> tuple[float, ...]:
 
 
 def error_table(
-    elected: Elected, values: Floats, target: str, unseen: Mapping[str, Floats]
+    elected: Elected, data: StackRows, target: str, unseen: Mapping[str, Floats]
 ) -> pd.DataFrame:
     """Return Table 5.3.2 with what it does not say: errors on rows and panels not trained on.
 
     Parameters
     ----------
-    elected, values, target
-        The folds' results by kind of model, and the data.
+    elected, data, target
+        The folds' results by kind of model, and what they are about.
     unseen
         For kinds of model the errors on panels of which they saw no event.
     """
     import pandas as pd
 
+    values, scatter = data.targets[target], data.scatter(target)
     rows = []
     for kind, results in elected.items():
         errors = np.abs([result.predictions - values for result in results])
@@ -127,6 +128,7 @@ def error_table(
                 "thesis_deviation": np.nan if thesis is None else thesis[1],
                 "held_out_error": np.abs(held_out_errors(results, values)).mean(),
                 "unseen_panel_error": np.nan if panels is None else panels.mean(),
+                "seeding_scatter": scatter,
                 "validation_score": np.mean([result.validation_score for result in results]),
                 "fits": sum(result.fits for result in results),
                 "cpu_s": sum(result.elapsed_s for result in results),
