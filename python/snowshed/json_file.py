@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
+from snowshed.input_file import read_input
 from snowshed.quoting import shortened
 
 #: What the values of a JSON object may have to be, in words.
@@ -39,7 +40,7 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
 
 def read_object(path: Path) -> dict[str, Any]:
     """Return the JSON object in a file; see `parse_object`."""
-    return parse_object(path.read_bytes(), str(path))
+    return parse_object(read_input(path), str(path))
 
 
 def check_values(found: Any, kinds: Mapping[str, type], where: str) -> None:

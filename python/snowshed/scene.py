@@ -15,6 +15,7 @@ from typing import Any, List, Optional, Union
 
 from snowshed import _core
 from snowshed.atomic import write_text
+from snowshed.input_file import read_input
 from snowshed.parts import (
     Body,
     Domain,
@@ -74,12 +75,13 @@ class Scene(Record):
         Raises
         ------
         InputError
-            If the file is not JSON, has unknown keys or numbers that are not finite.
+            If the file is not JSON, too long, has unknown keys or numbers that are not finite.
         OSError
             If it cannot be read.
         """
+        content = read_input(Path(path))
         try:
-            data = json.loads(Path(path).read_bytes(), object_pairs_hook=_without_duplicates)
+            data = json.loads(content, object_pairs_hook=_without_duplicates)
         except (ValueError, RecursionError) as error:
             raise _core.InputError(f"{path}: not JSON: {error}") from None
         try:

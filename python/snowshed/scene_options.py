@@ -15,6 +15,7 @@ from typing import Any, Optional, TypeVar
 import click
 
 from snowshed._core import InputError
+from snowshed.input_file import read_input
 from snowshed.parts import Ground, Panel, Slab, Snow
 from snowshed.scene import Scene
 from snowshed.schema import Parameter, scene_parameters
@@ -106,7 +107,7 @@ def json_object(text: str) -> Any:
     """Parse a JSON object, given as text or as the name of a file that holds it."""
     try:
         if not text.lstrip().startswith("{"):
-            text = Path(text).read_text(encoding="utf-8")
+            text = read_input(Path(text)).decode("utf-8")
         return json.loads(text)
     except (OSError, ValueError, RecursionError) as error:
         raise click.BadParameter(f"{error}; give a JSON object, or its file") from None

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
 from snowshed.atomic import write_text
+from snowshed.input_file import LARGEST_TABLE_MB, read_input
 from snowshed.quoting import quoted
 
 if TYPE_CHECKING:
@@ -130,10 +131,10 @@ def read_csv(path: Path, **options: Any) -> pd.DataFrame:
     """
     import pandas as pd
 
+    content = read_input(path, LARGEST_TABLE_MB)
     try:
-        with path.open(newline="", encoding="utf-8") as file:
-            _check_rows(file)
-        table: pd.DataFrame = pd.read_csv(path, **options)
+        _check_rows(io.StringIO(content.decode("utf-8"), newline=""))
+        table: pd.DataFrame = pd.read_csv(io.BytesIO(content), **options)
         return table
     except (ValueError, csv.Error) as error:  # of pandas all errors on content are ValueErrors
         raise InputError(f"{path}: not a table: {error}") from None

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.input_file import read_input
 from snowshed.quoting import quoted
 from snowshed.scene import PathLike
 
@@ -135,7 +136,7 @@ def read_measurements(file: PathLike) -> list[Measurement]:
     """
     path = Path(file)
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        text = read_input(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not a text in UTF-8: {error}") from None
     try:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.input_file import read_input
 from snowshed.quoting import quoted
 from snowshed.scene import PathLike
 
@@ -110,9 +111,9 @@ def read_season(path: PathLike) -> list[Weather]:
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Yield the lines that hold something, with their numbers."""
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        text = read_input(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        before = path.read_bytes()[: error.start].count(b"\n")
+        before = error.object[: error.start].count(b"\n")
         raise InputError(f"{path}, line {before + 1}: not UTF-8 text") from None
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):

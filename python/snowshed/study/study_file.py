@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from snowshed._core import InputError
 from snowshed.accuracy_settings import ACCURACY
+from snowshed.input_file import read_input
 from snowshed.parts import Snow
 from snowshed.quoting import shortened
 from snowshed.scene import Scene
@@ -96,17 +97,18 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 
 def load(file: Path) -> Study:
     """Read a study file; see `Study.load`."""
+    content = read_input(file)
     try:
-        return _study(_read(file), file)
+        return _study(_parsed(content), file)
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
     except RecursionError:
         raise InputError(f"{file}: nested too deep") from None
 
 
-def _read(file: Path) -> dict[str, Any]:
+def _parsed(content: bytes) -> dict[str, Any]:
     try:
-        return tomllib.loads(file.read_bytes().decode("utf-8"))
+        return tomllib.loads(content.decode("utf-8"))
     except (
         ValueError,
         RecursionError,
