@@ -77,13 +77,13 @@ def plan(context: click.Context, file: Path, jobs: Optional[int]) -> None:
 
 def compute(
     context: click.Context, file: Path, folder: Path, jobs: Optional[int], quiet: bool
-) -> Path:
-    """Compute what is missing of a study file; return the folder of the store.
+) -> tuple[Path, str]:
+    """Compute what is missing of a study file; return the folder of the store, and its name there.
 
     Ends the command, with the exit codes of ``snowshed study run``, if runs fail or are
     interrupted; the same command goes on then.
     """
-    from snowshed.study import command
+    from snowshed.study import Study, command
 
     store = folder / RUNS
     context.invoke(
@@ -96,4 +96,4 @@ def compute(
         scheduler=None,
         retry_failed=False,
     )
-    return store
+    return store, Study.load(file).name

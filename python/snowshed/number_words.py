@@ -13,6 +13,18 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 SMALL = 1e-5
 
 
+def exact(value: float) -> str:
+    """Return a number for a file: short, and the same number when it is read.
+
+    Examples
+    --------
+    >>> exact(40.0), exact(0.025), exact(38.65980825)
+    ('40', '0.025', '38.65980825')
+    """
+    short = f"{value:g}"
+    return short if float(short) == value else repr(float(value))
+
+
 def number(value: Optional[float], digits: int = 3) -> str:
     """Return a number with a few significant digits, very large and small ones with powers of ten.
 

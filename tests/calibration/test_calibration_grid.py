@@ -111,3 +111,8 @@ def test_what_does_not_fit_together_is_named():
     ):
         with pytest.raises(InputError, match=message):
             simulated(wrong)
+
+
+def test_tilts_are_written_as_they_were_measured():
+    measured = [Measurement(tilt, 3, 1, "height", 0.1, 0.01) for tilt in (38.65980825, 40.0)]
+    assert "panel.tilt = [38.65980825, 40]" in calibration_study(measured)

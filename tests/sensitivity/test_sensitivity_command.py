@@ -92,6 +92,19 @@ def test_designs_are_read_off_the_store(tmp_path, capsys):
     assert (tmp_path / "out" / "morris.png").stat().st_size > 10_000
 
 
+def test_a_second_design_in_the_same_folder_is_evaluated_too(tmp_path):
+    """All runs are done; the command must know which of the two studies it has just finished."""
+    from snowshed.sensitivity import sensitivity_study
+
+    out = tmp_path / "out"
+    fill(out / "runs", grid("earlier"))
+    file = tmp_path / "morris.toml"
+    file.write_text(sensitivity_study("morris", quick=True, samples=2), encoding="utf-8")
+    fill(out / "runs", Study.load(file))
+    assert run("sensitivity", "--method", "morris", "--study", file, "-o", out, "-q") == 0
+    assert (out / "morris.csv").is_file()
+
+
 def test_bodies_instead_of_stacks_and_one_of_several_studies(tmp_path):
     for name in ("one", "other"):
         fill(tmp_path / "store", grid(name))

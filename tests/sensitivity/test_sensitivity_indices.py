@@ -138,6 +138,14 @@ def test_sobol_indices_of_a_function_with_an_interaction():
         assert row["blocks"] == 256
 
 
+def test_noise_leaves_out_points_without_a_stack():
+    """At one of two points all snow stays on the panel."""
+    points = [{BETA: beta, SEED: seed} for beta in (0.1, 0.2) for seed in range(1, 301)]
+    sloping = noisy(power_law_of_beta, 0.05)
+    study = stored(points, lambda snow, event: sloping(snow, event) * (snow[BETA] > 0.15))
+    assert seeding_noise(study).loc[(1, "height"), "noise"] == pytest.approx(0.05, rel=0.1)
+
+
 def test_noise_shows_in_the_total_index_of_the_seed():
     """With noise of the same variance as the effect, each explains a half."""
     base = designed("sobol", lambda snow, event: 5 + unit(snow)[M], events=(1,), samples=256)
@@ -165,6 +173,27 @@ def test_elementary_effects_of_a_linear_function():
         assert row["effect"] * mean == pytest.approx(slopes.get(path, 0), abs=1e-9)
         assert row["strength"] * mean == pytest.approx(abs(slopes.get(path, 0)), abs=1e-9)
         assert row["spread"] == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("step", [0.05, 0.4, 2 / 3, 1.0])
+def test_effects_of_trajectories_with_any_step(step):
+    """Height 2 + x + 2 y over the unit square, whose corners every trajectory starts from."""
+    trajectories = [
+        [(x, y), (x + (step if x == 0 else -step), y), (x + (step if x == 0 else -step), y + dy)]
+        for x, y, dy in ((0, 0, step), (1, 1, -step), (0, 1, -step), (1, 0, step))
+    ]
+    points = [{M: x, BETA: y} for one in trajectories for x, y in one]
+    study = stored(points, lambda snow, event: 2 + snow[M] + 2 * snow[BETA])
+    table, mean = morris_effects(study), study.rows["height"].mean()
+    assert pick(table, M)["effect"] * mean == pytest.approx(1)
+    assert pick(table, BETA)["strength"] * mean == pytest.approx(2)
+
+
+def test_steps_that_differ_are_no_design_after_morris():
+    points = [{M: 0.3, BETA: 0.1}, {M: 0.5, BETA: 0.1}, {M: 0.5, BETA: 0.3}]
+    points += [{M: 0.3, BETA: 0.1}, {M: 0.35, BETA: 0.1}, {M: 0.35, BETA: 0.3}]
+    with pytest.raises(InputError, match=f"{M}: its steps differ"):
+        morris_effects(stored(points, power_law))
 
 
 @pytest.mark.parametrize(

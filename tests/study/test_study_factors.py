@@ -64,6 +64,7 @@ def test_whole_numbers_stay_whole():
         (lambda: linear(1, 0, step=1), "must not fall"),
         (lambda: linear(0, float("nan"), step=1), "nan is not a finite number"),
         (lambda: linear(0, 1, step=1e-9), "at most"),
+        (lambda: linear(-(10**308), 10**308, step=1e-3), "at most"),
         (lambda: linear(0, 1, count=1), "count 1 is outside"),
         (lambda: logarithmic(0, 1, 3), "0 is not positive"),
         (lambda: Span(1, 1), "must rise"),

@@ -86,6 +86,11 @@ def test_axes_of_all_forms(load):
     ]
 
 
+def test_parameters_called_like_the_keys_of_a_range_may_be_nested(load):
+    study = load(SCENE + "[axes]\nevents = { count = [1, 3] }\npanel.tilt = 40")
+    assert values(study, "events.count") == [(1,), (3,)]
+
+
 def test_zipped_groups_and_samples_are_crossed_with_axes(load):
     study = load(
         SCENE

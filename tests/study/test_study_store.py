@@ -2,6 +2,7 @@
 
 import multiprocessing
 import sqlite3
+from dataclasses import replace
 
 import pytest
 from study_helpers import contents, outcome, tiny_study
@@ -92,6 +93,16 @@ def test_only_the_first_result_of_a_run_counts(opened):
     opened.record(outcome(HASHES[0], "failed", 1, "too late"))
     assert opened.runs("tiny")[0].status == "done"
     assert opened.read("SELECT count(*) FROM event") == [(2,)]
+
+
+def test_a_study_whose_files_were_moved_goes_on(opened):
+    """Same hash, other path: what is computed stays, all else is looked for at the new place."""
+    opened.record(outcome(HASHES[0]))
+    moved = [replace(run, scene=run.scene.replace("{", '{"moved": 1, ', 1)) for run in RUNS]
+    opened.register("tiny", ["panel.friction"], moved)
+    scenes = [run.scene for run in opened.runs("tiny")]
+    assert scenes == [RUNS[0].scene, *(run.scene for run in moved[1:])]
+    assert opened.runs("tiny")[0].status == "done"
 
 
 def test_a_failed_run_can_be_tried_again(opened):

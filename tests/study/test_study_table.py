@@ -88,6 +88,21 @@ def test_a_table_without_rows_has_its_columns(tmp_path):
     assert len(table) == 0 and {"panel.friction", "height_m", "dx"} <= set(table)
 
 
+@pytest.mark.parametrize("form", ["csv", "parquet", "nc"])
+def test_an_axis_that_every_table_has_anyway_is_one_column(tmp_path, form):
+    study = Study.product(tiny_study().scene, {"dimension": [2, 3]}, name="both")
+    folder = store_with(tmp_path / "store", study, "done", "done")
+    assert list(read_table(folder)).count("dimension") == 1
+    export(folder, tmp_path / f"table.{form}")
+
+
+def test_netcdf_needs_a_run_that_is_done(tmp_path):
+    folder = store_with(tmp_path / "store", tiny_study(), "pending")
+    with pytest.raises(InputError, match="no run is done yet"):
+        export(folder, tmp_path / "table.nc")
+    assert not (tmp_path / "table.nc").exists()
+
+
 def test_several_studies_must_be_named(tmp_path):
     store_with(tmp_path / "store", tiny_study(), "done", "done", "done")
     store_with(tmp_path / "store", tiny_study("other", (0.3, 0.5)))

@@ -77,7 +77,7 @@ def calibrate(
         if plan_only:
             plan(context, file, jobs)
             return
-        stored = compute(context, file, folder, jobs, quiet)
+        stored, name = compute(context, file, folder, jobs, quiet)
     found = evaluate(
         measured,
         stored,

@@ -85,13 +85,14 @@ def simulated(table: pd.DataFrame, measure: str = "stack") -> Simulated:
     for path in axes:
         if not pd.api.types.is_numeric_dtype(table[path]) or table[path].dtype == bool:
             raise InputError(f"{path}: holds {table[path].iloc[0]!r}; calibration needs numbers")
-    parameters = [str(path) for path in axes if table[path].nunique() > 1]
-    if not parameters:
-        raise InputError("nothing varies in it but tilt and seed, so that nothing is calibrated")
     columns = {column: quantity for quantity, column in MEASURES[measure].items()}
-    rows = table[[*parameters, TILT, "seed", "event", *columns]].dropna()
+    rows = table[[*axes, TILT, "seed", "event", *columns]].dropna()
     if rows.empty:
         raise InputError("nothing of it is computed yet; see `snowshed study status`")
+    parameters = [str(path) for path in axes if rows[path].nunique() > 1]
+    if not parameters:
+        raise InputError("nothing varies in it but tilt and seed, so that nothing is calibrated")
+    rows = rows.drop(columns=[path for path in axes if path not in parameters])
     rows = rows.rename(columns={**columns, TILT: "tilt"})
     rows[SET] = rows.groupby(parameters, sort=False).ngroup() + 1
     sets = rows.drop_duplicates(SET).set_index(SET)[parameters]

@@ -8,6 +8,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.calibration.measurements import Measurement
+from snowshed.number_words import exact
 
 #: Table 4.1.1, SI units.
 FULL = {
@@ -55,7 +56,7 @@ def calibration_study(
         raise InputError(f"seeds: {seeds} is not positive")
     values = dict(QUICK if quick else FULL)
     tilts = sorted({one.tilt for one in measurements})
-    values["tilts"] = f"[{', '.join(f'{tilt:g}' for tilt in tilts)}]"
+    values["tilts"] = f"[{', '.join(map(exact, tilts))}]"
     values["events"] = str(max(one.event for one in measurements))
     values["seeds"] = str(SEEDS if seeds is None else seeds)
     folder = resources.files("snowshed.calibration") / "studies"

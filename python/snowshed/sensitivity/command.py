@@ -57,7 +57,7 @@ def sensitivity(
         if plan_only:
             plan(context, file, jobs)
             return
-        stored = compute(context, file, folder, jobs, quiet)
+        stored, name = compute(context, file, folder, jobs, quiet)
     table = evaluate(stored, folder, method, study=name, measure=measure)
     if not quiet:
         print_table(method, table)

@@ -7,7 +7,7 @@ effects. A block with runs that failed or are not yet computed is left out as a 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +25,7 @@ RESAMPLES = 500  # of the bootstrap
 CONFIDENCE = 0.95
 RANDOM = 1
 FEWEST = 2  # blocks
+SAME_STEP = 1e-3  # part by which steps may differ: files hold rounded numbers
 
 
 def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
@@ -44,13 +45,15 @@ def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
     """
     analyzer = require("SALib.analyze.sobol", EXTRA, "Sobol indices")
 
-    def analyze(names: list[str], _: Floats, values: Floats) -> dict[str, Floats]:
-        if np.ptp(values) == 0:  # no variance to share out
+    def analyze(
+        names: list[str], points: Floats, chosen: Booleans, values: Floats
+    ) -> dict[str, Floats]:
+        if np.ptp(values[chosen]) == 0:  # no variance to share out
             columns = ("first", "first_interval", "total", "total_interval")
             return dict.fromkeys(columns, np.full(len(names), np.nan))
         found = analyzer.analyze(
             problem(names),
-            values,
+            values[chosen],
             calc_second_order=False,
             num_resamples=RESAMPLES,
             conf_level=CONFIDENCE,
@@ -69,8 +72,8 @@ def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
 def morris_effects(stored: StoredRuns) -> pd.DataFrame:
     """Return elementary effects after Morris per parameter and event.
 
-    An effect is the change of the stack, relative to its mean over the sample, per range of the
-    parameter.
+    An effect is the change of the stack, relative to its mean over the sample, per sampled range of
+    the parameter, or of its logarithm where that has the steps.
 
     Returns
     -------
@@ -83,25 +86,30 @@ def morris_effects(stored: StoredRuns) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the points are no such design, or fewer than two trajectories are complete.
+        If the points are no such design, a parameter has steps of different size, or fewer than
+        two trajectories are complete.
     """
     analyzer = require("SALib.analyze.morris", EXTRA, "elementary effects")
 
-    def analyze(names: list[str], points: Floats, values: Floats) -> dict[str, Floats]:
+    def analyze(
+        names: list[str], points: Floats, chosen: Booleans, values: Floats
+    ) -> dict[str, Floats]:
+        unit, steps = _even_steps(names, points)
+        scale = LEVELS / (2 * (LEVELS - 1)) / steps  # SALib takes steps to be those of its levels
         found = analyzer.analyze(
             problem(names),
-            points,
-            values / values.mean(),
+            unit[chosen],
+            values[chosen] / values[chosen].mean(),
             num_levels=LEVELS,
             num_resamples=RESAMPLES,
             conf_level=CONFIDENCE,
             seed=RANDOM,
         )
         return {
-            "effect": found["mu"],
-            "strength": found["mu_star"],
-            "strength_interval": found["mu_star_conf"],
-            "spread": found["sigma"],
+            "effect": found["mu"] * scale,
+            "strength": found["mu_star"] * scale,
+            "strength_interval": found["mu_star_conf"] * scale,
+            "spread": found["sigma"] * scale,
         }
 
     return _analyzed(stored, 1, _is_trajectory, "trajectories after Morris", analyze)
@@ -112,7 +120,7 @@ def _analyzed(
     more: int,
     is_block: Callable[[Booleans], bool],
     design: str,
-    analyze: Callable[[list[str], Floats, Floats], dict[str, Floats]],
+    analyze: Callable[[list[str], Floats, Booleans, Floats], dict[str, Floats]],
 ) -> pd.DataFrame:
     """Return indices of all events and targets.
 
@@ -127,7 +135,7 @@ def _analyzed(
     design
         What the points should be, for messages.
     analyze
-        Returns columns for the inputs' names, points in the unit cube, and values.
+        Returns columns for the inputs' names, points, which of them count, and values.
     """
     import pandas as pd
 
@@ -135,7 +143,6 @@ def _analyzed(
     points = stored.points[names].to_numpy(float)
     size = len(names) + more
     blocks = _blocks(points, size, is_block, design)
-    unit = _in_unit_cube(points)
     found: list[dict[str, Any]] = []
     for event, target, values in _values(stored):
         complete = np.isfinite(values.reshape(-1, size)).all(axis=1)
@@ -145,7 +152,7 @@ def _analyzed(
                 f"at least {FEWEST} are needed"
             )
         chosen = np.repeat(complete, size)
-        columns = analyze(names, unit[chosen], values[chosen])
+        columns = analyze(names, points, chosen, values)
         for number, name in enumerate(names):
             row = {"parameter": name, "event": event, "target": target}
             row.update({column: float(of[number]) for column, of in columns.items()})
@@ -179,6 +186,26 @@ def _is_trajectory(changes: Booleans) -> bool:
     return bool((changes.sum(axis=0) == 1).all() and (changes.sum(axis=1) == 1).all())
 
 
+def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
+    """Return the points in the unit cube, and the size of each input's step there.
+
+    Inputs are taken linearly or by their logarithms, whichever makes all their steps equal.
+    """
+    unit, steps = np.empty_like(points), np.empty(len(names))
+    for number, name in enumerate(names):
+        values = points[:, number]
+        scales = [values, np.log(values)] if (values > 0).all() else [values]
+        for scaled in scales:
+            unit[:, number] = _in_unit_cube(scaled)
+            sizes = np.abs(np.diff(unit[:, number].reshape(-1, len(names) + 1), axis=1)).max(axis=1)
+            if np.ptp(sizes) <= SAME_STEP * sizes.max():
+                break
+        else:
+            raise InputError(f"{name}: its steps differ; in trajectories after Morris they do not")
+        steps[number] = sizes.mean()
+    return unit, steps
+
+
 def _is_saltelli(changes: Booleans) -> bool:
     """Whether A is followed by A with each input of B in turn, and by B.
 
@@ -191,6 +218,6 @@ def _is_saltelli(changes: Booleans) -> bool:
     return bool((changes == expected).all())
 
 
-def _in_unit_cube(points: Floats) -> Floats:
-    low, high = points.min(axis=0), points.max(axis=0)
-    return np.asarray((points - low) / np.where(high > low, high - low, 1.0))
+def _in_unit_cube(values: Floats) -> Floats:
+    low, high = values.min(), values.max()
+    return np.asarray((values - low) / (high - low if high > low else 1.0))

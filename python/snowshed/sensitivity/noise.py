@@ -46,12 +46,15 @@ def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
             means = points[target].transform("mean")
             freedom = len(rows) - points.ngroups
             residuals = rows[target] - means
+            there = means > 0  # where all snow stays on the panel nothing is relative to it
+            relative = (residuals / means)[there].to_numpy()
+            groups = int((points[target].mean() > 0).sum())
             found.append(
                 {
                     "event": int(str(event)),
                     "target": target,
                     "noise_m": _deviation(residuals.to_numpy(), freedom),
-                    "noise": _deviation((residuals / means).to_numpy(), freedom),
+                    "noise": _deviation(relative, len(relative) - groups),
                     "freedom": freedom,
                 }
             )

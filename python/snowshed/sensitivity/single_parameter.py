@@ -61,6 +61,7 @@ def local_index(stored: StoredRuns) -> pd.DataFrame:
         {**_index(pairs, pair, target, noise[event, target]), **names}
         for parameter in stored.parameters
         for pair in [_pair(stored, parameter)]
+        if pair[0] != pair[1]
         for event, rows in stored.rows.groupby("event")
         for pairs in [list(_pairs(stored, rows, parameter, pair))]
         if pairs

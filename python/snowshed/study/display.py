@@ -77,7 +77,7 @@ def print_status(store: Store) -> None:
     console = Console(highlight=False, soft_wrap=True)
     for name in store.studies():
         runs = store.runs(name)
-        console.print(f"{name}: {_runs(len(runs))}", style="bold")
+        console.print(f"{name}: {_runs(len(runs))}", style="bold", markup=False)
         alive = {run.owner for run in runs if run.owner and is_alive(store, run.owner)}
         kinds = Counter("running" if run.owner in alive else run.status for run in runs)
         for status, meaning in (

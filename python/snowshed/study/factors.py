@@ -109,7 +109,7 @@ def linear(
         raise InputError(f"the step {step} is not positive")
     if stop < start:
         raise InputError(f"must not fall: from {start} to {stop}")
-    steps = (stop - start) / step * (1 + 1e-9)
+    steps = (float(stop) - float(start)) / step * (1 + 1e-9)
     if not steps < LARGEST_COUNT:
         raise InputError(f"has too many values; at most {LARGEST_COUNT} are allowed")
     return [_tidy(start + i * step) for i in range(math.floor(steps) + 1)]

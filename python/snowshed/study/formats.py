@@ -61,9 +61,11 @@ def to_dataset(table: pd.DataFrame) -> Any:
     Raises
     ------
     InputError
-        If xarray (extra ``study``) is not installed.
+        If xarray (extra ``study``) is not installed, or the table has no rows.
     """
     xarray = require("xarray", "study", "the NetCDF form")
+    if table.empty:
+        raise InputError("no run is done yet, and NetCDF needs one")
     per_event = [*MEASURES, "error", *(["wall_s"] if "wall_s" in table else [])]
     grids = table.set_index(["hash", "event"])[per_event].unstack("event")
     runs = table.drop(columns=["event", *per_event]).drop_duplicates("hash")

@@ -169,12 +169,12 @@ def _compute(
     progress: Optional[Reporter],
 ) -> None:
     runs = {run.hash: run for name in studies for run in store.runs(name)}
+    _tidy(store)  # before runs are reset, whose folders may hold the failure
     if retry_failed:
         store.reset(hash_ for hash_, run in runs.items() if run.status == "failed")
         runs = {run.hash: run for name in studies for run in store.runs(name)}
     pending = [run for run in runs.values() if run.status == "pending"]
     _check_version(store, pending)
-    _tidy(store)
     if not pending:
         return
     workers, at_once = resources.workers(len(pending))

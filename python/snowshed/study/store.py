@@ -172,7 +172,9 @@ class Store:
             write.execute("DELETE FROM study_run WHERE study = ?", (study,))
             write.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (study, json.dumps(axes)))
             write.executemany(
-                "INSERT OR IGNORE INTO run (hash, version, scene) VALUES (?, ?, ?)",
+                # A known run keeps its results; if it has none, files may be elsewhere by now.
+                "INSERT INTO run (hash, version, scene) VALUES (?, ?, ?) ON CONFLICT (hash)"
+                " DO UPDATE SET scene = excluded.scene WHERE status = 'pending'",
                 ((run.hash, _core.version, run.scene) for run in runs),
             )
             write.executemany(

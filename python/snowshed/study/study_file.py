@@ -272,11 +272,17 @@ def _flatten(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Return what nested tables hold under dotted paths; a range is a value, not a table."""
     flat: dict[str, Any] = {}
     for key, value in table.items():
-        if isinstance(value, dict) and not value.keys() & set(RANGE_KEYS):
+        if isinstance(value, dict) and not _is_range(value):
             flat.update(_flatten(value, f"{prefix}{key}."))
         else:
             flat[f"{prefix}{key}"] = value
     return flat
+
+
+def _is_range(table: Mapping[str, Any]) -> bool:
+    """Whether a table is a range, and no parameters that are called like its keys."""
+    nested = any(isinstance(value, (dict, list)) for value in table.values())
+    return not nested and bool(table.keys() & set(RANGE_KEYS))
 
 
 def _tables(data: Mapping[str, Any], key: str, where: str) -> list[tuple[Mapping[str, Any], str]]:

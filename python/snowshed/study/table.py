@@ -61,7 +61,7 @@ def read_table(
         axes = store.axes(name)
     columns = ["hash", *axes, "seed", "event", *MEASURES, "error", "version", "dimension"]
     columns += [*ACCURACY, *(("wall_s", *RUN_TIMING) if timing else ())]
-    table = pd.DataFrame(rows, columns=columns)
+    table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
     return table.astype(dict.fromkeys(COUNTS, "Int64"))
 
 

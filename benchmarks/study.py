@@ -1,0 +1,62 @@
+"""Measure what the study engine costs, and how two workers share equal runs.
+
+Usage: python benchmarks/study.py
+
+Prints the overhead (wall time beyond the runs' own) and the gain of two workers, and keeps both in
+benchmarks/results/DATE-study.json. Nothing else should run on the machine meanwhile.
+"""
+
+from __future__ import annotations
+
+import datetime
+import json
+import tempfile
+import time
+from pathlib import Path
+
+from snowshed.machine import cpu_name
+from snowshed.scene import Scene
+from snowshed.study import Study
+from snowshed.study.table import read_table
+
+RESULTS = Path(__file__).parent / "results"
+RUNS = 12
+
+
+def equal_runs() -> Study:
+    """Five laboratory events in 2D, a few seconds each run; only the seeds differ."""
+    scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.005})
+    return Study.product(scene, {"panel.friction": [0.3]}, name="equal", seeds=range(1, RUNS + 1))
+
+
+def measure(jobs: int) -> dict[str, float]:
+    """Return the study's wall time and the sum of its runs' own, s."""
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.perf_counter()
+        equal_runs().run(folder, jobs=jobs, threads=1)
+        wall = time.perf_counter() - start
+        table = read_table(folder, timing=True)
+    return {"jobs": jobs, "wall_s": wall, "runs_s": table.groupby("hash")["run_wall_s"].max().sum()}
+
+
+def main() -> None:
+    """Measure one worker and two, and keep the numbers."""
+    one, two = measure(1), measure(2)
+    result = {
+        "machine": cpu_name(),
+        "date": datetime.date.today().isoformat(),
+        "runs": RUNS,
+        "measured": [one, two],
+        "overhead": one["wall_s"] / one["runs_s"] - 1,
+        "gain_of_two": one["wall_s"] / two["wall_s"],
+    }
+    file = RESULTS / f"{result['date']}-study.json"
+    file.write_text(json.dumps(result, indent=1) + "\n")
+    print(
+        f"{RUNS} runs of {one['runs_s'] / RUNS:.1f} s: overhead {result['overhead']:.1%}, ", end=""
+    )
+    print(f"two workers {result['gain_of_two']:.2f} times as fast as one")
+
+
+if __name__ == "__main__":
+    main()
