@@ -68,3 +68,26 @@ def test_an_input_that_does_not_vary_must_be_as_it_is():
     assert objection.endswith(
         "panel tilt 41 degrees is outside the data, which have 40 degrees only"
     )
+
+
+def test_a_lonely_panel_does_not_fill_the_gap_before_it():
+    lengths = (*np.arange(0.5, 1.6, 0.1), 10)
+    lonely = Domain(np.array([[1, 2, length, 40] for length in lengths], float))
+    assert lonely.objections(np.array([1, 2, 1.55, 40])) == []
+    for length in (3, 5, 8):
+        (objection,) = lonely.objections(np.array([1, 2, length, 40]))
+        assert "in a gap of the data" in objection
+
+
+def test_an_event_that_few_panels_have_is_judged_by_these():
+    """Runs may end early: of nine panels one alone has a third event."""
+    panels = [(h, length, 40) for h in (1, 2, 3) for length in (1, 2, 3)]
+    rows = [(event, *panel) for panel in panels for event in (1, 2)]
+    domain = Domain(np.array([*rows, (3, *panels[0])], float))
+    assert domain.objections(np.array([2, 2.5, 2.5, 40])) == []
+    assert domain.objections(np.array([3, 1, 1, 40])) == []
+    asked = np.array([[event, 2.5, 2.5, 40] for event in (1, 2, 3)])
+    (objection,) = domain.objections(asked)
+    assert (
+        "few panels have event 3; the nearest panel in the data has panel height 1 m" in objection
+    )

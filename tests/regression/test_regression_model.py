@@ -15,7 +15,6 @@ from snowshed.regression import (
     OutsideDataError,
     load_model,
     predict,
-    predictor,
     save_model,
 )
 from snowshed.regression.ensemble import Ensemble
@@ -156,14 +155,6 @@ def test_outside_the_data_nothing_is_answered_unless_forced(file, question, mess
         predict(**asked)
     forced = predict(**asked, extrapolate=True)
     assert forced.extrapolated and message in forced.objections[0]
-
-
-def test_without_a_shipped_model_it_says_how_to_make_one(monkeypatch, tmp_path):
-    monkeypatch.setattr(predictor, "SHIPPED", tmp_path / "none.npz")
-    with pytest.raises(
-        InputError, match=r"snowshed geometry -o geometry\.toml; snowshed study run"
-    ):
-        predict(height=2, length=2, tilt=40, events=1)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Reading the table: what is taken, and what is refused where."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from made_up_rows import few_inputs, made_up_rows, thesis_inputs, write_table
 
@@ -60,6 +61,23 @@ def test_rows_may_have_different_numbers_of_stacks():
     assert rows.scatter("height") == pytest.approx(np.sqrt(2))
 
 
+def test_snow_that_stays_on_the_panel_is_no_stack(tmp_path):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    table.loc[[3, 7, 8], ["height_m", "length_m"]] = 0.0
+    table.to_csv(tmp_path / "rows.csv", index=False)
+    read = read_rows(tmp_path / "rows.csv")
+    assert (len(read), read.left_out) == (93, 3)
+
+
+def test_a_stack_counts_once(tmp_path):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    pd.concat([table, table]).to_csv(tmp_path / "twice.csv", index=False)
+    with pytest.raises(InputError, match="lines 2 and 98: the same panel, event and seed twice"):
+        read_rows(tmp_path / "twice.csv")
+    pd.concat([table, table.assign(seed=2)]).to_csv(tmp_path / "seeds.csv", index=False)
+    assert read_rows(tmp_path / "seeds.csv").stacks["ratio"].shape == (96, 2)
+
+
 def test_conditions_choose_rows(tmp_path):
     ways = ["carry", "reseed"] * 48
     write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv", **{"events.between": ways})
@@ -79,6 +97,7 @@ def test_conditions_choose_rows(tmp_path):
         ("panel.tilt", "", r"line 7, panel.tilt: '' is not a number"),
         ("event", "1.5", r"line 7, event: '1.5' is not a whole number"),
         ("dx", "0.02", r"dx: the rows have different values"),
+        ("particles_per_voxel", "9", r"particles_per_voxel: the rows have different values"),
     ],
 )
 def test_wrong_cells_are_named(tmp_path, column, cell, message):

@@ -23,6 +23,8 @@ TINY = replace(
     steps=100,
     folds=CrossValidation(rounds=1, folds=2, inner_folds=2),
 )
+#: The same, with panels to simulate instead of the rows that come with snowshed.
+TINY_WITH_PANELS = replace(TINY, simulates_panels=True)
 
 
 def stack(scene, event):
@@ -59,7 +61,8 @@ def _events(scene):
     for event in range(1, scene["events"]["count"] + 1):
         height, length, head = stack(scene, event)
         row = {name: "rest" if name in WORDS else 1.0 for name in MEASURES}
-        row.update(event=event, wall_s=0.1, steps=10, mass_kg=1.0, on_panel_kg=float(stays))
+        row.update(event=event, wall_s=0.1, steps=10, mass_kg=float(not stays))
+        row.update(on_panel_kg=float(stays))
         row.update(height_m=height, length_m=length, head_m=head, tail_m=head + length)
         rows.append(row)
     return rows
@@ -76,5 +79,6 @@ def geometry_table(file):
                     ratio *= 1 + 0.01 * np.sin(height * 7 + length * 3 + tilt)
                     rows.append((tilt, height, length, event, ratio * height, height))
     names = ["panel.tilt", "panel.height", "panel.length", "event", "height_m", "length_m"]
-    pd.DataFrame(rows, columns=names).to_csv(file, index=False)
+    settings = {"panel.friction": 0.8, "events.between": "reseed", "dx": 0.02, "seed": 1}
+    pd.DataFrame(rows, columns=names).assign(**settings).to_csv(file, index=False)
     return file

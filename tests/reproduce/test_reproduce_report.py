@@ -6,7 +6,7 @@ import re
 import pandas as pd
 import pytest
 from pages import Page
-from reproduce_helpers import TINY, fill, geometry_table
+from reproduce_helpers import TINY, TINY_WITH_PANELS, fill, geometry_table
 
 from snowshed.html_page import STATES
 from snowshed.reproduce.folder import ReproductionFolder
@@ -49,6 +49,8 @@ def test_every_table_of_the_thesis_is_there(whole):
     for printed in ("0.067", "0.118", "0.237", "0.240", "0.255", "0.015"):
         assert printed in text
     assert "synthetic truth" in text and "Missing" not in text
+    shown = "friction of the panel not printed 0.8 stack between events reseed reseed"
+    assert shown in " ".join(text.split())
 
 
 def test_every_claim_has_a_verdict_and_a_rule(whole):
@@ -79,7 +81,9 @@ def test_made_up_stacks_give_the_verdicts_they_must(whole):
 
 
 def test_it_says_what_is_missing(tmp_path):
-    found = Reproduction(ReproductionFolder.claim(tmp_path / "out", "quick"), TINY, None)
+    found = Reproduction(
+        ReproductionFolder.claim(tmp_path / "out", "quick"), TINY_WITH_PANELS, None
+    )
     fill(found, ["s-index"])
     claims = write_report(found)
     text = " ".join(page_of(found).text)
@@ -88,11 +92,13 @@ def test_it_says_what_is_missing(tmp_path):
     unfinished = [one for one in claims if one.source.startswith("3.4")]
     assert all("the stage is not finished" in one.finding.sentence for one in unfinished)
     assert "stage lab: 0 of 10 simulations done" in text
-    assert "stage geometry: 0 of 9 simulations done" in text
+    assert "stage geometry: 0 of 125 simulations done" in text
     assert "stage s-index" not in text
 
 
 def test_nothing_at_all(tmp_path):
-    found = Reproduction(ReproductionFolder.claim(tmp_path / "out", "quick"), TINY, None)
+    found = Reproduction(
+        ReproductionFolder.claim(tmp_path / "out", "quick"), TINY_WITH_PANELS, None
+    )
     assert write_report(found) == []
     assert "Nothing is computed yet" in " ".join(page_of(found).text)

@@ -5,7 +5,7 @@ import re
 
 import pandas as pd
 import pytest
-from reproduce_helpers import TINY, fill, geometry_table
+from reproduce_helpers import TINY, TINY_WITH_PANELS, fill, geometry_table
 
 from snowshed import Scene
 from snowshed._core import InputError
@@ -56,7 +56,8 @@ def test_the_synthetic_truth_is_no_run_of_the_grid():
 
 
 def test_stages_are_chosen_by_name(tmp_path):
-    found = Reproduction(ReproductionFolder.claim(tmp_path / "out", "quick"), TINY, None)
+    folder = ReproductionFolder.claim(tmp_path / "out", "quick")
+    found = Reproduction(folder, TINY_WITH_PANELS, None)
     assert [stage.name for stage in choose(found.stages, [])] == NAMES
     assert [stage.name for stage in choose(found.stages, ["regression", "lab"])] == [
         "lab",
@@ -149,8 +150,14 @@ def test_regression_is_resumed_and_not_repeated(tmp_path):
 
 
 def test_regression_waits_for_the_panels(tmp_path):
-    found = Reproduction(ReproductionFolder.claim(tmp_path / "out", "quick"), TINY, None)
-    with pytest.raises(InputError, match="stage geometry: 0 of 9 simulations done"):
+    folder = ReproductionFolder.claim(tmp_path / "out", "quick")
+    found = Reproduction(folder, TINY_WITH_PANELS, None)
+    with pytest.raises(InputError, match="stage geometry: 0 of 125 simulations done"):
         found.regression.compute(1, lambda fraction, words: None)
     fill(found, ["geometry"])
-    assert len(found.rows.read()) == 27
+    assert len(found.rows.read()) == 610
+
+
+def test_a_quick_reproduction_takes_the_rows_that_come_with_snowshed(tmp_path):
+    found = Reproduction(ReproductionFolder.claim(tmp_path / "out", "quick"), TINY, None)
+    assert "geometry" not in found.study_stages and len(found.rows.read()) == 610

@@ -140,7 +140,7 @@ def regress(
     rows = read_rows(table, measure, dict(map(_condition, conditions)))
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
     if rows.left_out and not quiet:
-        click.echo(f"note: {rows.left_out} rows have no measures and are left out", err=True)
+        click.echo(f"note: {rows.left_out} rows have no stack and are left out", err=True)
     try:
         with nullcontext() if quiet else progress_bar() as progress:
             reports = run(
@@ -158,7 +158,8 @@ def regress(
         raise Stopped(str(interrupted)) from None
     if not quiet:
         print_reports(reports)
-        click.echo(f"tables, figures and {MODEL} in {folder}")
+        model = f" and {MODEL}" if (folder / MODEL).is_file() else ""
+        click.echo(f"tables, figures{model} in {folder}")
 
 
 @click.command()

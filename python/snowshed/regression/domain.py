@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
@@ -12,6 +13,11 @@ from snowshed.regression.rows import INPUT_UNITS, INPUT_WORDS
 from snowshed.regression.scaling import Scaling
 
 TOLERANCE = 1e-6  # of standardised inputs
+
+
+#: Part of the panels whose nearest neighbours are not farther than what counts as spacing: a few
+#: lonely panels do not make the data dense about them.
+SPACED = 0.9
 
 
 @dataclass(frozen=True)
@@ -26,13 +32,14 @@ class Domain:
 
     inputs: Floats
 
-    def objections(self, question: Floats) -> list[str]:
-        """Say in words why a question lies outside the data; an empty list: it lies inside.
+    def objections(self, questions: Floats) -> list[str]:
+        """Say in words why questions lie outside the data; an empty list: all lie inside.
 
         Parameters
         ----------
-        question
-            Shape (4,): event, panel height in m, panel length in m, panel tilt in degrees.
+        questions
+            Shape (4,) or (m, 4): event, panel height in m, panel length in m, panel tilt in
+            degrees.
 
         Examples
         --------
@@ -42,16 +49,14 @@ class Domain:
         >>> Domain(corners).objections(np.array([1, 3, 1.5, 40]))
         ['panel height 3 m is outside the data, which reach from 1 to 2 m']
         """
-        found = self._ranges(question)
-        panel = question[1:]
-        if not found and not self._in_hull(panel):
-            found = [
-                f"each input is within its range, but not together: {panel_in_words(panel)} is "
-                f"outside the convex hull of the data; {self._nearest(panel)}"
-            ]
-        if not found and self._in_gap(panel):
-            found = [f"{panel_in_words(panel)} is in a gap of the data; {self._nearest(panel)}"]
-        return found
+        questions = np.atleast_2d(questions)
+        found = [text for question in questions for text in self._ranges(question)]
+        if not found:
+            # Most events have the same panels, which are looked at once.
+            asked = {(question[1:].tobytes(), self._panels(question[0]).tobytes()): question
+                     for question in questions}  # fmt: skip
+            found = [text for question in asked.values() for text in self._misplaced(question)]
+        return list(dict.fromkeys(found))
 
     def _ranges(self, question: Floats) -> list[str]:
         found = []
@@ -65,46 +70,53 @@ class Domain:
                 found.append(text.strip())
         return found
 
-    def _in_hull(self, panel: Floats) -> bool:
-        """Whether the panel is a weighted mean of the data's, which a linear program finds out."""
-        optimize = require("scipy.optimize", "regression", "the domain of a model")
-        points, place = self._scaled(panel)
-        count, dimension = points.shape
-        # Weights of the panels, and how far their mean misses the question in either direction.
-        either_way = np.hstack([np.eye(dimension), -np.eye(dimension)])
-        misses = np.vstack([either_way, np.zeros((1, 2 * dimension))])
-        equal = np.hstack([np.vstack([points.T, np.ones(count)]), misses])
-        cost = np.concatenate([np.zeros(count), np.ones(2 * dimension)])
-        found = optimize.linprog(cost, A_eq=equal, b_eq=np.append(place, 1.0), method="highs")
-        return bool(found.status == 0 and found.fun <= TOLERANCE * dimension)
+    def _misplaced(self, question: Floats) -> list[str]:
+        """Say where a question within all ranges lies among the panels that have its event."""
+        event, panel = question[0], question[1:]
+        panels = self._panels(event)
+        if not len(panels):
+            return [f"event {event:g} is not in the data"]
+        scaling = Scaling.of(panels)
+        points, place = scaling.scaled(panels), scaling.scaled(panel)
+        distances = np.linalg.norm(points - place, axis=1)
+        where = f"the nearest panel in the data has {panel_in_words(panels[distances.argmin()])}"
+        if len(panels) < len(self._panels()):
+            where = f"few panels have event {event:g}; {where}"
+        if not _in_hull(points, place):
+            return [
+                f"each input is within its range, but not together: {panel_in_words(panel)} is "
+                f"outside the convex hull of the data; {where}"
+            ]
+        if distances.min() > _widest_gap(points) + TOLERANCE:
+            return [f"{panel_in_words(panel)} is in a gap of the data; {where}"]
+        return []
 
-    def _in_gap(self, panel: Floats) -> bool:
-        """Whether the nearest panel is farther than the widest spacing of panels explains.
+    def _panels(self, event: Optional[float] = None) -> Floats:
+        """Return the panels that have an event, or all: shape (m, 3)."""
+        rows = self.inputs if event is None else self.inputs[self.inputs[:, 0] == event]
+        return np.asarray(np.unique(rows[:, 1:], axis=0))
 
-        In the middle of a cube of that edge the nearest corner is less than sqrt(dimension) of it
-        away.
-        """
-        points, place = self._scaled(panel)
-        between = np.linalg.norm(points[:, None] - points[None], axis=-1)
-        np.einsum("ii->i", between)[...] = np.inf
-        widest = float(between.min(axis=1).max()) if len(points) > 1 else 0.0
-        dimension = int((np.ptp(points, axis=0) > 0).sum())
-        distance = np.linalg.norm(points - place, axis=1).min()
-        return bool(distance > widest * np.sqrt(dimension) + TOLERANCE)
 
-    def _nearest(self, panel: Floats) -> str:
-        points, place = self._scaled(panel)
-        nearest = self._panels[int(np.argmin(np.linalg.norm(points - place, axis=1)))]
-        return f"the nearest panel in the data has {panel_in_words(nearest)}"
+def _in_hull(points: Floats, place: Floats) -> bool:
+    """Whether a place is a weighted mean of points: weights, none negative, that sum to one."""
+    optimize = require("scipy.optimize", "regression", "the domain of a model")
+    equal = np.vstack([points.T, np.ones(len(points))])
+    _, miss = optimize.nnls(equal, np.append(place, 1.0))
+    return bool(miss <= TOLERANCE)
 
-    @property
-    def _panels(self) -> Floats:
-        return np.asarray(np.unique(self.inputs[:, 1:], axis=0))
 
-    def _scaled(self, panel: Floats) -> tuple[Floats, Floats]:
-        """Return the data's panels and the one in question, standardised."""
-        scaling = Scaling.of(self._panels)
-        return scaling.scaled(self._panels), scaling.scaled(panel)
+def _widest_gap(points: Floats) -> float:
+    """Return how far from the nearest point a place between the points may be.
+
+    In the middle of a cube the nearest corner is less than sqrt(dimension) of its edge away.
+    """
+    if len(points) < 2:
+        return 0.0
+    between = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    np.einsum("ii->i", between)[...] = np.inf
+    spacing = float(np.quantile(between.min(axis=1), SPACED, method="lower"))
+    dimension = int((np.ptp(points, axis=0) > 0).sum())
+    return spacing * float(np.sqrt(dimension))
 
 
 def panel_in_words(panel: Floats) -> str:

@@ -46,7 +46,10 @@ class CrossValidation:
 
     def check(self, rows: StackRows) -> None:
         """Raise an InputError if there are too few rows or panels for so many folds."""
-        count = len(rows) if self.by == "rows" else int(rows.panels.max()) + 1
+        panels = int(rows.panels.max()) + 1
+        if panels < 2:
+            raise InputError("all rows are of one panel; at least 2 panels are needed")
+        count = len(rows) if self.by == "rows" else panels
         if count < self.folds * self.inner_folds:
             raise InputError(
                 f"{count} {self.by} are too few for {self.folds} x {self.inner_folds} folds; at "

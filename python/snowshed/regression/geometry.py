@@ -5,14 +5,15 @@ from __future__ import annotations
 from importlib import resources
 
 from snowshed._core import InputError
+from snowshed.number_words import exact
 
 #: How snow goes from one event to the next; each is a study of its own.
 BETWEEN = ("carry", "reseed")
 
 
-#: The panel's friction, which the thesis does not print. Of 0.3, 0.5, 0.6 and 0.7, tried on some of
+#: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
-FRICTION = 0.7
+FRICTION = 0.8
 
 
 def geometry_study(
@@ -54,5 +55,5 @@ def geometry_study(
     folder = resources.files("snowshed.regression") / "studies"
     text = (folder / name).read_text(encoding="utf-8")
     for name, value in (("friction", friction), ("dx", dx), ("seeds", seeds)):
-        text = text.replace("{" + name + "}", f"{value:g}")
+        text = text.replace("{" + name + "}", exact(value))
     return text.replace("{between}", between)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
 from snowshed._core import InputError
 from snowshed.arrays import Floats
+from snowshed.regression.dataset import MODEL
 from snowshed.regression.domain import Domain
 from snowshed.regression.model_file import StackModel, load_model
 from snowshed.regression.scaling import Scaling
@@ -18,14 +18,6 @@ from snowshed.scene import PathLike
 
 if TYPE_CHECKING:
     import pandas as pd
-
-#: The model that comes with snowshed, where there is one.
-SHIPPED = Path(__file__).with_name("geometry-model.npz")
-HOW_TO_MAKE = (
-    "no model comes with this version; make one with: snowshed geometry -o geometry.toml; "
-    "snowshed study run geometry.toml -o runs; snowshed study export runs -o rows.csv; "
-    "snowshed regress rows.csv -o regression; then give --model regression/model.npz"
-)
 
 
 class OutsideDataError(InputError):
@@ -93,10 +85,8 @@ def predict(
     InputError
         If there is no such model, or a value is not possible.
     """
-    if model is None and not SHIPPED.is_file():
-        raise InputError(HOW_TO_MAKE)
     _check(height=height, length=length, tilt=tilt, events=events)
-    loaded = load_model(SHIPPED if model is None else model)
+    loaded = load_model(MODEL if model is None else model)
     return answer(loaded, (height, length, tilt), events, kind=kind, extrapolate=extrapolate)
 
 
@@ -115,8 +105,7 @@ def answer(
     if kind not in model.kinds:
         raise InputError(f"kind: the model holds no {kind!r}; it has: {', '.join(model.kinds)}")
     questions = np.array([[event, *panel] for event in range(1, events + 1)], dtype=float)
-    domain = Domain(model.inputs)
-    objections = list(dict.fromkeys(text for one in questions for text in domain.objections(one)))
+    objections = Domain(model.inputs).objections(questions)
     if objections and not extrapolate:
         raise OutsideDataError(
             f"the question lies outside the data: {'; '.join(objections)}; no model can be "

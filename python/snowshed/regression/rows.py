@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.accuracy_settings import ACCURACY
 from snowshed.arrays import Booleans, Floats, Integers
 from snowshed.extras import require
 from snowshed.quoting import shortened
@@ -33,7 +34,7 @@ MEASURES: Mapping[str, tuple[str, str]] = {
     "body": ("body_height_m", "body_length_m"),
 }
 #: Columns that make two rows the result of different physics or methods where they differ.
-SETTINGS = ("version", "dimension", "dx", "precision", "transfer")
+SETTINGS = ("version", "dimension", *ACCURACY)
 FEWEST_ROWS = 20
 
 
@@ -50,7 +51,7 @@ class StackRows:
         height in m, stack length in m, of up to m stacks that differ in their seeds only; NaN where
         a row has fewer.
     left_out
-        How many rows of the table had no measures, because their runs failed.
+        How many rows of the table had no stack: the run failed, or the snow stayed on the panel.
     """
 
     inputs: Floats
@@ -199,9 +200,14 @@ def _chosen(table: pd.DataFrame, where: Mapping[str, str]) -> pd.DataFrame:
 
 
 def _rows(table: pd.DataFrame, measures: tuple[str, str]) -> StackRows:
+    import pandas as pd
+
     _check_columns(table, (*INPUTS, *measures))
     cells = table[list(measures)]
-    measured = cells.notna().all(axis=1) & (cells.astype(str) != "").all(axis=1)
+    # A failed run has no measures; where all snow stayed on the panel there is no stack.
+    nothing = cells.isna() | (cells.astype(str) == "")
+    nothing |= cells.apply(pd.to_numeric, errors="coerce") == 0
+    measured = ~nothing.any(axis=1)
     left_out = int((~measured).sum())
     table = table.loc[measured]
     _check_count(len(table), left_out)
@@ -209,6 +215,7 @@ def _rows(table: pd.DataFrame, measures: tuple[str, str]) -> StackRows:
     inputs = np.column_stack([_numbers(table, name) for name in INPUTS])
     height, length = (_numbers(table, name, positive=True) for name in measures)
     events = inputs[:, 0]
+    _check_seeds(table, inputs)
     _complain(table, INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
     found = rows_of(inputs, height, length)
     _check_count(len(found), left_out)
@@ -217,7 +224,7 @@ def _rows(table: pd.DataFrame, measures: tuple[str, str]) -> StackRows:
 
 def _check_count(rows: int, left_out: int) -> None:
     if rows < FEWEST_ROWS:
-        lost = f" (and {left_out} without measures)" if left_out else ""
+        lost = f" (and {left_out} without a stack)" if left_out else ""
         raise InputError(f"{rows} rows{lost}; at least {FEWEST_ROWS} are needed")
 
 
@@ -248,6 +255,18 @@ def _check_same(table: pd.DataFrame) -> None:
                     f"{name}: the rows have different values ({', '.join(values[:6])}), and it is "
                     f"not an input; choose some with --where {name}={values[0]}"
                 )
+
+
+def _check_seeds(table: pd.DataFrame, inputs: Floats) -> None:
+    """Refuse stacks with the same inputs that are not known to differ in their seeds."""
+    seeds = table["seed"].astype(str) if "seed" in table else [""] * len(table)
+    lines: dict[tuple[object, ...], int] = {}
+    for row, seed, number in zip(map(tuple, inputs), seeds, table.index):
+        first = lines.setdefault((*row, seed), int(number) + 2)
+        if first != int(number) + 2:
+            raise InputError(
+                f"lines {first} and {int(number) + 2}: the same panel, event and seed twice"
+            )
 
 
 def _numbers(table: pd.DataFrame, column: str, *, positive: bool = False) -> Floats:

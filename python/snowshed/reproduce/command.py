@@ -43,8 +43,8 @@ def reproduce() -> None:
     "names",
     multiple=True,
     metavar="NAME",
-    help="Compute only this: lab, s-index, fixation, calibration, geometry or regression; may be "
-    "repeated.",
+    help="Compute only this: lab, s-index, fixation, calibration, geometry (with --full) or "
+    "regression; may be repeated.",
 )
 @click.option(
     "--table", type=PATH, help="Rows of panels to use for chapter 5 instead of simulating them."
@@ -76,9 +76,9 @@ def thesis(
     from snowshed.reproduce.size import FULL, QUICK
     from snowshed.reproduce.stage import choose
 
-    if table is not None:
-        read_rows(table)  # so that a damaged table is known before anything is computed
     size = QUICK if quick else FULL
+    if table is not None:  # so that a wrong table is known before anything is computed
+        size.folds.check(read_rows(table))
     results = ReproductionFolder.claim(folder, size.name)
     all_of_it = Reproduction(results, size, table)
     if not report_only:

@@ -102,6 +102,15 @@ PANELS: Mapping[str, str] = {
     "panel tilt, °": "40, 50, 60, 70; at the reference panel also 45, 55, 65",
 }
 PANEL_ROWS = "610 (385 at 40°, 225 steeper)"
+#: Settings of the panels: column of the rows, name, what the thesis prints.
+PANEL_SETTINGS: Sequence[tuple[str, str, str]] = (
+    ("panel.friction", "friction of the panel", NOT_PRINTED),
+    ("events.between", "stack between events", "reseed"),
+    ("dx", "grid size, m", "0.01"),
+    ("particles_per_voxel", "particles per voxel", "at least 4"),
+    ("seed", "seedings (their seeds)", NOT_PRINTED),
+    ("version", "version of snowshed", ""),
+)
 #: Table 4.2.1: RMSE over the 48 triplets against the measured stacks, m.
 RMSE_STATISTICS: Mapping[str, Mapping[str, float]] = {
     "height": {"min": 0.009, "max": 0.067, "mean": 0.028, "median": 0.029},

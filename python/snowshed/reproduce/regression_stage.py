@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import resources
 from pathlib import Path
 from typing import Optional
 
@@ -18,15 +17,8 @@ from snowshed.reproduce.studies import PANELS
 KINDS = ("linear", "rbf")
 TARGET = "ratio"
 NAME = "regression"
-PACKAGED = "geometry-rows.csv"
 #: For the forecast: rows for which the cost of a fold is known, and its inner folds.
 KNOWN_ROWS, KNOWN_INNER = 610, 5
-
-
-def packaged_table() -> Optional[Path]:
-    """Return the table of panels that comes with snowshed, if one does."""
-    file = Path(str(resources.files("snowshed.regression") / PACKAGED))
-    return file if file.is_file() else None
 
 
 class GeometryRows:
@@ -38,6 +30,11 @@ class GeometryRows:
         self._folder = folder
         self.table = table
         self._panels = panels
+
+    @property
+    def file(self) -> Path:
+        """The table of the rows."""
+        return self._folder.geometry_rows if self.table is None else self.table
 
     def count(self) -> int:
         """Return how many rows there are, or will be."""

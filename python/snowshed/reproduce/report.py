@@ -79,7 +79,7 @@ def render(found: Reproduction, sections: Sequence[Section], claims: Sequence[Ju
             "date": datetime.now(timezone.utc).date().isoformat(),
             "stages": "; ".join(f"{one.name} {one.state().in_words()}" for one in found.stages),
         },
-        quick=not found.size.whole_geometry,
+        quick=found.size.name == "quick",
         sigmas=SIGMAS,
         counts=Counter(one.finding.verdict for one in claims),
         claims=claims_grid(claims),

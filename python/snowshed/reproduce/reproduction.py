@@ -8,9 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import Optional
 
+from snowshed.regression.dataset import geometry_table
 from snowshed.reproduce import studies
 from snowshed.reproduce.folder import ReproductionFolder
-from snowshed.reproduce.regression_stage import GeometryRows, RegressionStage, packaged_table
+from snowshed.reproduce.regression_stage import GeometryRows, RegressionStage
 from snowshed.reproduce.size import Size
 from snowshed.reproduce.stage import Stage, StudyStage
 
@@ -58,14 +59,14 @@ class Reproduction:
         Where, and how much.
     table
         Rows of panels to use for chapter 5 instead of simulating them. Without it, a quick
-        reproduction takes the table that comes with snowshed, if there is one.
+        reproduction takes the table that comes with snowshed.
     """
 
     def __init__(self, folder: ReproductionFolder, size: Size, table: Optional[Path]) -> None:
         self.folder = folder
         self.size = size
-        if table is None and not size.whole_geometry:
-            table = packaged_table()
+        if table is None and not size.simulates_panels:
+            table = geometry_table()
         self.table = table
         self.study_stages = {
             name: StudyStage(name, folder.runs, partial(make, size))

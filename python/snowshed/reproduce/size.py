@@ -28,8 +28,9 @@ class Size:
         Its triplets: M, p0 (Pa), beta.
     steps
         Of the posterior's Markov chains.
-    whole_geometry
-        Whether the panels are the thesis's 122, and those with more tilts besides.
+    simulates_panels
+        Whether the panels of chapter 5 are simulated, the thesis's 122 and those with more tilts
+        besides; else the rows are those that come with snowshed.
     folds
         Of the nested cross-validation.
     """
@@ -48,7 +49,7 @@ class Size:
     pressures: Sequence[float]
     cohesions: Sequence[float]
     steps: int
-    whole_geometry: bool
+    simulates_panels: bool
     folds: CrossValidation
 
 
@@ -67,7 +68,7 @@ FULL = Size(
     pressures=(4e3, 5e3, 6e3, 7e3),
     cohesions=(0.05, 0.1, 0.2),
     steps=2000,
-    whole_geometry=True,
+    simulates_panels=True,
     folds=CrossValidation(),
 )
 QUICK = Size(
@@ -85,6 +86,6 @@ QUICK = Size(
     pressures=(4e3, 7e3),
     cohesions=(0.05, 0.2),
     steps=500,
-    whole_geometry=False,
+    simulates_panels=False,
     folds=CrossValidation(rounds=2, folds=5, inner_folds=3),
 )

@@ -36,7 +36,7 @@ MEAN_HEIGHT, HEIGHT_ABOUT = 0.10, 0.010
 MEAN_LENGTH, LENGTH_ABOUT = 0.30, 0.061
 #: Part of the stack's length by which the tail may move and still hardly move.
 TAIL_STAYS = 0.1
-#: Part of the last event's snow that tells a slab that stayed from one that slid.
+#: Part of all events' snow that tells a slab that stayed from one that slid.
 STAYS = 0.5
 
 Metric = Callable[..., float]

@@ -16,15 +16,12 @@ from snowshed.reproduce.reproduction import Reproduction
 from snowshed.reproduce.section import Section
 from snowshed.reproduce.studies import TILTS
 from snowshed.study.table import read_table
+from snowshed.tables import read_csv
 
 TEXT = (
     "Panels in 2D with the calibrated snow, a slab 5 cm thick and as long as the panel, level "
     "ground. The thesis prints the single variations as a figure only (5.1.1), so that its words "
     "are judged: each over all rows that share the other inputs, not only at the reference panel.",
-)
-TRIAL = (
-    "These are the rows of a trial on a coarse grid (dx 5 cm) with short panels: they show the "
-    "way, and their verdicts mean little.",
 )
 CAPTION = "As Figure 5.1.1: each input in turn, the others at the reference panel."
 
@@ -37,9 +34,10 @@ def build(found: Reproduction) -> Section:
     picture = Picture.drawn(geometry_figure(drawn), "geometry", "Single variations", CAPTION)
     source = f"Rows of the table {found.table.name}." if found.table is not None else ""
     text = [*TEXT, *([source] if source else [])]
-    if found.table is None and not found.size.whole_geometry:
-        text += TRIAL
-    tables = [("Tables 5.1.1 and 5.2.1: the data set", inputs_grid(table))]
+    tables = [
+        ("Tables 5.1.1 and 5.2.1: the data set", inputs_grid(table)),
+        ("How it was computed", settings_grid(read_csv(found.rows.file))),
+    ]
     claims = judge(GEOMETRY, table)
     return Section("geometry", "Panels (5.1)", text, tables, [picture], claims)
 
@@ -60,9 +58,19 @@ def inputs_grid(table: pd.DataFrame) -> Grid:
     return Grid(["input", "thesis", "here"], rows, "lll")
 
 
+def settings_grid(table: pd.DataFrame) -> Grid:
+    """Return the settings of the rows that their table tells, the thesis's beside ours."""
+    rows = [
+        [name, thesis, ", ".join(str(value) for value in np.unique(table[column]))]
+        for column, name, thesis in printed.PANEL_SETTINGS
+        if column in table
+    ]
+    return Grid(["setting", "thesis", "here"], rows, "lll")
+
+
 def _more_tilts(found: Reproduction) -> list[pd.DataFrame]:
     """Return the panels of Table 5.1.1 that are not in the data set, if they are computed."""
-    if found.table is not None or not found.size.whole_geometry:
+    if found.table is not None:
         return []
     try:
         table = read_table(found.folder.runs, TILTS).dropna(subset=["height_m", "length_m"])

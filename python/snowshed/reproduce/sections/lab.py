@@ -80,7 +80,7 @@ def release_rows(table: pd.DataFrame) -> pd.DataFrame:
     """Return the last event of each run at 30 degrees, with the part that stayed on the panel."""
     table = table.rename(columns=COLUMNS).dropna(subset=["on_panel_kg", "mass_kg"])
     last = table.sort_values("event").groupby(["friction", "seed"]).tail(1).copy()
-    last["stayed"] = last["on_panel_kg"] / last["mass_kg"]
+    last["stayed"] = last["on_panel_kg"] / (last["on_panel_kg"] + last["mass_kg"])
     return last[["friction", "seed", "event", "stayed", "ended", "height", "length"]]
 
 
