@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
@@ -113,34 +113,31 @@ def answer(
             "--extrapolate"
         )
     scaled = Scaling.of(model.inputs).scaled(questions)
-    tables = [
-        _rows(model, target, kind, scaled)
+    parts = [
+        _columns(model, target, kind, scaled)
         for target in model.targets
         if (target, kind) in model.members
     ]
-    table = pd.concat(tables).sort_values("event", kind="stable").reset_index(drop=True)
-    return Prediction(table, kind, model.title, tuple(objections))
+    columns = {name: np.stack([part[name] for part in parts], axis=1).ravel() for name in parts[0]}
+    return Prediction(pd.DataFrame(columns), kind, model.title, tuple(objections))
 
 
-def _rows(model: StackModel, target: str, kind: str, scaled: Floats) -> pd.DataFrame:
-    import pandas as pd
-
+def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[str, Any]:
+    """Return the columns of one target, each with a value for every event."""
     member = model.members[target, kind]
     found = member.ensemble.predict(scaled) * member.deviation + member.mean
     value, deviation = found.mean(axis=0), found.std(axis=0)
     spread = member.spread.half_width(value, deviation, SPREAD)
     reach = member.spread.half_width(value, deviation, INTERVAL)
-    return pd.DataFrame(
-        {
-            "event": np.arange(1, len(scaled) + 1),
-            "target": target,
-            "value": value,
-            "spread": spread,
-            "low": np.maximum(value - reach, 0.0),  # neither a length nor a ratio is negative
-            "high": value + reach,
-            "models": deviation,
-        }
-    )
+    return {
+        "event": np.arange(1, len(scaled) + 1),
+        "target": np.full(len(scaled), target, dtype=object),
+        "value": value,
+        "spread": spread,
+        "low": np.maximum(value - reach, 0.0),  # neither a length nor a ratio is negative
+        "high": value + reach,
+        "models": deviation,
+    }
 
 
 def _check(*, height: float, length: float, tilt: float, events: int) -> None:
