@@ -7,15 +7,13 @@ from contextlib import contextmanager
 
 from snowshed.extras import require
 
-#: Each brings threads of its own, and only those of loaded libraries can be limited.
-LIBRARIES = ("scipy.linalg", "sklearn.svm")
-
 
 @contextmanager
 def one_thread() -> Iterator[None]:
     """Keep libraries from using more than one thread: for small matrices they only get slower."""
     threadpoolctl = require("threadpoolctl", "regression", "regression")
-    for library in LIBRARIES:
-        require(library, "regression", "regression")
+    # Each brings threads of its own, and only those of loaded libraries can be limited.
+    require("scipy.linalg", "regression", "regression")
+    require("sklearn.svm", "regression", "regression")
     with threadpoolctl.threadpool_limits(1):
         yield
