@@ -13,8 +13,6 @@ from snowshed.regression.rows import INPUT_UNITS, INPUT_WORDS
 from snowshed.regression.scaling import Scaling
 
 TOLERANCE = 1e-6  # of standardised inputs
-
-
 #: Part of the panels whose nearest neighbours are not farther than what counts as spacing: a few
 #: lonely panels do not make the data dense about them.
 SPACED = 0.9
@@ -53,9 +51,11 @@ class Domain:
         found = [text for question in questions for text in self._ranges(question)]
         if not found:
             # Most events have the same panels, which are looked at once.
-            asked = {(question[1:].tobytes(), self._panels(question[0]).tobytes()): question
-                     for question in questions}  # fmt: skip
-            found = [text for question in asked.values() for text in self._misplaced(question)]
+            asked: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
+            for question in questions:
+                panels = self._panels(question[0])
+                asked.setdefault((question[1:].tobytes(), panels.tobytes()), (question, panels))
+            found = [text for one in asked.values() for text in self._misplaced(*one)]
         return list(dict.fromkeys(found))
 
     def _ranges(self, question: Floats) -> list[str]:
@@ -70,10 +70,9 @@ class Domain:
                 found.append(text.strip())
         return found
 
-    def _misplaced(self, question: Floats) -> list[str]:
+    def _misplaced(self, question: Floats, panels: Floats) -> list[str]:
         """Say where a question within all ranges lies among the panels that have its event."""
         event, panel = question[0], question[1:]
-        panels = self._panels(event)
         if not len(panels):
             return [f"event {event:g} is not in the data"]
         scaling = Scaling.of(panels)

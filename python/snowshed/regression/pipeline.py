@@ -137,10 +137,11 @@ class _Output:
             for kind in (name for name in STORED_KINDS if name in elected):
                 members[target, kind], unseen[kind] = self._member(target, kind, elected[kind])
             reports.append(self._report(target, elected, unseen, members))
-        (self._folder / MODEL).unlink(missing_ok=True)  # one of an earlier call is of other models
         if members:
             model = StackModel(self._rows.inputs, members, title, measure)
             save_model(model, self._folder / MODEL)
+        else:
+            (self._folder / MODEL).unlink(missing_ok=True)  # an earlier call's
         return reports
 
     def _member(

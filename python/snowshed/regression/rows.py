@@ -145,9 +145,12 @@ def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     >>> rows.targets["ratio"].tolist(), rows.panels.tolist()
     ([0.25, 0.5], [0, 0])
     """
+    import pandas as pd
+
     inputs = np.asarray(inputs, float)
     height, length = np.asarray(height, float), np.asarray(length, float)
-    row, repetition = _repetitions(inputs)
+    alike = pd.DataFrame(inputs).groupby(list(range(inputs.shape[1])), sort=False)
+    row, repetition = alike.ngroup().to_numpy(), alike.cumcount().to_numpy()
     first = repetition == 0
 
     def arranged(values: Floats) -> Floats:
@@ -157,17 +160,6 @@ def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
 
     measured = {"ratio": height / length, "height": height, "length": length}
     return StackRows(inputs[first], {name: arranged(values) for name, values in measured.items()})
-
-
-def _repetitions(inputs: Floats) -> tuple[Integers, Integers]:
-    """Return for each stack its row, in the order of appearance, and which of its stacks it is."""
-    rows: dict[tuple[float, ...], list[int]] = {}
-    for number, key in enumerate(map(tuple, inputs)):
-        rows.setdefault(key, []).append(number)
-    row, repetition = np.empty(len(inputs), dtype=np.int64), np.empty(len(inputs), dtype=np.int64)
-    for place, numbers in enumerate(rows.values()):
-        row[numbers], repetition[numbers] = place, np.arange(len(numbers))
-    return row, repetition
 
 
 def _read(path: Path) -> pd.DataFrame:
@@ -259,14 +251,17 @@ def _check_same(table: pd.DataFrame) -> None:
 
 def _check_seeds(table: pd.DataFrame, inputs: Floats) -> None:
     """Refuse stacks with the same inputs that are not known to differ in their seeds."""
-    seeds = table["seed"].astype(str) if "seed" in table else [""] * len(table)
-    lines: dict[tuple[object, ...], int] = {}
-    for row, seed, number in zip(map(tuple, inputs), seeds, table.index):
-        first = lines.setdefault((*row, seed), int(number) + 2)
-        if first != int(number) + 2:
-            raise InputError(
-                f"lines {first} and {int(number) + 2}: the same panel, event and seed twice"
-            )
+    import pandas as pd
+
+    stacks = pd.DataFrame(inputs).assign(seed=table["seed"].to_numpy() if "seed" in table else "")
+    again = stacks.duplicated()
+    if again.any():
+        row = int(again.argmax())
+        first = int((stacks == stacks.iloc[row]).all(axis=1).argmax())
+        raise InputError(
+            f"lines {_line(table, first)} and {_line(table, row)}: the same panel, event and seed "
+            "twice"
+        )
 
 
 def _numbers(table: pd.DataFrame, column: str, *, positive: bool = False) -> Floats:
@@ -282,6 +277,10 @@ def _complain(table: pd.DataFrame, column: str, wrong: Booleans, expected: str) 
     """Raise an error about the first wrong cell, with its line in the file."""
     if wrong.any():
         row = int(np.argmax(wrong))
-        line = int(table.index[row]) + 2  # lines count from 1, and the first holds the names
         cell = str(table[column].iloc[row])
-        raise InputError(f"line {line}, {column}: {cell!r} is not {expected}")
+        raise InputError(f"line {_line(table, row)}, {column}: {cell!r} is not {expected}")
+
+
+def _line(table: pd.DataFrame, row: int) -> int:
+    """Return a row's line in the file: lines count from 1, and the first holds the names."""
+    return int(table.index[row]) + 2

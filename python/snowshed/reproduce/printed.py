@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -102,14 +102,14 @@ PANELS: Mapping[str, str] = {
     "panel tilt, °": "40, 50, 60, 70; at the reference panel also 45, 55, 65",
 }
 PANEL_ROWS = "610 (385 at 40°, 225 steeper)"
-#: Settings of the panels: column of the rows, name, what the thesis prints.
-PANEL_SETTINGS: Sequence[tuple[str, str, str]] = (
-    ("panel.friction", "friction of the panel", NOT_PRINTED),
-    ("events.between", "stack between events", "reseed"),
-    ("dx", "grid size, m", "0.01"),
-    ("particles_per_voxel", "particles per voxel", "at least 4"),
-    ("seed", "seedings (their seeds)", NOT_PRINTED),
-    ("version", "version of snowshed", ""),
+#: Settings of the panels, by the columns of their rows.
+PANEL_SETTINGS: Sequence[Printed] = (
+    Printed("friction of the panel", "panel.friction", NOT_PRINTED),
+    Printed("stack between events", "events.between", "reseed"),
+    Printed("grid size, m", "dx", "0.01"),
+    Printed("particles per voxel", "particles_per_voxel", "at least 4"),
+    replace(_SEED, path="seed"),
+    Printed("version of snowshed", "version", ""),
 )
 #: Table 4.2.1: RMSE over the 48 triplets against the measured stacks, m.
 RMSE_STATISTICS: Mapping[str, Mapping[str, float]] = {

@@ -8,6 +8,7 @@ effects. A block with runs that failed or are not yet computed is left out as a 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,15 +45,14 @@ def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
         If the points are no such design, or fewer than two blocks are complete.
     """
     analyzer = require("SALib.analyze.sobol", EXTRA, "Sobol indices")
+    design = _Design.of(stored, 2, _is_saltelli, "a sample after Saltelli")
 
-    def analyze(
-        names: list[str], points: Floats, chosen: Booleans, values: Floats
-    ) -> dict[str, Floats]:
+    def analyze(chosen: Booleans, values: Floats) -> dict[str, Floats]:
         if np.ptp(values[chosen]) == 0:  # no variance to share out
             columns = ("first", "first_interval", "total", "total_interval")
-            return dict.fromkeys(columns, np.full(len(names), np.nan))
+            return dict.fromkeys(columns, np.full(len(design.names), np.nan))
         found = analyzer.analyze(
-            problem(names),
+            problem(design.names),
             values[chosen],
             calc_second_order=False,
             num_resamples=RESAMPLES,
@@ -66,7 +66,7 @@ def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
             "total_interval": found["ST_conf"],
         }
 
-    return _analyzed(stored, 2, _is_saltelli, "a sample after Saltelli", analyze)
+    return _analyzed(stored, design, analyze)
 
 
 def morris_effects(stored: StoredRuns) -> pd.DataFrame:
@@ -90,14 +90,13 @@ def morris_effects(stored: StoredRuns) -> pd.DataFrame:
         two trajectories are complete.
     """
     analyzer = require("SALib.analyze.morris", EXTRA, "elementary effects")
+    design = _Design.of(stored, 1, _is_trajectory, "trajectories after Morris")
+    unit, steps = _even_steps(design.names, design.points)
+    scale = LEVELS / (2 * (LEVELS - 1)) / steps  # SALib takes steps to be those of its levels
 
-    def analyze(
-        names: list[str], points: Floats, chosen: Booleans, values: Floats
-    ) -> dict[str, Floats]:
-        unit, steps = _even_steps(names, points)
-        scale = LEVELS / (2 * (LEVELS - 1)) / steps  # SALib takes steps to be those of its levels
+    def analyze(chosen: Booleans, values: Floats) -> dict[str, Floats]:
         found = analyzer.analyze(
-            problem(names),
+            problem(design.names),
             unit[chosen],
             values[chosen] / values[chosen].mean(),
             num_levels=LEVELS,
@@ -112,48 +111,76 @@ def morris_effects(stored: StoredRuns) -> pd.DataFrame:
             "spread": found["sigma"] * scale,
         }
 
-    return _analyzed(stored, 1, _is_trajectory, "trajectories after Morris", analyze)
+    return _analyzed(stored, design, analyze)
+
+
+@dataclass(frozen=True)
+class _Design:
+    """The points of a designed sample, which come in blocks.
+
+    Attributes
+    ----------
+    names
+        Of the inputs.
+    points
+        Shape (blocks * size, inputs), in the inputs' units.
+    size
+        Points of a block.
+    """
+
+    names: list[str]
+    points: Floats
+    size: int
+
+    @classmethod
+    def of(
+        cls, stored: StoredRuns, more: int, is_block: Callable[[Booleans], bool], words: str
+    ) -> _Design:
+        """Read the design off a study's points.
+
+        Parameters
+        ----------
+        stored
+            The study.
+        more
+            How many points a block has more than inputs.
+        is_block
+            Whether the changes from each point to the next make a block.
+        words
+            What the points should be, for messages.
+        """
+        names = list(stored.axes)
+        points = stored.points[names].to_numpy(float)
+        _check_blocks(points, len(names) + more, is_block, words)
+        return cls(names, points, len(names) + more)
 
 
 def _analyzed(
     stored: StoredRuns,
-    more: int,
-    is_block: Callable[[Booleans], bool],
-    design: str,
-    analyze: Callable[[list[str], Floats, Booleans, Floats], dict[str, Floats]],
+    design: _Design,
+    analyze: Callable[[Booleans, Floats], dict[str, Floats]],
 ) -> pd.DataFrame:
     """Return indices of all events and targets.
 
     Parameters
     ----------
-    stored
-        The study.
-    more
-        How many points a block has more than inputs.
-    is_block
-        Whether the changes from each point to the next make a block.
-    design
-        What the points should be, for messages.
+    stored, design
+        The study, and its design.
     analyze
-        Returns columns for the inputs' names, points, which of them count, and values.
+        Returns columns for which of the points count, and the values at all of them.
     """
     import pandas as pd
 
-    names = list(stored.axes)
-    points = stored.points[names].to_numpy(float)
-    size = len(names) + more
-    blocks = _blocks(points, size, is_block, design)
     found: list[dict[str, Any]] = []
     for event, target, values in _values(stored):
-        complete = np.isfinite(values.reshape(-1, size)).all(axis=1)
+        complete = np.isfinite(values.reshape(-1, design.size)).all(axis=1)
         if complete.sum() < FEWEST:
             raise InputError(
-                f"event {event}: {complete.sum()} of {blocks} blocks of {size} runs are complete; "
-                f"at least {FEWEST} are needed"
+                f"event {event}: {complete.sum()} of {complete.size} blocks of {design.size} runs "
+                f"are complete; at least {FEWEST} are needed"
             )
-        chosen = np.repeat(complete, size)
-        columns = analyze(names, points, chosen, values)
-        for number, name in enumerate(names):
+        columns = analyze(np.repeat(complete, design.size), values)
+        for number, name in enumerate(design.names):
             row = {"parameter": name, "event": event, "target": target}
             row.update({column: float(of[number]) for column, of in columns.items()})
             found.append({**row, "blocks": int(complete.sum())})
@@ -168,8 +195,10 @@ def _values(stored: StoredRuns) -> Iterator[tuple[int, str, Floats]]:
             yield event, target, rows[target].reindex(stored.points["hash"]).to_numpy(float)
 
 
-def _blocks(points: Floats, size: int, is_block: Callable[[Booleans], bool], design: str) -> int:
-    """Return the number of blocks, all of which are checked."""
+def _check_blocks(
+    points: Floats, size: int, is_block: Callable[[Booleans], bool], design: str
+) -> None:
+    """Raise an InputError unless the points come in such blocks."""
     if len(points) % size or len(points) == 0:
         raise InputError(
             f"its {len(points)} points are not {design}: for {size - 1} or fewer inputs these come "
@@ -178,7 +207,6 @@ def _blocks(points: Floats, size: int, is_block: Callable[[Booleans], bool], des
     for start in range(0, len(points), size):
         if not is_block(np.diff(points[start : start + size], axis=0) != 0):
             raise InputError(f"points {start + 1} to {start + size} are not {design}")
-    return len(points) // size
 
 
 def _is_trajectory(changes: Booleans) -> bool:

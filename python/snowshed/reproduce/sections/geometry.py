@@ -36,7 +36,7 @@ def build(found: Reproduction) -> Section:
     text = [*TEXT, *([source] if source else [])]
     tables = [
         ("Tables 5.1.1 and 5.2.1: the data set", inputs_grid(table)),
-        ("How it was computed", settings_grid(read_csv(found.rows.file))),
+        ("How it was computed", columns_grid(read_csv(found.rows.file))),
     ]
     claims = judge(GEOMETRY, table)
     return Section("geometry", "Panels (5.1)", text, tables, [picture], claims)
@@ -58,12 +58,12 @@ def inputs_grid(table: pd.DataFrame) -> Grid:
     return Grid(["input", "thesis", "here"], rows, "lll")
 
 
-def settings_grid(table: pd.DataFrame) -> Grid:
+def columns_grid(table: pd.DataFrame) -> Grid:
     """Return the settings of the rows that their table tells, the thesis's beside ours."""
     rows = [
-        [name, thesis, ", ".join(str(value) for value in np.unique(table[column]))]
-        for column, name, thesis in printed.PANEL_SETTINGS
-        if column in table
+        [row.name, row.text, ", ".join(str(value) for value in np.unique(table[row.path]))]
+        for row in printed.PANEL_SETTINGS
+        if row.path in table
     ]
     return Grid(["setting", "thesis", "here"], rows, "lll")
 
