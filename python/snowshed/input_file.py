@@ -6,12 +6,13 @@ from pathlib import Path
 
 from snowshed._core import InputError
 
+MB = 1 << 20
 #: What people write, scenes and studies and lists, is nowhere near as long; tables may be.
-LARGEST_MB, LARGEST_TABLE_MB = 64, 1024
+LARGEST, LARGEST_TABLE = 64 * MB, 1024 * MB
 
 
-def read_input(path: Path, largest_mb: int = LARGEST_MB) -> bytes:
-    """Return the content of a file; devices without end are read no farther than the limit.
+def read_input(path: Path, largest: int = LARGEST) -> bytes:
+    """Return the content of a file; devices without end are read no farther than `largest` bytes.
 
     Raises
     ------
@@ -27,9 +28,9 @@ def read_input(path: Path, largest_mb: int = LARGEST_MB) -> bytes:
     ...
     snowshed._core.InputError: /dev/zero: longer than 64 MB
     """
-    largest = largest_mb << 20
     with path.open("rb") as file:
         content = file.read(largest + 1)
     if len(content) > largest:
-        raise InputError(f"{path}: longer than {largest_mb} MB")
+        limit = f"{largest} bytes" if largest % MB else f"{largest // MB} MB"
+        raise InputError(f"{path}: longer than {limit}")
     return content

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
 from snowshed.atomic import write_text
-from snowshed.input_file import LARGEST_TABLE_MB, read_input
+from snowshed.input_file import LARGEST_TABLE, read_input
 from snowshed.quoting import quoted
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def read_csv(path: Path, **options: Any) -> pd.DataFrame:
     """
     import pandas as pd
 
-    content = read_input(path, LARGEST_TABLE_MB)
+    content = read_input(path, LARGEST_TABLE)
     try:
         _check_rows(io.StringIO(content.decode("utf-8"), newline=""))
         table: pd.DataFrame = pd.read_csv(io.BytesIO(content), **options)

@@ -238,4 +238,4 @@ def test_the_process_gives_up_files_and_memory():
 
 def test_scripts_that_are_no_text(tmp_path):
     error = error_of(tmp_path, "x" * (2 << 20))
-    assert error == "init.lua: longer than 1048576 bytes"
+    assert error == "init.lua: longer than 1 MB"

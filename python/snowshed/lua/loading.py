@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.input_file import read_input
 from snowshed.lua.builder import Builder, LuaRun
 from snowshed.lua.limits import Limits
 from snowshed.lua.sandbox import Place, Script, run_sandboxed
@@ -69,10 +70,7 @@ def load_lua(
 
 
 def _read(file: Path, limits: Limits) -> Script:
-    with file.open("rb") as stream:
-        content = stream.read(limits.script_bytes + 1)
-    if len(content) > limits.script_bytes:
-        raise InputError(f"{file}: longer than {limits.script_bytes} bytes")
+    content = read_input(file, limits.script_bytes)
     try:
         return Script(str(file), content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:

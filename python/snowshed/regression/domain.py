@@ -79,8 +79,9 @@ class Domain:
         points, place = scaling.scaled(panels), scaling.scaled(panel)
         distances = np.linalg.norm(points - place, axis=1)
         where = f"the nearest panel in the data has {panel_in_words(panels[distances.argmin()])}"
-        if len(panels) < len(self._panels()):
-            where = f"few panels have event {event:g}; {where}"
+        known = len(self._panels())
+        if len(panels) < known:
+            where = f"only {len(panels)} of {known} panels have event {event:g}; {where}"
         if not _in_hull(points, place):
             return [
                 f"each input is within its range, but not together: {panel_in_words(panel)} is "
