@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib import resources
 from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.calibration.measurements import Measurement
 from snowshed.number_words import exact
+from snowshed.study_template import filled
 
 #: Table 4.1.1, SI units.
 FULL = {
@@ -59,8 +59,4 @@ def calibration_study(
     values["tilts"] = f"[{', '.join(map(exact, tilts))}]"
     values["events"] = str(max(one.event for one in measurements))
     values["seeds"] = str(SEEDS if seeds is None else seeds)
-    folder = resources.files("snowshed.calibration") / "studies"
-    text = (folder / "grid.toml").read_text(encoding="utf-8")
-    for key, value in values.items():
-        text = text.replace(f"{{{key}}}", value)
-    return text
+    return filled("snowshed.calibration", "grid", values)

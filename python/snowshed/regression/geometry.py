@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import resources
+from typing import Union
 
 from snowshed._core import InputError
-from snowshed.number_words import exact
+from snowshed.study_template import filled
 
 #: How snow goes from one event to the next; each is a study of its own.
 BETWEEN = ("carry", "reseed")
-
-
 #: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
 FRICTION = 0.8
@@ -51,9 +49,10 @@ def geometry_study(
     """
     if between not in BETWEEN:
         raise InputError(f"between: {between!r} is unknown; allowed: {', '.join(BETWEEN)}")
-    name = "geometry-trial.toml" if trial else "geometry.toml"
-    folder = resources.files("snowshed.regression") / "studies"
-    text = (folder / name).read_text(encoding="utf-8")
-    for name, value in (("friction", friction), ("dx", dx), ("seeds", seeds)):
-        text = text.replace("{" + name + "}", exact(value))
-    return text.replace("{between}", between)
+    values: dict[str, Union[str, float]] = {
+        "between": between,
+        "friction": friction,
+        "dx": dx,
+        "seeds": seeds,
+    }
+    return filled("snowshed.regression", "geometry-trial" if trial else "geometry", values)

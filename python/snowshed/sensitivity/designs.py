@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import resources
 from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.sensitivity.sampling import SAMPLERS
+from snowshed.study_template import filled
 
 
 @dataclass(frozen=True)
@@ -98,18 +98,13 @@ def sensitivity_study(
         raise InputError(f"samples: not for {method}, whose points are those of the thesis")
     seeds = _checked("seeds", seeds, size.seeds)
     samples = _checked("samples", samples, size.samples)
-    template = "sampled" if sampled else method
-    folder = resources.files("snowshed.sensitivity") / "studies"
-    text = (folder / f"{template}.toml").read_text(encoding="utf-8")
     values = dict(QUICK_SCENE if quick else FULL_SCENE)
     values["name"] = f"sensitivity-{method}{'-quick' if quick else ''}"
     values["seeds"] = str(seeds)
     if sampled:
         values["design"] = DESIGNS[method].format(count=samples)
         values["points"] = _points(SAMPLERS[method](samples))
-    for key, value in values.items():
-        text = text.replace(f"{{{key}}}", value)
-    return text
+    return filled("snowshed.sensitivity", "sampled" if sampled else method, values)
 
 
 def _checked(name: str, given: Optional[int], default: int) -> int:
