@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib import resources
-from typing import Union
-
-from snowshed.number_words import exact
 
 
-def filled(package: str, name: str, values: Mapping[str, Union[str, float]]) -> str:
+def filled(package: str, name: str, values: Mapping[str, str]) -> str:
     """Return a study file of a package's folder ``studies``, its places filled.
 
     Parameters
@@ -19,16 +16,15 @@ def filled(package: str, name: str, values: Mapping[str, Union[str, float]]) -> 
     name
         The file, without its ending.
     values
-        What stands in ``{key}``: text as it is, numbers so that the same number is read.
+        What stands in ``{key}``, as TOML.
 
     Examples
     --------
-    >>> values = {"between": "carry", "friction": 0.8, "dx": 0.01, "seeds": 2}
-    >>> "panel.friction = 0.8" in filled("snowshed.regression", "geometry", values)
+    >>> "panel.friction = 0.8" in filled("snowshed.regression", "geometry", {"friction": "0.8"})
     True
     """
     file = resources.files(package) / "studies" / f"{name}.toml"
     text = file.read_text(encoding="utf-8")
     for key, value in values.items():
-        text = text.replace(f"{{{key}}}", value if isinstance(value, str) else exact(value))
+        text = text.replace(f"{{{key}}}", value)
     return text

@@ -175,6 +175,24 @@ def test_elementary_effects_of_a_linear_function():
         assert row["spread"] == pytest.approx(0, abs=1e-9)
 
 
+def test_noise_shows_in_the_strength_of_the_seed():
+    """What has no effect is as strong as the seed, on average over repetitions."""
+    base = designed("morris", lambda snow, event: 5 + unit(snow)[M], events=(1,), samples=20)
+    generator = np.random.default_rng(1)
+    found = []
+    for _ in range(8):
+        noise = generator.normal(0, 0.05, len(base.rows))
+        rows = base.rows.assign(height=base.rows["height"] + noise)
+        table = morris_effects(StoredRuns("noisy", base.axes, base.points, rows))
+        found.append({path: pick(table, path, column="strength") for path in (M, BETA, SEED)})
+    mean = pd.DataFrame(found).mean()
+    assert mean[BETA] == pytest.approx(mean[SEED], rel=0.15)
+    # Between two stacks: sqrt(2) sigma, of which the mean absolute value; per two thirds.
+    of_noise = np.sqrt(2) * np.sqrt(2 / np.pi) * 0.05 / (2 / 3) / 5.5
+    assert mean[SEED] == pytest.approx(of_noise, rel=0.15)
+    assert mean[M] == pytest.approx(1 / 5.5, rel=0.1)
+
+
 @pytest.mark.parametrize("step", [0.05, 0.4, 2 / 3, 1.0])
 def test_effects_of_trajectories_with_any_step(step):
     """Height 2 + x + 2 y over the unit square, whose corners every trajectory starts from."""

@@ -188,6 +188,18 @@ def test_a_failure_is_reported_alike_after_its_process_was_killed(tmp_path, monk
     assert again.error == "time step underflow"
 
 
+def test_without_memory_enough_a_run_can_be_tried_again(tmp_path, monkeypatch):
+    class Hungry(_core.Simulation):
+        def run(self, callback, interval_s=0.5):
+            raise MemoryError
+
+    task = task_of(tiny_scene(), tmp_path / "hungry")
+    monkeypatch.setattr(_core, "Simulation", Hungry)
+    assert compute(task).status == "lost"
+    monkeypatch.undo()
+    assert compute(task).status == "done"
+
+
 def test_a_file_that_changed_after_registration_stops_the_study(tmp_path):
     task = task_of(tiny_scene(), tmp_path / "work")
     changed = Task("0" * 32, task.scene, task.folder, 1)

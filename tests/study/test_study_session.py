@@ -111,6 +111,24 @@ def test_a_machine_that_cannot_stops_the_study_and_loses_nothing(scripted, tmp_p
     assert states(tmp_path / "store") == [("done", None)] * 3
 
 
+def test_runs_that_end_beside_one_that_cannot_are_stored(scripted, tmp_path, monkeypatch):
+    """Two end at once, the first unable; the third ends while the workers are stopped."""
+
+    def unable_first(task):
+        unable = task.hash == scripted.tasks[0].hash
+        return Outcome(task.hash, "unable", error="no such file") if unable else outcome(task.hash)
+
+    def all_at_once(timeout):
+        return [scripted.answer(scripted.open.pop(0)) for _ in range(len(scripted.open))]
+
+    scripted.answer = unable_first
+    monkeypatch.setattr(scripted, "collect", all_at_once)
+    with pytest.raises(StudyError, match="no such file"):
+        STUDY.run(tmp_path / "store")
+    assert scripted.stopped and scripted.closed
+    assert [status for status, _ in states(tmp_path / "store")] == ["pending", "done", "done"]
+
+
 def test_a_full_disk_while_storing(scripted, tmp_path, monkeypatch):
     monkeypatch.setattr(session.Store, "record", _fill_disk_then_record(session.Store.record))
     with pytest.raises(StudyError, match="disk is full"):

@@ -253,5 +253,20 @@ def test_a_store_of_another_form_is_refused(opened):
         Store.open(opened.folder)
 
 
+def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
+    with Store.create(tmp_path / "store") as opened:
+        opened.register("tiny", ["panel.friction"], RUNS)
+        opened.record(outcome(HASHES[0]))
+        monkeypatch.setattr(store.os, "access", lambda *where: False)
+        with pytest.raises(InputError, match=r"left amid a change; copy it to where it can be"):
+            Store.open(tmp_path / "store")
+    before = {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()}
+    with Store.open(tmp_path / "store") as read_only:
+        assert [run.status for run in read_only.runs("tiny")] == ["done", "pending", "pending"]
+        with pytest.raises(StudyError, match="readonly"):
+            read_only.claim(HASHES[1], "me")
+    assert {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()} == before
+
+
 def test_rows_say_which_version_computed_them(opened):
     assert {run.version for run in opened.runs("tiny")} == {_core.version}

@@ -16,7 +16,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.arrays import Booleans, Floats
 from snowshed.extras import require
-from snowshed.sensitivity.sampling import EXTRA, LEVELS, problem
+from snowshed.sensitivity.sampling import EXTRA, LEVELS, SEED, problem
 from snowshed.sensitivity.stored import TARGETS, StoredRuns
 
 if TYPE_CHECKING:
@@ -73,7 +73,9 @@ def morris_effects(stored: StoredRuns) -> pd.DataFrame:
     """Return elementary effects after Morris per parameter and event.
 
     An effect is the change of the stack, relative to its mean over the sample, per sampled range of
-    the parameter, or of its logarithm where that has the steps.
+    the parameter, or of its logarithm where that has the steps. A seed has no range: its effects
+    are taken as if its steps had the mean size of the others, so that its strength is what noise
+    adds to theirs.
 
     Returns
     -------
@@ -217,20 +219,25 @@ def _is_trajectory(changes: Booleans) -> bool:
 def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
     """Return the points in the unit cube, and the size of each input's step there.
 
-    Inputs are taken linearly or by their logarithms, whichever makes all their steps equal.
+    Inputs are taken linearly or by their logarithms, whichever makes all their steps equal. Of
+    seeds nothing counts but that they differ.
     """
-    unit, steps = np.empty_like(points), np.empty(len(names))
+    unit, steps = np.empty_like(points), np.full(len(names), np.nan)
     for number, name in enumerate(names):
-        values = points[:, number]
-        scales = [values, np.log(values)] if (values > 0).all() else [values]
-        for scaled in scales:
-            unit[:, number] = _in_unit_cube(scaled)
-            sizes = np.abs(np.diff(unit[:, number].reshape(-1, len(names) + 1), axis=1)).max(axis=1)
+        values = points[:, number].reshape(-1, len(names) + 1)
+        if name == SEED:
+            unit[:, number] = (values != values[:, :1]).ravel()
+            continue
+        for scaled in [values, np.log(values)] if (values > 0).all() else [values]:
+            scaled = _in_unit_cube(scaled)
+            sizes = np.abs(np.diff(scaled, axis=1)).max(axis=1)
             if np.ptp(sizes) <= SAME_STEP * sizes.max():
                 break
         else:
             raise InputError(f"{name}: its steps differ; in trajectories after Morris they do not")
-        steps[number] = sizes.mean()
+        unit[:, number], steps[number] = scaled.ravel(), sizes.mean()
+    seeds = np.isnan(steps)
+    steps[seeds] = 1.0 if seeds.all() else steps[~seeds].mean()
     return unit, steps
 
 

@@ -66,6 +66,9 @@ def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Ou
         return Outcome(task.hash, "interrupted")
     except OSError:
         raise
+    except MemoryError:  # others may need less later; the folder would say that it failed
+        shutil.rmtree(folder, ignore_errors=True)
+        return Outcome(task.hash, "lost", error="out of memory")
     except Exception as error:  # whatever it is, the other runs must go on
         return _outcome(task, folder, f"{_kind(error)}{error}")
     return _outcome(task, folder, None)

@@ -39,7 +39,7 @@ class Outcome:
         - done: all events are there;
         - failed: the simulation could not go on, nor could it if repeated;
         - interrupted: stopped on request, to be resumed;
-        - lost: the worker died;
+        - lost: the worker died, or had not memory enough;
         - unable: the machine could not compute it, for example because its disk is full.
     events
         One row per completed event, as in events.csv.

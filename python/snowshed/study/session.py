@@ -8,6 +8,7 @@ import shutil
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
@@ -182,9 +183,6 @@ def _compute(
         with ownership(store) as owner, deferred_interrupts() as interrupt:
             session = _Session(store, owner, workers, list(runs.values()), interrupt)
             session.run(_Narrator(session, progress, at_once) if progress else None)
-    except StudyError:
-        workers.stop()  # at checkpoints, where the disk still takes them
-        raise
     finally:
         workers.close()
 
@@ -238,15 +236,25 @@ class _Session:
 
     def run(self, tell: Optional[Callable[[], None]]) -> None:
         """Compute until nothing is left."""
+        try:
+            self._compute(tell)
+        except StudyError:
+            with suppress(StudyError):  # it may be the store that takes nothing more
+                self._stop()
+            raise
+
+    def _compute(self, tell: Optional[Callable[[], None]]) -> None:
         while self.waiting or self.running or self.elsewhere:
             if self.interrupt.requested:
                 self._stop()
+                raise StudyInterrupted(self.store.folder)
             self._look_elsewhere()
             self._hand_out()
             if tell:
                 tell()
             ended = self._wait()
             self._hand_out()  # before anything is stored: no worker need wait for the disk
+            ended.sort(key=lambda pair: pair[1].status == "unable")  # which raises: store the rest
             for run, outcome in ended:
                 self._settle(run, outcome)
         if tell:
@@ -320,10 +328,10 @@ class _Session:
         del self.work[hash_]
 
     def _stop(self) -> None:
+        """Stop all workers, at checkpoints, and store what has ended meanwhile."""
         for outcome in self.workers.stop():
             if outcome.status in ("done", "failed"):
                 self._store(outcome)
-        raise StudyInterrupted(self.store.folder)
 
     def _folder(self, hash_: str) -> Path:
         return self.store.running / hash_

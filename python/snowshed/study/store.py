@@ -18,6 +18,7 @@ of a lock in the folder ``running`` (see `snowshed.study.owner`).
 from __future__ import annotations
 
 import json
+import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -137,7 +138,7 @@ class Store:
 
     @classmethod
     def open(cls, folder: PathLike) -> Store:
-        """Open the store that is in a folder.
+        """Open the store that is in a folder; where that cannot be written, for reading.
 
         Raises
         ------
@@ -146,9 +147,12 @@ class Store:
         StudyError
             If the store cannot be used.
         """
-        if not (Path(folder) / FILE).is_file():
+        folder = Path(folder).absolute()
+        if not (folder / FILE).is_file():
             raise InputError(f"{folder}: {NO_STUDY}")
-        return cls.create(folder)
+        if os.access(folder, os.W_OK):
+            return cls.create(folder)
+        return cls(folder, _connect_read_only(folder))
 
     def __enter__(self) -> Store:
         return self
@@ -340,6 +344,24 @@ def _connect(folder: Path) -> sqlite3.Connection:
     return connection
 
 
+def _connect_read_only(folder: Path) -> sqlite3.Connection:
+    """Open the database in a folder where nothing can be written, so that nobody changes it."""
+    log = folder / f"{FILE}-wal"
+    if log.exists() and log.stat().st_size > 0:
+        raise InputError(
+            f"{folder}: cannot be written, and was left amid a change; copy it to where it can be"
+        )
+    with _translated(folder):
+        address = f"{(folder / FILE).as_uri()}?mode=ro&immutable=1"
+        connection = sqlite3.connect(address, uri=True, isolation_level=None)
+        try:
+            _check_format(connection, folder)
+        except BaseException:
+            connection.close()
+            raise
+    return connection
+
+
 def _provide_tables(connection: sqlite3.Connection, folder: Path) -> None:
     application = _pragma(connection, "application_id")
     if not application and not connection.execute("SELECT * FROM sqlite_master").fetchone():
@@ -347,11 +369,15 @@ def _provide_tables(connection: sqlite3.Connection, folder: Path) -> None:
             connection.execute(table)
         connection.execute(f"PRAGMA application_id = {APPLICATION}")
         connection.execute(f"PRAGMA user_version = {VERSION}")
-    elif application != APPLICATION:
-        raise InputError(f"{folder / FILE}: not a store of studies")
-    elif _pragma(connection, "user_version") != VERSION:
-        raise InputError(f"{folder / FILE}: made by another version of snowshed")
+    _check_format(connection, folder)
     _add_new_measures(connection)
+
+
+def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
+    if _pragma(connection, "application_id") != APPLICATION:
+        raise InputError(f"{folder / FILE}: not a store of studies")
+    if _pragma(connection, "user_version") != VERSION:
+        raise InputError(f"{folder / FILE}: made by another version of snowshed")
 
 
 def _add_new_measures(connection: sqlite3.Connection) -> None:
