@@ -5,6 +5,8 @@ import pytest
 from made_up_rows import few_inputs, made_up_rows
 from sklearn.svm import SVR
 
+from snowshed import InputError
+from snowshed.regression import support_vectors
 from snowshed.regression.folds import CrossValidation
 from snowshed.regression.interior_point import solve
 from snowshed.regression.kernels import Expansion, kernel_matrix
@@ -78,6 +80,25 @@ def test_a_path_gives_each_fit(gamma, epsilon):
 def test_a_kernel_that_is_none_is_refused():
     with pytest.raises(FloatingPointError, match="positive"):
         solve(-1e6 * np.eye(len(Y)), Y, 1e6, 0.1)
+
+
+def test_points_that_do_not_converge_are_not_elected(monkeypatch):
+    """Nothing beyond what libsvm solves quickly."""
+
+    def diverge(*arguments):
+        raise FloatingPointError("the fit did not converge")
+
+    monkeypatch.setattr(support_vectors, "solve", diverge)
+    fits = list(fit_along_c(kernel(0.01), Y, 1e-4, BOUNDS))
+    assert np.isfinite(fits[0].intercept) and np.isnan(fits[-1].intercept)
+    kind = SupportVectorRegression("rbf", "RBF SVR", 1, (0.01,))
+    half = np.arange(len(Y)) % 2 == 0
+    splits = [(np.flatnonzero(half), np.flatnonzero(~half))]
+    choice = kind.search(Development(X, Y, np.arange(len(Y)), splits))
+    assert np.isfinite(choice.score)
+    monkeypatch.setattr(support_vectors, "_libsvm", lambda *arguments: None)
+    with pytest.raises(InputError, match="C 10000, gamma 1 does not converge"):
+        kind.fit({"epsilon": 1e-4, "C": 1e4, "gamma": 1.0}, X, Y)
 
 
 def test_grid_is_the_thesis_grid():

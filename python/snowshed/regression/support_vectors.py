@@ -42,7 +42,7 @@ def fit_along_c(
     Yields
     ------
     SupportVectors
-        One for each C.
+        One for each C; one that did not converge has NaN for its numbers.
     """
     if np.ptp(y) <= 2 * epsilon:
         middle = SupportVectors(np.zeros(len(y)), float(y.min() + y.max()) / 2)
@@ -50,10 +50,10 @@ def fit_along_c(
         return
     quick, fit, earlier = True, None, 0.0
     for c in bounds:
-        if fit is None or np.abs(fit.coefficients).max() > (1 - AT_BOUND) * earlier:
+        if fit is None or not np.abs(fit.coefficients).max() <= (1 - AT_BOUND) * earlier:
             found = _libsvm(kernel, y, c, epsilon) if quick else None
             quick = found is not None
-            fit = found or solve(kernel, y, c, epsilon)
+            fit = found or _exact(kernel, y, c, epsilon)
         earlier = c
         yield fit
 
@@ -61,6 +61,13 @@ def fit_along_c(
 def fit_one(kernel: Floats, y: Floats, epsilon: float, c: float) -> SupportVectors:
     """Fit an epsilon-SVR for one C; see `fit_along_c`."""
     return next(fit_along_c(kernel, y, epsilon, [c]))
+
+
+def _exact(kernel: Floats, y: Floats, c: float, epsilon: float) -> SupportVectors:
+    try:
+        return solve(kernel, y, c, epsilon)
+    except FloatingPointError:  # one point of many: the search goes on without it
+        return SupportVectors(np.full(len(y), np.nan), float("nan"))
 
 
 def _libsvm(kernel: Floats, y: Floats, c: float, epsilon: float) -> Optional[SupportVectors]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from snowshed._core import InputError
 from snowshed.arrays import Floats
 from snowshed.regression.kernels import Expansion, kernel_matrix
 from snowshed.regression.kinds import Choice, Development, Parameters, median_absolute_error
@@ -41,7 +42,8 @@ class SupportVectorRegression:
         scores = np.zeros((len(rates), len(EPSILON), len(C)))
         for number, rate in enumerate(rates):
             kernel = kernel_matrix(development.inputs, development.inputs, rate)
-            scores[number] = np.mean(list(self._fold_scores(development, kernel)), axis=0)
+            mean = np.mean(list(self._fold_scores(development, kernel)), axis=0)
+            scores[number] = np.where(np.isnan(mean), np.inf, mean)  # NaN: did not converge
         best = np.unravel_index(np.argmin(scores), scores.shape)
         gamma = {"gamma": self.gammas[best[0]]} if self.gammas else {}
         parameters = {"epsilon": EPSILON[best[1]], "C": C[best[2]], **gamma}
@@ -52,6 +54,9 @@ class SupportVectorRegression:
         rates = self._rates(parameters.get("gamma", 0.0), inputs)
         kernel = kernel_matrix(inputs, inputs, rates)
         found = fit_one(kernel, targets, parameters["epsilon"], parameters["C"])
+        if np.isnan(found.intercept):
+            chosen = ", ".join(f"{name} {value:g}" for name, value in parameters.items())
+            raise InputError(f"the {self.title} with {chosen} does not converge on these rows")
         return Expansion(inputs, found.coefficients, found.intercept, rates)
 
     def _rates(self, gamma: float, inputs: Floats) -> Floats:
