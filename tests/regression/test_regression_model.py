@@ -4,8 +4,10 @@ import contextlib
 import json
 import pickle
 import zipfile
+from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from made_up_rows import few_inputs, made_up_rows, smooth_ratio, thesis_inputs
 
@@ -101,6 +103,28 @@ def test_a_prediction_is_near_the_formula(file):
         found.table["spread"] > 0.5 * NOISE
     ).all()
     assert (found.table["low"] < found.table["value"]).all()
+
+
+def test_a_model_that_is_read_once_answers_alike(model, file):
+    questions = {"height": 2.5, "length": 5, "tilt": 55, "events": 3}
+    pd.testing.assert_frame_equal(
+        predict(model=model, **questions).table, predict(model=file, **questions).table
+    )
+
+
+def test_what_the_data_have_in_common_is_kept(model, tmp_path):
+    told = replace(model, settings={"panel.friction": "0.8", "dx": "0.025"}, measure="body")
+    save_model(told, tmp_path / "told.npz")
+    found = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "told.npz")
+    assert (found.settings, found.measure) == (told.settings, "body")
+
+
+def test_no_answer_is_negative(model):
+    """Nor is its interval turned about, where a model falls below zero."""
+    ((key, member),) = model.members.items()
+    below = replace(model, members={key: replace(member, mean=-10.0)})
+    table = predict(height=2, length=2, tilt=40, events=2, model=below).table
+    assert (table[["value", "low", "high"]] == 0).all(axis=None)
 
 
 @pytest.mark.parametrize("which", ["model", "model_of_means"])

@@ -7,6 +7,7 @@ from made_up_rows import few_inputs, made_up_rows, thesis_inputs, write_table
 
 from snowshed import InputError
 from snowshed.regression import read_rows, rows_of
+from snowshed.regression import rows as rows_module
 
 
 def test_a_table_gives_inputs_and_targets(tmp_path):
@@ -67,6 +68,29 @@ def test_snow_that_stays_on_the_panel_is_no_stack(tmp_path):
     table.to_csv(tmp_path / "rows.csv", index=False)
     read = read_rows(tmp_path / "rows.csv")
     assert (len(read), read.left_out) == (93, 3)
+
+
+def test_stacks_that_still_move_are_counted(tmp_path):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    ended = ["time_limit" if row in (3, 7) else "rest" for row in range(len(table))]
+    table.assign(ended=ended).to_csv(tmp_path / "rows.csv", index=False)
+    read = read_rows(tmp_path / "rows.csv")
+    assert (len(read), read.moving) == (96, 2)
+
+
+def test_too_many_rows_are_refused(tmp_path, monkeypatch):
+    write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    monkeypatch.setattr(rows_module, "MOST_ROWS", 95)
+    with pytest.raises(InputError, match="96 rows; at most 95 are allowed"):
+        read_rows(tmp_path / "rows.csv")
+
+
+def test_what_all_rows_have_in_common(tmp_path):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    table.assign(**{"panel.friction": 0.8, "seeding.seed": 3}).to_csv(tmp_path / "rows.csv")
+    settings = read_rows(tmp_path / "rows.csv").settings
+    assert settings["panel.friction"] == "0.8"
+    assert not {"panel.height", "seeding.seed", "height_m"} & set(settings)
 
 
 def test_a_stack_counts_once(tmp_path):

@@ -141,6 +141,10 @@ def regress(
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
     if rows.left_out and not quiet:
         click.echo(f"note: {rows.left_out} rows have no stack and are left out", err=True)
+    if rows.moving and not quiet:
+        click.echo(
+            f"note: {rows.moving} stacks were not at rest when their time was over", err=True
+        )
     try:
         with nullcontext() if quiet else progress_bar() as progress:
             reports = run(

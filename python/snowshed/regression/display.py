@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from snowshed.regression.predictor import Prediction
 
 SPEED_PERIOD_S = 3600.0  # folds take many seconds, and the time left should not jump
+MEASURE_WORDS = {"stack": "97 % of the snow", "body": "the largest connected body of snow"}
 TARGET_WORDS = {"ratio": "height / length", "height": "height", "length": "length"}
 
 
@@ -90,12 +91,26 @@ def print_prediction(prediction: Prediction, title: str) -> None:
         shown.add_row(f"{event}{mark}", *map(escape, cells))
     wide_console().print(shown)
     wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].", markup=False)
+    wide_console().print(f" The stack is {MEASURE_WORDS[prediction.measure]}; {_scene(prediction)}.")
+
+
+def _scene(prediction: Prediction) -> str:
+    """Return what was simulated, apart from the settings of the method."""
+    known = prediction.settings.items()
+    told = [
+        f"{name} {value}" for name, value in known if "." in name or name in ("dimension", "dx")
+    ]
+    return escape(", ".join(told))
 
 
 def prediction_json(prediction: Prediction) -> str:
     """Return the answers as JSON."""
     content: dict[str, Any] = {
         "kind": prediction.kind,
+        "title": prediction.title,
+        "measure": prediction.measure,
+        "settings": dict(prediction.settings),
+        "units": TARGETS,
         "extrapolated": prediction.extrapolated,
         "objections": list(prediction.objections),
         "predictions": prediction.table.to_dict("records"),

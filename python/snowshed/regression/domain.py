@@ -112,9 +112,9 @@ def _widest_gap(points: Floats) -> float:
     """
     if len(points) < 2:
         return 0.0
-    between = np.linalg.norm(points[:, None] - points[None], axis=-1)
-    np.einsum("ii->i", between)[...] = np.inf
-    spacing = float(np.quantile(between.min(axis=1), SPACED, method="lower"))
+    spatial = require("scipy.spatial", "regression", "the domain of a model")
+    to_nearest = spatial.cKDTree(points).query(points, k=2)[0][:, 1]
+    spacing = float(np.quantile(to_nearest, SPACED, method="lower"))
     dimension = int((np.ptp(points, axis=0) > 0).sum())
     return spacing * float(np.sqrt(dimension))
 

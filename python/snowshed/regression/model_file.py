@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from snowshed._core import InputError
 from snowshed.arrays import Floats
 from snowshed.atomic import replacing
 from snowshed.regression.damage import DAMAGED
+from snowshed.regression.domain import Domain
 from snowshed.regression.ensemble import Ensemble
 from snowshed.regression.rows import INPUTS, MEASURES, TARGETS
 from snowshed.regression.scaling import Scaling
@@ -24,7 +26,7 @@ from snowshed.scene import PathLike
 
 FORMAT = "snowshed stack model"
 VERSION = 1
-LARGEST = 2**30  # bytes, unpacked
+LARGEST = 2**28  # bytes, unpacked
 LARGEST_VALUE = 1e50  # of anything in an array; its square is a number too
 LARGEST_FACTS = 2**20  # characters
 #: Kinds of model that a file may hold: all are sums of kernels. The first there is answers.
@@ -66,12 +68,20 @@ class StackModel:
         What the data are, for people.
     measure
         "stack" or "body", as for `read_rows`.
+    settings
+        What all rows have in common, as in `StackRows`.
     """
 
     inputs: Floats
     members: Mapping[tuple[str, str], Member]
     title: str
     measure: str
+    settings: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def domain(self) -> Domain:
+        """Where the model may be asked."""
+        return Domain(self.inputs)
 
     @property
     def targets(self) -> list[str]:
@@ -107,6 +117,7 @@ def save_model(model: StackModel, file: PathLike) -> None:
         "snowshed": _core.version,
         "title": model.title,
         "measure": model.measure,
+        "settings": dict(model.settings),
         "inputs": list(INPUTS),
         "members": members,
     }
@@ -163,7 +174,10 @@ class _Reader:
         measure = _entry(facts, "measure", str)
         if measure not in MEASURES:
             raise InputError(f"measure: {measure!r} is unknown; allowed: {', '.join(MEASURES)}")
-        return StackModel(inputs, members, _entry(facts, "title", str), measure)
+        settings = _entry(facts, "settings", dict)
+        if not all(isinstance(value, str) for value in settings.values()):
+            raise InputError("settings: not texts")
+        return StackModel(inputs, members, _entry(facts, "title", str), measure, settings)
 
     def _facts(self) -> dict[str, Any]:
         text = self._raw("facts")

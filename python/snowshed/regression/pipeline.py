@@ -138,7 +138,8 @@ class _Output:
                 members[target, kind], unseen[kind] = self._member(target, kind, elected[kind])
             reports.append(self._report(target, elected, unseen, members))
         if members:
-            model = StackModel(self._rows.inputs, members, title, measure)
+            rows = self._rows
+            model = StackModel(rows.inputs, members, title, measure, rows.settings)
             save_model(model, self._folder / MODEL)
         else:
             (self._folder / MODEL).unlink(missing_ok=True)  # an earlier call's

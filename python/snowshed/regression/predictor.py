@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Optional
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
 from snowshed._core import InputError
 from snowshed.arrays import Floats
 from snowshed.regression.dataset import MODEL
-from snowshed.regression.domain import Domain
 from snowshed.regression.model_file import StackModel, load_model
 from snowshed.regression.scaling import Scaling
 from snowshed.regression.spread import INTERVAL, SPREAD
@@ -36,6 +37,8 @@ class Prediction:
         (standard deviation of the models); m, or 1 for the ratio.
     kind, title
         The kind of model, and what data it comes from.
+    measure, settings
+        What of the snow was measured, and what the data have in common, as in `StackModel`.
     objections
         Why the question lies outside the data, in words; empty: it lies inside.
     """
@@ -43,6 +46,8 @@ class Prediction:
     table: pd.DataFrame
     kind: str
     title: str
+    measure: str
+    settings: Mapping[str, str]
     objections: tuple[str, ...] = ()
 
     @property
@@ -57,7 +62,7 @@ def predict(
     length: float,
     tilt: float,
     events: int,
-    model: Optional[PathLike] = None,
+    model: Union[PathLike, StackModel, None] = None,
     kind: Optional[str] = None,
     extrapolate: bool = False,
 ) -> Prediction:
@@ -72,7 +77,8 @@ def predict(
     events
         Slide-offs, 1 or more.
     model
-        A model file of ``snowshed regress``; None: the one that comes with snowshed.
+        A model file of ``snowshed regress``, or what `load_model` made of it, which spares reading
+        it for every question; None: the one that comes with snowshed.
     kind
         "rbf", "gaussian-process" or "linear"; None: the first of these that the file holds.
     extrapolate
@@ -84,28 +90,24 @@ def predict(
         If the question lies outside the data.
     InputError
         If there is no such model, or a value is not possible.
+
+    Examples
+    --------
+    >>> found = predict(height=2, length=4, tilt=60, events=1).table
+    >>> found["target"].tolist()
+    ['ratio', 'height', 'length']
     """
-    _check(height=height, length=length, tilt=tilt, events=events)
-    loaded = load_model(MODEL if model is None else model)
-    return answer(loaded, (height, length, tilt), events, kind=kind, extrapolate=extrapolate)
-
-
-def answer(
-    model: StackModel,
-    panel: tuple[float, float, float],
-    events: int,
-    *,
-    kind: Optional[str] = None,
-    extrapolate: bool = False,
-) -> Prediction:
-    """Predict with a model that is loaded already; see `predict`."""
     import pandas as pd
 
+    _check(height=height, length=length, tilt=tilt, events=events)
+    if not isinstance(model, StackModel):
+        model = _shipped() if model is None else load_model(model)
     kind = model.kinds[0] if kind is None else kind
     if kind not in model.kinds:
         raise InputError(f"kind: the model holds no {kind!r}; it has: {', '.join(model.kinds)}")
-    questions = np.array([[event, *panel] for event in range(1, events + 1)], dtype=float)
-    objections = Domain(model.inputs).objections(questions)
+    events_asked = np.arange(1.0, events + 1.0)
+    questions = np.column_stack([events_asked, np.tile((height, length, tilt), (events, 1))])
+    objections = model.domain.objections(questions)
     if objections and not extrapolate:
         raise OutsideDataError(
             f"the question lies outside the data: {'; '.join(objections)}; no model can be "
@@ -119,7 +121,13 @@ def answer(
         if (target, kind) in model.members
     ]
     columns = {name: np.stack([part[name] for part in parts], axis=1).ravel() for name in parts[0]}
-    return Prediction(pd.DataFrame(columns), kind, model.title, tuple(objections))
+    table = pd.DataFrame(columns)
+    return Prediction(table, kind, model.title, model.measure, model.settings, tuple(objections))
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> StackModel:
+    return load_model(MODEL)
 
 
 def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[str, Any]:
@@ -132,10 +140,11 @@ def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[
     return {
         "event": np.arange(1, len(scaled) + 1),
         "target": np.full(len(scaled), target, dtype=object),
-        "value": value,
+        # Neither a length nor a ratio is negative; a linear model may be.
+        "value": np.maximum(value, 0.0),
         "spread": spread,
-        "low": np.maximum(value - reach, 0.0),  # neither a length nor a ratio is negative
-        "high": value + reach,
+        "low": np.maximum(value - reach, 0.0),
+        "high": np.maximum(value + reach, 0.0),
         "models": deviation,
     }
 

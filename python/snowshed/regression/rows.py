@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -35,7 +35,9 @@ MEASURES: Mapping[str, tuple[str, str]] = {
 }
 #: Columns that make two rows the result of different physics or methods where they differ.
 SETTINGS = ("version", "dimension", *ACCURACY)
-FEWEST_ROWS = 20
+#: Kernel matrices grow with the square of the rows, the time to fit with their cube.
+FEWEST_ROWS, MOST_ROWS = 20, 5000
+LARGEST_TABLE = 1_000_000  # rows of a Parquet file, which packs them well
 
 
 @dataclass(frozen=True)
@@ -52,11 +54,17 @@ class StackRows:
         a row has fewer.
     left_out
         How many rows of the table had no stack: the run failed, or the snow stayed on the panel.
+    moving
+        How many stacks were not at rest when the time of their event was over.
+    settings
+        Parameters and settings that all rows have in common, by their columns, as text.
     """
 
     inputs: Floats
     stacks: Mapping[str, Floats]
     left_out: int = 0
+    moving: int = 0
+    settings: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def targets(self) -> Mapping[str, Floats]:
@@ -168,7 +176,10 @@ def _read(path: Path) -> pd.DataFrame:
     try:
         if path.suffix != ".parquet":
             return read_csv(path, dtype=str, keep_default_na=False)
-        require("pyarrow", "study", "reading Parquet")
+        parquet = require("pyarrow.parquet", "study", "reading Parquet")
+        count = parquet.read_metadata(path).num_rows
+        if count > LARGEST_TABLE:
+            raise InputError(f"{path}: {count} rows; at most {LARGEST_TABLE} are allowed")
         return pd.read_parquet(path)
     except InputError:
         raise
@@ -202,19 +213,22 @@ def _rows(table: pd.DataFrame, measures: tuple[str, str]) -> StackRows:
     measured = ~nothing.any(axis=1)
     left_out = int((~measured).sum())
     table = table.loc[measured]
-    _check_count(len(table), left_out)
-    _check_same(table)
+    _check_enough(len(table), left_out)
+    settings = _common(table)
     inputs = np.column_stack([_numbers(table, name) for name in INPUTS])
     height, length = (_numbers(table, name, positive=True) for name in measures)
     events = inputs[:, 0]
     _check_seeds(table, inputs)
     _complain(table, INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
     found = rows_of(inputs, height, length)
-    _check_count(len(found), left_out)
-    return replace(found, left_out=left_out)
+    _check_enough(len(found), left_out)
+    if len(found) > MOST_ROWS:
+        raise InputError(f"{len(found)} rows; at most {MOST_ROWS} are allowed")
+    moving = int((table["ended"] == "time_limit").sum()) if "ended" in table else 0
+    return replace(found, left_out=left_out, moving=moving, settings=settings)
 
 
-def _check_count(rows: int, left_out: int) -> None:
+def _check_enough(rows: int, left_out: int) -> None:
     if rows < FEWEST_ROWS:
         lost = f" (and {left_out} without a stack)" if left_out else ""
         raise InputError(f"{rows} rows{lost}; at least {FEWEST_ROWS} are needed")
@@ -236,17 +250,21 @@ def _names(table: pd.DataFrame) -> str:
     return shortened(", ".join(map(str, table)), 300)
 
 
-def _check_same(table: pd.DataFrame) -> None:
-    """Refuse rows that differ in what is not an input."""
-    for name in table:
-        parameter = "." in str(name) and name not in INPUTS and name != "seeding.seed"
-        if parameter or name in SETTINGS:
-            values = sorted(set(table[name].astype(str)))
-            if len(values) > 1:
-                raise InputError(
-                    f"{name}: the rows have different values ({', '.join(values[:6])}), and it is "
-                    f"not an input; choose some with --where {name}={values[0]}"
-                )
+def _common(table: pd.DataFrame) -> dict[str, str]:
+    """Return what all rows have in common; refuse rows that differ in what is not an input."""
+    common = {}
+    for name in map(str, table):
+        parameter = "." in name and name not in INPUTS and name != "seeding.seed"
+        if not (parameter or name in SETTINGS):
+            continue
+        values = sorted(set(table[name].astype(str)))
+        if len(values) > 1:
+            raise InputError(
+                f"{name}: the rows have different values ({', '.join(values[:6])}), and it is "
+                f"not an input; choose some with --where {name}={values[0]}"
+            )
+        common[name] = values[0]
+    return common
 
 
 def _check_seeds(table: pd.DataFrame, inputs: Floats) -> None:
