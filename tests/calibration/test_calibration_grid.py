@@ -107,10 +107,19 @@ def test_what_does_not_fit_together_is_named():
         (table.drop(columns="panel.tilt"), "no axis panel.tilt"),
         (table.assign(**{COHESION: 0.1, SLOPE: 0.5, PRESSURE: 1e3}), "nothing varies in it"),
         (table.assign(height_m=np.nan), "nothing of it is computed yet"),
-        (table.assign(**{COHESION: "soft"}), "snow.cohesion: holds 'soft'"),
+        (
+            table.assign(**{COHESION: ["soft", "hard"] * (len(table) // 2)}),
+            "cohesion: holds 'soft'",
+        ),
     ):
         with pytest.raises(InputError, match=message):
             simulated(wrong)
+
+
+def test_words_that_are_the_same_everywhere_are_no_parameters():
+    table = table_of(thesis_triplets()[:8], seeds=(1,))
+    named = simulated(table.assign(**{"events.between": "carry"}))
+    assert named.parameters == simulated(table).parameters
 
 
 def test_tilts_are_written_as_they_were_measured():

@@ -75,6 +75,20 @@ def test_any_stored_study_is_evaluated_without_running(tmp_path, capsys, method)
     assert set(pd.read_csv(out / "noise.csv")["freedom"]) == {4}
 
 
+def test_what_is_missing_is_said(tmp_path, capsys):
+    """Also that what is the same everywhere need not be a number."""
+    study = grid(seeds=[1, 2])
+    axes = {"events.between": ["carry"], SLOPE: [0.3, 0.6], COHESION: [0.15, 0.3]}
+    study = Study.product(study.scene, axes, name="grid", seeds=[1, 2])
+    last = study.runs()[-1].hash
+    fill(tmp_path / "store", study, lambda one: one.hash != last)
+    arguments = ("sensitivity", "--stored", tmp_path / "store", "-o", tmp_path / "out")
+    assert run(*arguments) == 0
+    assert "note: 1 of 8 runs are not computed" in capsys.readouterr().err
+    assert run(*arguments, "-q") == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_designs_are_read_off_the_store(tmp_path, capsys):
     """Written as a study file, stored, and evaluated; one run is missing."""
     from snowshed.sensitivity import sensitivity_study

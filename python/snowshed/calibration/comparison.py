@@ -81,22 +81,22 @@ def simulated(table: pd.DataFrame, measure: str = "stack") -> Simulated:
 
     if TILT not in table:
         raise InputError(f"no axis {TILT}; write axes.{TILT} = 40, also for a single tilt")
-    axes = [path for path in table if "." in str(path) and path not in (TILT, SEED)]
-    for path in axes:
+    axes = [str(path) for path in table if "." in str(path) and path not in (TILT, SEED)]
+    varied = [path for path in axes if table[path].astype(str).nunique() > 1]
+    for path in varied:
         if not pd.api.types.is_numeric_dtype(table[path]) or table[path].dtype == bool:
             raise InputError(f"{path}: holds {table[path].iloc[0]!r}; calibration needs numbers")
     columns = {column: quantity for quantity, column in MEASURES[measure].items()}
-    rows = table[[*axes, TILT, "seed", "event", *columns]].dropna()
+    rows = table[[*varied, TILT, "seed", "event", *columns]].dropna()
     if rows.empty:
         raise InputError("nothing of it is computed yet; see `snowshed study status`")
-    parameters = [str(path) for path in axes if rows[path].nunique() > 1]
+    parameters = [path for path in varied if rows[path].nunique() > 1]
     if not parameters:
         raise InputError("nothing varies in it but tilt and seed, so that nothing is calibrated")
-    rows = rows.drop(columns=[path for path in axes if path not in parameters])
     rows = rows.rename(columns={**columns, TILT: "tilt"})
     rows[SET] = rows.groupby(parameters, sort=False).ngroup() + 1
     sets = rows.drop_duplicates(SET).set_index(SET)[parameters]
-    return Simulated(parameters, sets, rows.drop(columns=parameters).reset_index(drop=True))
+    return Simulated(parameters, sets, rows.drop(columns=varied).reset_index(drop=True))
 
 
 def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFrame:

@@ -91,7 +91,9 @@ def print_prediction(prediction: Prediction, title: str) -> None:
         shown.add_row(f"{event}{mark}", *map(escape, cells))
     wide_console().print(shown)
     wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].", markup=False)
-    wide_console().print(f" The stack is {MEASURE_WORDS[prediction.measure]}; {_scene(prediction)}.")
+    wide_console().print(
+        f" The stack is {MEASURE_WORDS[prediction.measure]}; {_scene(prediction)}."
+    )
 
 
 def _scene(prediction: Prediction) -> str:

@@ -58,7 +58,8 @@ def sensitivity(
             plan(context, file, jobs)
             return
         stored, name = compute(context, file, folder, jobs, quiet)
-    table = evaluate(stored, folder, method, study=name, measure=measure)
+    note = None if quiet else lambda text: click.echo(f"note: {text}", err=True)
+    table = evaluate(stored, folder, method, study=name, measure=measure, note=note)
     if not quiet:
         print_table(method, table)
         click.echo(f"tables and figures in {folder}")

@@ -35,6 +35,7 @@ def evaluate(
     *,
     study: Optional[str] = None,
     measure: str = "stack",
+    note: Optional[Callable[[str], None]] = None,
 ) -> pd.DataFrame:
     """Evaluate a stored study, as far as it is computed, and write tables and figures.
 
@@ -51,6 +52,8 @@ def evaluate(
         Name of the study; not needed if the store holds but one.
     measure
         "stack": height and length of 97 % of the snow; "body": of the largest connected body.
+    note
+        Called with what readers should know before they trust the table.
 
     Returns
     -------
@@ -67,6 +70,11 @@ def evaluate(
     if method not in EVALUATIONS:
         raise InputError(f"method: {method!r} is unknown; allowed: {', '.join(EVALUATIONS)}")
     runs = read_stored(stored, study, measure)
+    if note and runs.incomplete:
+        note(
+            f"{runs.incomplete} of {len(runs.points)} runs are not computed, have failed or left "
+            "events without a stack: means and differences are of the others"
+        )
     try:
         table = EVALUATIONS[method](runs)
     except InputError as error:

@@ -31,7 +31,8 @@ class StoredRuns:
     name
         Of the study.
     axes
-        Dotted paths of what varies, in the study's order; the seed only if it is among its axes.
+        Dotted paths of what has several values, in the study's order; the seed only if it is
+        among its axes.
     points
         One row per run in the study's order, computed or not: ``hash``, the axes, and
         ``seeding.seed``.
@@ -47,8 +48,14 @@ class StoredRuns:
 
     @property
     def parameters(self) -> list[str]:
-        """The axes that have more than one value, the seed not among them."""
+        """The axes without the seed."""
         return [path for path in self.axes if path != SEED and self.points[path].nunique() > 1]
+
+    @property
+    def incomplete(self) -> int:
+        """How many runs lack the stack of some event."""
+        measured = self.rows["hash"].value_counts().reindex(self.points["hash"], fill_value=0)
+        return int((measured < len(self.events)).sum())
 
     @property
     def events(self) -> list[int]:
@@ -99,6 +106,7 @@ def stored_runs(
     """Return a study from its points and its table; for the columns see `StoredRuns`."""
     import pandas as pd
 
+    axes = [path for path in axes if path == SEED or points[path].astype(str).nunique() > 1]
     for path in axes:
         if not pd.api.types.is_numeric_dtype(points[path]) or points[path].dtype == bool:
             raise InputError(f"{path}: holds {points[path].iloc[0]!r}; sensitivity needs numbers")
