@@ -285,6 +285,29 @@ def test_a_fit_recovers_slope_and_error():
     assert (found.value, found.noise) == pytest.approx((slope, error))
 
 
+def test_events_of_one_panel_are_no_independent_witnesses():
+    """Panels that scatter, with events that repeat each, tell no more than one event."""
+    once = panels(noise=0.0)
+    once = once[(once["event"] == 1) & (once["panel_length"] == 2) & (once["panel_tilt"] == 40)]
+    once = pd.concat([once.assign(panel_height=height) for height in (1.0, 2.0)] * 3)
+    once["panel_height"] = np.linspace(1, 4, len(once))
+    once["ratio"] = 0.1 + 0.01 * np.random.default_rng(4).normal(size=len(once))
+    many = pd.concat([once.assign(event=event) for event in range(1, 10)])
+    (one,), (nine,) = (
+        geometry.fit(table, "panel_height", "ratio", geometry.straight).slopes
+        for table in (once, many)
+    )
+    assert nine.value == pytest.approx(one.value)
+    assert nine.noise == pytest.approx(one.noise, rel=0.4)  # independent: a third
+
+
+def test_a_dip_between_tilts_is_seen():
+    table = panels()
+    table.loc[table["panel_tilt"] == 55, "ratio"] *= 0.7
+    found = geometry.hardly_depends_on_tilt(table)
+    assert found.verdict == CONTRADICTED and "and 55 degrees" in found.sentence
+
+
 # --- regression
 
 
@@ -307,7 +330,7 @@ def regressed(rbf=0.004, linear=0.010, *, errors=(0.004, 0.015), spread=0.0002, 
         orient="index",
         columns=["Q1", "Q2", "Q3", "Q4"],
     )
-    return regression.Regressed(rows, pd.DataFrame(scores), table, quartiles)
+    return regression.Regressed(rows, rows // 5, pd.DataFrame(scores), table, quartiles)
 
 
 @pytest.mark.parametrize("claim", regression.REGRESSION, ids=lambda one: one.text)
@@ -319,7 +342,13 @@ def test_regression(claim):
         regressed(off=3.0),
     ]
     assert CONTRADICTED in verdicts(claim.judge, *otherwise)
-    undecided = [regressed(spread=0.1), regressed(errors=(0.1, 0.1), off=1.3), regressed(rows=27)]
+    undecided = [
+        regressed(spread=0.1),
+        regressed(errors=(0.1, 0.1), off=1.3),
+        regressed(errors=(0.0101, 0.019)),
+        regressed(errors=(0.0051, 0.019)),
+        regressed(rows=27),
+    ]
     assert UNDECIDED in verdicts(claim.judge, *undecided)
 
 

@@ -110,10 +110,10 @@ def test_damaged_tables_of_the_regression_are_named(tmp_path, name, content, mes
     (tmp_path / "ratio").mkdir()
     for whole in ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv"):
         table.to_csv(tmp_path / whole, index=False)
-    assert read_regressed(tmp_path, 96).errors.loc["rbf", "held_out_error"] == 1.0
+    assert read_regressed(tmp_path, 96, 32).errors.loc["rbf", "held_out_error"] == 1.0
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InputError, match=rf"{re.escape(name)}: {message}"):
-        read_regressed(tmp_path, 96)
+        read_regressed(tmp_path, 96, 32)
 
 
 def tiny_studies():

@@ -35,7 +35,7 @@ def lab(size: Size) -> list[Study]:
     --------
     >>> from snowshed.reproduce.size import QUICK
     >>> [(study.name, len(study.runs())) for study in lab(QUICK)]
-    [('lab-2d', 4), ('lab-3d', 4), ('lab-30-degrees', 2)]
+    [('lab-2d', 8), ('lab-3d', 8), ('lab-30-degrees', 2)]
     """
     seeds = list(range(1, size.lab_seeds + 1))
     axes = {"panel.tilt": list(LAB_TILTS), "panel.friction": list(size.frictions)}

@@ -39,7 +39,8 @@ def build(found: Reproduction) -> Section:
     folder = found.regression.results()
     if not state.finished:
         raise InputError(f"regression: {state.in_words()}")
-    data = read_regressed(folder, len(found.rows.read()))
+    rows = found.rows.read()
+    data = read_regressed(folder, len(rows), int(rows.panels.max()) + 1)
     scheme = found.size.folds
     numbers = {"rounds": scheme.rounds, "folds": scheme.folds, "inner": scheme.inner_folds}
     text = [line.format(rows=data.rows, **numbers) for line in TEXT]
@@ -58,7 +59,7 @@ def build(found: Reproduction) -> Section:
     return Section("regression", "Regression (5.2, 5.3)", text, tables, pictures, claims)
 
 
-def read_regressed(folder: Path, rows: int) -> Regressed:
+def read_regressed(folder: Path, rows: int, panels: int) -> Regressed:
     """Read what `snowshed.regression.regress` has written.
 
     Raises
@@ -69,7 +70,7 @@ def read_regressed(folder: Path, rows: int) -> Regressed:
     scores = _by_model(folder / "scores.csv", ("validation_score",))
     errors = _by_model(folder / TARGET / "errors.csv", ERRORS)
     quartiles = _by_model(folder / TARGET / "quartiles.csv", QUARTILES, ("data", *KINDS))
-    return Regressed(rows, scores.reset_index(), errors, quartiles)
+    return Regressed(rows, panels, scores.reset_index(), errors, quartiles)
 
 
 def _by_model(file: Path, columns: Sequence[str], models: Sequence[str] = KINDS) -> pd.DataFrame:
