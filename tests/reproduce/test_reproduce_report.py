@@ -91,7 +91,7 @@ def test_it_says_what_is_missing(tmp_path):
     assert decided == {"3.3"}
     unfinished = [one for one in claims if one.source.startswith("3.4")]
     assert all("the stage is not finished" in one.finding.sentence for one in unfinished)
-    assert "stage lab: 0 of 10 simulations done" in text
+    assert "stage lab: 0 of 18 simulations done" in text
     assert "stage geometry: 0 of 125 simulations done" in text
     assert "stage s-index" not in text
 
