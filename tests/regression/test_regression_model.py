@@ -13,7 +13,6 @@ from made_up_rows import few_inputs, made_up_rows, smooth_ratio, thesis_inputs
 
 from snowshed import InputError
 from snowshed.regression import (
-    CrossValidation,
     OutsideDataError,
     load_model,
     predict,
@@ -37,19 +36,16 @@ def ensemble_model(rows, target="ratio", rounds=2, folds=5):
     inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
     values = rows.targets[target]
     scaled = (values - values.mean()) / values.std()
-    coefficients, intercepts = [], []
-    for round_ in range(rounds):
-        for development, _ in CrossValidation(folds=folds).outer(rows, round_):
-            fit = kind.fit(PARAMETERS, inputs[development], scaled[development])
-            row = np.zeros(len(rows))
-            row[development] = fit.coefficients
-            coefficients.append(row)
-            intercepts.append(fit.intercept)
-    models = len(intercepts)
+    choices = [{**PARAMETERS, "epsilon": epsilon} for epsilon in np.linspace(0.005, 0.05, folds)]
+    models = [kind.fit(parameters, inputs, scaled) for parameters in choices]
     ensemble = Ensemble(
-        inputs, np.array(coefficients), np.array(intercepts), np.full((models, 4), 0.1)
+        inputs,
+        np.array([model.coefficients for model in models]),
+        np.array([model.intercept for model in models]),
+        np.full((folds, 4), PARAMETERS["gamma"]),
     )
-    found, deviation = unseen_panels(kind, [[PARAMETERS] * folds] * rounds, rows, target)
+    found = unseen_panels(kind, [choices] * rounds, rows, target)
+    deviation = ensemble.predict(inputs).std(axis=0) * values.std()
     spread = stack_spread(rows, target, found, deviation)
     return Member(ensemble, float(values.mean()), float(values.std()), spread)
 
@@ -161,7 +157,7 @@ def test_rows_of_a_panel_are_left_out_together():
     offset = rng.normal(0, 0.01, rows.panels.max() + 1)[rows.panels]
     length = rows.targets["length"]
     shifted = rows_of(rows.inputs, (rows.targets["ratio"] + offset) * length, length)
-    found, _ = unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
+    found = unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
     assert np.abs(found - shifted.targets["ratio"]).mean() > 0.006
 
 
@@ -219,7 +215,7 @@ ENSEMBLE = "ratio/rbf"
             rf"{ENSEMBLE}/coefficients: float64 numbers of shape \(10, 3\); must be float64",
         ),
         (
-            lambda a, f: a.update({f"{ENSEMBLE}/intercepts": np.full(10, np.nan)}),
+            lambda a, f: a.update({f"{ENSEMBLE}/intercepts": np.full(5, np.nan)}),
             f"{ENSEMBLE}/intercepts: holds values that are not finite",
         ),
         (lambda a, f: a.update({f"{ENSEMBLE}/rates": -np.ones((10, 4))}), "rates: negative"),

@@ -16,6 +16,7 @@ from snowshed.regression.damage import DAMAGED
 from snowshed.regression.kernels import Expansion
 
 NUMBERS = ("inner_score", "development_score", "validation_score", "fits", "elapsed_s")
+ARRAYS = ("validation", "held_out", "predictions")
 
 
 @dataclass(frozen=True)
@@ -31,12 +32,12 @@ class FoldResult:
         the elected model on the rows it was trained on; and on those it never saw.
     fits, elapsed_s
         Models fitted, and the processor time of search and training, s.
+    validation, held_out
+        Rows that it never saw, and what it predicts for them, in the target's unit: shape (v,).
     predictions
-        Of the elected model for all rows, in the target's unit, shape (n,).
-    validation
-        Rows that it never saw.
+        For all rows after it was trained anew on all of them (5.2.4), shape (n,).
     expansion
-        The model itself, over all rows; None if it is not a sum of kernels.
+        The model that was trained on all rows; None if it is not a sum of kernels.
     """
 
     parameters: Mapping[str, float]
@@ -45,14 +46,15 @@ class FoldResult:
     validation_score: float
     fits: int
     elapsed_s: float
-    predictions: Floats
     validation: Integers
+    held_out: Floats
+    predictions: Floats
     expansion: Optional[Expansion]
 
     def save(self, path: Path) -> None:
         """Write the result; the file appears whole or not at all."""
         facts = {name: getattr(self, name) for name in NUMBERS}
-        arrays: dict[str, Any] = {"predictions": self.predictions, "validation": self.validation}
+        arrays: dict[str, Any] = {name: getattr(self, name) for name in ARRAYS}
         if self.expansion is not None:
             arrays["coefficients"] = self.expansion.coefficients
             arrays["intercept"] = np.array(self.expansion.intercept)
@@ -82,8 +84,7 @@ class FoldResult:
                     expansion = Expansion(points, data["coefficients"], intercept, data["rates"])
                 return cls(
                     **facts,
-                    predictions=data["predictions"],
-                    validation=data["validation"],
+                    **{name: data[name] for name in ARRAYS},
                     expansion=expansion,
                 )
         except (OSError, *DAMAGED):

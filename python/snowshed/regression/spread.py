@@ -84,7 +84,7 @@ def unseen_panels(
     rows: StackRows,
     target: str,
     seed: int = 1,
-) -> tuple[Floats, Floats]:
+) -> Floats:
     """Predict every row by models that have not seen its panel.
 
     Parameters
@@ -100,8 +100,8 @@ def unseen_panels(
 
     Returns
     -------
-    (numpy.ndarray, numpy.ndarray)
-        Mean and standard deviation of the rounds' predictions in the target's unit, shape (n,).
+    numpy.ndarray
+        Mean of the rounds' predictions in the target's unit, shape (n,).
     """
     inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
     values = rows.targets[target]
@@ -116,8 +116,7 @@ def unseen_panels(
             held_out = np.isin(panels, part)
             model = kind.fit(parameters, inputs[~held_out], scaled[~held_out])
             found[number, held_out] = model.predict(inputs[held_out])
-    found = found * scaling.deviation[0] + scaling.mean[0]
-    return found.mean(axis=0), found.std(axis=0)
+    return np.asarray(found.mean(axis=0) * scaling.deviation[0] + scaling.mean[0])
 
 
 def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: Floats) -> Spread:
@@ -128,7 +127,8 @@ def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: 
     rows, target
         The data.
     predictions, deviations
-        For each row, shape (n,).
+        For each row, shape (n,): what models say that have not seen its panel, and how much the
+        models that answer differ.
     """
     stacks = rows.stacks[target]
     row, repetition = np.nonzero(np.isfinite(stacks))

@@ -76,10 +76,7 @@ def mean_prediction(results: Sequence[FoldResult]) -> Floats:
 
 def held_out_errors(results: Sequence[FoldResult], values: Floats) -> Floats:
     """Return the errors of every model on the rows that it never saw."""
-    parts = [
-        result.predictions[result.validation] - values[result.validation] for result in results
-    ]
-    return np.concatenate(parts)
+    return np.concatenate([result.held_out - values[result.validation] for result in results])
 
 
 def quartile_table(elected: Elected, values: Floats, target: str) -> pd.DataFrame:

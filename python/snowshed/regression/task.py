@@ -5,8 +5,6 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-import numpy as np
-
 from snowshed.regression.fold_result import FoldResult
 from snowshed.regression.folds import CrossValidation
 from snowshed.regression.kernels import Expansion
@@ -31,7 +29,7 @@ class Task:
 
 
 def compute(task: Task, rows: StackRows, scheme: CrossValidation) -> FoldResult:
-    """Choose, train and score a model as section 5.2.3 says.
+    """Choose, train and score a model as section 5.2.3 says; train it anew on all rows (5.2.4).
 
     Inputs and target are standardised over all rows, (5.2.12). Scores are in the target's unit.
     """
@@ -49,13 +47,9 @@ def compute(task: Task, rows: StackRows, scheme: CrossValidation) -> FoldResult:
     model = kind.fit(choice.parameters, inputs[development], targets[development])
     elapsed = time.process_time() - start
 
-    scaled = model.predict(inputs)
-    expansion = None
-    if isinstance(model, Expansion):
-        coefficients = np.zeros(len(rows))
-        coefficients[development] = model.coefficients
-        expansion = Expansion(inputs, coefficients, model.intercept, model.rates)
-    errors = (scaled - targets) * unit
+    found = model.predict(inputs)
+    errors = (found - targets) * unit
+    final = kind.fit(choice.parameters, inputs, targets)
     return FoldResult(
         choice.parameters,
         choice.score * unit,
@@ -63,7 +57,8 @@ def compute(task: Task, rows: StackRows, scheme: CrossValidation) -> FoldResult:
         median_absolute_error(errors[validation]),
         choice.fits + 1,
         elapsed,
-        scaled * unit + offset,
         validation,
-        expansion,
+        found[validation] * unit + offset,
+        final.predict(inputs) * unit + offset,
+        final if isinstance(final, Expansion) else None,
     )
