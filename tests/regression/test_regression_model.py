@@ -218,7 +218,7 @@ ENSEMBLE = "ratio/rbf"
             lambda a, f: a.update({f"{ENSEMBLE}/intercepts": np.full(5, np.nan)}),
             f"{ENSEMBLE}/intercepts: holds values that are not finite",
         ),
-        (lambda a, f: a.update({f"{ENSEMBLE}/rates": -np.ones((10, 4))}), "rates: negative"),
+        (lambda a, f: a.update({f"{ENSEMBLE}/rates": -np.ones((5, 4))}), "rates: negative"),
         (lambda a, f: a.update(inputs=a["inputs"].astype("U8")), "inputs: <U8 numbers"),
         (lambda a, f: f.update(format="cake"), "facts: not a snowshed stack model"),
         (lambda a, f: f.update(format_version=99), "format_version: 99; this snowshed reads 1"),
