@@ -12,7 +12,7 @@ constexpr double most_over_mean = 5;
 
 /// Growth of the mean velocity from one half of a quiet spell to the other, along the latter and
 /// over the limit, that is still taken for the noise of vibrations.
-constexpr double noise = 0.1;
+constexpr double noise = 0.005;
 
 /// Change of the mean velocity from one half to the other, over that of free fall, of snow that
 /// must be in flight.

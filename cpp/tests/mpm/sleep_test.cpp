@@ -91,6 +91,27 @@ TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
   EXPECT_NEAR(fallen, 0.5 * o.gravity * solver->time() * solver->time(), 0.01 * fallen);
 }
 
+/// A slab on a ramp of 40 degrees whose friction nearly holds it: 0.3 and 0.07 m/s2 down the slope.
+TEST(Sleep, ASlabThatSetsOffSlowlyGoesOn) {
+  const double tilt = 40 * pi / 180;
+  const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
+  for (const double friction : {0.8, 0.82, 0.83}) {
+    double speed[2];
+    for (const double limit : {0.0, sleep_speed}) {
+      const auto solver =
+          make_solver(sleepy(two_d, limit),
+                      {fixed(make_plane(Vec3::Zero(), normal), Condition::slip, friction)});
+      ParticleBatch slab = filled_box(2, Vec3::Zero(), Vec3(1, 0, 0.05), 0.005);
+      for (Vec3& x : slab.positions) x = x.x() * slope + x.z() * normal;
+      solver->add(slab);
+      run_until(*solver, 0.5);
+      speed[limit > 0] = weighted_mean(solver->state(), solver->state().velocities).dot(slope);
+    }
+    EXPECT_GT(speed[0], 0.4 * 9.81 * (std::sin(tilt) - friction * std::cos(tilt))) << friction;
+    EXPECT_NEAR(speed[1], speed[0], 0.02 * speed[0]) << friction;
+  }
+}
+
 TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
   // Speed is the same before and after the top of a throw, and when a blow takes one component
   // while gravity adds another.

@@ -130,7 +130,7 @@ struct Numerics {
   double step_factor = 0.9;   // of the stable time step
   double strain_limit = 0.2;  // largest |dt grad v| a step may impose on a particle
   double sleep_speed = 0.02;  // m/s, snow slower than this drops out of the steps; 0: never
-  double sleep_time = 0.01;   // s, for how long it must have been slower
+  double sleep_time = 0.04;   // s, for how long it must have been slower
   int threads = 0;            // 0: all
 };
 
