@@ -283,6 +283,14 @@ def test_expected_durations():
     assert forecast.duration([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
 
 
+def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):
+    """Nine runs of one unit, and one of 21 that is half as fast: two of three speeds are its."""
+    monkeypatch.setattr(forecast, "speed", lambda scene, threads: 1.0 if scene == "big" else 2.0)
+    scenes, works = ["small"] * 9 + ["big"], [1.0] * 9 + [21.0]
+    assert forecast.expected(scenes, works, 1, 1) == pytest.approx(30 * (0.5 + 1 + 1) / 3)
+    assert forecast.expected(["small"], [0.0], 1, 1) == 0.0
+
+
 def test_the_forecast_of_work_is_that_of_plan():
     scene = STUDY.runs()[0].scene
     plan = _core.plan(scene)

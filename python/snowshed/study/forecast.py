@@ -1,13 +1,18 @@
-"""What a study will cost, before it starts: the core's forecast, and one measured speed."""
+"""What a study will cost, before it starts: the core's forecast, and speeds measured here."""
 
 from __future__ import annotations
 
+import bisect
 import heapq
+import itertools
 import json
+import statistics
 from collections.abc import Iterable, Sequence
 
 from snowshed import _core
 from snowshed._core import InputError, SimulationError
+
+THIRDS = (1 / 6, 3 / 6, 5 / 6)  # the middle of each third
 
 
 def work(scene: str) -> float:
@@ -67,7 +72,7 @@ def duration(works: Iterable[float], workers: int) -> float:
 def expected(scenes: Sequence[str], works: Sequence[float], workers: int, threads: int) -> float:
     """Return how long runs are expected to take, s.
 
-    The speed is measured once, on the run of median work.
+    The speed is measured on three runs, each of which stands for a third of the work.
 
     Parameters
     ----------
@@ -79,5 +84,7 @@ def expected(scenes: Sequence[str], works: Sequence[float], workers: int, thread
         Threads of each.
     """
     order = sorted(range(len(works)), key=works.__getitem__)
-    typical = scenes[order[len(order) // 2]]
-    return duration(works, workers) / speed(typical, threads)
+    done = list(itertools.accumulate(works[run] for run in order))
+    typical = [scenes[order[bisect.bisect_left(done, part * done[-1])]] for part in THIRDS]
+    seconds = {scene: 1 / speed(scene, threads) for scene in set(typical)}
+    return duration(works, workers) * statistics.fmean(seconds[scene] for scene in typical)
