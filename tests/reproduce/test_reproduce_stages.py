@@ -47,6 +47,15 @@ def test_the_laboratory_has_both_dimensions_and_30_degrees():
     assert len(scenes[studies.RELEASE]) == len(FULL.release_frictions) > 1
 
 
+def test_the_panels_of_more_tilts_differ_from_the_data_set_in_nothing_else():
+    scenes = [json.loads(run.scene) for study in studies.geometry(FULL) for run in study.runs()]
+    for scene in scenes:
+        for name in ("height", "length", "tilt"):
+            del scene["panel"][name]
+        del scene["slab"]["length"]
+    assert all(scene == scenes[0] for scene in scenes)
+
+
 def test_the_synthetic_truth_is_no_run_of_the_grid():
     grid, truth = studies.calibration(QUICK)
     assert not {run.hash for run in grid.runs()} & {run.hash for run in truth.runs()}

@@ -10,7 +10,7 @@ from snowshed.calibration.design import calibration_study
 from snowshed.calibration.measurements import Measurement
 from snowshed.parts import Snow
 from snowshed.regression.dataset import MODEL_BETWEEN
-from snowshed.regression.geometry import geometry_study
+from snowshed.regression.geometry import FRICTION, geometry_study
 from snowshed.reproduce.size import Size
 from snowshed.sensitivity.designs import sensitivity_study
 from snowshed.study import Study
@@ -87,9 +87,14 @@ def geometry(size: Size) -> list[Study]:
     """Return the panels of chapter 5, and those that Table 5.1.1 has besides the data set."""
     panels = _loaded(geometry_study(MODEL_BETWEEN))
     panels = Study(panels.scene, panels.parts, PANELS, panels.seeds)
-    scene = panels.scene.update({"panel.height": 2.0, "panel.length": 2.0})
-    others = {"panel.height": [2.0], "panel.length": [2.0], "panel.tilt": [45.0, 55.0, 65.0]}
-    return [panels, Study.product(scene, others, name=TILTS)]
+    others = {
+        "panel.friction": [FRICTION],
+        "events.between": [MODEL_BETWEEN],
+        "panel.height": [2.0],
+        "panel.length": [2.0],
+        "panel.tilt": [45.0, 55.0, 65.0],
+    }
+    return [panels, Study.product(panels.scene, others, name=TILTS)]
 
 
 def _lab_scene(size: Size, dimension: int) -> Scene:
