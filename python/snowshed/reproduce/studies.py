@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from snowshed import Scene
 from snowshed.calibration.design import calibration_study
@@ -87,7 +88,7 @@ def geometry(size: Size) -> list[Study]:
     """Return the panels of chapter 5, and those that Table 5.1.1 has besides the data set."""
     panels = _loaded(geometry_study(MODEL_BETWEEN))
     panels = Study(panels.scene, panels.parts, PANELS, panels.seeds)
-    others = {
+    others: dict[str, list[Any]] = {
         "panel.friction": [FRICTION],
         "events.between": [MODEL_BETWEEN],
         "panel.height": [2.0],
