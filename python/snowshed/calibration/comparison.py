@@ -77,15 +77,12 @@ def read_simulated(
 
 def simulated(table: pd.DataFrame, measure: str = "stack") -> Simulated:
     """Return the stacks in a study's table, as `snowshed.study.read_table` returns it."""
-    import pandas as pd
+    from snowshed.study.table import varying_numbers
 
     if TILT not in table:
         raise InputError(f"no axis {TILT}; write axes.{TILT} = 40, also for a single tilt")
     axes = [str(path) for path in table if "." in str(path) and path not in (TILT, SEED)]
-    varied = [path for path in axes if table[path].astype(str).nunique() > 1]
-    for path in varied:
-        if not pd.api.types.is_numeric_dtype(table[path]) or table[path].dtype == bool:
-            raise InputError(f"{path}: holds {table[path].iloc[0]!r}; calibration needs numbers")
+    varied = varying_numbers(table, axes, "calibration")
     columns = {column: quantity for quantity, column in MEASURES[measure].items()}
     rows = table[[*varied, TILT, "seed", "event", *columns]].dropna()
     if rows.empty:

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from snowshed._core import InputError
-from snowshed.regression.geometry import BETWEEN
+from snowshed.regression.geometry import check_between
 from snowshed.regression.rows import StackRows, read_rows
 
 FOLDER = Path(__file__).with_name("data")
@@ -31,8 +30,7 @@ def geometry_table(between: str = MODEL_BETWEEN) -> Path:
     >>> geometry_table("carry").name
     'geometry-carry.csv'
     """
-    if between not in BETWEEN:
-        raise InputError(f"between: {between!r} is unknown; allowed: {', '.join(BETWEEN)}")
+    check_between(between)
     return FOLDER / f"geometry-{between}.csv"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +16,7 @@ TOLERANCE = 1e-6  # of standardised inputs
 #: Part of the panels whose nearest neighbours are not farther than what counts as spacing: a few
 #: lonely panels do not make the data dense about them.
 SPACED = 0.9
+NO_PANELS = np.empty((0, 3))
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class Domain:
             # Most events have the same panels, which are looked at once.
             asked: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
             for question in questions:
-                panels = self._panels(question[0])
+                panels = self._by_event.get(question[0], NO_PANELS)
                 asked.setdefault((question[1:].tobytes(), panels.tobytes()), (question, panels))
             found = [text for one in asked.values() for text in self._misplaced(*one)]
         return list(dict.fromkeys(found))
@@ -79,9 +80,8 @@ class Domain:
         points, place = scaling.scaled(panels), scaling.scaled(panel)
         distances = np.linalg.norm(points - place, axis=1)
         where = f"the nearest panel in the data has {panel_in_words(panels[distances.argmin()])}"
-        known = len(self._panels())
-        if len(panels) < known:
-            where = f"only {len(panels)} of {known} panels have event {event:g}; {where}"
+        if len(panels) < self._known:
+            where = f"only {len(panels)} of {self._known} panels have event {event:g}; {where}"
         if not _in_hull(points, place):
             return [
                 f"each input is within its range, but not together: {panel_in_words(panel)} is "
@@ -91,10 +91,19 @@ class Domain:
             return [f"{panel_in_words(panel)} is in a gap of the data; {where}"]
         return []
 
-    def _panels(self, event: Optional[float] = None) -> Floats:
-        """Return the panels that have an event, or all: shape (m, 3)."""
-        rows = self.inputs if event is None else self.inputs[self.inputs[:, 0] == event]
-        return np.asarray(np.unique(rows[:, 1:], axis=0))
+    @cached_property
+    def _by_event(self) -> dict[float, Floats]:
+        """The panels that have each event, shape (m, 3)."""
+        events = self.inputs[:, 0]
+        return {
+            float(event): np.unique(self.inputs[events == event, 1:], axis=0)
+            for event in np.unique(events)
+        }
+
+    @cached_property
+    def _known(self) -> int:
+        """How many panels have any event."""
+        return len(np.unique(self.inputs[:, 1:], axis=0))
 
 
 def _in_hull(points: Floats, place: Floats) -> bool:

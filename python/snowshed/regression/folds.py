@@ -46,7 +46,7 @@ class CrossValidation:
 
     def check(self, rows: StackRows) -> None:
         """Raise an InputError if there are too few rows or panels for so many folds."""
-        panels = int(rows.panels.max()) + 1
+        panels = rows.panel_count
         if panels < 2:
             raise InputError("all rows are of one panel; at least 2 panels are needed")
         count = len(rows) if self.by == "rows" else panels

@@ -51,8 +51,7 @@ def geometry_study(
     >>> geometry_study("reseed").splitlines()[0]
     '# The geometry data set: 122 panels, 5 events each, 610 rows (Tables 5.1.1 and 5.2.1).'
     """
-    if between not in BETWEEN:
-        raise InputError(f"between: {between!r} is unknown; allowed: {', '.join(BETWEEN)}")
+    check_between(between)
     values = {
         "between": between,
         "friction": exact(friction),
@@ -61,6 +60,12 @@ def geometry_study(
         "seeds_of_long": _seeds(ceil(seeds / LONG)),
     }
     return filled("snowshed.regression", "geometry-trial" if trial else "geometry", values)
+
+
+def check_between(between: str) -> None:
+    """Raise an InputError unless there is such a way between events."""
+    if between not in BETWEEN:
+        raise InputError(f"between: {between!r} is unknown; allowed: {', '.join(BETWEEN)}")
 
 
 def _seeds(count: int) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
@@ -105,8 +105,8 @@ def predict(
     kind = model.kinds[0] if kind is None else kind
     if kind not in model.kinds:
         raise InputError(f"kind: the model holds no {kind!r}; it has: {', '.join(model.kinds)}")
-    events_asked = np.arange(1.0, events + 1.0)
-    questions = np.column_stack([events_asked, np.tile((height, length, tilt), (events, 1))])
+    asked = [[event, height, length, tilt] for event in range(1, events + 1)]
+    questions = np.array(asked, dtype=float)
     objections = model.domain.objections(questions)
     if objections and not extrapolate:
         raise OutsideDataError(
@@ -125,7 +125,7 @@ def predict(
     return Prediction(table, kind, model.title, model.measure, model.settings, tuple(objections))
 
 
-@lru_cache(maxsize=1)
+@cache
 def _shipped() -> StackModel:
     return load_model(MODEL)
 

@@ -95,6 +95,11 @@ class StackRows:
         return np.asarray(which, dtype=np.int64).reshape(-1)
 
     @property
+    def panel_count(self) -> int:
+        """How many panels there are."""
+        return int(self.panels.max()) + 1
+
+    @property
     def digest(self) -> str:
         """What tells these rows from any others."""
         content = hashlib.sha256(np.ascontiguousarray(self.inputs).tobytes())

@@ -110,7 +110,7 @@ def unseen_panels(
     panels = rows.panels
     found = np.empty((len(elected), len(rows)))
     for number, choices in enumerate(elected):
-        folds = min(len(choices), int(panels.max()) + 1)
+        folds = min(len(choices), rows.panel_count)
         parts = shuffled_parts(np.unique(panels), folds, [seed, number, 1])
         for part, parameters in zip(parts, choices):
             held_out = np.isin(panels, part)

@@ -48,7 +48,7 @@ class StoredRuns:
 
     @property
     def parameters(self) -> list[str]:
-        """The axes without the seed."""
+        """The axes that have more than one value, the seed not among them."""
         return [path for path in self.axes if path != SEED and self.points[path].nunique() > 1]
 
     @property
@@ -104,12 +104,10 @@ def stored_runs(
     name: str, axes: Sequence[str], points: pd.DataFrame, table: pd.DataFrame, measure: str
 ) -> StoredRuns:
     """Return a study from its points and its table; for the columns see `StoredRuns`."""
-    import pandas as pd
+    from snowshed.study.table import varying_numbers
 
-    axes = [path for path in axes if path == SEED or points[path].astype(str).nunique() > 1]
-    for path in axes:
-        if not pd.api.types.is_numeric_dtype(points[path]) or points[path].dtype == bool:
-            raise InputError(f"{path}: holds {points[path].iloc[0]!r}; sensitivity needs numbers")
+    varying = varying_numbers(points, axes, "sensitivity")
+    axes = [path for path in axes if path == SEED or path in varying]
     columns = {column: target for target, column in MEASURES[measure].items()}
     measured = table[["hash", "event", *columns]].rename(columns=columns).dropna()
     if measured.empty:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
+from snowshed._core import InputError
 from snowshed.accuracy_settings import ACCURACY
 from snowshed.json_file import is_number
 from snowshed.quoting import shortened
@@ -116,6 +117,30 @@ def _run_timings(store: Store, study: str) -> list[tuple[Any, ...]]:
         " WHERE study = ?",
         (study,),
     )
+
+
+def varying_numbers(table: pd.DataFrame, paths: Iterable[str], purpose: str) -> list[str]:
+    """Return those of a table's axes that have several values; these must be numbers.
+
+    Parameters
+    ----------
+    table, paths
+        The table, and the axes in question.
+    purpose
+        What needs numbers, for messages.
+
+    Raises
+    ------
+    InputError
+        If values that vary are no numbers.
+    """
+    import pandas as pd
+
+    varying = [path for path in paths if table[path].astype(str).nunique() > 1]
+    for path in varying:
+        if not pd.api.types.is_numeric_dtype(table[path]) or table[path].dtype == bool:
+            raise InputError(f"{path}: holds {table[path].iloc[0]!r}; {purpose} needs numbers")
+    return varying
 
 
 def value_at(scene: Mapping[str, Any], path: str) -> Any:

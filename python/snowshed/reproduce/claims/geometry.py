@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.arrays import Floats, Integers
+from snowshed.arrays import Floats
 from snowshed.number_words import percent
 from snowshed.reproduce.claims.judging import (
     CONFIRMED,
@@ -84,6 +84,8 @@ def fit(table: pd.DataFrame, varied: str, target: str, *shapes: Shape) -> Fit:
     >>> round(fit(table, "panel_height", "ratio", straight).slopes[0].value, 6)  # of a mean of 2.5
     -0.4
     """
+    import pandas as pd
+
     others = [name for name in INPUTS if name != varied]
     table = table.reset_index(drop=True)
     panel = table.groupby(list(PANEL)).ngroup().to_numpy()
@@ -96,23 +98,16 @@ def fit(table: pd.DataFrame, varied: str, target: str, *shapes: Shape) -> Fit:
     columns = np.concatenate([_centred([shape(x) for shape in shapes]) for x in inputs], axis=1).T
     targets = np.concatenate([_relative(rows[target].to_numpy(float)) for rows in groups])
     slopes, *_ = np.linalg.lstsq(columns, targets, rcond=None)
-    variance = float(((targets - columns @ slopes) ** 2).sum() / freedom)
+    left = targets - columns @ slopes
+    variance = float((left**2).sum() / freedom)
     inverse = np.linalg.pinv(columns.T @ columns)
     panels = np.concatenate([panel[rows.index] for rows in groups])
-    sums = _summed(columns * (targets - columns @ slopes)[:, None], panels)
+    sums = pd.DataFrame(columns * left[:, None]).groupby(panels).sum().to_numpy()
     clusters = len(sums)
     robust = inverse @ sums.T @ sums @ inverse * (clusters / max(clusters - 1, 1))
     errors = np.sqrt(np.maximum(variance * np.diag(inverse), np.diag(robust)))
     found = [Estimate(float(one), float(error)) for one, error in zip(slopes, errors)]
     return Fit(found, variance, float(np.ptp(np.concatenate(inputs))))
-
-
-def _summed(rows: Floats, which: Integers) -> Floats:
-    """Return the sums of the rows of each panel."""
-    _, which = np.unique(which, return_inverse=True)
-    sums = np.zeros((int(which.max()) + 1, rows.shape[1]))
-    np.add.at(sums, which, rows)
-    return sums
 
 
 def straight(x: Floats) -> Floats:

@@ -40,7 +40,7 @@ def build(found: Reproduction) -> Section:
     if not state.finished:
         raise InputError(f"regression: {state.in_words()}")
     rows = found.rows.read()
-    data = read_regressed(folder, len(rows), int(rows.panels.max()) + 1)
+    data = read_regressed(folder, len(rows), rows.panel_count)
     scheme = found.size.folds
     numbers = {"rounds": scheme.rounds, "folds": scheme.folds, "inner": scheme.inner_folds}
     text = [line.format(rows=data.rows, **numbers) for line in TEXT]
