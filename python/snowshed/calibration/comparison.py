@@ -11,11 +11,12 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.calibration.measurements import QUANTITIES, Measurement, to_table
 from snowshed.scene import PathLike
+from snowshed.study.definition import SEED
 
 if TYPE_CHECKING:
     import pandas as pd
 
-TILT, SEED = "panel.tilt", "seeding.seed"
+TILT = "panel.tilt"
 SET = "set"  # the column that numbers parameter sets, from 1
 #: Columns of a study's table by what counts as the stack.
 MEASURES: Mapping[str, Mapping[str, str]] = {

@@ -16,7 +16,8 @@ from snowshed.arrays import Floats
 from snowshed.figure_style import COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.parameter_words import word
 from snowshed.sensitivity.single_parameter import CONFIDENT
-from snowshed.sensitivity.stored import SEED, TARGETS
+from snowshed.sensitivity.stored import TARGETS
+from snowshed.study.definition import SEED
 
 if TYPE_CHECKING:
     import pandas as pd

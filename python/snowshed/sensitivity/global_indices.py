@@ -16,8 +16,9 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.arrays import Booleans, Floats
 from snowshed.extras import require
-from snowshed.sensitivity.sampling import EXTRA, LEVELS, SEED, problem
+from snowshed.sensitivity.sampling import EXTRA, LEVELS, problem
 from snowshed.sensitivity.stored import TARGETS, StoredRuns
+from snowshed.study.definition import SEED
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,11 +14,11 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.arrays import Floats
 from snowshed.extras import require
+from snowshed.study.definition import SEED
 from snowshed.study.factors import Span
 
 EXTRA = "sensitivity"
 LEVELS = 4  # of Morris's grid
-SEED = "seeding.seed"
 RANDOM = 1  # seed of the samples: the same sample whenever it is asked for
 #: Ranges of Table 3.2.1; the hardening factor spans a decade, and so is sampled by its logarithm.
 SPANS: Mapping[str, Span] = {

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
 from snowshed.scene import PathLike
+from snowshed.study.definition import SEED
 
 if TYPE_CHECKING:
     import pandas as pd
 
-SEED = "seeding.seed"
 TARGETS = ("height", "length")
 #: Columns of a study's table by what counts as the stack.
 MEASURES: Mapping[str, Mapping[str, str]] = {
