@@ -73,9 +73,9 @@ def test_made_up_stacks_give_the_verdicts_they_must(whole):
     assert found["M shortens the stack."] == "confirmed"
     assert found["p₀ lengthens the stack."] == "confirmed"
     assert found["H/L grows with the panel's length."] == "confirmed"
-    assert found["At 30 degrees it depends on the friction whether the slab slides off."] == (
-        "confirmed"
-    )
+    assert found["At 30 degrees slabs sometimes stop on the panel."] == "undecided"
+    two_thirds = "In 3D a stack is about 2/3 as high as in 2D when height and width are comparable."
+    assert found[two_thirds] == "confirmed"
     lowers = "p₀ lowers the height (the thesis says the opposite in 3.4.1)."
     assert found[lowers] == "contradicted"
 
@@ -90,10 +90,24 @@ def test_it_says_what_is_missing(tmp_path):
     decided = {one.source for one in claims if one.finding.verdict != "undecided"}
     assert decided == {"3.3"}
     unfinished = [one for one in claims if one.source.startswith("3.4")]
-    assert all("the stage is not finished" in one.finding.sentence for one in unfinished)
+    assert all("the stage is not complete" in one.finding.sentence for one in unfinished)
     assert "stage lab: 0 of 18 simulations done" in text
     assert "stage geometry: 0 of 125 simulations done" in text
     assert "stage s-index" not in text
+
+
+def test_means_over_a_design_need_all_of_its_runs(tmp_path):
+    found = Reproduction(
+        ReproductionFolder.claim(tmp_path / "out", "quick"), TINY_WITH_PANELS, None
+    )
+    fill(found, ["lab", "s-index"], fail_one=True)
+    verdicts = {"2": set(), "3": set()}
+    for one in write_report(found):
+        if one.source[0] in verdicts:
+            verdicts[one.source[0]].add(one.finding.verdict)
+    assert verdicts["3"] == {"undecided"} and "confirmed" in verdicts["2"]
+    text = " ".join(page_of(found).text)
+    assert "stage s-index: 17 of 18 simulations done, 1 failed" in text
 
 
 def test_nothing_at_all(tmp_path):

@@ -102,7 +102,11 @@ def test_a_folder_is_for_one_size(tmp_path):
     ("name", "content", "message"),
     [
         ("scores.csv", b"", "not a table: "),
-        ("scores.csv", b"model\nrbf\nlinear\n", "damaged: no numbers in a column validation_score"),
+        (
+            "scores.csv",
+            b"model\nrbf\nlinear\n",
+            "damaged: no numbers in a column development_score",
+        ),
         ("ratio/errors.csv", b"\xff\xfe\x00", "not a table: "),
         (
             "ratio/errors.csv",
@@ -113,7 +117,8 @@ def test_a_folder_is_for_one_size(tmp_path):
     ],
 )
 def test_damaged_tables_of_the_regression_are_named(tmp_path, name, content, message):
-    numbers = {"validation_score": 1.0, "mean_absolute_error": 1.0, "standard_deviation": 1.0}
+    numbers = {"development_score": 1.0, "validation_score": 1.0, "C": 1.0}
+    numbers.update({"mean_absolute_error": 1.0, "standard_deviation": 1.0})
     numbers.update({"held_out_error": 1.0, "Q1": 1.0, "Q2": 2.0, "Q3": 3.0, "Q4": 4.0})
     table = pd.DataFrame([{"model": model, **numbers} for model in ("data", "rbf", "linear")])
     (tmp_path / "ratio").mkdir()

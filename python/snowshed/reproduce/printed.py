@@ -41,6 +41,12 @@ _POISSON = Printed("Poisson's ratio", "snow.poissons_ratio", "0.3")
 _GRID = Printed("grid size dx", "numerics.dx", "0.01", "m")
 _GROUND = Printed("ground tilt Ψ", "ground.tilt", "0", "°")
 _SEED = Printed("seedings (their seeds)", "seeding.seed", NOT_PRINTED)
+_BETWEEN = Printed("stack between events", "events.between", "RESEED")
+_CALIBRATED_SNOW = ("0.5", "7", "0.2", "0.1", "1")  # Table 4.3.1
+
+
+def _end(frames: str) -> Printed:
+    return Printed("end of an event: rest, or after", "events.max_time", f"{frames} frames", "s")
 
 
 def _snow(slope: str, pressure: str, cohesion: str, hardening: str, modulus: str) -> list[Printed]:
@@ -55,44 +61,59 @@ def _snow(slope: str, pressure: str, cohesion: str, hardening: str, modulus: str
     ]
 
 
-def _scene(height: str, length: str, tilt: str, thickness: str, events: str) -> list[Printed]:
+def _scene(height: str, tilt: str, frames: str, events: str) -> list[Printed]:
+    """Return what the tables of the small panel have in common."""
     return [
         Printed("dimension", "dimension", "3D"),
         Printed("panel height", "panel.height", height, "m"),
-        Printed("panel length", "panel.length", length, "m"),
+        Printed("panel length", "panel.length", "0.245", "m"),
+        Printed("panel width", "panel.width", "0.213", "m"),
         Printed("panel tilt Φ", "panel.tilt", tilt, "°"),
         _GROUND,
-        Printed("slab thickness", "slab.thickness", thickness, "m"),
+        Printed("slab thickness", "slab.thickness", "0.02", "m"),
+        Printed("slab length", "slab.length", "0.245", "m", zero="as the panel"),
+        Printed("slab width", "slab.width", "0.142", "m"),
         Printed("events", "events.count", events),
+        _end(frames),
+        _BETWEEN,
+        _DENSITY,
+        _POISSON,
     ]
 
 
 _NUMERICS = [_GRID, _PANEL_CONDITION, _FRICTION, _GROUND_CONDITION, _SEED]
 
-#: Tables 2.3.1 and 4.3.1.
+#: Tables 2.3.1 and 4.3.1; the panel of the experiment is 0.142 m wide.
 LABORATORY: Sequence[Printed] = [
-    *_scene("0.33", "0.245", "30, 40, 50", "0.02", "5"),
-    Printed("slab length", "slab.length", "0.245", "m", zero="as the panel"),
-    Printed("slab width", "slab.width", "0.142", "m"),
-    _DENSITY,
-    *_snow("0.5", "7", "0.2", "0.1", "1"),
+    *_scene("0.33", "30, 40, 50", "60", "3 (text and figures: 5)"),
+    *_snow(*_CALIBRATED_SNOW),
     *_NUMERICS,
 ]
 #: Table 3.2.1.
 SENSITIVITY: Sequence[Printed] = [
-    *_scene("0.5", "0.245", "40", "0.02", "3"),
-    _DENSITY,
-    _POISSON,
+    *_scene("0.5", "40", "50", "3"),
     *_snow("0.3, 0.5, 0.7", "2, 5, 8", "0.1, 0.2, 0.3", "0.1, 0.2, 1", "1, 2, 3"),
     *_NUMERICS,
 ]
 #: Table 4.1.1.
 CALIBRATION: Sequence[Printed] = [
-    *_scene("0.33", "0.245", "40, 50", "0.02", "5"),
-    _DENSITY,
-    _POISSON,
+    *_scene("0.33", "40, 50", "60", "5"),
     *_snow("0.4, 0.5, 0.6, 0.7", "4, 5, 6, 7", "0.05, 0.1, 0.2", "0.1", "1"),
     *_NUMERICS,
+]
+#: Table 5.1.1: what does not vary.
+PANELS_SCENE: Sequence[Printed] = [
+    Printed("dimension", "dimension", "2D"),
+    _GROUND,
+    Printed("slab thickness", "slab.thickness", "0.05", "m"),
+    Printed("slab length", "slab.length", "as the panel", zero="as the panel"),
+    Printed("events", "events.count", "5"),
+    _end("100"),
+    _DENSITY,
+    _POISSON,
+    *_snow(*_CALIBRATED_SNOW),
+    _PANEL_CONDITION,
+    _GROUND_CONDITION,
 ]
 #: Tables 5.1.1 and 5.2.1: the inputs.
 PANELS: Mapping[str, str] = {
@@ -105,7 +126,7 @@ PANEL_ROWS = "610 (385 at 40°, 225 steeper)"
 #: Settings of the panels, by the columns of their rows.
 PANEL_SETTINGS: Sequence[Printed] = (
     Printed("friction of the panel", "panel.friction", NOT_PRINTED),
-    Printed("stack between events", "events.between", "reseed"),
+    replace(_BETWEEN, text="reseed"),
     Printed("grid size, m", "dx", "0.01"),
     Printed("particles per voxel", "particles_per_voxel", "at least 4"),
     replace(_SEED, path="seed"),

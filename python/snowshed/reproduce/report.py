@@ -35,6 +35,8 @@ SECTIONS = {
     "geometry": "geometry",
     "regression": "regression",
 }
+#: Sections whose numbers are means over a design: a run that failed makes unlike means.
+DESIGNS = ("s_index", "fixation")
 VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
 
 
@@ -58,14 +60,14 @@ def build(found: Reproduction, module: str, stage: str) -> Section:
         section: Section = made.build(found)
     except InputError as error:
         return Section(stage, f"Stage {stage}", missing=[*lines, str(error)])
-    if not state.finished:
+    if not state.finished or (state.failed and module in DESIGNS):
         section = replace(section, claims=[_open(one, state) for one in section.claims])
     return section.lacking(*lines)
 
 
 def _open(claim: Judged, state: State) -> Judged:
     """Leave a claim open: means over part of a design would compare unlike points."""
-    words = f"the stage is not finished, {state.in_words()}"
+    words = f"the stage is not complete, {state.in_words()}"
     return replace(claim, finding=Finding(UNDECIDED, words))
 
 

@@ -11,6 +11,7 @@ from snowshed.html_page import Grid, Picture
 from snowshed.number_words import NOTHING, number
 from snowshed.reproduce.claims.judging import Judged
 from snowshed.reproduce.printed import Printed
+from snowshed.reproduce.size import MEASURED_FRICTION
 from snowshed.study.table import value_at
 
 if TYPE_CHECKING:
@@ -18,6 +19,11 @@ if TYPE_CHECKING:
 
 #: Resolution of the figures that stages save, see `snowshed.figure_style.save`.
 SAVED_DPI = 160
+#: For sections whose panel has one friction.
+PANEL_FRICTION = (
+    f"The thesis does not print the panel's friction; here it is {MEASURED_FRICTION}, the least "
+    "static coefficient that it measured."
+)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from snowshed.regression.folds import CrossValidation
 
+#: Of the panel where there is one value: the least static coefficient that the thesis measured.
+MEASURED_FRICTION = 0.6
+
 
 @dataclass(frozen=True)
 class Size:

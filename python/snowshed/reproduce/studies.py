@@ -12,7 +12,7 @@ from snowshed.calibration.measurements import Measurement
 from snowshed.parts import Snow
 from snowshed.regression.dataset import MODEL_BETWEEN
 from snowshed.regression.geometry import FRICTION, geometry_study
-from snowshed.reproduce.size import Size
+from snowshed.reproduce.size import MEASURED_FRICTION, Size
 from snowshed.sensitivity.designs import sensitivity_study
 from snowshed.study import Study
 
@@ -109,7 +109,8 @@ def _sensitivity(method: str, name: str, size: Size, seeds: int) -> Study:
 
 
 def _resized(study: Study, size: Size) -> Scene:
-    return study.scene.update({"dimension": size.dimension, "numerics.dx": size.dx})
+    settings = {"dimension": size.dimension, "numerics.dx": size.dx}
+    return study.scene.update({**settings, "panel.friction": MEASURED_FRICTION})
 
 
 def _loaded(text: str) -> Study:

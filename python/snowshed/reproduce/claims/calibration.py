@@ -66,6 +66,8 @@ def is_ranked_well(data: Recovery) -> Finding:
 def is_in_the_ranges(data: Recovery) -> Finding:
     """Whether the 95 % ranges of the posterior hold the true snow.
 
+    One of three may miss it by chance, in one draw of the errors out of seven.
+
     p0 and beta of the true snow lie at the ends of the grid, which no range between quantiles
     reaches: a range that is open at an end goes on to it.
     """
@@ -78,7 +80,7 @@ def is_in_the_ranges(data: Recovery) -> Finding:
         data.ranges["high"] - data.ranges["low"]
     )
     words = f"{len(data.ranges) - len(outside)} of {len(data.ranges)} parameters inside"
-    verdict = CONTRADICTED if outside else CONFIRMED
+    verdict = (CONFIRMED, UNDECIDED, CONTRADICTED)[min(len(outside), 2)]
     return Finding(
         verdict, f"{words}; the ranges are {percent(widths.mean(), 2)} of the grid on average"
     )
@@ -108,14 +110,15 @@ CALIBRATION: tuple[Claim[Recovery], ...] = (
     Claim(
         "4.1",
         "The mean rescaled RMSE finds the snow (on synthetic stacks).",
-        "the true triplet has rank 1; undecided if it is among the best quarter",
+        "the true triplet has rank 1; undecided if it is among the best quarter (one draw of the "
+        "errors, no noise)",
         is_ranked_well,
     ),
     Claim(
         "beyond the thesis",
         "The posterior finds the snow (on synthetic stacks).",
         "the true values of all parameters lie in their 95 % ranges, which go on to the end of the "
-        "grid where they are open",
+        "grid where they are open; undecided if one does not (one draw of the errors, no noise)",
         is_in_the_ranges,
     ),
 )

@@ -1,7 +1,8 @@
 """Claims of section 3.4: what stacks do, on average over all other parameters.
 
 The data are the table of `snowshed.sensitivity.fixation` with a column ``noise_m``: the standard
-deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last.
+deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last. Values of
+the other parameters are a design, no sample: the seeding is all that is by chance.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 #: Part of the stack by which it may change over the whole range of a parameter that hardly matters.
 HARDLY = 0.1
+#: Up to this cohesion the others are said to matter little (3.4.1, takeaways).
+DRIVES = 0.2
 YIELD = (SLOPE, PRESSURE, COHESION)
 
 
@@ -47,6 +50,13 @@ def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
 def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
     """Whether the stack shrinks over the range of a parameter."""
     return negative(effect(table, parameter, target), _change(parameter, target), "m")
+
+
+def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
+    """Whether the stack is shorter at the second value of a parameter than at the first."""
+    rows = _last(_of(table, "length"), parameter)
+    low, high = (Estimate(row["mean_m"], row["noise_m"]) for _, row in rows.iloc[:2].iterrows())
+    return negative(high - low, f"length, second minus lowest {word(parameter).symbol}", "m")
 
 
 def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
@@ -96,6 +106,31 @@ def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
     return all_of(findings)
 
 
+def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
+    """Whether heights scatter more after the last event than after the first."""
+    findings = []
+    for parameter in YIELD:
+        rows = _of(table, "height")
+        rows = rows[rows["parameter"] == parameter]
+        first, last = (
+            mean_of([_deviation(row) for _, row in rows[rows["event"] == event].iterrows()])
+            for event in (rows["event"].min(), rows["event"].max())
+        )
+        what = f"mean scatter at values of {word(parameter).symbol}, last event minus first"
+        findings.append(positive(last - first, what, "m"))
+    return all_of(findings)
+
+
+def cohesion_drives(table: pd.DataFrame) -> Finding:
+    """Whether heights hardly scatter over M and p0 where beta is small."""
+    rows = _last(_of(table, "height"), COHESION)
+    findings = []
+    for _, row in rows[rows["value"] <= DRIVES * (1 + 1e-9)].iterrows():
+        scatter = _deviation(row).scaled(1 / row["mean_m"])
+        findings.append(small(scatter, HARDLY, f"scatter at β {row['value']:g}", "%"))
+    return all_of(findings)
+
+
 def _of(table: pd.DataFrame, target: str) -> pd.DataFrame:
     return table[table["target"] == target]
 
@@ -120,11 +155,20 @@ def _mean(rows: pd.DataFrame) -> Estimate:
 
 
 def _deviation(row: pd.Series[float]) -> Estimate:
-    """Return a deviation over n points, with the standard error that n leaves."""
-    if row["points"] < 2:
+    """Return the deviation over n points without the seeding's part, and what the seeding leaves.
+
+    A point's seeding has the variance s2 = n noise_m^2. The variance over the points is larger by
+    s2, and has itself the variance (4 D^2 s2 + 2 s2^2) / (n - 1) to first order.
+    """
+    points = float(row["points"])
+    if points < 2:
         raise LookupError("several points at each value")
-    deviation = float(row["deviation_m"])
-    return Estimate(deviation, deviation / math.sqrt(2 * (float(row["points"]) - 1)))
+    seeding = points * float(row["noise_m"]) ** 2
+    squared = max(float(row["deviation_m"]) ** 2 - seeding, 0.0)
+    of_squared = math.sqrt((4 * squared * seeding + 2 * seeding**2) / (points - 1))
+    deviation = math.sqrt(squared)
+    hidden = 4 * squared <= of_squared  # then the noise is what the seeding may hide
+    return Estimate(deviation, math.sqrt(of_squared) if hidden else of_squared / (2 * deviation))
 
 
 def _change(parameter: str, target: str) -> str:
@@ -159,12 +203,24 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
     ),
     *(
         Claim(
-            "3.4.2, 3.5",
+            source,
             f"ξ and E hardly matter for the {target}.",
             f"over the whole range of each the mean changes by less than {percent(HARDLY)}",
             partial(hardly_matter, target=target),
         )
-        for target in ("height", "length")
+        for source, target in (("3.4.2", "height"), ("3.5", "length"))
+    ),
+    Claim(
+        "3.4.2",
+        "ξ lowers the stack when there is much snow.",
+        RAISE.replace("higher", "lower"),
+        partial(lowers, parameter=HARDENING, target="height"),
+    ),
+    Claim(
+        "3.4.2",
+        "ξ shortens the stack in the lowest part of its range (3.5 takes it for small).",
+        "mean over the others lower at the second value than at the lowest, last event",
+        partial(shortens_at_first, parameter=HARDENING),
     ),
     *(
         Claim(
@@ -187,5 +243,18 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
         "deviation over the other parameters larger at the highest value than at the lowest, for "
         "M, p₀ and β",
         cohesive_snow_is_more_sensitive,
+    ),
+    Claim(
+        "3.4.1",
+        "The more snow, the more sensitive the height.",
+        "deviation over the other parameters larger after the last event than after the first, for "
+        "M, p₀ and β, mean over their values",
+        mass_makes_sensitive,
+    ),
+    Claim(
+        "3.4.1",
+        f"Below β {DRIVES:g}, β drives the height: M and p₀ hardly matter.",
+        f"deviation over M and p₀ below {percent(HARDLY)} of the height, last event",
+        cohesion_drives,
     ),
 )

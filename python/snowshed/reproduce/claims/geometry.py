@@ -39,6 +39,8 @@ INPUTS = ("event", *PANEL)
 FITS_BETTER = 1.5
 #: Part of a straight line's change by which a parabola may depart from it.
 STRAIGHT = 0.25
+#: Part of the mean slope by which slopes may differ and still be the same.
+SAME = 0.25
 #: Part of the ratio by which it may change over all tilts and still hardly depend on them.
 HARDLY = 0.1
 
@@ -126,15 +128,28 @@ def _relative(values: Floats) -> Floats:
 def grows_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
     """Whether a target grows with an input."""
     found = fit(table, varied, target, np.log if varied == "panel_length" else straight)
-    unit = "per unit of ln L" if varied == "panel_length" else f"per m of {_name(varied)}"
-    slope = found.slopes[0]
-    return positive(slope, f"relative change of {_name(target)} {unit}")
+    unit = "per unit of ln L" if varied == "panel_length" else f"per {_unit(varied)}"
+    return positive(found.slopes[0], f"relative change of {_name(target)} {unit}")
 
 
-def falls_with_height(table: pd.DataFrame) -> Finding:
-    """Whether H/L falls with the panel's height."""
-    slope = fit(table, "panel_height", "ratio", straight).slopes[0]
-    return negative(slope, "relative change of H/L per m of panel height")
+def falls_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
+    """Whether a target falls with the panel's height or tilt."""
+    slope = fit(table, varied, target, straight).slopes[0]
+    return negative(slope, f"relative change of {_name(target)} per {_unit(varied)}")
+
+
+def slopes_are_the_same(table: pd.DataFrame) -> Finding:
+    """Whether H/L falls with the panel's height at every event alike."""
+    slopes = []
+    for _, rows in table.groupby("event"):
+        slope = fit(rows, "panel_height", "ratio", straight).slopes[0]
+        slopes.append(slope.scaled(float(rows["ratio"].mean() / table["ratio"].mean())))
+    if len(slopes) < 2:
+        raise LookupError("several events")
+    low, high = min(slopes, key=_value), max(slopes, key=_value)
+    mean = sum(map(_value, slopes)) / len(slopes)
+    words = "largest difference between slopes of two events, of the mean slope"
+    return small((high - low).scaled(1 / mean), SAME, words, "%")
 
 
 def is_logarithmic(table: pd.DataFrame) -> Finding:
@@ -182,6 +197,10 @@ def _value(found: Estimate) -> float:
     return found.value
 
 
+def _unit(varied: str) -> str:
+    return f"{'degree' if varied == 'panel_tilt' else 'm'} of {_name(varied)}"
+
+
 def _name(column: str) -> str:
     names = {"ratio": "H/L", "height": "stack height", "length": "stack length"}
     return names.get(column, column.replace("_", " "))
@@ -197,7 +216,7 @@ GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
     Claim(
         "5.1.2",
         "It grows like a logarithm.",
-        f"a logarithm leaves {FITS_BETTER} times less variance than a straight line",
+        f"a logarithm leaves {FITS_BETTER} times less variance than a straight line (no noise)",
         is_logarithmic,
     ),
     Claim(
@@ -212,7 +231,18 @@ GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
         "slope above zero",
         partial(grows_with, varied="panel_height", target="length"),
     ),
-    Claim("5.1.2", "H/L falls with the panel's height.", "slope below zero", falls_with_height),
+    Claim(
+        "5.1.2",
+        "The stack's height grows with the panel's height too.",
+        "slope above zero",
+        partial(grows_with, varied="panel_height", target="height"),
+    ),
+    Claim(
+        "5.1.2",
+        "H/L falls with the panel's height.",
+        "slope below zero",
+        partial(falls_with, varied="panel_height", target="ratio"),
+    ),
     Claim(
         "5.1.2",
         "It falls linearly.",
@@ -221,8 +251,29 @@ GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
     ),
     Claim(
         "5.1.2",
+        "It falls with the same slope at every event.",
+        f"no two events' slopes differ by more than {percent(SAME)} of the mean slope",
+        slopes_are_the_same,
+    ),
+    Claim(
+        "5.1.2",
         "H/L hardly depends on the tilt.",
         f"between no two tilts it changes by more than {percent(HARDLY)} of itself",
         hardly_depends_on_tilt,
+    ),
+    Claim(
+        "5.1.2",
+        "The stack's length grows slightly with the tilt.",
+        "slope above zero",
+        partial(grows_with, varied="panel_tilt", target="length"),
+    ),
+    *(
+        Claim(
+            "5.1.2",
+            f"{words} falls slightly with the tilt.",
+            "slope below zero",
+            partial(falls_with, varied="panel_tilt", target=target),
+        )
+        for words, target in (("The stack's height", "height"), ("H/L", "ratio"))
     ),
 )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+from snowshed.extras import require
 from snowshed.number_words import NOTHING, number, percent
 
 CONFIRMED, CONTRADICTED, UNDECIDED = "confirmed", "contradicted", "undecided"
@@ -48,6 +49,22 @@ class Estimate:
             return f"{percent(self.value)} ± {percent(self.noise, 2)}"
         known = NOTHING if math.isnan(self.noise) else number(self.noise, 2)
         return f"{number(self.value)} ± {known} {unit}".rstrip()
+
+
+def widened(noise: float, freedom: float) -> float:
+    """Return a noise that was estimated from few numbers, widened by Student's t.
+
+    `SIGMAS` of it then hold as much as they do where the noise is known well: 95 %.
+
+    Examples
+    --------
+    >>> [round(widened(1.0, freedom), 2) for freedom in (2, 6, 1000)]
+    [2.26, 1.26, 1.0]
+    """
+    if freedom <= 0:
+        return math.nan
+    stats = require("scipy.stats", "regression", "judging claims")
+    return noise * float(stats.t.ppf(stats.norm.cdf(SIGMAS), freedom)) / SIGMAS
 
 
 def mean_of(found: Sequence[Estimate]) -> Estimate:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from snowshed.arrays import Floats
 from snowshed.number_words import percent
 from snowshed.regression.summary import (
     LINEAR_WORSE,
@@ -17,6 +18,8 @@ from snowshed.regression.summary import (
     THESIS_ROWS,
 )
 from snowshed.reproduce.claims.judging import (
+    CONFIRMED,
+    CONTRADICTED,
     UNDECIDED,
     Claim,
     Estimate,
@@ -24,6 +27,7 @@ from snowshed.reproduce.claims.judging import (
     all_of,
     near,
     positive,
+    widened,
 )
 
 if TYPE_CHECKING:
@@ -31,6 +35,8 @@ if TYPE_CHECKING:
 
 #: "Sub-centimetre": H/L has no unit, so that its error is compared with the plain number.
 SUB_CENTIMETRE = 0.01
+#: Section 5.3.1, of the RBF kernel.
+VALIDATION_SCORE = 0.005
 #: Part by which a number may differ and still be about another.
 ABOUT = 0.25
 
@@ -44,7 +50,8 @@ class Regressed:
     rows, panels
         How many rows the data have, and of how many panels.
     scores
-        One row per outer fold: ``model``, ``round``, ``fold``, ``validation_score``.
+        One row per outer fold: ``model``, ``round``, ``fold``, ``development_score``,
+        ``validation_score``, ``C``.
     errors
         Table 5.3.2, by model: ``mean_absolute_error``, ``standard_deviation``.
     quartiles
@@ -59,17 +66,33 @@ class Regressed:
 
 
 def validation(data: Regressed, model: str) -> Estimate:
-    """Return the mean validation score of a model, with its standard error over the folds.
+    """Return the mean validation score of a model, with its standard error over the folds."""
+    of_model = _folds(data, model)
+    return _mean_over_folds(of_model, of_model["validation_score"].to_numpy(float))
+
+
+def _folds(data: Regressed, model: str) -> pd.DataFrame:
+    of_model = data.scores[data.scores["model"] == model]
+    if of_model.empty:
+        raise LookupError(f"the model {model}")
+    return of_model
+
+
+def _mean_over_folds(of_model: pd.DataFrame, values: Floats) -> Estimate:
+    """Return a mean over outer folds, with its standard error.
 
     Rounds split the same rows again, so that only the folds of one round are independent.
     """
-    of_model = data.scores[data.scores["model"] == model]
-    scores = of_model["validation_score"].to_numpy(float)
-    if not len(scores):
-        raise LookupError(f"the model {model}")
-    spread = float(scores.std(ddof=1)) if len(scores) > 1 else math.nan
-    folds = len(scores) / of_model["round"].nunique()
-    return Estimate(float(scores.mean()), spread / math.sqrt(folds))
+    spread = float(values.std(ddof=1)) if len(values) > 1 else math.nan
+    folds = len(values) / of_model["round"].nunique()
+    return Estimate(float(values.mean()), widened(spread / math.sqrt(folds), folds - 1))
+
+
+def overfitting(data: Regressed, model: str) -> Estimate:
+    """Return by how much validation scores are worse than those on the development sets."""
+    folds = _folds(data, model)
+    lost = folds["validation_score"] - folds["development_score"]
+    return _mean_over_folds(folds, lost.to_numpy(float))
 
 
 def mean_error(data: Regressed, model: str) -> Estimate:
@@ -92,6 +115,28 @@ def rbf_is_so_much_better(data: Regressed) -> Finding:
     noise = ratio * math.hypot(linear.noise / linear.value, rbf.noise / rbf.value)
     words = "validation score, linear over RBF"
     return near(Estimate(ratio, noise), LINEAR_WORSE, ABOUT * LINEAR_WORSE, words)
+
+
+def score_is_the_thesis(data: Regressed) -> Finding:
+    """Whether the RBF kernel's validation score is about 0.005."""
+    found = near(
+        validation(data, "rbf"), VALIDATION_SCORE, ABOUT * VALIDATION_SCORE, "validation score, RBF"
+    )
+    return found if data.rows == THESIS_ROWS else _of_other_rows(found, data.rows)
+
+
+def rbf_overfits_more(data: Regressed) -> Finding:
+    """Whether the RBF kernel loses more from the development sets to the validation sets."""
+    more = overfitting(data, "rbf") - overfitting(data, "linear")
+    return positive(more, "validation minus development score, RBF minus linear")
+
+
+def linear_chooses_more_widely(data: Regressed) -> Finding:
+    """Whether the C that is chosen for the linear kernel varies more than for the RBF kernel."""
+    linear, rbf = (float(np.log10(_folds(data, one)["C"]).std()) for one in ("linear", "rbf"))
+    verdict = CONFIRMED if linear > rbf else CONTRADICTED
+    words = f"deviation of log₁₀ C: {linear:.2f} for the linear kernel, {rbf:.2f} for RBF"
+    return Finding(verdict if math.isfinite(linear + rbf) else UNDECIDED, words)
 
 
 def is_sub_centimetre(data: Regressed) -> Finding:
@@ -143,6 +188,24 @@ REGRESSION: tuple[Claim[Regressed], ...] = (
         f"It is about {LINEAR_WORSE} times better.",
         f"ratio of validation scores within {percent(ABOUT)} of {LINEAR_WORSE}",
         rbf_is_so_much_better,
+    ),
+    Claim(
+        "5.3.1",
+        f"The RBF kernel's validation score is about {VALIDATION_SCORE}.",
+        f"within {percent(ABOUT)}, for a data set of {THESIS_ROWS} rows",
+        score_is_the_thesis,
+    ),
+    Claim(
+        "5.3.1",
+        "The RBF kernel overfits more.",
+        "validation score minus development score larger than for the linear kernel",
+        rbf_overfits_more,
+    ),
+    Claim(
+        "Figure 5.3.2",
+        "The C that is chosen for the linear kernel varies more.",
+        "deviation of log₁₀ C over all folds above that of the RBF kernel (no noise)",
+        linear_chooses_more_widely,
     ),
     Claim(
         "5.3",

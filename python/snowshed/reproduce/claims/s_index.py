@@ -88,6 +88,33 @@ def cohesion_gains_with_mass(table: pd.DataFrame) -> Finding:
     return positive(gain, "S of β for the height, last event minus first")
 
 
+def slope_needs_mass(table: pd.DataFrame) -> Finding:
+    """Whether M matters for the height after the last event, and hardly after the first."""
+    first = index(table, SLOPE, "height", last=False)
+    last = _magnitude(index(table, SLOPE, "height"))
+    what = _named(SLOPE, "height")
+    beyond = last - Estimate(HARDLY, 0.0)
+    return all_of(
+        [
+            small(first, HARDLY, f"{what}, first event"),
+            Finding(positive(beyond, "").verdict, f"|S| after the last: {last.in_words()}"),
+        ]
+    )
+
+
+def length_effects_gain_with_mass(table: pd.DataFrame) -> Finding:
+    """Whether S of M and of beta for the length falls from the first event to the last."""
+    return all_of(
+        [
+            negative(
+                index(table, one, "length") - index(table, one, "length", last=False),
+                f"{_named(one, 'length')}, last event minus first",
+            )
+            for one in (SLOPE, COHESION)
+        ]
+    )
+
+
 def _parameters(table: pd.DataFrame) -> list[str]:
     found = list(dict.fromkeys(table["parameter"]))
     if len(found) < 2:
@@ -126,6 +153,12 @@ S_INDEX: tuple[Claim[pd.DataFrame], ...] = (
     ),
     Claim(
         "3.3",
+        "M matters for the height only when there is much snow.",
+        f"|S| below {HARDLY} after the first event, above it after the last",
+        slope_needs_mass,
+    ),
+    Claim(
+        "3.3",
         "ξ and E hardly matter for the height.",
         f"|S| of both below {HARDLY}, last event",
         partial(hardly_matter, target="height"),
@@ -141,6 +174,12 @@ S_INDEX: tuple[Claim[pd.DataFrame], ...] = (
         "β shortens the stack.",
         "S below zero, last event",
         partial(lowers, parameter=COHESION, target="length"),
+    ),
+    Claim(
+        "3.3",
+        "M and β shorten the stack the more, the more snow there is.",
+        "S of both lower after the last event than after the first",
+        length_effects_gain_with_mass,
     ),
     Claim(
         "3.3",

@@ -18,7 +18,7 @@ from snowshed.reproduce import printed
 from snowshed.reproduce.claims.calibration import CALIBRATED, CALIBRATION, Recovery
 from snowshed.reproduce.claims.judging import judge
 from snowshed.reproduce.reproduction import Reproduction
-from snowshed.reproduce.section import SAVED_DPI, Section, settings_grid
+from snowshed.reproduce.section import PANEL_FRICTION, SAVED_DPI, Section, settings_grid
 from snowshed.reproduce.studies import GRID, TRUTH, TRUTH_SEED
 from snowshed.study.table import read_table
 
@@ -33,6 +33,7 @@ TEXT = (
     "one of Table 4.3.1 (M 0.5, p₀ 7 kPa, β 0.2), is simulated at both tilts with a placement of "
     f"its particles that no other run has (seed {TRUTH_SEED}), \u201cmeasured\u201d with random "
     f"errors of {percent(UNCERTAINTY)}, and looked for among the triplets.",
+    PANEL_FRICTION,
     "All numbers below called synthetic compare simulations with this simulated truth. They are no "
     "reproduction of the thesis's scores, which compare with the laboratory: they are what remains "
     "of an RMSE where the model is exact, and hence smaller.",

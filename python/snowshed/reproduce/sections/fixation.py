@@ -13,7 +13,14 @@ from snowshed.reproduce import printed
 from snowshed.reproduce.claims.fixation import FIXATION as CLAIMS
 from snowshed.reproduce.claims.judging import judge
 from snowshed.reproduce.reproduction import Reproduction
-from snowshed.reproduce.section import SAVED_DPI, Section, grouped, plus_minus, settings_grid
+from snowshed.reproduce.section import (
+    PANEL_FRICTION,
+    SAVED_DPI,
+    Section,
+    grouped,
+    plus_minus,
+    settings_grid,
+)
 from snowshed.reproduce.studies import FIXATION, INDEX
 from snowshed.sensitivity.noise import seeding_noise
 from snowshed.sensitivity.report import evaluate
@@ -27,6 +34,7 @@ TEXT = (
     "rescaled from 0 to 1 over the group (3.4.1). The yield parameters (M, p₀, β) and the "
     "hardening parameters (ξ, E) are separate groups. The thesis prints these results as figures "
     "only.",
+    PANEL_FRICTION,
 )
 BORROWED = (
     "Every point has one seeding, so that the noise is that of the index S (the same scene), "

@@ -7,14 +7,15 @@ import pandas as pd
 
 from snowshed._core import InputError
 from snowshed.html_page import Grid, Picture
+from snowshed.regression.dataset import geometry_table as shipped_rows
 from snowshed.regression.rows import StackRows
 from snowshed.reproduce import printed
 from snowshed.reproduce.claims.geometry import GEOMETRY, INPUTS
 from snowshed.reproduce.claims.judging import judge
 from snowshed.reproduce.figures import geometry_figure
 from snowshed.reproduce.reproduction import Reproduction
-from snowshed.reproduce.section import Section
-from snowshed.reproduce.studies import TILTS
+from snowshed.reproduce.section import Section, settings_grid
+from snowshed.reproduce.studies import TILTS, geometry
 from snowshed.study.table import read_table
 from snowshed.tables import read_csv
 
@@ -34,8 +35,14 @@ def build(found: Reproduction) -> Section:
     picture = Picture.drawn(geometry_figure(drawn), "geometry", "Single variations", CAPTION)
     source = f"Rows of the table {found.table.name}." if found.table is not None else ""
     text = [*TEXT, *([source] if source else [])]
+    if rows.moving or rows.left_out:
+        text.append(
+            f"{rows.moving} stacks still moved when their event's time was over; {rows.left_out} "
+            "rows of runs that failed are left out."
+        )
     tables = [
         ("Tables 5.1.1 and 5.2.1: the data set", inputs_grid(table)),
+        *_settings(found),
         ("How it was computed", columns_grid(read_csv(found.rows.file))),
     ]
     claims = judge(GEOMETRY, table)
@@ -66,6 +73,14 @@ def columns_grid(table: pd.DataFrame) -> Grid:
         if row.path in table
     ]
     return Grid(["setting", "thesis", "here"], rows, "lll")
+
+
+def _settings(found: Reproduction) -> list[tuple[str, Grid]]:
+    """Return what all panels have in common, unless their table is somebody's own."""
+    if found.table is not None and found.table != shipped_rows():
+        return []
+    scene = geometry(found.size)[0].runs()[0].scene
+    return [("Table 5.1.1: settings of all panels", settings_grid(printed.PANELS_SCENE, [scene]))]
 
 
 def _more_tilts(found: Reproduction) -> list[pd.DataFrame]:

@@ -13,6 +13,7 @@ from snowshed.reproduce.claims.judging import Judged, judge
 from snowshed.reproduce.figures import growth_figure
 from snowshed.reproduce.reproduction import Reproduction
 from snowshed.reproduce.section import Section, grouped, plus_minus, settings_grid
+from snowshed.reproduce.size import MEASURED_FRICTION
 from snowshed.reproduce.studies import LAB_2D, LAB_3D, RELEASE
 from snowshed.study.table import read_table
 
@@ -24,6 +25,7 @@ COLUMNS = {
     "panel.tilt": "tilt",
     "panel.friction": "friction",
     **{f"{name}_m": name for name in MEASURES},
+    "width_m": "width",
 }
 TEXT = (
     "Five slabs slide off the model panel one after another; particles carry over from event to "
@@ -35,7 +37,6 @@ TEXT = (
     "the mean stack: mean errors of 0.010 m (about 10 %) and 0.061 m (about 20 %) in Table 4.3.1 "
     "make it about 0.10 m high and 0.30 m long.",
 )
-MEASURED_FRICTION = 0.6  # the least static coefficient of chapter 2
 CAPTION = (
     "As Figures 2.4.1 to 2.4.4, simulated. Bars: deviation between seedings. The origin is the "
     "panel's centre."
@@ -71,7 +72,7 @@ def lab_rows(found: Reproduction) -> pd.DataFrame:
 
     tables = [read_table(found.folder.runs, name) for name in (LAB_2D, LAB_3D)]
     table = pd.concat(tables, ignore_index=True).rename(columns=COLUMNS)
-    rows = table[["dimension", *COLUMNS.values(), "seed", "event"]].dropna()
+    rows = table[["dimension", *COLUMNS.values(), "seed", "event"]].dropna(subset=[*MEASURES])
     if rows.empty:
         raise InputError("no stack at 40 or 50 degrees is computed yet")
     return rows
@@ -86,7 +87,7 @@ def release_rows(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def judged(rows: pd.DataFrame, released: pd.DataFrame) -> list[Judged]:
-    """Return the findings: in 3D, at the lowest friction of those that the thesis measured."""
+    """Return the findings: in 3D if there, at the lowest friction that the thesis measured."""
     measured = rows["friction"][rows["friction"] >= MEASURED_FRICTION]
     friction = measured.min() if len(measured) else rows["friction"].max()
     three, two = (_variant(rows, dimension, friction) for dimension in (3, 2))

@@ -11,7 +11,12 @@ from snowshed._core import InputError
 from snowshed.html_page import Grid, Picture
 from snowshed.regression.summary import QUARTILES, THESIS_ERRORS, THESIS_QUARTILES
 from snowshed.reproduce.claims.judging import judge
-from snowshed.reproduce.claims.regression import REGRESSION, Regressed, validation
+from snowshed.reproduce.claims.regression import (
+    REGRESSION,
+    VALIDATION_SCORE,
+    Regressed,
+    validation,
+)
 from snowshed.reproduce.regression_stage import KINDS, TARGET
 from snowshed.reproduce.reproduction import Reproduction
 from snowshed.reproduce.section import SAVED_DPI, Section
@@ -67,7 +72,7 @@ def read_regressed(folder: Path, rows: int, panels: int) -> Regressed:
     InputError
         If a table is damaged, naming it.
     """
-    scores = _by_model(folder / "scores.csv", ("validation_score",))
+    scores = _by_model(folder / "scores.csv", ("development_score", "validation_score", "C"))
     errors = _by_model(folder / TARGET / "errors.csv", ERRORS)
     quartiles = _by_model(folder / TARGET / "quartiles.csv", QUARTILES, ("data", *KINDS))
     return Regressed(rows, panels, scores.reset_index(), errors, quartiles)
@@ -99,7 +104,8 @@ def errors_grid(data: Regressed) -> Grid:
     """Return Table 5.3.2, with the scores on rows that were not trained on."""
     rows = []
     for model in KINDS:
-        rows.append([f"{NAMES[model]}, thesis", *_numbers(THESIS_ERRORS[model]), "", ""])
+        score = f"about {VALIDATION_SCORE}" if model == "rbf" else ""
+        rows.append([f"{NAMES[model]}, thesis", *_numbers(THESIS_ERRORS[model]), "", score])
         row = data.errors.loc[model]
         ours = _numbers([row["mean_absolute_error"], row["standard_deviation"]], 4)
         held_out = _numbers([row["held_out_error"]], 4)

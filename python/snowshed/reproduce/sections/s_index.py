@@ -10,7 +10,14 @@ from snowshed.reproduce import printed
 from snowshed.reproduce.claims.judging import judge
 from snowshed.reproduce.claims.s_index import S_INDEX
 from snowshed.reproduce.reproduction import Reproduction
-from snowshed.reproduce.section import SAVED_DPI, Section, grouped, plus_minus, settings_grid
+from snowshed.reproduce.section import (
+    PANEL_FRICTION,
+    SAVED_DPI,
+    Section,
+    grouped,
+    plus_minus,
+    settings_grid,
+)
 from snowshed.reproduce.studies import INDEX
 from snowshed.sensitivity.report import evaluate
 from snowshed.sensitivity.single_parameter import PAIRS
@@ -22,6 +29,7 @@ TEXT = (
     "S is the relative change of the stack over the relative change of one parameter, all others "
     "at their reference (3.3.1). The thesis prints its scores as a figure only, so that its words "
     "are judged.",
+    PANEL_FRICTION,
 )
 CAPTION = (
     "As Figure 3.3.1. Bars: 95 % by seeding noise; hollow where noise alone may make them. STEP 0 "
