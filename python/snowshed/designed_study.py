@@ -6,7 +6,7 @@ study. The evaluation takes nothing but the store.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Optional, TypeVar
 
@@ -19,6 +19,11 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 PATH = click.Path(path_type=Path)
 STUDY = "study.toml"
 RUNS = "runs"
+#: Options that do nothing beside another one, by their parameters' names.
+USELESS: Mapping[str, Sequence[str]] = {
+    "stored": ["file", "plan_only", "quick", "seeds", "samples", "jobs"],
+    "file": ["quick", "seeds", "samples"],
+}
 MEASURES = click.Choice(["stack", "body"])
 
 
@@ -54,11 +59,33 @@ def design_options(command: Command) -> Command:
     return command
 
 
-def check_folder(folder: Optional[Path]) -> Path:
-    """Return the results folder; without it there is nothing to do."""
+def check_options(context: click.Context) -> Path:
+    """Return the results folder; refuse a command without it, or with options that do nothing.
+
+    Raises
+    ------
+    click.UsageError
+        Naming the option.
+    """
+    folder: Optional[Path] = context.params["folder"]
     if folder is None:
         raise click.UsageError("give -o DIR, the folder of the results")
+    for option, useless in USELESS.items():
+        if context.params[option] is not None:
+            _refuse(context, useless, f"does nothing with {_flag(context, option)}")
+    if context.params["stored"] is None:
+        _refuse(context, ["name"], "is of a study given with --stored")
     return folder
+
+
+def _refuse(context: click.Context, names: Sequence[str], reason: str) -> None:
+    for name in names:
+        if context.params.get(name):
+            raise click.UsageError(f"{_flag(context, name)} {reason}")
+
+
+def _flag(context: click.Context, name: str) -> str:
+    return next(one.opts[-1] for one in context.command.params if one.name == name)
 
 
 def write_study(text: str, folder: Path) -> Path:

@@ -69,11 +69,11 @@ def measured(snow, uncertainty=0.05, noise=0.02, random=0, quantities=("height",
     return found
 
 
-def fill(folder, study):
-    """Put such stacks into the store of a study, in place of its runs'."""
+def fill(folder, study, pending=0):
+    """Put such stacks into the store of a study, in place of its runs'; the last ones may lack."""
     with Store.create(folder) as store:
         store.register(study.name, study.axes, study.runs())
-        for number, run in enumerate(study.runs()):
+        for number, run in enumerate(study.runs()[: len(study.runs()) - pending]):
             scene = json.loads(run.scene)
             names = ("critical_state_slope", "preconsolidation_pressure", "cohesion")
             snow = tuple(scene["snow"][name] for name in names)

@@ -83,6 +83,16 @@ def test_what_it_prints(evaluated, capsys):
     assert "error of the model in height" in shown
 
 
+def test_runs_that_are_not_computed_are_told(evaluated, tmp_path, capsys):
+    from snowshed.calibration.display import print_calibration
+
+    fill(tmp_path / "store", Study.load(evaluated / "grid.toml"), pending=40)
+    stacks = read_simulated(tmp_path / "store")
+    assert stacks.pending == 40
+    print_calibration(calibrate(read_measurements(evaluated / "stacks.csv"), stacks, steps=100))
+    assert "40 runs of the study are not computed yet" in " ".join(capsys.readouterr().out.split())
+
+
 def test_the_template_is_written(tmp_path, capsys):
     assert run("calibrate", "--template", tmp_path / "stacks.csv") == 0
     assert run("calibrate", tmp_path / "stacks.csv", "-o", tmp_path / "out") == 2
@@ -102,6 +112,9 @@ def test_plan_and_errors(tmp_path, capsys):
         ((tmp_path / "none.csv", "-o", tmp_path), "none.csv: No such file"),
         ((bad, "-o", tmp_path), "bad.csv: line 2: event: 'one' is not a number"),
         ((*options, "--stored", tmp_path / "nowhere"), "nowhere"),
+        ((*options, "--stored", tmp_path, "--plan"), "--plan does nothing with --stored"),
+        ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds does nothing with --study"),
+        ((*options, "--name", "grid"), "--name is of a study given with --stored"),
         ((*options, "--quantity", "width", "--study", tmp_path / "no.toml"), "no.toml"),
     ):
         assert run("calibrate", *arguments) == 2

@@ -81,6 +81,15 @@ def test_sets_with_failed_runs_are_not_ranked():
     assert not (ranked[[SLOPE, PRESSURE, COHESION]].to_numpy() == TRUTH).all(axis=1).any()
 
 
+def test_sets_of_failed_runs_are_counted():
+    """They keep their place in the box that is searched."""
+    table = table_of(thesis_triplets(), noise=0, seeds=(1,))
+    table.loc[table[COHESION] == 0.2, ["height_m", "length_m", "head_m", "tail_m"]] = np.nan
+    stacks = simulated(table)
+    assert len(stacks.sets) == 48 and stacks.sets[COHESION].max() == 0.2
+    assert len(rank(stacks, compare(stacks, measured(TRUTH)))) == 32
+
+
 def test_head_and_tail_are_scored_and_not_ranked_by():
     stacks = simulated(table_of(thesis_triplets(), noise=0, seeds=(1,)))
     measurements = measured(TRUTH, noise=0)

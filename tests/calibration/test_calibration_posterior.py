@@ -58,6 +58,18 @@ def test_better_measurements_give_narrower_ranges(surrogate):
     assert widths[0].mean() < 0.95 * widths[1].mean()
 
 
+def test_rounds_share_the_error_of_the_model(surrogate):
+    """More rounds of an exact measurement narrow nothing but what one round leaves to chance."""
+    once = measured((0.55, 5.5e3, 0.12), uncertainty=1e-4, noise=0)
+    widths = []
+    for rounds in (1, 40):
+        repeated = [type(one)(**{**vars(one), "round": r}) for one in once for r in range(rounds)]
+        ranges = sample_posterior(surrogate, repeated, steps=STEPS).ranges()
+        widths.append((ranges["upper_95"] - ranges["lower_95"]).to_numpy() / (HIGH - LOW))
+    assert (widths[1] < widths[0]).all()  # the seeding's noise is averaged
+    assert widths[1].mean() > 0.4 * widths[0].mean()  # independent errors: a sixth
+
+
 def test_a_model_that_cannot_be_right_says_so(surrogate):
     """Stacks twice as high as any snow's: the discrepancy takes it up, beyond its prior."""
     snow = (0.55, 5.5e3, 0.12)
@@ -89,8 +101,9 @@ def test_the_same_seed_gives_the_same_samples(surrogate):
 def test_what_cannot_be_calibrated_is_refused(stacks, surrogate):
     with pytest.raises(InputError, match="steps: 99 are too few; at least 100 are needed"):
         sample_posterior(surrogate, measured((0.5, 5e3, 0.1)), steps=99)
-    few = Simulated(stacks.parameters, stacks.sets.head(4), stacks.rows[stacks.rows["set"] <= 4])
-    with pytest.raises(InputError, match="4 parameter sets; the surrogate needs at least 6"):
+    few = Simulated(stacks.parameters, stacks.sets, stacks.rows[stacks.rows["set"] <= 4])
+    message = "4 parameter sets have event 1 at tilt 40; the surrogate needs at least 6"
+    with pytest.raises(InputError, match=message):
         Surrogate.fitted(few, [("height", 40.0, 1)])
     measurements = measured((0.5, 5e3, 0.1), quantities=("height",))
     for quantities, message in (

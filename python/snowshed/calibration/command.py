@@ -10,7 +10,7 @@ import click
 
 from snowshed.designed_study import (
     PATH,
-    check_folder,
+    check_options,
     compute,
     design_options,
     plan,
@@ -69,7 +69,7 @@ def calibrate(
         return
     if measurements is None:
         raise click.UsageError("give a MEASUREMENTS file, or --template FILE to write an empty one")
-    folder = check_folder(folder)
+    folder = check_options(context)
     measured = reading.read_measurements(measurements)
     if stored is None:
         if file is None:

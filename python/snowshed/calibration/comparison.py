@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Optional
 
 import numpy as np
@@ -34,15 +34,18 @@ class Simulated:
     parameters
         Dotted paths of what is calibrated: all that varies but the panel's tilt and the seed.
     sets
-        The parameter sets, one row each, indexed from 1.
+        The parameter sets, one row each, indexed from 1; also those whose runs have failed.
     rows
         One row per run and event: ``set``, ``tilt``, ``event``, ``seed``, and the measures
         ``height``, ``length``, ``head``, ``tail`` in m.
+    pending
+        Runs of the study that are not computed yet: their sets are not among these.
     """
 
     parameters: Sequence[str]
     sets: pd.DataFrame
     rows: pd.DataFrame
+    pending: int = 0
 
 
 def read_simulated(
@@ -65,12 +68,15 @@ def read_simulated(
         If there is no such study, it varies nothing that could be calibrated, or it does not say
         the panel's tilt.
     """
+    from snowshed.study.store import Store
     from snowshed.study.table import read_table
 
     if measure not in MEASURES:
         raise InputError(f"measure: {measure!r} is unknown; allowed: {', '.join(MEASURES)}")
+    with Store.open(folder) as store:
+        pending = sum(run.status == "pending" for run in store.runs(store.named(study)))
     try:
-        return simulated(read_table(folder, study), measure)
+        return replace(simulated(read_table(folder, study), measure), pending=pending)
     except InputError as error:
         text = str(error)
         raise InputError(text if str(folder) in text else f"{folder}: {text}") from None
@@ -85,16 +91,16 @@ def simulated(table: pd.DataFrame, measure: str = "stack") -> Simulated:
     axes = [str(path) for path in table if "." in str(path) and path not in (TILT, SEED)]
     varied = varying_numbers(table, axes, "calibration")
     columns = {column: quantity for quantity, column in MEASURES[measure].items()}
-    rows = table[[*varied, TILT, "seed", "event", *columns]].dropna()
-    if rows.empty:
+    if table[[*columns]].dropna().empty:
         raise InputError("nothing of it is computed yet; see `snowshed study status`")
-    parameters = [path for path in varied if rows[path].nunique() > 1]
-    if not parameters:
+    if not varied:
         raise InputError("nothing varies in it but tilt and seed, so that nothing is calibrated")
+    rows = table[[*varied, TILT, "seed", "event", *columns]]
     rows = rows.rename(columns={**columns, TILT: "tilt"})
-    rows[SET] = rows.groupby(parameters, sort=False).ngroup() + 1
-    sets = rows.drop_duplicates(SET).set_index(SET)[parameters]
-    return Simulated(parameters, sets, rows.drop(columns=varied).reset_index(drop=True))
+    rows[SET] = rows.groupby(varied, sort=False).ngroup() + 1
+    sets = rows.drop_duplicates(SET).set_index(SET)[varied]
+    rows = rows.dropna().drop(columns=varied).reset_index(drop=True)
+    return Simulated(varied, sets, rows)
 
 
 def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFrame:

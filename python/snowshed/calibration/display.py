@@ -70,6 +70,11 @@ def _interval(row: Any, level: str) -> str:
 def warnings(found: Calibration) -> list[str]:
     """Return what limits the trust in a calibration."""
     said = []
+    if found.stacks.pending:
+        said.append(
+            f"{found.stacks.pending} runs of the study are not computed yet: ranks and ranges are "
+            "those of the others (`snowshed study resume` computes them)"
+        )
     missing = len(found.stacks.sets) - len(found.ranked)
     if missing:
         said.append(f"{missing} parameter sets lack measured stacks and are not ranked")

@@ -1,11 +1,15 @@
 """Which snow the measurements allow: the posterior of the parameters, by MCMC on the surrogate.
 
-A measured value y is normally distributed around the surrogate's mean, with the variances of
+The mean of what k rounds measured of a stack is normally distributed around the surrogate's mean,
+with the variances of
 
-- the measurement (its uncertainty),
-- the surrogate, and the seeding noise of a single run: an experiment is one fall of snow too,
+- the measurements (their uncertainty), and the seeding noise of single runs: an experiment is one
+  fall of snow too; both over k,
+- the surrogate,
 - the model itself, which is wrong by an unknown part of the measured quantity's mean (one for
   heights, one for lengths, ...), a nuisance parameter with a half-normal prior of scale 0.1.
+
+The last two are the same for all rounds.
 
 The prior is uniform in the box of the parameters that were run (Kennedy and O'Hagan, Bayesian
 calibration of computer models, J. R. Statist. Soc. B 63, 2001, with an independent discrepancy).
@@ -180,9 +184,11 @@ class _Density:
     quantities
         The measured ones; each has a discrepancy.
     output, quantity
-        Shape (m,): which output and which quantity each measurement is of.
+        Shape (m,): which output and which quantity each mean of rounds is of.
     values, variances
-        Shape (m,): the measurements, m and m².
+        Shape (m,): the means, m, and their variances by measuring and by seeding, m².
+    seedings
+        Shape (m,): variance by the seeding of a single run, which the surrogate's contain, m².
     scales
         Shape (m,): mean of the quantity over the measurements, m.
     """
@@ -193,23 +199,33 @@ class _Density:
     quantity: Integers
     values: Floats
     variances: Floats
+    seedings: Floats
     scales: Floats
 
     @classmethod
     def of(cls, surrogate: Surrogate, measurements: Sequence[Measurement]) -> _Density:
         outputs = list(surrogate.outputs)
         quantities = list(dict.fromkeys(one.quantity for one in measurements))
-        values = np.array([one.value for one in measurements])
-        quantity = np.array([quantities.index(one.quantity) for one in measurements])
-        means = np.array([np.abs(values[quantity == i]).mean() for i in range(len(quantities))])
+        rounds: dict[Output, list[Measurement]] = {}
+        for one in measurements:
+            rounds.setdefault((one.quantity, one.tilt, one.event), []).append(one)
+        counts = np.array([len(of_one) for of_one in rounds.values()])
+        squares = [sum(one.uncertainty**2 for one in of_one) for of_one in rounds.values()]
+        scales = {
+            name: np.mean([abs(one.value) for one in measurements if one.quantity == name])
+            for name in quantities
+        }
+        output = np.array([outputs.index(key) for key in rounds])
+        seedings = surrogate.noises()[output]
         return cls(
             surrogate,
             quantities,
-            np.array([outputs.index((one.quantity, one.tilt, one.event)) for one in measurements]),
-            quantity,
-            values,
-            np.array([one.uncertainty for one in measurements]) ** 2,
-            means[quantity],
+            output,
+            np.array([quantities.index(name) for name, _, _ in rounds]),
+            np.array([np.mean([one.value for one in of_one]) for of_one in rounds.values()]),
+            np.array(squares) / counts**2 + seedings / counts,
+            seedings,
+            np.array([scales[name] for name, _, _ in rounds]),
         )
 
     def __call__(self, points: Floats) -> Floats:
@@ -225,7 +241,8 @@ class _Density:
     def _log_density(self, unit: Floats, discrepancy: Floats) -> Floats:
         means, variances = self.surrogate.predict(unit)
         model = discrepancy[:, self.quantity].T * self.scales[:, None]
-        variance = variances[self.output] + self.variances[:, None] + model**2
+        shared = variances[self.output] - self.seedings[:, None] + model**2
+        variance = shared + self.variances[:, None]
         residuals = self.values[:, None] - means[self.output]
         likelihood = -0.5 * (residuals**2 / variance + np.log(variance)).sum(axis=0)
         prior = -0.5 * ((discrepancy / DISCREPANCY) ** 2).sum(axis=1)

@@ -132,10 +132,6 @@ class Surrogate:
             If there are too few parameter sets, or scikit-learn is not installed.
         """
         sets = stacks.sets.to_numpy(float)
-        if len(sets) < FEWEST_POINTS:
-            raise InputError(
-                f"{len(sets)} parameter sets; the surrogate needs at least {FEWEST_POINTS}"
-            )
         low, high = sets.min(axis=0), sets.max(axis=0)
         unit = stacks.sets.copy()
         unit[:] = (sets - low) / (high - low)
@@ -143,6 +139,12 @@ class Surrogate:
         for quantity, tilt, event in outputs:
             rows = stacks.rows
             rows = rows[(rows["tilt"] == tilt) & (rows["event"] == event)]
+            count = rows[SET].nunique()
+            if count < FEWEST_POINTS:
+                raise InputError(
+                    f"{count} parameter sets have event {event} at tilt {tilt:g}; the surrogate "
+                    f"needs at least {FEWEST_POINTS}"
+                )
             points = unit.loc[rows[SET]].to_numpy(float)
             processes.append(Process.fitted(points, rows[quantity].to_numpy(float)))
         return cls(stacks.parameters, low, high, outputs, processes)
@@ -160,6 +162,10 @@ class Surrogate:
         found = [process.predict(unit) for process in self.processes]
         means, variances = zip(*found)
         return np.array(means), np.array(variances)
+
+    def noises(self) -> Floats:
+        """Return the part of these variances that the seeding of a single run has, (outputs,)."""
+        return np.array([one.deviation**2 * one.noise for one in self.processes])
 
     def accuracy(self) -> pd.DataFrame:
         """Return how well every output predicts runs it has not seen (leave one run out).

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Optional
 
 import click
+from click.core import ParameterSource
 
 from snowshed.regression.geometry import FRICTION
 from snowshed.stops import Stopped
@@ -44,8 +45,15 @@ PATH = click.Path(path_type=Path)
 )
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid: minutes, not hours.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+@click.pass_context
 def geometry(
-    between: str, friction: float, dx: float, seeds: int, trial: bool, file: Optional[Path]
+    context: click.Context,
+    between: str,
+    friction: float,
+    dx: float,
+    seeds: int,
+    trial: bool,
+    file: Optional[Path],
 ) -> None:
     """Write the study of panel geometries whose table ``regress`` takes.
 
@@ -59,6 +67,8 @@ def geometry(
     from snowshed.atomic import write_text
     from snowshed.regression.geometry import geometry_study
 
+    if trial and context.get_parameter_source("dx") == ParameterSource.COMMANDLINE:
+        raise click.UsageError("--dx does nothing with --trial, which has cells of its own")
     text = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
     if file is None:
         click.echo(text, nl=False)

@@ -7,7 +7,7 @@ from typing import Optional
 
 import click
 
-from snowshed.designed_study import check_folder, compute, design_options, plan, write_study
+from snowshed.designed_study import check_options, compute, design_options, plan, write_study
 
 
 @click.command()
@@ -49,7 +49,7 @@ def sensitivity(
     from snowshed.sensitivity.display import print_table
     from snowshed.sensitivity.report import evaluate
 
-    folder = check_folder(folder)
+    folder = check_options(context)
     if stored is None:
         if file is None:
             text = sensitivity_study(method, quick=quick, seeds=seeds, samples=samples)
