@@ -70,6 +70,18 @@ def test_rounds_share_the_error_of_the_model(surrogate):
     assert widths[1].mean() > 0.4 * widths[0].mean()  # independent errors: a sixth
 
 
+def test_a_poor_round_beside_a_good_one_does_not_widen_the_ranges(surrogate):
+    good = measured((0.55, 5.5e3, 0.12), uncertainty=0.01, noise=0)
+    poor = [type(one)(**{**vars(one), "round": 2, "uncertainty": 0.5}) for one in good]
+    alone, both = (
+        sample_posterior(surrogate, rounds, steps=STEPS).ranges() for rounds in (good, good + poor)
+    )
+    widths = [
+        (one["upper_95"] - one["lower_95"]).to_numpy() / (HIGH - LOW) for one in (alone, both)
+    ]
+    assert widths[1] == pytest.approx(widths[0], rel=0.1)
+
+
 def test_a_model_that_cannot_be_right_says_so(surrogate):
     """Stacks twice as high as any snow's: the discrepancy takes it up, beyond its prior."""
     snow = (0.55, 5.5e3, 0.12)

@@ -64,7 +64,7 @@ def _events(scene):
     for event in range(1, scene["events"]["count"] + 1):
         height, length, head = stack(scene, event)
         row = {name: "rest" if name in WORDS else 1.0 for name in MEASURES}
-        row.update(event=event, wall_s=0.1, steps=10, width_m=0.1, mass_kg=float(not stays))
+        row.update(event=event, wall_s=0.1, steps=10, mass_kg=float(not stays))
         row.update(on_panel_kg=float(stays))
         row.update(height_m=height, length_m=length, head_m=head, tail_m=head + length)
         rows.append(row)

@@ -39,7 +39,8 @@ class Simulated:
         One row per run and event: ``set``, ``tilt``, ``event``, ``seed``, and the measures
         ``height``, ``length``, ``head``, ``tail`` in m.
     pending
-        Runs of the study that are not computed yet: their sets are not among these.
+        Runs of the study that are not computed yet; sets without any other run are not among
+        these.
     """
 
     parameters: Sequence[str]

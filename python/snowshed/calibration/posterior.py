@@ -1,10 +1,10 @@
 """Which snow the measurements allow: the posterior of the parameters, by MCMC on the surrogate.
 
-The mean of what k rounds measured of a stack is normally distributed around the surrogate's mean,
-with the variances of
+The mean of what several rounds measured of a stack is normally distributed around the surrogate's
+mean, with the variances of
 
-- the measurements (their uncertainty), and the seeding noise of single runs: an experiment is one
-  fall of snow too; both over k,
+- the rounds: of each its measurement (its uncertainty), and the seeding noise of a single run,
+  since an experiment is one fall of snow too. Weights are the inverse of these variances,
 - the surrogate,
 - the model itself, which is wrong by an unknown part of the measured quantity's mean (one for
   heights, one for lengths, ...), a nuisance parameter with a half-normal prior of scale 0.1.
@@ -186,7 +186,7 @@ class _Density:
     output, quantity
         Shape (m,): which output and which quantity each mean of rounds is of.
     values, variances
-        Shape (m,): the means, m, and their variances by measuring and by seeding, m².
+        Shape (m,): the means, m, and their variances by measuring and seeding, m².
     seedings
         Shape (m,): variance by the seeding of a single run, which the surrogate's contain, m².
     scales
@@ -209,21 +209,21 @@ class _Density:
         rounds: dict[Output, list[Measurement]] = {}
         for one in measurements:
             rounds.setdefault((one.quantity, one.tilt, one.event), []).append(one)
-        counts = np.array([len(of_one) for of_one in rounds.values()])
-        squares = [sum(one.uncertainty**2 for one in of_one) for of_one in rounds.values()]
+        output = np.array([outputs.index(key) for key in rounds])
+        seedings = surrogate.noises()[output]
+        means = [_weighted(of_one, noise) for of_one, noise in zip(rounds.values(), seedings)]
+        values, variances = np.array(means).T
         scales = {
             name: np.mean([abs(one.value) for one in measurements if one.quantity == name])
             for name in quantities
         }
-        output = np.array([outputs.index(key) for key in rounds])
-        seedings = surrogate.noises()[output]
         return cls(
             surrogate,
             quantities,
             output,
             np.array([quantities.index(name) for name, _, _ in rounds]),
-            np.array([np.mean([one.value for one in of_one]) for of_one in rounds.values()]),
-            np.array(squares) / counts**2 + seedings / counts,
+            values,
+            variances,
             seedings,
             np.array([scales[name] for name, _, _ in rounds]),
         )
@@ -259,6 +259,13 @@ class _Density:
         likelihood += 0.5 * ((discrepancy / DISCREPANCY) ** 2).sum(axis=1)
         best = np.argsort(likelihood + random.gumbel(size=STARTS))[-count:]
         return np.asarray(points[best])
+
+
+def _weighted(rounds: Sequence[Measurement], seeding: float) -> tuple[float, float]:
+    """Return mean and variance of rounds, weighted by the inverse of their variances."""
+    weights = 1 / (np.array([one.uncertainty for one in rounds]) ** 2 + seeding)
+    mean = weights @ np.array([one.value for one in rounds]) / weights.sum()
+    return float(mean), float(1 / weights.sum())
 
 
 def _open_ends(fractions: Floats) -> str:

@@ -35,8 +35,8 @@ SECTIONS = {
     "geometry": "geometry",
     "regression": "regression",
 }
-#: Sections whose numbers are means over a design: a run that failed makes unlike means.
-DESIGNS = ("s_index", "fixation")
+#: Sections whose claims compare means over a design: a run that failed makes them unlike.
+DESIGNS = ("lab", "s_index", "fixation")
 VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
 
 

@@ -147,7 +147,9 @@ def slopes_are_the_same(table: pd.DataFrame) -> Finding:
     if len(slopes) < 2:
         raise LookupError("several events")
     low, high = min(slopes, key=_value), max(slopes, key=_value)
-    mean = sum(map(_value, slopes)) / len(slopes)
+    mean = abs(sum(map(_value, slopes))) / len(slopes)
+    if not mean:
+        raise LookupError("a slope")
     words = "largest difference between slopes of two events, of the mean slope"
     return small((high - low).scaled(1 / mean), SAME, words, "%")
 

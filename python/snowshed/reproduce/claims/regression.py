@@ -134,9 +134,10 @@ def rbf_overfits_more(data: Regressed) -> Finding:
 def linear_chooses_more_widely(data: Regressed) -> Finding:
     """Whether the C that is chosen for the linear kernel varies more than for the RBF kernel."""
     linear, rbf = (float(np.log10(_folds(data, one)["C"]).std()) for one in ("linear", "rbf"))
-    verdict = CONFIRMED if linear > rbf else CONTRADICTED
     words = f"deviation of log₁₀ C: {linear:.2f} for the linear kernel, {rbf:.2f} for RBF"
-    return Finding(verdict if math.isfinite(linear + rbf) else UNDECIDED, words)
+    if linear == rbf or math.isnan(linear + rbf):
+        return Finding(UNDECIDED, words)
+    return Finding(CONFIRMED if linear > rbf else CONTRADICTED, words)
 
 
 def is_sub_centimetre(data: Regressed) -> Finding:

@@ -38,7 +38,7 @@ def build(found: Reproduction) -> Section:
     if rows.moving or rows.left_out:
         text.append(
             f"{rows.moving} stacks still moved when their event's time was over; {rows.left_out} "
-            "rows of runs that failed are left out."
+            "rows without a stack (the run failed, or the snow stayed on the panel) are left out."
         )
     tables = [
         ("Tables 5.1.1 and 5.2.1: the data set", inputs_grid(table)),

@@ -25,7 +25,6 @@ COLUMNS = {
     "panel.tilt": "tilt",
     "panel.friction": "friction",
     **{f"{name}_m": name for name in MEASURES},
-    "width_m": "width",
 }
 TEXT = (
     "Five slabs slide off the model panel one after another; particles carry over from event to "
@@ -50,7 +49,7 @@ def build(found: Reproduction) -> Section:
     released = release_rows(read_table(found.folder.runs, RELEASE))
     scenes = [one for name in (LAB_2D, LAB_3D, RELEASE) for one in stage.scenes(name)]
     tables = [
-        ("Tables 2.3.1 and 4.3.1: settings", settings_grid(printed.LABORATORY, scenes)),
+        ("Tables 2.3.1, 4.1.1 and 4.3.1: settings", settings_grid(printed.LABORATORY, scenes)),
         ("Stacks after each event (mean ± deviation between seedings)", stacks_grid(rows)),
         ("At 30 degrees", release_grid(released)),
         ("The same claims for other dimensions and frictions", variants_grid(rows)),
@@ -72,7 +71,7 @@ def lab_rows(found: Reproduction) -> pd.DataFrame:
 
     tables = [read_table(found.folder.runs, name) for name in (LAB_2D, LAB_3D)]
     table = pd.concat(tables, ignore_index=True).rename(columns=COLUMNS)
-    rows = table[["dimension", *COLUMNS.values(), "seed", "event"]].dropna(subset=[*MEASURES])
+    rows = table[["dimension", *COLUMNS.values(), "seed", "event"]].dropna()
     if rows.empty:
         raise InputError("no stack at 40 or 50 degrees is computed yet")
     return rows
