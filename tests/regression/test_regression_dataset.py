@@ -1,6 +1,7 @@
 """The rows and the model that come with snowshed."""
 
 import json
+from collections import Counter
 
 import numpy as np
 import pandas as pd
@@ -30,6 +31,15 @@ def test_the_rows_are_those_of_the_study(between, tmp_path):
     assert len(rows) == 610 and len(panels) == 122
     assert {tuple(row) for row in rows.inputs[:, 1:]} == panels
     assert set(rows.inputs[:, 0]) == {1, 2, 3, 4, 5}
+
+
+def test_short_panels_have_more_seeds(tmp_path):
+    (tmp_path / "study.toml").write_text(geometry_study(seeds=16))
+    panels = [json.loads(run.scene)["panel"] for run in Study.load(tmp_path / "study.toml").runs()]
+    counts = Counter((one["length"], one["height"], one["tilt"]) for one in panels)
+    assert len(counts) == 122
+    for (length, _, _), count in counts.items():
+        assert count == (16 if length <= 1 else 4 if length <= 4 else 1)
 
 
 @pytest.mark.parametrize("between", BETWEEN)

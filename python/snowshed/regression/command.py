@@ -41,7 +41,8 @@ PATH = click.Path(path_type=Path)
     type=click.IntRange(1, 1000),
     default=1,
     show_default=True,
-    help="Stacks for each panel, whose means are regressed; longer than 4 m: a quarter of them.",
+    help="Stacks for each panel up to 1 m, whose means are regressed; up to 4 m a quarter of them, "
+    "beyond a sixteenth.",
 )
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid: minutes, not hours.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")

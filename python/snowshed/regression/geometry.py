@@ -13,8 +13,9 @@ BETWEEN = ("carry", "reseed")
 #: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
 FRICTION = 0.8
-#: How many times as many seeds panels have that are not long.
-LONG = 4
+#: Part of the seeds of panels up to 1 m that those up to 4 m have, and longer ones. The scatter of
+#: single stacks over the root of their cost makes it 1 : 1/4 : 1/11.
+MIDDLE, LONG = 4, 16
 
 
 def geometry_study(
@@ -40,8 +41,9 @@ def geometry_study(
     dx
         Size of the grid cells, m. The trial has its own.
     seeds
-        How many stacks for each panel; they differ in the chance placement of the particles. Panels
-        longer than 4 m, which take most of the time and scatter less, have a quarter as many.
+        How many stacks for each panel up to 1 m; they differ in the chance placement of the
+        particles. Longer panels take more time and scatter less: those up to 4 m have a quarter as
+        many, the others a sixteenth, at least one.
     trial
         A few panels on a coarse grid, to try the way from study to prediction within minutes; its
         numbers mean nothing.
@@ -56,7 +58,8 @@ def geometry_study(
         "between": between,
         "friction": exact(friction),
         "dx": exact(dx),
-        "seeds": _seeds(seeds),
+        "seeds_of_short": _seeds(seeds),
+        "seeds_of_middle": _seeds(ceil(seeds / MIDDLE)),
         "seeds_of_long": _seeds(ceil(seeds / LONG)),
     }
     return filled("snowshed.regression", "geometry-trial" if trial else "geometry", values)
