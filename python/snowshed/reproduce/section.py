@@ -7,9 +7,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from snowshed.arrays import Floats
 from snowshed.html_page import Grid, Picture
 from snowshed.number_words import NOTHING, number
-from snowshed.reproduce.claims.judging import Judged
+from snowshed.reproduce.claims.judging import Judged, widening
 from snowshed.reproduce.printed import Printed
 from snowshed.reproduce.size import MEASURED_FRICTION
 from snowshed.study.table import value_at
@@ -86,6 +89,20 @@ def _text(value: Any, row: Printed) -> str:
     if isinstance(value, str):
         return value.upper()
     return number(value / row.scale, 4) if value else row.zero
+
+
+def widenings(table: pd.DataFrame, noise: pd.DataFrame) -> Floats:
+    """Return by how much the noise of each row is widened, since its seedings are few.
+
+    Parameters
+    ----------
+    table
+        With the columns ``event`` and ``target``.
+    noise
+        From `snowshed.sensitivity.seeding_noise`.
+    """
+    keys = zip(table["event"], table["target"])
+    return np.array([widening(float(noise["freedom"].get(key, 0))) for key in keys])
 
 
 def grouped(table: pd.DataFrame, *keys: str) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:

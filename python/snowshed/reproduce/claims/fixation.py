@@ -115,11 +115,10 @@ def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
     """Whether heights scatter more after the last event than after the first."""
     findings = []
     for parameter in YIELD:
-        rows = _of(table, "height")
-        rows = rows[rows["parameter"] == parameter]
+        by_event = [rows for _, rows in _by_event(_of(table, "height"), parameter)]
         first, last = (
-            mean_of([_deviation(row) for _, row in rows[rows["event"] == event].iterrows()])
-            for event in (rows["event"].min(), rows["event"].max())
+            mean_of([_deviation(row) for _, row in rows.iterrows()])
+            for rows in (by_event[0], by_event[-1])
         )
         what = f"mean scatter at values of {word(parameter).symbol}, last event minus first"
         findings.append(positive(last - first, what, "m"))

@@ -44,6 +44,13 @@ SAME = 0.25
 #: Part of the ratio by which it may change over all tilts and still hardly depend on them.
 HARDLY = 0.1
 
+#: Of the inputs, as slopes are given.
+UNITS = {
+    "panel_length": "unit of ln L",
+    "panel_height": "m of panel height",
+    "panel_tilt": "degree of panel tilt",
+}
+
 Shape = Callable[[Floats], Floats]
 
 
@@ -127,15 +134,18 @@ def _relative(values: Floats) -> Floats:
 
 def grows_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
     """Whether a target grows with an input."""
-    found = fit(table, varied, target, np.log if varied == "panel_length" else straight)
-    unit = "per unit of ln L" if varied == "panel_length" else f"per {_unit(varied)}"
-    return positive(found.slopes[0], f"relative change of {_name(target)} {unit}")
+    return positive(*_slope(table, varied, target))
 
 
 def falls_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
-    """Whether a target falls with the panel's height or tilt."""
-    slope = fit(table, varied, target, straight).slopes[0]
-    return negative(slope, f"relative change of {_name(target)} per {_unit(varied)}")
+    """Whether a target falls with an input."""
+    return negative(*_slope(table, varied, target))
+
+
+def _slope(table: pd.DataFrame, varied: str, target: str) -> tuple[Estimate, str]:
+    """Return the slope of a target on an input, of the length on its logarithm; and what it is."""
+    slope = fit(table, varied, target, np.log if varied == "panel_length" else straight).slopes[0]
+    return slope, f"relative change of {_name(target)} per {UNITS[varied]}"
 
 
 def slopes_are_the_same(table: pd.DataFrame) -> Finding:
@@ -199,52 +209,33 @@ def _value(found: Estimate) -> float:
     return found.value
 
 
-def _unit(varied: str) -> str:
-    return f"{'degree' if varied == 'panel_tilt' else 'm'} of {_name(varied)}"
+def _name(target: str) -> str:
+    return "H/L" if target == "ratio" else f"stack {target}"
 
 
-def _name(column: str) -> str:
-    names = {"ratio": "H/L", "height": "stack height", "length": "stack length"}
-    return names.get(column, column.replace("_", " "))
+def _grows(text: str, varied: str, target: str) -> Claim[pd.DataFrame]:
+    of_what = " on ln L" if varied == "panel_length" else ""
+    judge = partial(grows_with, varied=varied, target=target)
+    return Claim("5.1.2", text, f"slope{of_what} above zero", judge)
+
+
+def _falls(text: str, varied: str, target: str) -> Claim[pd.DataFrame]:
+    judge = partial(falls_with, varied=varied, target=target)
+    return Claim("5.1.2", text, "slope below zero", judge)
 
 
 GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
-    Claim(
-        "5.1.2",
-        "H/L grows with the panel's length.",
-        "slope on ln L above zero",
-        partial(grows_with, varied="panel_length", target="ratio"),
-    ),
+    _grows("H/L grows with the panel's length.", "panel_length", "ratio"),
     Claim(
         "5.1.2",
         "It grows like a logarithm.",
         f"a logarithm leaves {FITS_BETTER} times less variance than a straight line (no noise)",
         is_logarithmic,
     ),
-    Claim(
-        "5.1.2",
-        "The stack's height grows with the panel's length.",
-        "slope on ln L above zero",
-        partial(grows_with, varied="panel_length", target="height"),
-    ),
-    Claim(
-        "5.1.2",
-        "The stack's length grows with the panel's height.",
-        "slope above zero",
-        partial(grows_with, varied="panel_height", target="length"),
-    ),
-    Claim(
-        "5.1.2",
-        "The stack's height grows with the panel's height too.",
-        "slope above zero",
-        partial(grows_with, varied="panel_height", target="height"),
-    ),
-    Claim(
-        "5.1.2",
-        "H/L falls with the panel's height.",
-        "slope below zero",
-        partial(falls_with, varied="panel_height", target="ratio"),
-    ),
+    _grows("The stack's height grows with the panel's length.", "panel_length", "height"),
+    _grows("The stack's length grows with the panel's height.", "panel_height", "length"),
+    _grows("The stack's height grows with the panel's height too.", "panel_height", "height"),
+    _falls("H/L falls with the panel's height.", "panel_height", "ratio"),
     Claim(
         "5.1.2",
         "It falls linearly.",
@@ -263,19 +254,7 @@ GEOMETRY: tuple[Claim[pd.DataFrame], ...] = (
         f"between no two tilts it changes by more than {percent(HARDLY)} of itself",
         hardly_depends_on_tilt,
     ),
-    Claim(
-        "5.1.2",
-        "The stack's length grows slightly with the tilt.",
-        "slope above zero",
-        partial(grows_with, varied="panel_tilt", target="length"),
-    ),
-    *(
-        Claim(
-            "5.1.2",
-            f"{words} falls slightly with the tilt.",
-            "slope below zero",
-            partial(falls_with, varied="panel_tilt", target=target),
-        )
-        for words, target in (("The stack's height", "height"), ("H/L", "ratio"))
-    ),
+    _grows("The stack's length grows slightly with the tilt.", "panel_tilt", "length"),
+    _falls("The stack's height falls slightly with the tilt.", "panel_tilt", "height"),
+    _falls("H/L falls slightly with the tilt.", "panel_tilt", "ratio"),
 )

@@ -51,20 +51,20 @@ class Estimate:
         return f"{number(self.value)} ± {known} {unit}".rstrip()
 
 
-def widened(noise: float, freedom: float) -> float:
-    """Return a noise that was estimated from few numbers, widened by Student's t.
+def widening(freedom: float) -> float:
+    """Return by how much Student's t widens a noise that was estimated from few numbers.
 
     `SIGMAS` of it then hold as much as they do where the noise is known well: 95 %.
 
     Examples
     --------
-    >>> [round(widened(1.0, freedom), 2) for freedom in (2, 6, 1000)]
+    >>> [round(widening(freedom), 2) for freedom in (2, 6, 1000)]
     [2.26, 1.26, 1.0]
     """
     if freedom <= 0:
         return math.nan
     stats = require("scipy.stats", "regression", "judging claims")
-    return noise * float(stats.t.ppf(stats.norm.cdf(SIGMAS), freedom)) / SIGMAS
+    return float(stats.t.ppf(stats.norm.cdf(SIGMAS), freedom)) / SIGMAS
 
 
 def mean_of(found: Sequence[Estimate]) -> Estimate:

@@ -23,7 +23,7 @@ from snowshed.reproduce.claims.judging import (
     negative,
     positive,
     small,
-    widened,
+    widening,
 )
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def mean_over_runs(rows: pd.DataFrame, metric: Metric) -> Estimate:
     variance = squares / freedom if freedom else math.nan
     mean = float(np.mean([values.mean() for values in by_tilt]))
     noise = math.sqrt(sum(variance / len(values) for values in by_tilt)) / len(by_tilt)
-    return Estimate(mean, widened(noise, freedom))
+    return Estimate(mean, noise * widening(freedom))
 
 
 def _growth(run: pd.DataFrame, column: str) -> float:

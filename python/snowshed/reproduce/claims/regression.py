@@ -27,7 +27,7 @@ from snowshed.reproduce.claims.judging import (
     all_of,
     near,
     positive,
-    widened,
+    widening,
 )
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def _mean_over_folds(of_model: pd.DataFrame, values: Floats) -> Estimate:
     """
     spread = float(values.std(ddof=1)) if len(values) > 1 else math.nan
     folds = len(values) / of_model["round"].nunique()
-    return Estimate(float(values.mean()), widened(spread / math.sqrt(folds), folds - 1))
+    return Estimate(float(values.mean()), spread / math.sqrt(folds) * widening(folds - 1))
 
 
 def overfitting(data: Regressed, model: str) -> Estimate:
@@ -122,7 +122,7 @@ def score_is_the_thesis(data: Regressed) -> Finding:
     found = near(
         validation(data, "rbf"), VALIDATION_SCORE, ABOUT * VALIDATION_SCORE, "validation score, RBF"
     )
-    return found if data.rows == THESIS_ROWS else _of_other_rows(found, data.rows)
+    return _of_as_many_rows(found, data)
 
 
 def rbf_overfits_more(data: Regressed) -> Finding:
@@ -152,7 +152,7 @@ def error_is_the_thesis(data: Regressed, model: str) -> Finding:
     aim = THESIS_ERRORS[model][0]
     words = f"mean absolute error (thesis {aim})"
     found = near(mean_error(data, model), aim, ABOUT * aim, words)
-    return found if data.rows == THESIS_ROWS else _of_other_rows(found, data.rows)
+    return _of_as_many_rows(found, data)
 
 
 def quartiles_are_the_thesis(data: Regressed) -> Finding:
@@ -169,11 +169,14 @@ def quartiles_are_the_thesis(data: Regressed) -> Finding:
         worst = Estimate(float(off.max()), float(noise[off.argmax()]))
         findings.append(near(worst, 0.0, QUARTILES_OFF, f"{model}, worst quartile off by", "%"))
     found = all_of(findings)
-    return found if data.rows == THESIS_ROWS else _of_other_rows(found, data.rows)
+    return _of_as_many_rows(found, data)
 
 
-def _of_other_rows(found: Finding, rows: int) -> Finding:
-    words = f"{found.sentence}, but of {rows} rows, not the thesis's {THESIS_ROWS}"
+def _of_as_many_rows(found: Finding, data: Regressed) -> Finding:
+    """Leave a finding open whose number is the thesis's only for as many rows."""
+    if data.rows == THESIS_ROWS:
+        return found
+    words = f"{found.sentence}, but of {data.rows} rows, not the thesis's {THESIS_ROWS}"
     return Finding(UNDECIDED, words)
 
 

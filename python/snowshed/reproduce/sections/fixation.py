@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +11,7 @@ from snowshed.html_page import Grid, Picture
 from snowshed.parameter_words import word
 from snowshed.reproduce import printed
 from snowshed.reproduce.claims.fixation import FIXATION as CLAIMS
-from snowshed.reproduce.claims.judging import judge, widened
+from snowshed.reproduce.claims.judging import judge
 from snowshed.reproduce.reproduction import Reproduction
 from snowshed.reproduce.section import (
     PANEL_FRICTION,
@@ -21,6 +20,7 @@ from snowshed.reproduce.section import (
     grouped,
     plus_minus,
     settings_grid,
+    widenings,
 )
 from snowshed.reproduce.studies import FIXATION, INDEX
 from snowshed.sensitivity.noise import seeding_noise
@@ -92,12 +92,9 @@ def with_noise(table: pd.DataFrame, noise: pd.DataFrame, seeds: int) -> pd.DataF
         Seedings of each point.
     """
     keys = list(zip(table["event"], table["target"]))
-    relative = np.array([_relative(noise, key) for key in keys])
+    relative = np.array([noise["noise"].get(key, np.nan) for key in keys])
+    relative *= widenings(table, noise)
     return table.assign(noise_m=relative * table["mean_m"] / np.sqrt(table["points"] * seeds))
-
-
-def _relative(noise: pd.DataFrame, key: tuple[int, str]) -> float:
-    return widened(float(noise["noise"].get(key, math.nan)), float(noise["freedom"].get(key, 0)))
 
 
 def fixation_grid(table: pd.DataFrame) -> Grid:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from snowshed.html_page import Grid, Picture
 from snowshed.parameter_words import word
 from snowshed.reproduce import printed
-from snowshed.reproduce.claims.judging import judge, widened
+from snowshed.reproduce.claims.judging import judge
 from snowshed.reproduce.claims.s_index import S_INDEX
 from snowshed.reproduce.reproduction import Reproduction
 from snowshed.reproduce.section import (
@@ -17,6 +17,7 @@ from snowshed.reproduce.section import (
     grouped,
     plus_minus,
     settings_grid,
+    widenings,
 )
 from snowshed.reproduce.studies import INDEX
 from snowshed.sensitivity.noise import seeding_noise
@@ -50,16 +51,9 @@ def build(found: Reproduction) -> Section:
         ("Index S ± standard error by seeding noise", index_grid(table)),
     ]
     noise = seeding_noise(read_stored(found.folder.runs, INDEX))
-    claims = judge(S_INDEX, with_few_seedings(table, noise))
+    errors = table["standard_error"] * widenings(table, noise)
+    claims = judge(S_INDEX, table.assign(standard_error=errors))
     return Section("s-index", "Single-parameter index (3.3)", TEXT, tables, [picture], claims)
-
-
-def with_few_seedings(table: pd.DataFrame, noise: pd.DataFrame) -> pd.DataFrame:
-    """Return the table of `local_index` with errors widened where `seeding_noise` has few runs."""
-    keys = zip(table["event"], table["target"])
-    freedom = [float(noise["freedom"].get(key, 0)) for key in keys]
-    errors = [widened(float(e), f) for e, f in zip(table["standard_error"], freedom)]
-    return table.assign(standard_error=errors)
 
 
 def _settings(scenes: list[str]) -> Grid:
