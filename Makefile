@@ -91,10 +91,11 @@ test-cpp: build
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
 	@$(call enable,SNOWSHED_BUILD_TESTS)
 	cmake --build $(TREE) --target snowshed_tests
-	ctest --test-dir $(TREE) --output-on-failure
+	ctest --test-dir $(TREE) -j 2 --output-on-failure
 
+# Two at a time: tests that solve use all cores themselves.
 test-py: build $(VENV)/.dev-tools
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 test-slow: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest -m slow

@@ -66,8 +66,8 @@ def task_of(scene, folder: Path) -> Task:
 
 
 def long_scene():
-    """About a second, with checkpoints on the way."""
-    return tiny_scene(max_time=1.0).set("output.checkpoint_interval", 0.01)
+    """Some seconds, with checkpoints on the way."""
+    return tiny_scene(max_time=1.0, events=8).set("output.checkpoint_interval", 0.01)
 
 
 def outcome_of(workers):

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t max_header = 1024;
 
-struct Header {
+struct ArrayHeader {
   std::string type;
   std::vector<std::size_t> shape;
   std::size_t data_offset;
@@ -42,7 +42,7 @@ std::vector<std::size_t> parse_shape(const std::string& tuple) {
   return shape;
 }
 
-Header parse_header(const std::filesystem::path& path, const std::string& bytes) {
+ArrayHeader parse_header(const std::filesystem::path& path, const std::string& bytes) {
   if (bytes.compare(0, 6, "\x93NUMPY", 6) != 0) fail(path, 0, "not a .npy file");
   ByteReader reader(path, bytes, 6, ByteOrder::little);
   const int major = reader.read<std::uint8_t>();
@@ -56,7 +56,7 @@ Header parse_header(const std::filesystem::path& path, const std::string& bytes)
          "a header of " + std::to_string(length) + " bytes; at most 1024, within the file");
   const std::size_t begin = bytes.size() - reader.remaining();
   const std::string text = bytes.substr(begin, length);
-  Header header;
+  ArrayHeader header;
   header.type = entry(path, text, "descr", "'<f[48]'", "'<f4' and '<f8'");
   entry(path, text, "fortran_order", "False", "False (C order)");
   header.shape = parse_shape(entry(path, text, "shape", R"(\( *\d{1,9}( *, *\d{1,9}){1,2} *,? *\))",
@@ -66,7 +66,7 @@ Header parse_header(const std::filesystem::path& path, const std::string& bytes)
 }
 
 /// The number of values, which must fill the rest of the file.
-std::size_t checked_count(const std::filesystem::path& path, const Header& header,
+std::size_t checked_count(const std::filesystem::path& path, const ArrayHeader& header,
                           std::size_t bytes_left) {
   const std::size_t value_size = header.type == "'<f4'" ? 4 : 8;
   double count = 1;
@@ -82,7 +82,7 @@ std::size_t checked_count(const std::filesystem::path& path, const Header& heade
 
 NpyArray read_npy(const std::filesystem::path& path) {
   const std::string bytes = read_bytes(path);
-  const Header header = parse_header(path, bytes);
+  const ArrayHeader header = parse_header(path, bytes);
   const std::size_t count = checked_count(path, header, bytes.size() - header.data_offset);
   ByteReader reader(path, bytes, header.data_offset, ByteOrder::little);
   NpyArray array{header.shape, std::vector<float>(count)};

@@ -134,7 +134,7 @@ ParticleState SolverOf<T, D>::state() const {
     s.pressures.push_back(-snow.elastic.bulk * elastic_volume);
     s.ids.push_back(particles_.id[i]);
     s.events.push_back(particles_.event[i]);
-    if (particles_.has_kind) s.kinds.push_back(particles_.kind[i]);
+    if (options_.snows.size() > 1) s.kinds.push_back(particles_.kind[i]);
     if (particles_.has_affine) s.affine.push_back(affine_of(particles_, i));
   }
   return s;

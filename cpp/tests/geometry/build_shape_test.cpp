@@ -1,7 +1,5 @@
 #include "snowshed/geometry/build_shape.hpp"
 
-#include <limits>
-
 #include "geometry/mesh_testing.hpp"
 #include "geometry/npy_testing.hpp"
 
@@ -9,7 +7,6 @@ namespace snowshed {
 namespace {
 
 using namespace geometry_testing;
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 ShapeSpec spec_of(const std::string& type) {
   ShapeSpec spec;

@@ -8,17 +8,17 @@ namespace {
 
 using namespace geometry_testing;
 
-const Shape ball = make_sphere({0, 0, 0}, 1.0);
+const Shape large_ball = make_sphere({0, 0, 0}, 1.0);
 const Shape small_ball = make_sphere({1, 0, 0}, 0.5);
 
 TEST(Union, IsTheNearerOfItsOperands) {
-  const Shape both = unite({ball, small_ball});
+  const Shape both = unite({large_ball, small_ball});
   Random random(5);
   for (int n = 0; n < 200; ++n) {
     const Vec3 x = random_point(random, 2.0);
-    const double a = ball->distance(x), b = small_ball->distance(x);
+    const double a = large_ball->distance(x), b = small_ball->distance(x);
     EXPECT_EQ(both->distance(x), std::min(a, b));
-    EXPECT_EQ(both->normal(x), (a <= b ? ball : small_ball)->normal(x));
+    EXPECT_EQ(both->normal(x), (a <= b ? large_ball : small_ball)->normal(x));
   }
   EXPECT_DOUBLE_EQ(both->bounds().max.x(), 1.5);
   EXPECT_DOUBLE_EQ(both->bounds().min.x(), -1.0);
@@ -27,7 +27,7 @@ TEST(Union, IsTheNearerOfItsOperands) {
 }
 
 TEST(Difference, LeavesTheFirstWithoutTheOthers) {
-  const Shape bitten = subtract(ball, {small_ball, make_sphere({0, 0, 1}, 0.5)});
+  const Shape bitten = subtract(large_ball, {small_ball, make_sphere({0, 0, 1}, 0.5)});
   Random random(6);
   for (int n = 0; n < 500; ++n) {
     const Vec3 x = random_point(random, 1.5);
@@ -56,7 +56,6 @@ TEST(Transform, RotatesThenTranslates) {
 }
 
 TEST(Transform, KeepsASolidThatIsUnboundedAlongYBoundedInItsPlane) {
-  const double inf = std::numeric_limits<double>::infinity();
   const Shape box = make_box(Vec3::Zero(), Vec3(2, inf, 1));
   const Bounds bounds = transform(box, rotation_about_y(pi / 2), Vec3::Zero())->bounds();
   EXPECT_NEAR(bounds.max.x(), 0.5, 1e-12);

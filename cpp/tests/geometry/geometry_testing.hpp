@@ -12,10 +12,9 @@
 #include "snowshed/geometry/level_set.hpp"
 #include "snowshed/support/error.hpp"
 #include "snowshed/support/random.hpp"
+#include "support/numbers.hpp"
 
 namespace snowshed::geometry_testing {
-
-inline constexpr double pi = 3.14159265358979323846;
 
 /// Uniform in the cube [-half, half]^3.
 inline Vec3 random_point(Random& random, double half) {

@@ -1,14 +1,11 @@
 #include "snowshed/geometry/primitives.hpp"
 
-#include <limits>
-
 #include "geometry/geometry_testing.hpp"
 
 namespace snowshed {
 namespace {
 
 using namespace geometry_testing;
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 void expect_sound(const Shape& shape) {
   expect_normal_is_gradient(*shape, 2.0);

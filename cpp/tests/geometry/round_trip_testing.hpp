@@ -31,7 +31,7 @@ inline Snow dome(int dimension) {
   const double half = std::sqrt(radius * radius - (radius - height) * (radius - height));
   const double section =
       radius * radius * std::acos(1 - height / radius) - (radius - height) * half;
-  const double cap = geometry_testing::pi * height * height * (radius - height / 3);
+  const double cap = pi * height * height * (radius - height / 3);
   return {"dome", dimension, subtract(ball, {make_plane({0, 0, 0}, {0, 0, 1})}), height,
           dimension == 2 ? section : cap};
 }

@@ -1,7 +1,6 @@
 #include "snowshed/geometry/seeding.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "geometry/geometry_testing.hpp"
 #include "snowshed/geometry/combine.hpp"
@@ -13,7 +12,6 @@ namespace snowshed {
 namespace {
 
 using namespace geometry_testing;
-constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double voxel = 0.01;
 constexpr SeedPattern patterns[] = {SeedPattern::regular, SeedPattern::jittered,
                                     SeedPattern::poisson};

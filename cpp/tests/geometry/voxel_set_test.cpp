@@ -1,7 +1,6 @@
 #include "snowshed/geometry/voxel_set.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "geometry/geometry_testing.hpp"
 #include "snowshed/geometry/combine.hpp"
@@ -11,7 +10,6 @@ namespace snowshed {
 namespace {
 
 using namespace geometry_testing;
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 /// A box that does not say that it is one, so that it has to be measured.
 Shape anonymous(Shape box) { return dilate(std::move(box), 0.0); }

@@ -40,7 +40,7 @@ Matrix<D> lane(const Sym<V, D>& a, int l) {
 }
 
 template <class V, int D_>
-struct Case {
+struct TensorCase {
   using Value = V;
   static constexpr int D = D_;
 };
@@ -90,10 +90,11 @@ class SymTensor : public testing::Test {
   }
 };
 
-using Cases = testing::Types<Case<float, 2>, Case<float, 3>, Case<double, 2>, Case<double, 3>,
-                             Case<Lanes<float>, 2>, Case<Lanes<float>, 3>, Case<Lanes<double>, 2>,
-                             Case<Lanes<double>, 3>>;
-TYPED_TEST_SUITE(SymTensor, Cases);
+using TensorCases =
+    testing::Types<TensorCase<float, 2>, TensorCase<float, 3>, TensorCase<double, 2>,
+                   TensorCase<double, 3>, TensorCase<Lanes<float>, 2>, TensorCase<Lanes<float>, 3>,
+                   TensorCase<Lanes<double>, 2>, TensorCase<Lanes<double>, 3>>;
+TYPED_TEST_SUITE(SymTensor, TensorCases);
 
 // Series below detail::series_norm = 0.04 (half of that for the strain), eigenvalues above.
 constexpr double norms[] = {1e-12, 1e-6, 1e-3, 0.0199, 0.0201, 0.0399, 0.0401, 0.3, 0.9};

@@ -8,7 +8,7 @@ namespace snowshed {
 namespace {
 
 template <Basis B, class S>
-struct Case {
+struct SplineCase {
   static constexpr Basis basis = B;
   using Scalar = S;
 };
@@ -23,9 +23,10 @@ class BSplineWeights : public testing::Test {
   static constexpr double epsilon = std::numeric_limits<T>::epsilon();
 };
 
-using Cases = testing::Types<Case<Basis::quadratic, float>, Case<Basis::quadratic, double>,
-                             Case<Basis::cubic, float>, Case<Basis::cubic, double>>;
-TYPED_TEST_SUITE(BSplineWeights, Cases);
+using SplineCases =
+    testing::Types<SplineCase<Basis::quadratic, float>, SplineCase<Basis::quadratic, double>,
+                   SplineCase<Basis::cubic, float>, SplineCase<Basis::cubic, double>>;
+TYPED_TEST_SUITE(BSplineWeights, SplineCases);
 
 const double fractions[] = {0.0, 1e-9, 0.01, 0.25, 0.4999, 0.5, 0.7, 0.999};
 

@@ -24,7 +24,7 @@ TEST(Placement, FindsBlockAndCell) {
 }
 
 template <class T, int D_>
-struct Case {
+struct SortCase {
   using Scalar = T;
   static constexpr int D = D_;
 };
@@ -54,8 +54,9 @@ class ParticleSort : public testing::Test {
     }
   }
 };
-using Cases = testing::Types<Case<float, 2>, Case<float, 3>, Case<double, 2>, Case<double, 3>>;
-TYPED_TEST_SUITE(ParticleSort, Cases);
+using SortCases = testing::Types<SortCase<float, 2>, SortCase<float, 3>, SortCase<double, 2>,
+                                 SortCase<double, 3>>;
+TYPED_TEST_SUITE(ParticleSort, SortCases);
 
 TYPED_TEST(ParticleSort, PutsEveryParticleIntoItsBlock) {
   constexpr int D = TypeParam::D;

@@ -10,10 +10,9 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/mpm/solver.hpp"
 #include "snowshed/support/random.hpp"
+#include "support/numbers.hpp"
 
 namespace snowshed {
-
-inline constexpr double pi = 3.14159265358979323846;
 
 /// One way of running the solver, for parameterised tests.
 struct Way {

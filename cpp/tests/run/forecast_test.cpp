@@ -8,11 +8,12 @@
 
 #include "snowshed/scene/presets.hpp"
 #include "snowshed/support/error.hpp"
+#include "support/numbers.hpp"
 
 namespace snowshed {
 namespace {
 
-constexpr double g = 9.81, pi = 3.14159265358979323846;
+constexpr double g = 9.81;
 const double sine = std::sin(40 * pi / 180), cosine = std::cos(40 * pi / 180);
 
 TEST(Forecast, ParticlesOfTheLaboratorySlab) {

@@ -7,11 +7,10 @@
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 #include "snowshed/support/error.hpp"
+#include "support/numbers.hpp"
 
 namespace snowshed {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 Scene panel_scene(double tilt, double ground_tilt = 0.0) {
   Scene scene;

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "support/numbers.hpp"
+
 namespace snowshed {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 ShapeSpec make(const char* type) {
   ShapeSpec shape;

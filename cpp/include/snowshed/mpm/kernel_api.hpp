@@ -52,7 +52,7 @@ struct ParticleView {
   T* strain[6];  // b - I, b the elastic left Cauchy-Green tensor
   T* plastic;    // volumetric plastic strain; plastic laws only
   T* mass;
-  const std::uint8_t* kind;  // several snows only: which of them
+  const std::uint8_t* kind;  // by kind only: which snow
 };
 
 /// What the kernels need of a snow. C is a scalar, or lanes: of the particles of a chunk.
@@ -147,9 +147,9 @@ struct KernelChoice {
   int dimension;
   Transfer transfer;
   Basis basis;
-  SnowModel model;
-  bool energy;
-  bool several_snows = false;  // of whatever model
+  SnowModel model;       // of the only snow
+  bool energy;           // by kind always: books are for checks, and need no kernels of each model
+  bool by_kind = false;  // each particle's own snow, of whatever model
 };
 
 /// The best build of the chosen kernels for this machine.

@@ -26,11 +26,11 @@ struct Particles {
   std::array<AlignedVector<T>, D> velocity;    // m/s
   std::array<AlignedVector<T>, D * D> affine;  // APIC only, 1/s
   std::array<AlignedVector<T>, strain_size> strain;  // b - I
-  AlignedVector<T> plastic;                          // plastic laws and several snows only
+  AlignedVector<T> plastic;                          // plastic laws, and with kinds
   AlignedVector<T> mass;                             // kg (per metre of width in 2D)
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;  // in which each was released
-  AlignedVector<std::uint8_t> kind;    // several snows only: which of them each is
+  AlignedVector<std::uint8_t> kind;    // several snows or energy books: which snow
 
   bool has_affine = false, has_plastic = false, has_kind = false;
 

@@ -14,17 +14,13 @@ Kernels<T> kernels_for() {
   return {&P::scatter, &P::advance, &Motion::probe, &G::gather, &G::update, &G::carry};
 }
 
-template <class T, int D, Transfer transfer, Basis basis, class Snows>
-Kernels<T> with_energy(const KernelChoice& c) {
-  return c.energy ? kernels_for<T, D, transfer, basis, Snows, true>()
-                  : kernels_for<T, D, transfer, basis, Snows, false>();
-}
 template <class T, int D, Transfer transfer, Basis basis>
 Kernels<T> with_snow(const KernelChoice& c) {
-  if (c.several_snows) return with_energy<T, D, transfer, basis, SeveralSnows<T>>(c);
+  if (c.energy) return kernels_for<T, D, transfer, basis, SeveralSnows<T>, true>();
+  if (c.by_kind) return kernels_for<T, D, transfer, basis, SeveralSnows<T>, false>();
   return c.model == SnowModel::cam_clay
-             ? with_energy<T, D, transfer, basis, OneSnow<T, CamClay>>(c)
-             : with_energy<T, D, transfer, basis, OneSnow<T, Elastic>>(c);
+             ? kernels_for<T, D, transfer, basis, OneSnow<T, CamClay>, false>()
+             : kernels_for<T, D, transfer, basis, OneSnow<T, Elastic>, false>();
 }
 template <class T, int D, Transfer transfer>
 Kernels<T> with_basis(const KernelChoice& c) {

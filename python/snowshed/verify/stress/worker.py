@@ -23,7 +23,7 @@ class Worker:
     """A process that makes runs, replaced when it dies or takes too long; made by `worker`."""
 
     def __init__(self, budget_s: float, command: Sequence[str], complaints: IO[str]) -> None:
-        self._budget_s = budget_s
+        self.budget_s = budget_s
         self._command = command
         self._complaints = complaints
         self._process: Optional[subprocess.Popen[str]] = None
@@ -40,10 +40,10 @@ class Worker:
             process.stdin.flush()
         except BrokenPipeError:
             return self._crashed(process)
-        ready, _, _ = select.select([process.stdout], [], [], self._budget_s)
+        ready, _, _ = select.select([process.stdout], [], [], self.budget_s)
         if not ready:
             self.end()
-            return {"ended": "hung", "message": f"took more than {self._budget_s:g} s"}
+            return {"ended": "hung", "message": f"took more than {self.budget_s:g} s"}
         line = process.stdout.readline()
         if not line:
             return self._crashed(process)
@@ -88,7 +88,7 @@ def worker(budget_s: float = 60.0, command: Sequence[str] = COMMAND) -> Iterator
     Parameters
     ----------
     budget_s:
-        Wall time that a run may take, s.
+        Wall time that a run may take, and the start of the process with it, s.
     command:
         What to start as the process.
 

@@ -1,0 +1,13 @@
+# Most of the time goes into templates that each source would instantiate again, so the compiler
+# gets several sources at a time. Sanitized builds do not, and so keep every source complete.
+if(SNOWSHED_SANITIZE)
+  set(snowshed_default_batches OFF)
+else()
+  set(snowshed_default_batches ON)
+endif()
+option(SNOWSHED_UNITY_BUILD "Compile several sources at a time" ${snowshed_default_batches})
+
+function(snowshed_in_batches target)
+  set_target_properties(${target} PROPERTIES
+    UNITY_BUILD ${SNOWSHED_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
+endfunction()
