@@ -87,13 +87,15 @@ enable = cmake -S . -B $(TREE) -D$(1)=ON > build/configure.log \
 
 test: test-cpp test-py
 
+# Two tests at a time; those that solve use all cores themselves, and must not wait by spinning.
+test-cpp test-py: export OMP_WAIT_POLICY := passive
+
 test-cpp: build
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
 	@$(call enable,SNOWSHED_BUILD_TESTS)
 	cmake --build $(TREE) --target snowshed_tests
 	ctest --test-dir $(TREE) -j 2 --output-on-failure
 
-# Two at a time: tests that solve use all cores themselves.
 test-py: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 

@@ -128,13 +128,12 @@ TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
 
 TEST(Sleep, AnImpactWakes) {
   for (const Way& way : {two_d, three_d}) {
-    const auto sleeping = wall_under_lump(way, sleep_speed, 2),
-               awake = wall_under_lump(way, 0.0, 2);
+    const auto sleeping = wall_under_lump(way, sleep_speed), awake = wall_under_lump(way, 0.0);
     run_until(*sleeping, 0.12);
     EXPECT_GT(sleeping->counters().slept_updates, sleeping->counters().particle_updates / 4);
     const ParticleState before = sleeping->state();
-    run_until(*sleeping, 0.35);
-    run_until(*awake, 0.35);
+    run_until(*sleeping, 0.3);
+    run_until(*awake, 0.3);
     const auto a = sleeping->state().positions, b = awake->state().positions;
     EXPECT_GT(largest_distance(before.positions, a), 0.01);
     // The mean height and length hardly differ, and no particle by more than a cell or two.
