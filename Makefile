@@ -3,7 +3,7 @@
 # wheels into .venv.
 #
 # One CMake tree (build/release) serves the Python package, the tests and the benchmarks, so
-# the core is compiled once; only sanitizers and fuzzing need others. The files named .venv/.*
+# the core is compiled once; only sanitizers, fuzzing and tidy need others. The files named .venv/.*
 # mark what has been done.
 
 PYTHON ?= python3
@@ -88,7 +88,7 @@ enable = cmake -S . -B $(TREE) -D$(1)=ON > build/configure.log \
 test: test-cpp test-py
 
 # Two tests at a time; those that solve use all cores themselves, and must not wait by spinning.
-test-cpp test-py: export OMP_WAIT_POLICY := passive
+test-cpp test-py sanitize-address sanitize-thread: export OMP_WAIT_POLICY := passive
 
 test-cpp: build
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
@@ -155,8 +155,8 @@ lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools
 	$(BIN)/ruff format --check $(PYTHON_FOLDERS)
 	$(BIN)/mypy python/snowshed
 
-tidy: build $(VENV)/.cpp-tools
-	sh tools/tidy.sh $(TREE)
+tidy: $(VENV)/.build-tools $(VENV)/.cpp-tools
+	sh tools/tidy.sh
 
 # The extra "dev" of pyproject.toml; snowshed itself is there already and stays as it is.
 $(VENV)/.dev-tools: $(VENV)/.installed pyproject.toml

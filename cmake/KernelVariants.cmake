@@ -9,7 +9,7 @@ if(SNOWSHED_SANITIZE)
   set(snowshed_default_variants baseline)  # all come from the same templates: one will do
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(snowshed_default_variants baseline avx2 avx512)
-  set(SNOWSHED_KERNEL_FLAGS_baseline -O2)  # for machines from before 2013: built in half the time
+  set(SNOWSHED_KERNEL_FLAGS_baseline -O2)  # only for processors without AVX2: built in half the time
 else()
   set(snowshed_default_variants baseline)
 endif()

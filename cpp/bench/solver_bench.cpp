@@ -162,7 +162,11 @@ void add_prices() {
   price("slip_contact", on(Condition::slip), nothing);
   price("separate_contact", on(Condition::separate), nothing);
   price("moving_contact", on(Condition::sticky, true), nothing);
-  price("energy_books", plain(), [](C& c) { c.options.energy = true; });
+  price("several_snows", plain(), [](C& c) { c.options.snows.assign(2, Snow()); });
+  price("energy_books", plain(), [](C& c) {
+    c.options.snows.assign(2, Snow());
+    c.options.energy = true;
+  });
   price("sleep_of_awake_snow", plain(), [](C& c) { c.options.numerics.sleep_speed = 0.02; });
   // Without weight it is at rest at once.
   price("sleep_at_rest", slab_3d(), [](C& c) {

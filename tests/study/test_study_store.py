@@ -146,7 +146,7 @@ def test_processes_that_race_for_runs_share_them_out(tmp_path):
     runs = tiny_study(frictions=tuple(0.1 + i / 1000 for i in range(40))).runs()
     with Store.create(tmp_path / "store") as mine:
         mine.register("race", [], runs)
-    context = multiprocessing.get_context("fork")
+    context = multiprocessing.get_context("spawn")
     answers = context.Queue()
     processes = [
         context.Process(target=_claim_all, args=(tmp_path / "store", f"owner {i}", answers))
@@ -167,7 +167,7 @@ def _create(folder, answers):
 
 
 def test_processes_that_make_the_same_store_at_once_all_succeed(tmp_path):
-    context = multiprocessing.get_context("fork")
+    context = multiprocessing.get_context("spawn")
     answers = context.Queue()
     processes = [
         context.Process(target=_create, args=(tmp_path / "new" / "store", answers))

@@ -96,5 +96,8 @@ const char* kernel_variant() {
 
 SNOWSHED_SELECT(float)
 SNOWSHED_SELECT(double)
+#undef SNOWSHED_SELECT
+#undef SNOWSHED_CASE_AVX512
+#undef SNOWSHED_CASE_AVX2
 
 }  // namespace snowshed

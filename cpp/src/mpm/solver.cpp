@@ -36,22 +36,24 @@ void check_count(const char* what, std::size_t given, std::size_t particles) {
 /// Fewer particles than this are not worth waking another thread for, twice a step.
 constexpr int particles_per_thread = 2000;
 
-/// Whether the kernels look up each particle's snow.
-bool by_kind(const SolverOptions& options) { return options.energy || options.snows.size() > 1; }
+KernelChoice choice_of(const SolverOptions& options) {
+  const Numerics& n = options.numerics;
+  return {options.dimension,        n.transfer,    n.basis, options.snows.front().model,
+          options.snows.size() > 1, options.energy};
+}
 
 }  // namespace
 
 template <class T, int D>
 SolverOf<T, D>::SolverOf(const SolverOptions& options, std::vector<Obstacle> obstacles)
     : options_(options),
-      kernels_(select_kernels<T>({D, options.numerics.transfer, options.numerics.basis,
-                                  options.snows.front().model, options.energy, by_kind(options)})),
+      kernels_(select_kernels<T>(choice_of(options))),
       max_threads_(options.numerics.threads > 0 ? options.numerics.threads : omp_get_num_procs()),
       contacts_(std::move(obstacles), options.numerics.dx),
       grid_(options.numerics.basis),
       sleep_(options.numerics.sleep_speed, options.numerics.sleep_time, options.gravity) {
   particles_.has_affine = options.numerics.transfer == Transfer::apic;
-  particles_.has_kind = by_kind(options);
+  particles_.has_kind = choice_of(options).by_kind();
   particles_.has_plastic =
       particles_.has_kind || options.snows.front().model == SnowModel::cam_clay;
   for (const Snow& snow : options.snows) {

@@ -11,7 +11,7 @@ class Limits:
 
     Scripts that go wrong run into one of the first three, and the error names the line. The times
     after them end the process, for single operations that do not return. What counts is processor
-    time, which is the same on a busy machine; a script cannot wait for anything.
+    time, which a busy machine hardly stretches; a script cannot wait for anything.
 
     Attributes
     ----------

@@ -42,9 +42,9 @@ PATH = click.Path(path_type=Path)
     default=1,
     show_default=True,
     help="Stacks for each panel up to 1 m, whose means are regressed; up to 4 m a quarter of them, "
-    "beyond a sixteenth.",
+    "beyond a sixteenth, at least one.",
 )
-@click.option("--trial", is_flag=True, help="A few panels on a coarse grid: minutes, not hours.")
+@click.option("--trial", is_flag=True, help="A few panels on a coarse grid, which take seconds.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
 @click.pass_context
 def geometry(
@@ -118,7 +118,9 @@ def geometry(
 @click.option("--inner-folds", default=5, help="Inner folds.  [default: 5]")
 @click.option("--seed", default=1, help="Of the random splits.  [default: 1]")
 @click.option("--jobs", type=int, help="Processes.  [default: the number of cores]")
-@click.option("--title", help="What the data are; predict shows it.  [default: the table's name]")
+@click.option(
+    "--title", help="What the data are; predict shows it.  [default: the table's name and its rows]"
+)
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 def regress(
     table: Path,

@@ -45,8 +45,8 @@ def geometry_study(
         particles. Longer panels take more time and scatter less: those up to 4 m have a quarter as
         many, the others a sixteenth, at least one.
     trial
-        A few panels on a coarse grid, to try the way from study to prediction within minutes; its
-        numbers mean nothing.
+        A few panels on a coarse grid, which take seconds, to try the way from study to prediction;
+        its numbers mean nothing.
 
     Examples
     --------

@@ -147,9 +147,13 @@ struct KernelChoice {
   int dimension;
   Transfer transfer;
   Basis basis;
-  SnowModel model;       // of the only snow
-  bool energy;           // by kind always: books are for checks, and need no kernels of each model
-  bool by_kind = false;  // each particle's own snow, of whatever model
+  SnowModel model;  // of the only snow
+  bool several_snows = false;
+  bool energy = false;
+
+  /// Whether the kernels look up each particle's snow, of whatever model. With energy books they
+  /// always do: books are for checks, and not worth kernels of each model.
+  bool by_kind() const { return several_snows || energy; }
 };
 
 /// The best build of the chosen kernels for this machine.

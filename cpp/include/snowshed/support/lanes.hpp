@@ -78,15 +78,6 @@ SNOWSHED_INLINE V spread(const C& c) {
     return broadcast<V>(c);
 }
 
-/// What a constant is in lane l: the same in all, or each its own.
-template <class C>
-SNOWSHED_INLINE Scalar<C> in_lane(const C& c, int l) {
-  if constexpr (is_lanes<C>)
-    return c[l];
-  else
-    return c;
-}
-
 /// mask ? a : b, lane by lane.
 template <class M, class V>
 SNOWSHED_INLINE V select(const M& mask, const V& a, const V& b) {

@@ -167,23 +167,21 @@ struct ParticleKernels {
     for (int k = 0; k < D; ++k) dev.c[k] -= third;
     V p_now = -el.bulk * volumetric;
     V shear_scale = spread<V>(T(2) * el.mu);
-    if constexpr (Snow::plastic || energy) {
+    if constexpr (Snow::plastic) {
       const V q_trial = sqrt(V(T(6) * norm_squared(dev))) * el.mu;  // q = sqrt(3/2 s:s)
       PQ<V> pq{p_now, q_trial};
-      if constexpr (Snow::plastic) {
-        if (!committed && snow.law.return_map(pq, s.plastic)) {
-          const auto sheared = q_trial > T(0);
-          const V keep = select(sheared, V(pq.q / select(sheared, q_trial, broadcast<V>(T(1)))),
-                                broadcast<V>(T(1)));
-          const V new_third = pq.p * (T(-1) / (el.bulk * T(D)));
-          for (int k = 0; k < Tensor::size; ++k) e.c[k] = keep * dev.c[k];
-          for (int k = 0; k < D; ++k) e.c[k] += new_third;
-          const Tensor returned = cauchy_green_minus_identity(e);
-          const auto changed = (pq.p != p_now) | (pq.q != q_trial);
-          for (int k = 0; k < Tensor::size; ++k)
-            s.strain.c[k] = select(changed, returned.c[k], s.strain.c[k]);
-          shear_scale *= keep;
-        }
+      if (!committed && snow.law.return_map(pq, s.plastic)) {
+        const auto sheared = q_trial > T(0);
+        const V keep = select(sheared, V(pq.q / select(sheared, q_trial, broadcast<V>(T(1)))),
+                              broadcast<V>(T(1)));
+        const V new_third = pq.p * (T(-1) / (el.bulk * T(D)));
+        for (int k = 0; k < Tensor::size; ++k) e.c[k] = keep * dev.c[k];
+        for (int k = 0; k < D; ++k) e.c[k] += new_third;
+        const Tensor returned = cauchy_green_minus_identity(e);
+        const auto changed = (pq.p != p_now) | (pq.q != q_trial);
+        for (int k = 0; k < Tensor::size; ++k)
+          s.strain.c[k] = select(changed, returned.c[k], s.strain.c[k]);
+        shear_scale *= keep;
       }
       if constexpr (energy) book(PQ<V>{p_now, q_trial}, pq, s.mass, snow, n);
       p_now = pq.p;
@@ -200,9 +198,9 @@ struct ParticleKernels {
   void book(const PQ<V>& trial, const PQ<V>& now, const V& mass, const Snow& snow, int n) const {
     const auto& el = snow.law.elastic;
     for (int l = 0; l < n; ++l) {
-      const double volume = double(mass[l]) * double(in_lane(snow.specific_volume, l));
+      const double volume = double(mass[l]) * double(snow.specific_volume[l]);
       const double p = now.p[l], q = now.q[l];
-      const double bulk = in_lane(el.bulk, l), mu = in_lane(el.mu, l);
+      const double bulk = el.bulk[l], mu = el.mu[l];
       stats.elastic += volume * (p * p / (2 * bulk) + q * q / (6 * mu));
       stats.plastic += volume * (p * (trial.p[l] - p) / bulk + q * (trial.q[l] - q) / (3 * mu));
     }
@@ -215,8 +213,8 @@ struct ParticleKernels {
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j) work += tau(i, j) * m.gradient[i][j];
     for (int l = 0; l < n; ++l)
-      stats.stress_power -= double(s.mass[l]) * double(in_lane(snow.specific_volume, l)) *
-                            double(work[l]) / double(step.dt);
+      stats.stress_power -=
+          double(s.mass[l]) * double(snow.specific_volume[l]) * double(work[l]) / double(step.dt);
   }
 
   void book_motion(const State& s, int n) const {

@@ -17,7 +17,7 @@ Kernels<T> kernels_for() {
 template <class T, int D, Transfer transfer, Basis basis>
 Kernels<T> with_snow(const KernelChoice& c) {
   if (c.energy) return kernels_for<T, D, transfer, basis, SeveralSnows<T>, true>();
-  if (c.by_kind) return kernels_for<T, D, transfer, basis, SeveralSnows<T>, false>();
+  if (c.by_kind()) return kernels_for<T, D, transfer, basis, SeveralSnows<T>, false>();
   return c.model == SnowModel::cam_clay
              ? kernels_for<T, D, transfer, basis, OneSnow<T, CamClay>, false>()
              : kernels_for<T, D, transfer, basis, OneSnow<T, Elastic>, false>();
