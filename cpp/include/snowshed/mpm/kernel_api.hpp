@@ -14,7 +14,7 @@ template <int D>
 inline constexpr int block_edge = D == 3 ? 4 : 8;
 
 template <int D>
-inline constexpr int block_nodes = D == 3 ? 64 : 64;
+inline constexpr int block_nodes = block_edge<D> * block_edge<D> * (D == 3 ? block_edge<D> : 1);
 
 /// Values per node, one 256-bit load in single precision.
 /// Sums:       mass, momentum (3), force (3), unused.
