@@ -8,14 +8,14 @@
 namespace snowshed {
 namespace {
 
-/// The operand with the smallest distance, and that distance.
+/// The operand with the smallest distance, and that distance. There is at least one.
 std::pair<const LevelSet*, double> nearest(const std::vector<Shape>& shapes, const Vec3& x) {
-  const LevelSet* best = nullptr;
-  double smallest = infinity;
-  for (const Shape& shape : shapes) {
-    const double d = shape->distance(x);
-    if (best && d >= smallest) continue;
-    best = shape.get();
+  const LevelSet* best = shapes.front().get();
+  double smallest = best->distance(x);
+  for (std::size_t i = 1; i < shapes.size(); ++i) {
+    const double d = shapes[i]->distance(x);
+    if (d >= smallest) continue;
+    best = shapes[i].get();
     smallest = d;
   }
   return {best, smallest};

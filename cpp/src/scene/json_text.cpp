@@ -147,9 +147,9 @@ void append(std::string& out, const ordered_json& value, const std::string& inde
   if (!value.is_structured() || value.empty()) {
     out += value.dump();
   } else if (value.is_array() && plain) {
-    out += "[";
+    out += '[';
     for (const auto& item : value) out += (&item == &value.front() ? "" : ", ") + item.dump();
-    out += "]";
+    out += ']';
   } else {
     const std::string deeper = indent + "  ";
     std::string before = value.is_array() ? "[\n" : "{\n";

@@ -76,7 +76,7 @@ class SchemaWriter {
   void spin(const char* key, Vec3&, const char* unit, const Range& range, const char* doc) {
     const json component = limited("number", range);
     json schema = {{"anyOf", json::array({component, array(component, 3, "")})}, {"x-unit", unit}};
-    add(key, std::move(schema), std::string(doc) + "; in 2D a single number, about +y");
+    add(key, schema, std::string(doc) + "; in 2D a single number, about +y");
   }
 
   template <class T>
@@ -89,7 +89,7 @@ class SchemaWriter {
     json schema = schema_of<T>();
     if constexpr (std::is_same_v<T, Snow>)  // of a part: there the defaults are the scene's snow
       for (auto& [name, property] : schema["properties"].items()) property.erase("default");
-    add(key, std::move(schema), doc);
+    add(key, schema, doc);
   }
 
   template <class T>
@@ -140,7 +140,7 @@ class SchemaWriter {
     variants_.push_back(std::move(schema));
   }
 
-  void add(const char* key, json schema, std::string doc, Need need = Need::optional) {
+  void add(const char* key, const json& schema, std::string doc, Need need = Need::optional) {
     if (need == Need::required) required_.push_back(key);
     if (need == Need::required_in_3d) doc += " (required in 3D)";
     json property = {{"description", doc}};

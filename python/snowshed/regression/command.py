@@ -42,7 +42,7 @@ PATH = click.Path(path_type=Path)
     default=1,
     show_default=True,
     help="Stacks for each panel up to 1 m, whose means are regressed; up to 4 m a quarter of them, "
-    "beyond a sixteenth, at least one.",
+    "beyond an eighth, at least one.",
 )
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid, which take seconds.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")

@@ -15,7 +15,7 @@ BETWEEN = ("carry", "reseed")
 FRICTION = 0.8
 #: Part of the seeds of panels up to 1 m that those up to 4 m have, and longer ones. The scatter of
 #: single stacks over the root of their cost makes it 1 : 1/4 : 1/11.
-MIDDLE, LONG = 4, 16
+MIDDLE, LONG = 4, 8
 
 
 def geometry_study(
@@ -43,7 +43,7 @@ def geometry_study(
     seeds
         How many stacks for each panel up to 1 m; they differ in the chance placement of the
         particles. Longer panels take more time and scatter less: those up to 4 m have a quarter as
-        many, the others a sixteenth, at least one.
+        many, the others an eighth, at least one.
     trial
         A few panels on a coarse grid, which take seconds, to try the way from study to prediction;
         its numbers mean nothing.
