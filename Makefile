@@ -3,8 +3,8 @@
 # wheels into .venv.
 #
 # One CMake tree (build/release) serves the Python package, the tests and the benchmarks, so
-# the core is compiled once; only sanitizers, fuzzing and tidy need others. The files named .venv/.*
-# mark what has been done.
+# the core is compiled once; only sanitizers, fuzzing and tidy need others. The files named
+# .venv/.* mark what has been done.
 
 PYTHON ?= python3
 VENV := .venv

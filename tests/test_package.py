@@ -41,4 +41,4 @@ def test_import_is_quick_and_leaves_the_libraries_out(module, allowed):
         (run.stdout.split() for run in runs), key=lambda words: float(words[0])
     )
     assert set(imported) & set(MODULES_OF.values()) == allowed
-    assert float(seconds) < 1.0  # of processor time; a fifth of it on a quick machine
+    assert float(seconds) < 0.3  # of processor time, which a busy machine hardly stretches

@@ -12,6 +12,7 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/geometry/sampled_grid.hpp"
 #include "snowshed/geometry/vdb_file.hpp"
+#include "snowshed/support/angles.hpp"
 #include "snowshed/support/error.hpp"
 
 namespace snowshed {
@@ -20,7 +21,6 @@ namespace {
 // Beyond this, squares and differences of coordinates lose the millimetres.
 constexpr double largest = 1e9;    // m
 constexpr double smallest = 1e-9;  // m
-constexpr double radians_per_degree = 3.14159265358979323846 / 180;
 
 /// Reads the fields of one ShapeSpec and names the culprit when one is bad.
 class Builder {
@@ -139,8 +139,8 @@ class Builder {
                         "two-dimensional scene in its plane");
     if (!(std::abs(spec_.angle) <= 36000))
       fail("/angle", describe(spec_.angle) + "; allowed: -36000 to 36000 degrees");
-    const double radians = std::fmod(spec_.angle, 360.0) * radians_per_degree;
-    return transform(children(1).front(), Eigen::AngleAxisd(radians, axis).toRotationMatrix(),
+    const double angle = radians(std::fmod(spec_.angle, 360.0));
+    return transform(children(1).front(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(),
                      translation);
   }
 

@@ -5,12 +5,11 @@
 #include <tuple>
 
 #include "snowshed/scene/scene_json.hpp"
+#include "snowshed/support/angles.hpp"
 #include "snowshed/support/error.hpp"
 
 namespace snowshed {
 namespace {
-
-double radians(double degrees) { return degrees * (3.14159265358979323846 / 180.0); }
 
 double ground_tilt(const Scene& scene) { return scene.ground ? scene.ground->tilt : 0.0; }
 

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "snowshed/support/angles.hpp"
+
 namespace snowshed {
 namespace {
 
 using Box = Eigen::AlignedBox3d;
-
-constexpr double pi = 3.14159265358979323846;
 
 Box around(const Vec3& center, const Vec3& half) { return {center - half, center + half}; }
 

@@ -60,7 +60,7 @@ TEST(BuildShape, MakesEveryPrimitive) {
 TEST(BuildShape, BoxesAndPlatesAreUnboundedAlongYIn2D) {
   ShapeSpec box = spec_of("box");
   box.size = {1, 0, 3};
-  EXPECT_EQ(build(box, 2)->bounds().max.y(), inf);
+  EXPECT_EQ(build(box, 2)->bounds().max.y(), infinity);
   ShapeSpec plate = panel();
   plate.width = 0;
   EXPECT_NEAR(build(plate, 2)->distance({0, 1e6, 0}), 0, 1e-12);
@@ -86,10 +86,10 @@ TEST(BuildShape, NamesTheBadField) {
   expect_refused(spec_of("blob"), "/type");
   expect_refused(ball(0), "/radius");
   expect_refused(ball(-1), "/radius");
-  expect_refused(ball(inf), "/radius");
+  expect_refused(ball(infinity), "/radius");
   expect_refused(ball(std::nan("")), "/radius");
   ShapeSpec s = ball(1);
-  s.center.x() = inf;
+  s.center.x() = infinity;
   expect_refused(s, "/center");
   s = spec_of("box");
   s.size = {1, -1, 1};
@@ -121,7 +121,7 @@ TEST(BuildShape, NamesTheBadField) {
   s.axis.setZero();
   expect_refused(s, "/axis");
   s.axis = {0, 1, 0};
-  s.angle = inf;
+  s.angle = infinity;
   expect_refused(s, "/angle");
   expect_refused(spec_of("mesh"), "/file");
   s = spec_of("grid");

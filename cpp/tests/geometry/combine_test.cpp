@@ -56,11 +56,11 @@ TEST(Transform, RotatesThenTranslates) {
 }
 
 TEST(Transform, KeepsASolidThatIsUnboundedAlongYBoundedInItsPlane) {
-  const Shape box = make_box(Vec3::Zero(), Vec3(2, inf, 1));
+  const Shape box = make_box(Vec3::Zero(), Vec3(2, infinity, 1));
   const Bounds bounds = transform(box, rotation_about_y(pi / 2), Vec3::Zero())->bounds();
   EXPECT_NEAR(bounds.max.x(), 0.5, 1e-12);
   EXPECT_NEAR(bounds.max.z(), 1.0, 1e-12);
-  EXPECT_EQ(bounds.max.y(), inf);
+  EXPECT_EQ(bounds.max.y(), infinity);
 }
 
 TEST(Dilate, MovesTheSurfaceOutward) {

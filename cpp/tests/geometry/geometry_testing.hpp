@@ -9,10 +9,11 @@
 #include <fstream>
 #include <string>
 
+#include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/level_set.hpp"
+#include "snowshed/support/angles.hpp"
 #include "snowshed/support/error.hpp"
 #include "snowshed/support/random.hpp"
-#include "support/numbers.hpp"
 
 namespace snowshed::geometry_testing {
 

@@ -17,8 +17,8 @@ TEST(Plane, DistanceIsTheHeightAboveIt) {
   EXPECT_DOUBLE_EQ(plane->distance({9, 9, 7}), 4);
   EXPECT_DOUBLE_EQ(plane->distance({9, 9, 1}), -2);
   EXPECT_EQ(plane->normal({0, 0, -4}), Vec3::UnitZ());
-  EXPECT_EQ(plane->inradius(), inf);
-  EXPECT_EQ(plane->bounds().min.z(), -inf);
+  EXPECT_EQ(plane->inradius(), infinity);
+  EXPECT_EQ(plane->bounds().min.z(), -infinity);
 }
 
 TEST(Box, DistanceMatchesClosedForms) {
@@ -40,14 +40,14 @@ TEST(Box, IsSoundInAnyOrientation) {
 }
 
 TEST(Box, MayBeUnboundedAlongY) {
-  const Shape box = make_box(Vec3(0, 0, 0), Vec3(2, inf, 1));
+  const Shape box = make_box(Vec3(0, 0, 0), Vec3(2, infinity, 1));
   EXPECT_DOUBLE_EQ(box->distance({0, 0, 0}), -0.5);
   EXPECT_DOUBLE_EQ(box->distance({4, 1e6, 4.5}), 5);
   EXPECT_LT((box->normal({4, 0, 4.5}) - Vec3(0.6, 0, 0.8)).norm(), 1e-12);
   EXPECT_EQ(box->normal({0, 3, 0.2}), Vec3::UnitZ());
   EXPECT_DOUBLE_EQ(box->inradius(), 0.5);
   EXPECT_EQ(box->bounds().max.x(), 1);
-  EXPECT_EQ(box->bounds().max.y(), inf);
+  EXPECT_EQ(box->bounds().max.y(), infinity);
 }
 
 TEST(Sphere, DistanceMatchesTheClosedForm) {

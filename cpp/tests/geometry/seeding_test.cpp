@@ -17,7 +17,7 @@ constexpr SeedPattern patterns[] = {SeedPattern::regular, SeedPattern::jittered,
                                     SeedPattern::poisson};
 
 Shape tilted_slab_2d() {
-  return transform(make_box(Vec3::Zero(), Vec3(0.5, inf, 0.05)), rotation_about_y(0.7),
+  return transform(make_box(Vec3::Zero(), Vec3(0.5, infinity, 0.05)), rotation_about_y(0.7),
                    {0.1, 0, 1.2});
 }
 

@@ -18,7 +18,7 @@ TEST(Measure, IsExactForBoxes) {
   Random random(2);
   const OrientedBox box{{1, 2, 3}, random_rotation(random), {0.5, 0.3, 0.025}};
   EXPECT_NEAR(measure(*make_box(box), 3, 0.01), 8 * 0.5 * 0.3 * 0.025, 1e-12);
-  const Shape plate = make_plate({0, 0, 1}, {1, 0, 1}, 2.0, inf, 0.05);
+  const Shape plate = make_plate({0, 0, 1}, {1, 0, 1}, 2.0, infinity, 0.05);
   EXPECT_NEAR(measure(*plate, 2, 0.01), 0.1, 1e-12);
 }
 
@@ -29,7 +29,7 @@ TEST(Measure, OfARotatedThinSlabIsRightToAThousandth) {
     EXPECT_NEAR(measure(*anonymous(make_box(box)), 3, 0.01), 0.004, 0.004 * 1e-3);
   }
   for (const double tilt : {0.0, 13.0, 40.0, 45.0, 70.0}) {
-    const Shape slab = transform(make_box(Vec3::Zero(), Vec3(1, inf, 0.05)),
+    const Shape slab = transform(make_box(Vec3::Zero(), Vec3(1, infinity, 0.05)),
                                  rotation_about_y(tilt * pi / 180), {0.3, 0, 0.2});
     EXPECT_NEAR(measure(*anonymous(slab), 2, 0.01), 0.05, 0.05 * 1e-3) << tilt;
   }
@@ -51,7 +51,7 @@ TEST(Measure, OfASphereWithAHole) {
 TEST(Measure, RefusesUnboundedSolids) {
   const Shape ground = make_plane({0, 0, 0}, {0, 0, 1});
   expect_input_error([&] { measure(*ground, 2, 0.01); }, "unbounded");
-  const Shape deep = make_box(Vec3::Zero(), Vec3(1, inf, 1));
+  const Shape deep = make_box(Vec3::Zero(), Vec3(1, infinity, 1));
   expect_input_error([&] { measure(*deep, 3, 0.01); }, "unbounded");
 }
 
@@ -87,7 +87,7 @@ TEST(Voxelize, CoversTheSolidAndKnowsItsInside) {
 }
 
 TEST(Voxelize, OfATwoDimensionalSceneStaysInItsPlane) {
-  const auto voxels = voxelize(*make_box(Vec3::Zero(), Vec3(0.1, inf, 0.1)), 2, 0.01, 0.005);
+  const auto voxels = voxelize(*make_box(Vec3::Zero(), Vec3(0.1, infinity, 0.1)), 2, 0.01, 0.005);
   EXPECT_GE(voxels.size(), 144u);
   EXPECT_LE(voxels.size(), 200u);
   for (const Voxel& v : voxels) EXPECT_EQ(v.center.y(), 0);

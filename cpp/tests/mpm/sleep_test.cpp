@@ -13,10 +13,11 @@ constexpr double sleep_speed = 0.02;
 
 const Way two_d{2, Precision::float32}, three_d{3, Precision::float32};
 
-SolverOptions sleepy(const Way& way, double speed = sleep_speed) {
+SolverOptions sleepy(const Way& way, double speed = sleep_speed, bool books = false) {
   SolverOptions o = options_for(way);
   o.snows[0].model = SnowModel::cam_clay;
   o.numerics.sleep_speed = speed;
+  o.energy = books;
   return o;
 }
 
@@ -38,9 +39,8 @@ ParticleBatch falling_lump(const Way& way, double time) {
 
 std::unique_ptr<Solver> wall_under_lump(const Way& way, double speed, int threads = 1,
                                         bool books = false) {
-  SolverOptions o = sleepy(way, speed);
+  SolverOptions o = sleepy(way, speed, books);
   o.numerics.threads = threads;
-  o.energy = books;
   auto solver = make_solver(o, {floor()});
   solver->add(wall(way));
   solver->add(falling_lump(way, 0.15));
@@ -72,10 +72,11 @@ TEST(Sleep, SnowAtRestCostsNothingAndStaysWhereItIs) {
 }
 
 TEST(Sleep, IsOffAtSpeedZero) {
-  const auto solver = make_solver(sleepy(two_d, 0.0), {floor()});
+  const auto solver = make_solver(sleepy(two_d, 0.0, true), {floor()});
   solver->add(wall(two_d));
   run_until(*solver, 0.2);
   EXPECT_EQ(solver->counters().slept_updates, 0);
+  EXPECT_EQ(solver->energy().sleep, 0.0);
 }
 
 /// In the twentieth of a second that it takes to become faster than the limit, it must not be
@@ -132,8 +133,8 @@ TEST(Sleep, AnImpactWakes) {
     run_until(*sleeping, 0.12);
     EXPECT_GT(sleeping->counters().slept_updates, sleeping->counters().particle_updates / 4);
     const ParticleState before = sleeping->state();
-    run_until(*sleeping, 0.3);
-    run_until(*awake, 0.3);
+    run_until(*sleeping, 0.5);
+    run_until(*awake, 0.5);
     const auto a = sleeping->state().positions, b = awake->state().positions;
     EXPECT_GT(largest_distance(before.positions, a), 0.01);
     // The mean height and length hardly differ, and no particle by more than a cell or two.
@@ -186,18 +187,19 @@ TEST(Sleep, GivesTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST_F(SleepFiles, GoesOnFromACheckpointWithTheSameBits) {
-  const auto whole = wall_under_lump(two_d, sleep_speed);
+  const auto whole = wall_under_lump(two_d, sleep_speed, 1, true);
   run_until(*whole, 0.1);
   EXPECT_GT(whole->counters().slept_updates, 0);
   while (!whole->at_safe_point()) whole->step();
   BinaryWriter out;
   whole->save(out);
   out.save(path("checkpoint"));
-  const auto resumed = make_solver(sleepy(two_d), {floor()});
+  const auto resumed = make_solver(sleepy(two_d, sleep_speed, true), {floor()});
   resumed->load(BinaryReader::load(path("checkpoint")));
   for (const auto* solver : {&whole, &resumed}) run_until(**solver, 0.25);
   expect_same_bits(resumed->state(), whole->state());
   EXPECT_EQ(resumed->counters().slept_updates, whole->counters().slept_updates);
+  EXPECT_EQ(resumed->energy().residual(), whole->energy().residual());
 }
 
 }  // namespace

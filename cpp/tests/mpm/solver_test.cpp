@@ -250,7 +250,7 @@ TEST(Solver, AColumnCarriesItsWeight) {
 // --- the same bits ----------------------------------------------------------------------------
 
 /// Snow thrown onto a slippery slope: contact, plasticity, blocks that come and go.
-std::unique_ptr<Solver> thrown_snow(Way way, int threads, double size, bool books = false) {
+std::unique_ptr<Solver> thrown_snow(Way way, int threads, double size, bool books) {
   SolverOptions o = options_for(way);
   o.numerics.threads = threads;
   o.energy = books;
@@ -262,12 +262,15 @@ std::unique_ptr<Solver> thrown_snow(Way way, int threads, double size, bool book
   return solver;
 }
 
-TEST(Solver, GivesTheSameBitsOnAnyNumberOfThreads) {
+/// With books the kernels are others.
+class SameBits : public SolverFiles, public testing::WithParamInterface<bool> {};
+
+TEST_P(SameBits, OnAnyNumberOfThreads) {
+  const bool books = GetParam();
   for (const Way& way : {Way{2, Precision::float32}, Way{3, Precision::float32},
                          Way{2, Precision::float64, Transfer::apic, Basis::cubic}}) {
     const double size = way.dimension == 2 ? 0.25 : 0.08;
     const int steps = way.dimension == 2 ? 150 : 80;
-    const bool books = way.dimension == 3;
     const auto one = thrown_snow(way, 1, size, books);
     run_steps(*one, steps);
     EXPECT_GT(one->counters().sorts, 1);
@@ -283,10 +286,10 @@ TEST(Solver, GivesTheSameBitsOnAnyNumberOfThreads) {
   }
 }
 
-TEST_F(SolverFiles, GoesOnFromACheckpointWithTheSameBits) {
+TEST_P(SameBits, FromACheckpoint) {
+  const bool books = GetParam();
   for (Way way : all_ways()) {
     if (way.dimension == 3 && way.precision == Precision::float64) continue;
-    const bool books = way.precision == Precision::float64;
     const auto whole = thrown_snow(way, 1, 0.05, books);
     run_steps(*whole, 40);
     while (!whole->at_safe_point()) whole->step();
@@ -304,6 +307,10 @@ TEST_F(SolverFiles, GoesOnFromACheckpointWithTheSameBits) {
     EXPECT_EQ(resumed->energy().residual(), whole->energy().residual());
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Solver, SameBits, testing::Bool(), [](const auto& info) {
+  return info.param ? "with_books" : "without_books";
+});
 
 // --- steps that are too much ------------------------------------------------------------------
 

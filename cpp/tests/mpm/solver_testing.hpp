@@ -9,8 +9,8 @@
 
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/mpm/solver.hpp"
+#include "snowshed/support/angles.hpp"
 #include "snowshed/support/random.hpp"
-#include "support/numbers.hpp"
 
 namespace snowshed {
 

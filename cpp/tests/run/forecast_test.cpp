@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "snowshed/scene/presets.hpp"
+#include "snowshed/support/angles.hpp"
 #include "snowshed/support/error.hpp"
-#include "support/numbers.hpp"
 
 namespace snowshed {
 namespace {

@@ -27,6 +27,7 @@ inline Scene small_scene(Transfer transfer = Transfer::flip) {
   scene.numerics.threads = 1;
   scene.events.count = 3;
   scene.events.max_time = 0.3;
+  scene.output.energy = true;
   return scene;
 }
 

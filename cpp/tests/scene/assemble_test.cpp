@@ -6,8 +6,8 @@
 
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/shape_measure.hpp"
+#include "snowshed/support/angles.hpp"
 #include "snowshed/support/error.hpp"
-#include "support/numbers.hpp"
 
 namespace snowshed {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "support/numbers.hpp"
+#include "snowshed/support/angles.hpp"
 
 namespace snowshed {
 namespace {

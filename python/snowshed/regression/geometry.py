@@ -14,7 +14,8 @@ BETWEEN = ("carry", "reseed")
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
 FRICTION = 0.8
 #: Part of the seeds of panels up to 1 m that those up to 4 m have, and longer ones. The scatter of
-#: single stacks over the root of their cost makes it 1 : 1/4 : 1/11.
+#: single stacks over the root of their cost makes it 1 : 1/4 : 1/11; low panels beyond 4 m scatter
+#: more than that.
 MIDDLE, LONG = 4, 8
 
 
