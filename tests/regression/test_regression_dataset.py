@@ -39,7 +39,7 @@ def test_short_panels_have_more_seeds(tmp_path):
     counts = Counter((one["length"], one["height"], one["tilt"]) for one in panels)
     assert len(counts) == 122
     for (length, _, _), count in counts.items():
-        assert count == (16 if length <= 1 else 4 if length <= 4 else 2)
+        assert count == (16 if length <= 1 else 6 if length <= 2 else 3 if length <= 4 else 1)
 
 
 @pytest.mark.parametrize("between", BETWEEN)

@@ -41,8 +41,8 @@ PATH = click.Path(path_type=Path)
     type=click.IntRange(1, 1000),
     default=1,
     show_default=True,
-    help="Stacks for each panel up to 1 m, whose means are regressed; up to 4 m a quarter of them, "
-    "beyond an eighth, at least one.",
+    help="Stacks for each panel up to 1 m, whose means are regressed; up to 2 m a third of them, "
+    "up to 4 m a sixth, beyond a sixteenth, rounded up.",
 )
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid, which take seconds.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")

@@ -13,10 +13,9 @@ BETWEEN = ("carry", "reseed")
 #: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
 FRICTION = 0.8
-#: Part of the seeds of panels up to 1 m that those up to 4 m have, and longer ones. The scatter of
-#: single stacks over the root of their cost makes it 1 : 1/4 : 1/11; low panels beyond 4 m scatter
-#: more than that.
-MIDDLE, LONG = 4, 8
+#: Panels up to 1 m have all seeds; those up to 2 m one for so many, up to 4 m, and beyond. What one
+#: more stack takes from the scatter of the rows for its time asks for about as many.
+TO_2_M, TO_4_M, BEYOND = 3, 6, 16
 
 
 def geometry_study(
@@ -43,8 +42,8 @@ def geometry_study(
         Size of the grid cells, m. The trial has its own.
     seeds
         How many stacks for each panel up to 1 m; they differ in the chance placement of the
-        particles. Longer panels take more time and scatter less: those up to 4 m have a quarter as
-        many, the others an eighth, at least one.
+        particles. Longer panels take more time and scatter less: those up to 2 m have a third as
+        many, up to 4 m a sixth, the others a sixteenth, rounded up.
     trial
         A few panels on a coarse grid, which take seconds, to try the way from study to prediction;
         its numbers mean nothing.
@@ -59,9 +58,10 @@ def geometry_study(
         "between": between,
         "friction": exact(friction),
         "dx": exact(dx),
-        "seeds_of_short": _seeds(seeds),
-        "seeds_of_middle": _seeds(ceil(seeds / MIDDLE)),
-        "seeds_of_long": _seeds(ceil(seeds / LONG)),
+        "seeds_to_1_m": _seeds(seeds),
+        "seeds_to_2_m": _seeds(ceil(seeds / TO_2_M)),
+        "seeds_to_4_m": _seeds(ceil(seeds / TO_4_M)),
+        "seeds_beyond": _seeds(ceil(seeds / BEYOND)),
     }
     return filled("snowshed.regression", "geometry-trial" if trial else "geometry", values)
 
