@@ -62,6 +62,12 @@ def test_rows_may_have_different_numbers_of_stacks():
     assert rows.scatter("height") == pytest.approx(np.sqrt(2))
 
 
+def test_the_ratio_of_a_row_is_that_of_its_mean_stack():
+    inputs = np.tile([1.0, 2.0, 4.0, 40.0], (2, 1))
+    rows = rows_of(inputs, np.array([1.0, 2.0]), np.array([1.0, 5.0]))
+    assert rows.targets["ratio"].tolist() == [0.5]  # of the mean of the ratios it would be 0.7
+
+
 def test_snow_that_stays_on_the_panel_is_no_stack(tmp_path):
     table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
     table.loc[[3, 7, 8], ["height_m", "length_m"]] = 0.0

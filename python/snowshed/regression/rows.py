@@ -68,8 +68,13 @@ class StackRows:
 
     @property
     def targets(self) -> Mapping[str, Floats]:
-        """For each name of `TARGETS` what is regressed: the stacks' means, shape (n,)."""
-        return {name: np.nanmean(values, axis=1) for name, values in self.stacks.items()}
+        """For each name of `TARGETS` what is regressed, shape (n,).
+
+        The mean stack: mean height, mean length, and the ratio of these. A mean of ratios would be
+        led by the few stacks that by chance are short.
+        """
+        height, length = (np.nanmean(self.stacks[name], axis=1) for name in ("height", "length"))
+        return {"ratio": height / length, "height": height, "length": length}
 
     def scatter(self, target: str) -> float:
         """Return the mean absolute deviation of a single stack from the mean of very many.
