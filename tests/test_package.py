@@ -30,15 +30,17 @@ def test_every_requirement_has_its_module_here():
 @pytest.mark.parametrize(("module", "allowed"), [("snowshed", set()), ("snowshed.cli", {"click"})])
 def test_import_is_quick_and_leaves_the_libraries_out(module, allowed):
     code = (
-        f"import sys, time; start = time.process_time(); import {module}; "
-        "print(time.process_time() - start, *{name.partition('.')[0] for name in sys.modules})"
+        "import sys, time; clock = [time.process_time()]; import numpy; "
+        f"clock.append(time.process_time()); import {module}; clock.append(time.process_time()); "
+        "print((clock[2] - clock[1]) / (clock[1] - clock[0]), "
+        "*{name.partition('.')[0] for name in sys.modules})"
     )
     runs = [
         subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
         for _ in range(4)
     ]
-    seconds, *imported = min(
+    times_of_numpy, *imported = min(
         (run.stdout.split() for run in runs), key=lambda words: float(words[0])
     )
     assert set(imported) & set(MODULES_OF.values()) == allowed
-    assert float(seconds) < 0.3  # of processor time, which a busy machine hardly stretches
+    assert float(times_of_numpy) < 1.5  # of processor time, on any machine
