@@ -55,17 +55,18 @@ def test_snow_is_neither_lost_nor_left_on_the_panel(between):
 
 
 def test_a_row_is_what_its_scene_gives(tmp_path):
-    """The first event below the smallest panel, computed anew.
+    """The first event below a panel whose stacks hardly scatter, computed anew.
 
     Other vector instructions round differently, and the stack then is one more of its kind.
     """
+    panel = (2.0, 2.0, 70.0)
     table = pd.read_csv(geometry_table())
-    stacks = table[(table[PANEL] == [1.0, 0.5, 40.0]).all(axis=1) & (table["event"] == 1)]
-    scene = Scene.from_data(scenes_of(tmp_path, dx=stacks["dx"].iloc[0])[1.0, 0.5, 40.0])
-    scene.update({"events.count": 1, "seeding.seed": int(stacks["seed"].iloc[0])})
+    row = table[(table[PANEL] == panel).all(axis=1) & (table["event"] == 1)].iloc[0]
+    scene = Scene.from_data(scenes_of(tmp_path, dx=row["dx"])[panel])
+    scene.update({"events.count": 1, "seeding.seed": int(row["seed"])})
     found = run_events(scene, tmp_path / "out").iloc[0]
-    for name in ("height_m", "length_m"):
-        assert found[name] == pytest.approx(stacks[name].mean(), abs=4 * stacks[name].std())
+    assert found["height_m"] == pytest.approx(row["height_m"], rel=0.05)
+    assert found["length_m"] == pytest.approx(row["length_m"], rel=0.05)
 
 
 def test_the_model_is_of_these_rows():

@@ -291,6 +291,20 @@ def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):
     assert forecast.expected(["small"], [0.0], 1, 1) == 0.0
 
 
+def test_a_machine_that_is_held_up_for_a_moment_is_not_slow(monkeypatch):
+    speeds = iter([2.0, 1.0, 2.0] + [2.0] * 24)
+    monkeypatch.setattr(forecast, "speed", lambda scene, threads: next(speeds))
+    scenes, works = ["a", "b", "c"], [3600.0] * 3
+    assert forecast.expected(scenes, works, 1, 1) == 3 * 1800.0
+
+
+def test_speeds_before_a_short_study_are_measured_once(monkeypatch):
+    measured = []
+    monkeypatch.setattr(forecast, "speed", lambda scene, _: measured.append(scene) or 1e9)
+    forecast.expected(["a", "b", "c"], [1.0] * 3, 1, 1)
+    assert sorted(measured) == ["a", "b", "c"]
+
+
 def test_the_forecast_of_work_is_that_of_plan():
     scene = STUDY.runs()[0].scene
     plan = _core.plan(scene)

@@ -42,7 +42,7 @@ Box plate_bounds(const ShapeSpec& shape) {
 std::optional<Box> transform_bounds(const ShapeSpec& shape) {
   const auto inner = shape_bounds(shape.shapes.front());
   if (!inner) return std::nullopt;
-  const Eigen::AngleAxisd rotation(shape.angle * pi / 180.0, shape.axis.normalized());
+  const Eigen::AngleAxisd rotation(radians(shape.angle), shape.axis.normalized());
   return moved(*inner, rotation.toRotationMatrix(), shape.translate);
 }
 

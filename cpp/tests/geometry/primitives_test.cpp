@@ -92,7 +92,7 @@ TEST(Capsule, DistanceMatchesClosedForms) {
 
 class TiltedPlate : public ::testing::Test {
  protected:
-  const double tilt = 40 * pi / 180;
+  const double tilt = radians(40);
   const Vec3 n{std::sin(tilt), 0, std::cos(tilt)};
   const Vec3 t{std::cos(tilt), 0, -std::sin(tilt)};
   const Vec3 top{0.1, 0.2, 0.7};

@@ -30,7 +30,7 @@ TEST(Measure, OfARotatedThinSlabIsRightToAThousandth) {
   }
   for (const double tilt : {0.0, 13.0, 40.0, 45.0, 70.0}) {
     const Shape slab = transform(make_box(Vec3::Zero(), Vec3(1, infinity, 0.05)),
-                                 rotation_about_y(tilt * pi / 180), {0.3, 0, 0.2});
+                                 rotation_about_y(radians(tilt)), {0.3, 0, 0.2});
     EXPECT_NEAR(measure(*anonymous(slab), 2, 0.01), 0.05, 0.05 * 1e-3) << tilt;
   }
 }

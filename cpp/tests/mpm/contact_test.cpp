@@ -3,13 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "mpm/solver_testing.hpp"
+#include "snowshed/geometry/bounds.hpp"
 
 namespace snowshed {
 namespace {
 
 // --- Coulomb friction -------------------------------------------------------------------------
 
-constexpr double tilt = 40 * pi / 180;
+constexpr double tilt = radians(40);
 const Vec3 ramp_normal(std::sin(tilt), 0, std::cos(tilt)),
     ramp_slope(std::cos(tilt), 0, -std::sin(tilt));
 
@@ -127,12 +128,11 @@ TEST(ThinPanel, LetsNoSnowThrough) {
                          Throw{3, Precision::float32, 20}})
     for (Condition condition : {Condition::slip, Condition::separate, Condition::sticky}) {
       if (t.dimension == 3 && condition != Condition::slip) continue;
-      const double a = t.turn * pi / 180;
+      const double a = radians(t.turn);
       const Vec3 normal(std::sin(a), 0, std::cos(a)), along(std::cos(a), 0, -std::sin(a));
-      const double infinite = std::numeric_limits<double>::infinity();
       const auto solver = make_solver(options_for({t.dimension, t.precision}),
                                       {fixed(make_plate(Vec3(0.0031, 0, 0.0017), normal, 2,
-                                                        t.dimension == 2 ? infinite : 2, 0.002),
+                                                        t.dimension == 2 ? infinity : 2, 0.002),
                                              condition, 0.3)});
       const double size = t.dimension == 2 ? 0.1 : 0.05;
       ParticleBatch batch =
@@ -149,7 +149,7 @@ TEST(ThinPanel, LetsNoSnowThrough) {
 
 TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
   for (double degrees : {0.0, 40.0}) {
-    const double a = degrees * pi / 180;
+    const double a = radians(degrees);
     const Vec3 normal(std::sin(a), 0, std::cos(a));
     const auto solver = make_solver(
         options_for({2, Precision::float32}),

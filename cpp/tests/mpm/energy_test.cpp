@@ -44,7 +44,7 @@ TEST(Energy, FreeFallOnlyTurnsHeightIntoSpeed) {
 }
 
 TEST(Energy, BooksOfASlidingSlabClose) {
-  const double tilt = 40 * pi / 180;
+  const double tilt = radians(40);
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
   for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
     SolverOptions o = options_for({2, Precision::float32, transfer});

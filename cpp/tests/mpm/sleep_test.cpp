@@ -94,7 +94,7 @@ TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
 
 /// A slab on a ramp of 40 degrees whose friction nearly holds it: 0.3 and 0.07 m/s2 down the slope.
 TEST(Sleep, ASlabThatSetsOffSlowlyGoesOn) {
-  const double tilt = 40 * pi / 180;
+  const double tilt = radians(40);
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
   for (const double friction : {0.8, 0.82, 0.83}) {
     double speed[2];

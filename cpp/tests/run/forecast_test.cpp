@@ -14,7 +14,7 @@ namespace snowshed {
 namespace {
 
 constexpr double g = 9.81;
-const double sine = std::sin(40 * pi / 180), cosine = std::cos(40 * pi / 180);
+const double sine = std::sin(radians(40)), cosine = std::cos(radians(40));
 
 TEST(Forecast, ParticlesOfTheLaboratorySlab) {
   // 0.245 x 0.142 x 0.02 m of 0.01 m voxels with 8 particles each
@@ -107,7 +107,7 @@ TEST(Forecast, TheGroundsTiltLengthensTheFall) {
   // Where it lands, height above the tilted ground is zero.
   const double speed = g * sine * result.slide_time, t = result.fall_time;
   const double drop = speed * sine * t + g * t * t / 2;
-  EXPECT_NEAR(2.0 + speed * cosine * t * std::tan(30 * pi / 180) - drop, 0.0, 1e-10);
+  EXPECT_NEAR(2.0 + speed * cosine * t * std::tan(radians(30)) - drop, 0.0, 1e-10);
 }
 
 TEST(Forecast, EnoughFrictionHoldsTheSlab) {

@@ -29,7 +29,7 @@ Scene panel_scene(double tilt, double ground_tilt = 0.0) {
 Vec3 corner(const ShapeSpec& slab, double along, double across, double up) {
   EXPECT_EQ(slab.type, "transform");
   const Vec3 half = slab.shapes.at(0).size / 2.0;
-  const Mat3 rotation = Eigen::AngleAxisd(slab.angle * pi / 180, slab.axis).toRotationMatrix();
+  const Mat3 rotation = Eigen::AngleAxisd(radians(slab.angle), slab.axis).toRotationMatrix();
   return rotation * Vec3(along * half.x(), across * half.y(), up * half.z()) + slab.translate;
 }
 
@@ -70,7 +70,7 @@ TEST(Assemble, GroundPassesThroughTheOriginAndFallsDownhill) {
   EXPECT_EQ(ground.shape.type, "plane");
   EXPECT_EQ(ground.shape.center, Vec3::Zero());
   EXPECT_TRUE(ground.shape.normal.isApprox(
-      Vec3(std::sin(20 * pi / 180), 0, std::cos(20 * pi / 180)), 1e-14));
+      Vec3(std::sin(radians(20)), 0, std::cos(radians(20))), 1e-14));
   EXPECT_EQ(ground.condition, Condition::slip);
   EXPECT_EQ(ground.friction, 0.7);
 }
