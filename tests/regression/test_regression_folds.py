@@ -1,5 +1,7 @@
 """Folds, the nested cross-validation over them, and what is kept of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_up_rows import few_inputs, made_up_rows
@@ -93,8 +95,8 @@ def test_a_result_survives_its_file(tmp_path):
     assert FoldResult.load(tmp_path / "cut.npz", result.expansion.points) is None
 
 
-def run(folder, **options):
-    return cross_validate(ROWS, folder, targets=["ratio"], kinds=LINEAR, scheme=SMALL, **options)
+def run(folder, scheme=SMALL, **options):
+    return cross_validate(ROWS, folder, targets=["ratio"], kinds=LINEAR, scheme=scheme, **options)
 
 
 def predictions(results):
@@ -121,6 +123,16 @@ def test_an_interrupted_regression_goes_on_where_it_was(tmp_path, monkeypatch):
     assert predictions(resumed) == predictions(whole)
     assert (seen[0].done, seen[-1].done, seen[-1].count) == (3, 6, 6)
     assert seen[-1].fraction == pytest.approx(1)
+
+
+def test_rounds_may_be_added(tmp_path):
+    run(tmp_path / "out", scheme=replace(SMALL, rounds=1))
+    seen = []
+    more = run(tmp_path / "out", progress=seen.append)
+    assert (seen[0].done, seen[-1].count) == (3, 6)
+    assert predictions(more) == predictions(run(tmp_path / "whole"))
+    with pytest.raises(InputError, match="or with other"):
+        run(tmp_path / "out", scheme=replace(SMALL, folds=4))
 
 
 def test_processes_give_the_same_results(tmp_path):

@@ -150,8 +150,12 @@ class _Tracker:
 
 
 def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
-    """Note what the folder's results belong to, or refuse a folder of others."""
-    identity = {"format": FORMAT, "rows": rows.digest, "folds": asdict(scheme)}
+    """Note what the folder's results belong to, or refuse a folder of others.
+
+    Each round splits the rows by itself, so that their number may grow.
+    """
+    folds = {name: value for name, value in asdict(scheme).items() if name != "rounds"}
+    identity = {"format": FORMAT, "rows": rows.digest, "folds": folds}
     path = folder / IDENTITY
     if path.is_file():
         if read_object(path) != identity:
