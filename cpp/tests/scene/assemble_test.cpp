@@ -69,8 +69,8 @@ TEST(Assemble, GroundPassesThroughTheOriginAndFallsDownhill) {
   EXPECT_EQ(ground.name, "ground");
   EXPECT_EQ(ground.shape.type, "plane");
   EXPECT_EQ(ground.shape.center, Vec3::Zero());
-  EXPECT_TRUE(ground.shape.normal.isApprox(
-      Vec3(std::sin(radians(20)), 0, std::cos(radians(20))), 1e-14));
+  EXPECT_TRUE(
+      ground.shape.normal.isApprox(Vec3(std::sin(radians(20)), 0, std::cos(radians(20))), 1e-14));
   EXPECT_EQ(ground.condition, Condition::slip);
   EXPECT_EQ(ground.friction, 0.7);
 }
