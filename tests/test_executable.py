@@ -88,7 +88,7 @@ def interrupt(scene, folder, ready):
     while run.poll() is None and not ready(folder):
         time.sleep(0.002)
     run.send_signal(signal.SIGINT)
-    _, said = run.communicate(timeout=60)
+    _, said = run.communicate(timeout=120)
     return run.returncode, said.decode()
 
 

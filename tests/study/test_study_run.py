@@ -235,7 +235,7 @@ def test_ctrl_c_says_how_to_go_on_and_the_rest_is_computed(tmp_path, whole):
     command = snowshed_command("study", "run", whole[0], "-o", folder, *COMPUTE)
     wait_for(lambda: list(folder.glob("running/*/results/scene.json")))
     command.send_signal(signal.SIGINT)
-    out, err = command.communicate(timeout=60)
+    out, err = command.communicate(timeout=120)
     assert (command.returncode, out) == (130, "")
     assert err == f"error: interrupted; go on with: snowshed study resume {folder}\n"
     statuses = [
@@ -297,7 +297,7 @@ def test_two_processes_share_one_store(tmp_path, computed):
     arguments = ("study", "run", tmp_path / "study.toml", "-o", tmp_path / "store", *COMPUTE)
     commands = [snowshed_command(*arguments) for _ in range(2)]
     for command in commands:
-        assert command.communicate(timeout=60) == ("", "")
+        assert command.communicate(timeout=120) == ("", "")
         assert command.returncode == 0
     assert contents(tmp_path / "store") == contents(computed)
 
@@ -341,7 +341,7 @@ def children_of(pid: int) -> list[int]:
         return []
 
 
-def wait_for(condition, timeout: float = 30.0) -> None:
+def wait_for(condition, timeout: float = 120.0) -> None:
     end = time.monotonic() + timeout
     while not condition():
         assert time.monotonic() < end, "waited too long"

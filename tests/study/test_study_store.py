@@ -154,7 +154,7 @@ def test_processes_that_race_for_runs_share_them_out(tmp_path):
     ]
     for process in processes:
         process.start()
-    claimed = [hash_ for _ in processes for hash_ in answers.get(timeout=60)]
+    claimed = [hash_ for _ in processes for hash_ in answers.get(timeout=120)]
     for process in processes:
         process.join()
     assert sorted(claimed) == sorted(run.hash for run in runs)
@@ -175,7 +175,7 @@ def test_processes_that_make_the_same_store_at_once_all_succeed(tmp_path):
     ]
     for process in processes:
         process.start()
-    assert [answers.get(timeout=60) for _ in processes] == ["made"] * 4
+    assert [answers.get(timeout=120) for _ in processes] == ["made"] * 4
     with Store.open(tmp_path / "new" / "store") as mine:
         assert len(mine.runs("race")) == 3
 
