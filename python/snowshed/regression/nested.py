@@ -154,7 +154,8 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
 
     Each round splits the rows by itself, so that their number may grow.
     """
-    folds = {name: value for name, value in asdict(scheme).items() if name != "rounds"}
+    folds = asdict(scheme)
+    del folds["rounds"]
     identity = {"format": FORMAT, "rows": rows.digest, "folds": folds}
     path = folder / IDENTITY
     if path.is_file():
