@@ -26,7 +26,7 @@ COMPILER_LINES := '/^ *\[[0-9]+\/[0-9]+\]|warning:|error/ { print; fflush() }'
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 
-CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/include cpp/src cpp/vdb -type f)
+CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/snowshed cpp/vdb -type f)
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS = $(wildcard python tests tools examples benchmarks lua_compat)
 

@@ -20,9 +20,9 @@ from typing import Any
 
 from tables import print_tables
 
-from snowshed.events import run_events
-from snowshed.machine import cpu_name
-from snowshed.scene import Scene
+from snowshed.run.events import run_events
+from snowshed.run.machine import cpu_name
+from snowshed.scene.scene import Scene
 
 RESULTS = Path(__file__).parent / "results"
 

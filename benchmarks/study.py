@@ -14,8 +14,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from snowshed.machine import cpu_name
-from snowshed.scene import Scene
+from snowshed.run.machine import cpu_name
+from snowshed.scene.scene import Scene
 from snowshed.study import Study
 from snowshed.study.table import read_table
 

@@ -22,7 +22,7 @@ from statistics import median
 import numpy as np
 
 from snowshed import Scene, _core
-from snowshed.machine import cpu_name
+from snowshed.run.machine import cpu_name
 
 try:
     import taichi as ti
@@ -261,7 +261,7 @@ def snowshed_slab(velocity, threads):
             "numerics": {"dx": DX, "precision": "float", "threads": threads, **numerics},
         }
     )
-    simulation = _core.Simulation(scene.initialise().json)
+    simulation = _core.Simulation(scene.resolve().json)
     simulation.begin_event()
     return simulation
 

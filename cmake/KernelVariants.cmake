@@ -1,4 +1,4 @@
-# The kernels (cpp/src/mpm/kernels/*.cpp) are compiled once for each instruction set and the
+# The kernels (cpp/snowshed/methods/mpm/kernels/*.cpp) are compiled once for each instruction set and the
 # best one is chosen at run time, so that one build runs on any machine and is fast on each.
 set(SNOWSHED_KERNEL_FLAGS_baseline "")
 set(SNOWSHED_KERNEL_FLAGS_avx2 -mavx2 -mfma -mf16c -mbmi -mbmi2)
@@ -16,11 +16,11 @@ endif()
 set(SNOWSHED_KERNEL_VARIANTS ${snowshed_default_variants} CACHE STRING "instruction sets to build the kernels for")
 
 function(snowshed_add_kernels target)
-  file(GLOB kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cpp/src/mpm/kernels/*.cpp)
+  file(GLOB kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cpp/snowshed/methods/mpm/kernels/*.cpp)
   foreach(variant IN LISTS SNOWSHED_KERNEL_VARIANTS)
     set(kernels ${target}_kernels_${variant})
     add_library(${kernels} OBJECT ${kernel_sources})
-    target_include_directories(${kernels} PRIVATE cpp/include cpp/src)
+    target_include_directories(${kernels} PRIVATE cpp)
     target_link_libraries(${kernels} PRIVATE snowshed_headers)
     target_compile_definitions(${kernels} PRIVATE SNOWSHED_KERNEL_VARIANT=${variant})
     target_compile_options(${kernels} PRIVATE -Wno-ignored-attributes

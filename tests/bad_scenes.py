@@ -56,7 +56,7 @@ def merged(data: Any, changes: Any) -> Any:
 def bad_scene(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Path, str]:
     """A scene file, alone in its folder with the meshes, and what its refusal must say."""
     changes, message = request.param
-    data = merged(tiny_scene().initialise().data, changes)
+    data = merged(tiny_scene().resolve().data, changes)
     (tmp_path / "open.obj").write_text(OPEN_MESH)
     (tmp_path / "closed.obj").write_text(CLOSED_MESH)
     (tmp_path / "bad.json").write_text(json.dumps(data))

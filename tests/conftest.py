@@ -9,7 +9,7 @@ from typing import Optional
 import pytest
 
 from snowshed import Scene, run_events
-from snowshed.vdb import available
+from snowshed.io.vdb import available
 
 # What writes and reads OpenVDB files, where snowshed was built without it.
 collect_ignore = [] if available() else ["vdb/test_vdb_files.py"]

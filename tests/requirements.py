@@ -2,14 +2,14 @@
 
 import re
 import sys
-from pathlib import Path
+
+from paths import ROOT
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
 
-ROOT = Path(__file__).parents[1]
 
 #: The module of each requirement, but for NumPy.
 MODULES_OF = {

@@ -3,15 +3,14 @@
 import json
 import re
 import shlex
-from pathlib import Path
 
 import click
 import pytest
+from paths import ROOT
 
 from snowshed import Scene
-from snowshed.cli import Deferred, cli
+from snowshed.cli.main import Deferred, cli
 
-ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 PROGRAMS = ("snowshed", ".venv/bin/snowshed")
 # So that an example takes a second.
@@ -101,4 +100,4 @@ def test_scripts_run(page, script, tmp_path, monkeypatch):
 @pytest.mark.parametrize("page", ["docs/user-guide.md"])
 def test_scenes_are_valid(page):
     for text in blocks(page, "json"):
-        assert Scene.from_data(json.loads(text)).initialise().data["title"]
+        assert Scene.from_data(json.loads(text)).resolve().data["title"]

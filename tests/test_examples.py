@@ -2,14 +2,14 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from paths import ROOT
 
 from snowshed import Scene, read_events, run_events
-from snowshed.cli import main
+from snowshed.cli.main import main
 
-EXAMPLES = Path(__file__).parent.parent / "examples"
+EXAMPLES = ROOT / "examples"
 ARGUMENTS = {
     "custom_obstacles.py": ["out", "0.05"],
     "dimension_ratio.py": ["out", "0.02", "1"],
@@ -42,4 +42,4 @@ def test_scene(scene, tmp_path, capsys):
     assert "particles" in capsys.readouterr().out
     coarse = Scene.load(scene).update({"numerics.dx": 0.025, "events.max_time": 0.1})
     table = run_events(coarse, tmp_path / "out", pictures=False)
-    assert table.event.iloc[-1] == coarse.initialise().data["events"]["count"]
+    assert table.event.iloc[-1] == coarse.resolve().data["events"]["count"]

@@ -7,5 +7,5 @@ cmake -S . -B "$tree" -DSNOWSHED_UNITY_BUILD=OFF -DCMAKE_EXPORT_COMPILE_COMMANDS
 # The compiler's own omp.h, alone: clang brings the other headers of this kind itself.
 mkdir -p "$tree/openmp"
 cp "$(${CXX:-c++} -print-file-name=include/omp.h)" "$tree/openmp/"
-find cpp/apps cpp/src -name '*.cpp' -print0 |
+find cpp/apps cpp/snowshed -name '*.cpp' -print0 |
   xargs -0 -n 1 -P 2 clang-tidy --quiet -p "$tree" --extra-arg="-isystem$PWD/$tree/openmp"

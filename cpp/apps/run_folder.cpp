@@ -3,13 +3,14 @@
 #include <cstdio>
 #include <sstream>
 
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/memory.hpp"
+#include "snowshed/core/timer.hpp"
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/io/pvd_series.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/scene_json.hpp"
-#include "snowshed/support/error.hpp"
-#include "snowshed/support/memory.hpp"
-#include "snowshed/support/timer.hpp"
 
 namespace fs = std::filesystem;
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "run_folder.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/scene/scene_json.hpp"
-#include "snowshed/support/error.hpp"
 
 namespace {
 

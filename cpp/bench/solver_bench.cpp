@@ -10,7 +10,7 @@
 
 #include "bare_kernel.hpp"
 #include "snowshed/geometry/primitives.hpp"
-#include "snowshed/mpm/solver.hpp"
+#include "snowshed/methods/mpm/solver.hpp"
 
 namespace snowshed {
 namespace {
@@ -33,7 +33,7 @@ ParticleBatch slab(const int (&cells)[3], double dx, double density) {
 
 /// One thing to measure; the defaults are the slab at rest on sticky ground.
 struct Case {
-  SolverOptions options;
+  MpmOptions options;
   ParticleBatch batch;
   std::vector<Obstacle> obstacles;
   int steps_before = 10;
@@ -64,9 +64,9 @@ void report(benchmark::State& state, std::size_t particles, double bytes) {
 }
 
 void run(benchmark::State& state, const Case& c, int threads) {
-  SolverOptions options = c.options;
+  MpmOptions options = c.options;
   options.numerics.threads = threads;
-  const auto solver = make_solver(options, c.obstacles);
+  const auto solver = make_mpm(options, c.obstacles);
   solver->add(c.batch);
   for (int i = 0; i < c.steps_before; ++i) solver->step();
   for (auto _ : state) solver->step();

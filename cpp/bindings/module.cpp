@@ -2,7 +2,7 @@
 #include <pybind11/pybind11.h>
 
 #include "bindings.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace py = pybind11;
 

@@ -38,7 +38,7 @@ void bind_scene(py::module_& m) {
   m.def(
       "parse_scene",
       [](const std::string& text, const std::string& base_dir) {
-        return write_scene(resolve(look_in(base_dir, parse_scene(text))));
+        return write_scene(resolve(with_absolute_files(base_dir, parse_scene(text))));
       },
       "text"_a, "base_dir"_a = ".",
       "The complete, validated JSON of a scene; files it names are found from base_dir.");

@@ -2,10 +2,10 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/scene_json.hpp"
-#include "snowshed/support/error.hpp"
 
 namespace py = pybind11;
 
@@ -75,7 +75,7 @@ std::string run(Simulation& sim, const py::function& callback, double interval) 
 }
 
 py::dict energy(const Simulation& sim) {
-  const EnergyBooks e = sim.solver().energy();
+  const EnergyBalance e = sim.solver().energy();
   py::dict d;
   d["kinetic_j"] = e.kinetic;
   d["gravitational_j"] = e.gravitational;
@@ -103,10 +103,10 @@ py::object frame(const Simulation& sim) {
   return d;
 }
 
-py::array_t<std::int64_t> kinds(const Simulation& sim) {
-  std::vector<std::uint8_t> kinds = sim.solver().state().kinds;
-  kinds.resize(sim.solver().size());  // of one snow: all zero
-  return column<std::int64_t>(kinds);
+py::array_t<std::int64_t> material_ids(const Simulation& sim) {
+  std::vector<std::uint8_t> material_ids = sim.solver().state().material_ids;
+  material_ids.resize(sim.solver().size());  // of one snow: all zero
+  return column<std::int64_t>(material_ids);
 }
 
 std::vector<std::string> snows(const Simulation& sim) {
@@ -160,7 +160,7 @@ void bind_simulation(py::module_& m) {
       .def(
           "kick",
           [](Simulation& s, const py::array_t<double>& changes) {
-            s.kick(vectors(changes, "velocity changes"));
+            s.add_velocity(vectors(changes, "velocity changes"));
           },
           "velocity_changes"_a)
       .def("settle", &Simulation::settle, "drops"_a, "plastic_changes"_a)
@@ -185,7 +185,7 @@ void bind_simulation(py::module_& m) {
       .def("masses", [](const Simulation& s) { return column<double>(s.solver().state().masses); })
       .def("events",
            [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })
-      .def("kinds", &kinds)
+      .def("kinds", &material_ids)
       .def("density",
            [](const Simulation& s) { return column<double>(s.solver().state().densities); })
       .def("on_panel",

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace snowshed {
 

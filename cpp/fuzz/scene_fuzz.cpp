@@ -1,6 +1,6 @@
 // Text as a scene: refused, or a scene that its own JSON gives back.
 #include "fuzzing.hpp"
-#include "snowshed/run/forecast.hpp"
+#include "snowshed/run/cost_estimate.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const InputError& error) {
       throw std::logic_error(std::string("a scene is refused once it is written: ") + error.what());
     }
-    forecast(scene);
+    estimate_cost(scene);
   });
   return 0;
 }

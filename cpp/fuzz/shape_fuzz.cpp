@@ -4,7 +4,7 @@
 
 #include "fuzzing.hpp"
 #include "snowshed/geometry/bounds.hpp"
-#include "snowshed/geometry/build_shape.hpp"
+#include "snowshed/scene/build_shape.hpp"
 
 namespace snowshed {
 namespace {

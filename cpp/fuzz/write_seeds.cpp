@@ -78,7 +78,7 @@ void write_scenes(const fs::path& folder) {
 /// The keys and choices of a scene, quoted as they are in it.
 std::set<std::string> scene_words() {
   std::set<std::string> words;
-  const auto collect = [&](const auto& self, const nlohmann::json& node) -> void {
+  const auto interpolate_nodes = [&](const auto& self, const nlohmann::json& node) -> void {
     for (const auto& [key, value] : node.items()) {
       if (key == "properties")
         for (const auto& [name, property] : value.items()) words.insert("\"" + name + "\"");
@@ -88,7 +88,7 @@ std::set<std::string> scene_words() {
       if (value.is_structured()) self(self, value);
     }
   };
-  collect(collect, nlohmann::json::parse(scene_schema()));
+  interpolate_nodes(interpolate_nodes, nlohmann::json::parse(scene_schema()));
   return words;
 }
 

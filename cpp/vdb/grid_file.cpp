@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace snowshed {
 namespace {

@@ -13,7 +13,7 @@
 #include "grid_file.hpp"
 #include "particle_message.hpp"
 #include "read_samples.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace {
 

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "snowshed/geometry/particle_voxels.hpp"
-#include "snowshed/geometry/seeding.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/sampling/particle_voxels.hpp"
+#include "snowshed/sampling/seeding.hpp"
 
 namespace snowshed {
 namespace {

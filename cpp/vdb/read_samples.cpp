@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "grid_file.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace snowshed {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vdb_message.hpp"
+#include "snowshed/geometry/readers/vdb_message.hpp"
 
 namespace snowshed {
 

@@ -10,9 +10,9 @@
 #include <limits>
 #include <utility>
 
-#include "snowshed/geometry/particle_voxels.hpp"
 #include "snowshed/geometry/sampled_grid.hpp"
-#include "snowshed/geometry/voxel_set.hpp"
+#include "snowshed/sampling/particle_voxels.hpp"
+#include "snowshed/sampling/voxel_set.hpp"
 
 namespace snowshed {
 namespace {
@@ -70,7 +70,7 @@ struct Shares {
 
 /// Adds a mass per node to the eight (in 2D four in each layer) nodes around `x`.
 template <class Add>
-void spread(const Vec3& x, double spacing, int layers, Add add) {
+void broadcast(const Vec3& x, double spacing, int layers, Add add) {
   const Shares a(x.x() / spacing), b(x.y() / spacing), c(x.z() / spacing);
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < 2; ++k) {
@@ -90,7 +90,7 @@ FloatGrid::Ptr density_grid(const ParticleCloud& cloud, const VdbWriting& how) {
   auto nodes = sums.getAccessor();
   const double volume = std::pow(how.voxel, how.dimension);
   for (std::size_t n = 0; n < cloud.positions.size(); ++n)
-    spread(cloud.positions[n], how.voxel, layers, [&](const Coord& at, double share) {
+    broadcast(cloud.positions[n], how.voxel, layers, [&](const Coord& at, double share) {
       if (share > 0) nodes.setValueOn(at, nodes.getValue(at) + share * cloud.masses[n] / volume);
     });
   auto grid = FloatGrid::create(0.0f);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "snowshed/core/vec.hpp"
 #include "snowshed/io/vtp_writer.hpp"
-#include "snowshed/support/vec.hpp"
 
 namespace snowshed {
 

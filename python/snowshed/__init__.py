@@ -19,10 +19,11 @@ if "OMP_WAIT_POLICY" not in os.environ:
 
 from snowshed._core import InputError, SimulationError
 from snowshed._core import version as __version__
-from snowshed.compare import dimension_ratio
-from snowshed.events import Progress, run_events
-from snowshed.interrupt import Interrupted
-from snowshed.parts import (
+from snowshed.analysis.dimension_ratio import dimension_ratio
+from snowshed.run.events import Progress, run_events
+from snowshed.run.interrupt import Interrupted
+from snowshed.run.results import read_events
+from snowshed.scene.components import (
     Body,
     Domain,
     Events,
@@ -37,10 +38,9 @@ from snowshed.parts import (
     Slab,
     Snow,
 )
-from snowshed.results import read_events
-from snowshed.scene import InitialisedScene, Scene
-from snowshed.shape import Shape
-from snowshed.stack import Extent, StackMeasure, level, measure_stack
+from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.scene.shape import Shape
+from snowshed.snow.stack.measure import Extent, StackMeasure, level, measure_stack
 
 __all__ = [
     "Body",
@@ -48,7 +48,7 @@ __all__ = [
     "Events",
     "Extent",
     "Ground",
-    "InitialisedScene",
+    "ResolvedScene",
     "InputError",
     "Interrupted",
     "Layer",

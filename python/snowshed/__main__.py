@@ -2,7 +2,7 @@
 
 import sys
 
-from snowshed.cli import main
+from snowshed.cli.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -9,8 +9,8 @@ import study_helpers
 from study_helpers import outcome, tiny_study
 
 from snowshed import Scene
-from snowshed.cli import main
-from snowshed.study.display import announcement, description
+from snowshed.cli.display.study import announcement, description
+from snowshed.cli.main import main
 from snowshed.study.session import StudyProgress
 from snowshed.study.store import Store
 
@@ -111,7 +111,7 @@ def test_the_scene_of_a_run_can_be_had(tmp_path, capsys):
     assert run("scene", tmp_path / "store", HASHES[2][:10]) == 0
     assert json.loads(capsys.readouterr().out)["panel"]["friction"] == 0.3
     assert run("scene", tmp_path / "store", HASHES[2], "-o", tmp_path / "scene.json") == 0
-    assert Scene.load(tmp_path / "scene.json").initialise().data["panel"]["friction"] == 0.3
+    assert Scene.load(tmp_path / "scene.json").resolve().data["panel"]["friction"] == 0.3
 
 
 @pytest.mark.parametrize(
@@ -150,7 +150,7 @@ def test_bad_input_is_one_line_code_2_and_nothing_behind(
 
 def test_help_of_other_commands_does_not_load_the_studies():
     code = (
-        "import sys; from snowshed.cli import main; main(['--help']); "
+        "import sys; from snowshed.cli.main import main; main(['--help']); "
         "print([name for name in sys.modules if name.startswith(('snowshed.study', 'sqlite3'))])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -4,15 +4,15 @@ import doctest
 import importlib
 import pkgutil
 import re
-from pathlib import Path
 
 import pytest
+from paths import ROOT
 
 import snowshed.study
 from snowshed.study import Study
 from snowshed.study.store import TABLES
 
-DOCS = (Path(__file__).parents[2] / "docs" / "studies.md").read_text()
+DOCS = (ROOT / "docs" / "studies.md").read_text()
 MODULES = [module.name for module in pkgutil.iter_modules(snowshed.study.__path__)]
 
 

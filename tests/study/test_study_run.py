@@ -15,7 +15,7 @@ import pytest
 import study_helpers
 from study_helpers import ALONE, contents, snowshed_command, tiny_scene, tiny_study
 
-from snowshed import InitialisedScene, Obstacle, Shape, _core, read_events, run_events
+from snowshed import ResolvedScene, Obstacle, Shape, _core, read_events, run_events
 from snowshed.study import Run, Study, StudyError, read_table, resume
 from snowshed.study.compute import compute
 from snowshed.study.local import LocalWorkers
@@ -61,7 +61,7 @@ def whole(tmp_path_factory):
 
 
 def task_of(scene, folder: Path) -> Task:
-    run = Run.of(scene.initialise())
+    run = Run.of(scene.resolve())
     return Task(run.hash, run.scene, str(folder), 1)
 
 
@@ -80,7 +80,7 @@ def outcome_of(workers):
 def test_the_table_holds_what_single_runs_give(computed, tmp_path):
     table = read_table(computed)
     for i, run in enumerate(tiny_study().runs()):
-        run_events(InitialisedScene.parse(run.scene), tmp_path / str(i), pictures=False)
+        run_events(ResolvedScene.parse(run.scene), tmp_path / str(i), pictures=False)
         alone = read_events(tmp_path / str(i))[["event", *MEASURES]]
         rows = table[table["hash"] == run.hash][["event", *MEASURES]].reset_index(drop=True)
         pd.testing.assert_frame_equal(rows, alone, check_dtype=False)
@@ -316,7 +316,7 @@ def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed):
     (tmp_path / "study.toml").write_text(f"{TINY}[accuracy]\ndx = 0.02\n{seeding}")
     command = ["study", "run", str(tmp_path / "study.toml"), "-o", str(tmp_path / "full"), "-q"]
     limited = (
-        "import resource, sys; from snowshed.cli import main; "
+        "import resource, sys; from snowshed.cli.main import main; "
         f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit_kb} * 1024, resource.RLIM_INFINITY)); "
         "sys.exit(main(sys.argv[1:]))"
     )

@@ -8,8 +8,8 @@ import xarray
 from study_helpers import outcome, tiny_scene, tiny_study
 
 from snowshed import InputError, Shape
-from snowshed.parts import Obstacle
-from snowshed.results import EVENT_COLUMNS
+from snowshed.run.results import EVENT_COLUMNS
+from snowshed.scene.components import Obstacle
 from snowshed.study import Factor, Study, export, read_table, to_dataset
 from snowshed.study.store import MEASURES, TIMING, Store
 

@@ -9,11 +9,11 @@
 #include <fstream>
 #include <string>
 
+#include "snowshed/core/angles.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/random.hpp"
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/level_set.hpp"
-#include "snowshed/support/angles.hpp"
-#include "snowshed/support/error.hpp"
-#include "snowshed/support/random.hpp"
 
 namespace snowshed::geometry_testing {
 

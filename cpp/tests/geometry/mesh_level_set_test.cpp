@@ -2,7 +2,7 @@
 
 #include "geometry/mesh_testing.hpp"
 #include "snowshed/geometry/primitives.hpp"
-#include "snowshed/geometry/voxel_set.hpp"
+#include "snowshed/sampling/voxel_set.hpp"
 
 namespace snowshed {
 namespace {

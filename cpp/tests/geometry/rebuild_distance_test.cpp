@@ -1,4 +1,4 @@
-#include "geometry/rebuild_distance.hpp"
+#include "snowshed/geometry/rebuild_distance.hpp"
 
 #include "geometry/geometry_testing.hpp"
 

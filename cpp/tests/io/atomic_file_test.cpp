@@ -6,7 +6,7 @@
 #include <string>
 
 #include "io/temporary_folder.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace snowshed {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "io/forged_archive.hpp"
 #include "io/temporary_folder.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace snowshed {
 namespace {

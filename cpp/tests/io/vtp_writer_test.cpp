@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "io/temporary_folder.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace snowshed {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/xml_text.hpp"
+#include "snowshed/io/xml_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "material/rate_integration.hpp"
-#include "snowshed/support/random.hpp"
+#include "snowshed/core/random.hpp"
 
 // A vector type as template argument loses its alignment, which does not matter here.
 #pragma GCC diagnostic ignored "-Wignored-attributes"
@@ -16,10 +16,10 @@
 namespace snowshed {
 namespace {
 
-constexpr SnowConstants calibrated{1e6, 0.3, 0.5, 0.2, 0.1};
+constexpr MaterialConstants calibrated{1e6, 0.3, 0.5, 0.2, 0.1};
 
 template <class T>
-CamClay<T> material(const SnowConstants& s, int dimension = 3) {
+CamClay<T> material(const MaterialConstants& s, int dimension = 3) {
   return CamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.slope, s.cohesion, s.hardening,
                           dimension);
 }
@@ -63,7 +63,7 @@ TEST(CamClayHardening, InitialStrainGivesTheWantedPressure) {
 
 /// A trial state and what became of it.
 struct Return {
-  SnowConstants snow;
+  MaterialConstants snow;
   int dimension;
   double p_trial, q_trial, ev_old, p, q, ev;
 };
@@ -79,7 +79,7 @@ std::ostream& operator<<(std::ostream& out, const Return& r) {
 /// yield condition, the flow rule, the volume balance, and dissipation.
 template <class T>
 void expect_sound(const Return& r) {
-  SnowConstants s = r.snow;
+  MaterialConstants s = r.snow;
   s.slope = std::max(s.slope, 1e-4);  // as CamClay::from
   const double eps = std::numeric_limits<T>::epsilon();
   const RateEquations snow(s, r.dimension);
@@ -127,7 +127,7 @@ double rounded(double x) {
 }
 
 template <class T>
-Return returned(const SnowConstants& snow, int dimension, double p, double q, double ev) {
+Return returned(const MaterialConstants& snow, int dimension, double p, double q, double ev) {
   Return r{snow, dimension, rounded<T>(p), rounded<T>(q), rounded<T>(ev), 0, 0, 0};
   PQ<T> s{T(r.p_trial), T(r.q_trial)};
   T e = T(r.ev_old);
@@ -265,8 +265,8 @@ TEST(CamClay, ReturnsToTheNearestPointOfASmoothPath) {
 template <class T>
 void expect_lanes_agree(double tolerance) {
   Random random(6);
-  using V = Lanes<T>;
-  constexpr int W = lane_count<T>;
+  using V = SimdPack<T>;
+  constexpr int W = simd_width<T>;
   for (int i = 0; i < 20000; ++i) {
     const Return common = random_trial(random);  // one snow, a different trial in each lane
     const RateEquations snow(common.snow, common.dimension);
@@ -306,7 +306,7 @@ using Tensor = Eigen::Matrix<double, D, D>;
 
 /// Backward Euler: n returns along each straight piece of a path of strain increments.
 template <class T, int D>
-MaterialState<D> by_returns(const SnowConstants& constants, MaterialState<D> start,
+MaterialState<D> by_returns(const MaterialConstants& constants, MaterialState<D> start,
                             const std::vector<Tensor<D>>& path, int n) {
   const CamClay<T> snow = material<T>(constants, D);
   const double bulk = double(snow.elastic.bulk), mu = double(snow.elastic.mu);
@@ -334,7 +334,7 @@ double distance(const MaterialState<D>& a, const MaterialState<D>& b, double yie
 /// The returns converge at first order to the rate equations, and the limit they converge to
 /// (by Richardson extrapolation: first-order errors halve with the step) is theirs to 1e-6.
 template <int D>
-void expect_convergence(const SnowConstants& constants, double p0,
+void expect_convergence(const MaterialConstants& constants, double p0,
                         const std::vector<Tensor<D>>& path) {
   const RateEquations snow(constants, D);
   const double yield_strain = p0 / snow.bulk;
@@ -436,7 +436,7 @@ TYPED_TEST(CamClayPaths, RandomPolylines) {
 
 TEST(CamClay, LongShearEndsInTheCriticalState) {
   // Without cohesion q = M p there, whatever the start; the volume no longer changes.
-  const SnowConstants snow{1e6, 0.3, 0.7, 0.0, 0.5};
+  const MaterialConstants snow{1e6, 0.3, 0.7, 0.0, 0.5};
   const MaterialState<3> start{Eigen::Matrix3d::Zero(), -0.02};
   const auto end = by_returns<double, 3>(
       snow, start, {Paths<3>::isotropic(-0.01), Paths<3>::triaxial(1.0)}, 20000);

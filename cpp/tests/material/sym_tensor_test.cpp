@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <limits>
 
-#include "snowshed/support/random.hpp"
+#include "snowshed/core/random.hpp"
 
 // A vector type as template argument loses its alignment, which does not matter here.
 #pragma GCC diagnostic ignored "-Wignored-attributes"
@@ -31,7 +31,7 @@ Matrix<D> lane(const Sym<V, D>& a, int l) {
   Matrix<D> m;
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
-      if constexpr (is_lanes<V>)
+      if constexpr (is_simd_pack<V>)
         m(i, j) = a(i, j)[l];
       else
         m(i, j) = a(i, j);
@@ -51,7 +51,7 @@ class SymTensor : public testing::Test {
   using V = typename C::Value;
   using T = Scalar<V>;
   static constexpr int D = C::D;
-  static constexpr int lanes = is_lanes<V> ? int(sizeof(V) / sizeof(T)) : 1;
+  static constexpr int lanes = is_simd_pack<V> ? int(sizeof(V) / sizeof(T)) : 1;
   static constexpr double epsilon = std::numeric_limits<T>::epsilon();
 
   /// Random, of the given norm in each lane.
@@ -65,7 +65,7 @@ class SymTensor : public testing::Test {
       }
       for (int k = 0; k < a.size; ++k) {
         const T value = T(c[k] * norm / std::sqrt(squared));
-        if constexpr (is_lanes<V>)
+        if constexpr (is_simd_pack<V>)
           a.c[k][l] = value;
         else
           a.c[k] = value;
@@ -92,8 +92,9 @@ class SymTensor : public testing::Test {
 
 using TensorCases =
     testing::Types<TensorCase<float, 2>, TensorCase<float, 3>, TensorCase<double, 2>,
-                   TensorCase<double, 3>, TensorCase<Lanes<float>, 2>, TensorCase<Lanes<float>, 3>,
-                   TensorCase<Lanes<double>, 2>, TensorCase<Lanes<double>, 3>>;
+                   TensorCase<double, 3>, TensorCase<SimdPack<float>, 2>,
+                   TensorCase<SimdPack<float>, 3>, TensorCase<SimdPack<double>, 2>,
+                   TensorCase<SimdPack<double>, 3>>;
 TYPED_TEST_SUITE(SymTensor, TensorCases);
 
 // Series below detail::series_norm = 0.04 (half of that for the strain), eigenvalues above.
@@ -147,7 +148,7 @@ TYPED_TEST(SymTensor, InvariantsAreThoseOfTheMatrix) {
   for (int l = 0; l < this->lanes; ++l) {
     const auto m = lane(a, l);
     const auto at = [l](const auto& v) {
-      if constexpr (is_lanes<typename TypeParam::Value>)
+      if constexpr (is_simd_pack<typename TypeParam::Value>)
         return double(v[l]);
       else
         return double(v);

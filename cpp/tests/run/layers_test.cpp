@@ -8,11 +8,11 @@
 #include "io/forged_archive.hpp"
 #include "io/temporary_folder.hpp"
 #include "run/simulation_testing.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
-#include "snowshed/run/forecast.hpp"
+#include "snowshed/run/cost_estimate.hpp"
 #include "snowshed/run/plan.hpp"
 #include "snowshed/scene/assemble.hpp"
-#include "snowshed/support/error.hpp"
 
 namespace snowshed {
 namespace {
@@ -37,7 +37,8 @@ Scene layered_scene(Transfer transfer = Transfer::flip) {
 std::map<std::pair<int, int>, double> masses(const Simulation& sim) {
   const ParticleState s = sim.solver().state();
   std::map<std::pair<int, int>, double> sums;
-  for (std::size_t i = 0; i < s.masses.size(); ++i) sums[{s.events[i], s.kinds[i]}] += s.masses[i];
+  for (std::size_t i = 0; i < s.masses.size(); ++i)
+    sums[{s.events[i], s.material_ids[i]}] += s.masses[i];
   return sums;
 }
 
@@ -60,8 +61,8 @@ TEST_F(Layers, LieOnEachOtherInTheOrderGiven) {
   const PanelFrame frame = panel_frame(sim.scene());
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     const double above = frame.normal.dot(s.positions[i] - frame.center);
-    EXPECT_EQ(s.kinds[i], above < 0.01 ? 0 : 1) << above;
-    EXPECT_NEAR(s.densities[i], s.kinds[i] == 0 ? 120 : 210, 1e-3);
+    EXPECT_EQ(s.material_ids[i], above < 0.01 ? 0 : 1) << above;
+    EXPECT_NEAR(s.densities[i], s.material_ids[i] == 0 ? 120 : 210, 1e-3);
   }
 }
 
@@ -70,7 +71,7 @@ TEST_F(Layers, OfTheScenesOwnSnowNeedNoKinds) {
   scene.slab->layers[0].snow = scene.snow;
   Simulation sim(scene);
   sim.begin_event();
-  EXPECT_TRUE(sim.solver().state().kinds.empty());
+  EXPECT_TRUE(sim.solver().state().material_ids.empty());
   EXPECT_EQ(sim.snows().size(), 1u);
 }
 
@@ -100,8 +101,9 @@ TEST_F(Layers, KeepTheirMassWhenTheStackIsReseeded) {
   const auto before = masses(sim);
   sim.begin_event();
   const auto after = masses(sim);
-  for (const int kind : {0, 1})
-    EXPECT_NEAR(after.at({1, kind}), before.at({1, kind}), 1e-5 * before.at({1, kind}));
+  for (const int material_id : {0, 1})
+    EXPECT_NEAR(after.at({1, material_id}), before.at({1, material_id}),
+                1e-5 * before.at({1, material_id}));
 }
 
 TEST_F(Layers, StiffestSnowDecidesThePlannedStep) {
@@ -109,7 +111,7 @@ TEST_F(Layers, StiffestSnowDecidesThePlannedStep) {
   stiff.slab->layers[0].snow->youngs_modulus = 1e7;
   EXPECT_DOUBLE_EQ(stable_time_step(scene), stable_time_step(small_scene()));
   EXPECT_LT(stable_time_step(stiff), 0.3 * stable_time_step(scene));
-  EXPECT_GT(forecast(stiff).wave_speed, 3 * forecast(scene).wave_speed);
+  EXPECT_GT(estimate_cost(stiff).wave_speed, 3 * estimate_cost(scene).wave_speed);
   const Plan p = plan(scene);
   EXPECT_NE(std::find(p.used.begin(), p.used.end(), "several snows"), p.used.end());
   EXPECT_NEAR(p.cost.particles[1] / p.cost.particles[0], 4.0 / 3.0, 0.02);
@@ -120,9 +122,9 @@ TEST_F(Layers, OfAnUnknownSnowAreRefusedInACheckpoint) {
   sim.begin_event();
   sim.save(path("good"));
   const BinaryReader in = BinaryReader::load(path("good"));
-  const auto kinds = in.view<std::uint8_t>("particles/kind");
+  const auto material_ids = in.view<std::uint8_t>("particles/kind");
   const std::string bytes = content(path("good"));
-  const std::string block(reinterpret_cast<const char*>(kinds.data), kinds.size);
+  const std::string block(reinterpret_cast<const char*>(material_ids.data), material_ids.size);
   write_plainly(path("forged"), forged(bytes, bytes.find(block), std::uint8_t(2)));
   EXPECT_THROW(Simulation::load(path("forged")), InputError);
 }

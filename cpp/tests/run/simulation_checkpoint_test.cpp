@@ -6,9 +6,9 @@
 
 #include "io/forged_archive.hpp"
 #include "io/temporary_folder.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/run/simulation.hpp"
-#include "snowshed/support/error.hpp"
 
 namespace snowshed {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "io/temporary_folder.hpp"
 #include "run/simulation_testing.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace snowshed {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "mpm/solver_testing.hpp"
+#include "methods/mpm/solver_testing.hpp"
 #include "snowshed/run/simulation.hpp"
 
 namespace snowshed {
@@ -41,7 +41,7 @@ inline void expect_same_bits(const Simulation& a, const Simulation& b) {
   EXPECT_EQ(x.plastic_strains, y.plastic_strains);
   EXPECT_EQ(x.pressures, y.pressures);
   EXPECT_EQ(x.events, y.events);
-  EXPECT_EQ(x.kinds, y.kinds);
+  EXPECT_EQ(x.material_ids, y.material_ids);
   EXPECT_EQ(a.solver().time(), b.solver().time());
   EXPECT_EQ(a.solver().counters().steps, b.solver().counters().steps);
   EXPECT_EQ(a.solver().energy().friction, b.solver().energy().friction);

@@ -1,17 +1,17 @@
-#include "run/snapshot_series.hpp"
+#include "snowshed/run/snapshot_series.hpp"
 
 #include <gtest/gtest.h>
 
 #include "io/temporary_folder.hpp"
-#include "mpm/solver_testing.hpp"
+#include "methods/mpm/solver_testing.hpp"
 
 namespace snowshed {
 namespace {
 
 using SnapshotSeriesTest = TemporaryFolder;
 
-std::unique_ptr<Solver> falling_snow() {
-  auto solver = make_solver(options_for({2, Precision::float32}), {});
+std::unique_ptr<Method> falling_snow() {
+  auto solver = make_mpm(options_for({2, Precision::float32}), {});
   solver->add(filled_box(2, Vec3::Zero(), Vec3(0.02, 0, 0.02), 0.005));
   return solver;
 }

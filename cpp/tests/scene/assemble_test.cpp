@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "snowshed/core/angles.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/shape_measure.hpp"
-#include "snowshed/support/angles.hpp"
-#include "snowshed/support/error.hpp"
 
 namespace snowshed {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "scene/scene_equal.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/scene/scene_json.hpp"
-#include "snowshed/support/error.hpp"
 
 namespace snowshed {
 namespace {

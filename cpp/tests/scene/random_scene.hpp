@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "scene/describe.hpp"
+#include "snowshed/scene/describe.hpp"
 
 namespace snowshed {
 

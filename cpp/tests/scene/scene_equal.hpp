@@ -49,7 +49,7 @@ inline auto tied(const Seeding& s) {
   auto& [a, b, c, d] = s;
   return std::tie(a, b, c, d);
 }
-inline auto tied(const Numerics& s) {
+inline auto tied(const MpmSettings& s) {
   auto& [a, b, c, d, e, f, g, h, i, j] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j);
 }

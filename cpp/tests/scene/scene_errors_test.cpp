@@ -5,8 +5,8 @@
 #include <random>
 
 #include "io/temporary_folder.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/scene/scene_json.hpp"
-#include "snowshed/support/error.hpp"
 
 namespace snowshed {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "scene/random_scene.hpp"
 #include "scene/scene_equal.hpp"
-#include "snowshed/support/error.hpp"
+#include "snowshed/core/errors.hpp"
 
 namespace snowshed {
 namespace {
@@ -85,8 +85,8 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(*scene.ground == (Ground{-5, Condition::slip, 0.4}));
   EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
   EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
-  EXPECT_TRUE(scene.numerics == (Numerics{0.02, Precision::float64, Transfer::apic, 0.5,
-                                          Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
+  EXPECT_TRUE(scene.numerics == (MpmSettings{0.02, Precision::float64, Transfer::apic, 0.5,
+                                             Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, true, 30}));
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "snowshed/support/angles.hpp"
+#include "snowshed/core/angles.hpp"
 
 namespace snowshed {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "snowshed/geometry/build_shape.hpp"
-#include "snowshed/geometry/voxel_set.hpp"
+#include "snowshed/sampling/voxel_set.hpp"
+#include "snowshed/scene/build_shape.hpp"
 #include "vdb/vdb_testing.hpp"
 
 namespace snowshed {

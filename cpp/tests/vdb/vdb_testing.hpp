@@ -4,7 +4,7 @@
 #include <openvdb/openvdb.h>
 
 #include "geometry/geometry_testing.hpp"
-#include "snowshed/geometry/vdb_file.hpp"
+#include "snowshed/geometry/readers/vdb_file.hpp"
 
 namespace snowshed::vdb_testing {
 

@@ -2,8 +2,8 @@
 #include <openvdb/points/PointCount.h>
 #include <openvdb/tools/LevelSetMeasure.h>
 
-#include "geometry/round_trip_testing.hpp"
-#include "snowshed/geometry/vdb_file.hpp"
+#include "sampling/round_trip_testing.hpp"
+#include "snowshed/geometry/readers/vdb_file.hpp"
 #include "vdb/vdb_testing.hpp"
 #include "write_particles.hpp"
 

@@ -27,7 +27,7 @@ from snowshed.study.factors import (
     sobol,
 )
 from snowshed.study.formats import export, to_dataset
-from snowshed.study.identity import Run
+from snowshed.study.scene_hash import Run
 from snowshed.study.session import StudyProgress, expected_duration, resume
 from snowshed.study.table import read_table
 

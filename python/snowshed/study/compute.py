@@ -14,11 +14,11 @@ from typing import Any, Optional
 
 from snowshed import _core
 from snowshed._core import InputError
-from snowshed.events import Progress, run_events
-from snowshed.interrupt import Interrupted
-from snowshed.results import Results
-from snowshed.scene import InitialisedScene
-from snowshed.study.identity import content_hash
+from snowshed.run.events import Progress, run_events
+from snowshed.run.interrupt import Interrupted
+from snowshed.run.results import Results
+from snowshed.scene.scene import ResolvedScene
+from snowshed.study.scene_hash import content_hash
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome, Task
 from snowshed.study.store import COUNTS, WORDS
@@ -78,7 +78,7 @@ def _run_or_resume(task: Task, folder: Path, report: Optional[Callable[[Progress
     """Run the events; an attempt that left nothing to resume from is thrown away."""
     if (folder / "scene.json").is_file():
         try:
-            scene = InitialisedScene.load(folder / "scene.json")  # with the threads it had
+            scene = ResolvedScene.load(folder / "scene.json")  # with the threads it had
             run_events(scene, folder, resume=True, progress=report, pictures=False)
             return
         except InputError:
@@ -86,7 +86,7 @@ def _run_or_resume(task: Task, folder: Path, report: Optional[Callable[[Progress
     shutil.rmtree(folder, ignore_errors=True)
     data = json.loads(task.scene)
     data["numerics"]["threads"] = task.threads
-    run_events(InitialisedScene.parse(json.dumps(data)), folder, progress=report, pictures=False)
+    run_events(ResolvedScene.parse(json.dumps(data)), folder, progress=report, pictures=False)
 
 
 def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
-from snowshed.scene import PathLike, Scene
+from snowshed.scene.scene import PathLike, Scene
 from snowshed.study.factors import Factor, axis
-from snowshed.study.identity import Run
+from snowshed.study.scene_hash import Run
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -224,7 +224,7 @@ class Study:
         try:
             for path, value in point.items():
                 scene.set(path, value)
-            return Run.of(scene.initialise())
+            return Run.of(scene.resolve())
         except InputError as error:
             values = ", ".join(f"{path} = {value}" for path, value in point.items())
             raise InputError(f"{values}: {error}" if values else str(error)) from None

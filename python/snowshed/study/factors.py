@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.extras import require
-from snowshed.quoting import shortened
+from snowshed.io.extras import require
+from snowshed.io.messages import shortened
 
 LARGEST_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
 SCALES = ("linear", "log")

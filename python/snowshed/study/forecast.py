@@ -30,8 +30,8 @@ def work(scene: str) -> float:
     --------
     >>> from snowshed import Scene
     >>> lab = Scene.preset("lab-50").update({"dimension": 2, "events.count": 1})
-    >>> one = work(lab.initialise().json)
-    >>> two = work(lab.set("events.count", 2).initialise().json)
+    >>> one = work(lab.resolve().json)
+    >>> two = work(lab.set("events.count", 2).resolve().json)
     >>> 2 < two / one < 3  # the second event moves its own snow and a part of the first one's
     True
     """

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
-from snowshed.atomic import replacing
-from snowshed.extras import require
-from snowshed.scene import PathLike
-from snowshed.schema import scene_parameters
+from snowshed.io.atomic import replacing
+from snowshed.io.extras import require
+from snowshed.scene.scene import PathLike
+from snowshed.scene.schema import scene_parameters
 from snowshed.study.store import MEASURES
 from snowshed.study.table import read_table
 

@@ -15,8 +15,8 @@ from typing import Any, Optional
 
 from snowshed import _core
 from snowshed._core import InputError
-from snowshed.interrupt import InterruptRequest, deferred_interrupts
-from snowshed.scene import PathLike
+from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.scene.scene import PathLike
 from snowshed.study import forecast
 from snowshed.study.definition import Study
 from snowshed.study.errors import StudyError, StudyInterrupted

@@ -28,11 +28,11 @@ from typing import Any, Optional
 
 from snowshed import _core
 from snowshed._core import InputError
-from snowshed.json_file import check_values, parse_object
-from snowshed.results import EVENT_COLUMNS
-from snowshed.scene import PathLike
+from snowshed.io.json_file import check_values, parse_object
+from snowshed.run.results import EVENT_COLUMNS
+from snowshed.scene.scene import PathLike
 from snowshed.study.errors import StudyError
-from snowshed.study.identity import Run
+from snowshed.study.scene_hash import Run
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome
 
@@ -108,7 +108,7 @@ class Store:
     --------
     >>> from tempfile import TemporaryDirectory
     >>> from snowshed import Scene
-    >>> run = Run.of(Scene.preset("lab-50").initialise())
+    >>> run = Run.of(Scene.preset("lab-50").resolve())
     >>> with TemporaryDirectory() as folder, Store.create(folder) as store:
     ...     store.register("lab", [], [run])
     ...     store.claim(run.hash, "me"), store.claim(run.hash, "somebody else")

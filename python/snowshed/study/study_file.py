@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from snowshed._core import InputError
-from snowshed.accuracy_settings import ACCURACY
-from snowshed.input_file import read_input
-from snowshed.parts import Snow
-from snowshed.quoting import shortened
-from snowshed.scene import Scene
+from snowshed.io.input_file import read_input
+from snowshed.io.messages import shortened
+from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.scene.components import Snow
+from snowshed.scene.scene import Scene
 from snowshed.study.definition import Part, Study
 from snowshed.study.factors import (
     LARGEST_COUNT,

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
-from snowshed.accuracy_settings import ACCURACY
-from snowshed.json_file import is_number
-from snowshed.quoting import shortened
-from snowshed.scene import PathLike
+from snowshed.io.json_file import is_number
+from snowshed.io.messages import shortened
+from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.scene.scene import PathLike
 from snowshed.study.definition import SEED
 from snowshed.study.store import COUNTS, MEASURES, TIMING, WORDS, Store, StoredRun
 

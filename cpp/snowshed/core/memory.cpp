@@ -1,0 +1,120 @@
+#include "snowshed/core/memory.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace snowshed {
+namespace {
+
+using Bytes = std::optional<std::uint64_t>;
+
+/// The number after `key` in a file of "key number [kB]" lines, such as /proc/meminfo.
+Bytes field(const std::filesystem::path& file, const std::string& key) {
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind(key, 0) == 0) {
+      const std::size_t digit = line.find_first_of("0123456789", key.size());
+      if (digit == std::string::npos) return {};
+      return std::stoull(line.substr(digit));
+    }
+  return {};
+}
+
+Bytes field_in_kilobytes(const std::filesystem::path& file, const std::string& key) {
+  const Bytes kilobytes = field(file, key);
+  return kilobytes ? Bytes(*kilobytes * 1024) : Bytes();
+}
+
+/// The single number in a file; none if it holds "max".
+Bytes number(const std::filesystem::path& file) {
+  std::uint64_t value;
+  return std::ifstream(file) >> value ? Bytes(value) : Bytes();
+}
+
+struct Allowance {
+  std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t left = std::numeric_limits<std::uint64_t>::max();
+};
+
+void restrict_to(Allowance& allowance, Bytes limit, Bytes used, Bytes file_cache) {
+  if (!limit) return;
+  // The cache of files counts as used but gives way on demand.
+  const std::uint64_t in_use =
+      used.value_or(0) - std::min(used.value_or(0), file_cache.value_or(0));
+  allowance.limit = std::min(allowance.limit, *limit);
+  allowance.left = std::min(allowance.left, *limit - std::min(*limit, in_use));
+}
+
+/// One of the two forms in which Linux limits the memory of groups of processes.
+struct Hierarchy {
+  std::filesystem::path root;
+  std::string line;  // start of the line in /proc/self/cgroup, after its number
+  const char *limit, *used, *file_cache;
+};
+
+/// Where this process stands in the hierarchy, relative to its root.
+std::string control_group(const Hierarchy& hierarchy) {
+  std::ifstream lines("/proc/self/cgroup");
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t colon = line.find(':');
+    if (colon != std::string::npos &&
+        line.compare(colon, hierarchy.line.size(), hierarchy.line) == 0)
+      return line.substr(colon + hierarchy.line.size());
+  }
+  return {};
+}
+
+/// The tightest limit among the process's control group and those above it.
+Allowance container_allowance() {
+  const Hierarchy hierarchies[] = {
+      {"/sys/fs/cgroup", "::/", "memory.max", "memory.current", "inactive_file"},
+      {"/sys/fs/cgroup/memory", ":memory:/", "memory.limit_in_bytes", "memory.usage_in_bytes",
+       "total_inactive_file"}};
+  Allowance allowance;
+  for (const Hierarchy& h : hierarchies)
+    for (auto group = h.root / control_group(h);; group = group.parent_path()) {
+      restrict_to(allowance, number(group / h.limit), number(group / h.used),
+                  field(group / "memory.stat", h.file_cache));
+      if (group == h.root || !group.has_relative_path()) break;
+    }
+  return allowance;
+}
+
+std::uint64_t installed_memory_bytes() {
+  return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+std::uint64_t peak_resident_bytes() {
+  // getrusage also counts what the parent had before it started this program; this does not.
+  if (const Bytes peak = field_in_kilobytes("/proc/self/status", "VmHWM:")) return *peak;
+  rusage usage{};
+  if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+#ifdef __APPLE__
+  return static_cast<std::uint64_t>(usage.ru_maxrss);
+#else
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+#endif
+}
+
+std::uint64_t physical_memory_bytes() {
+  return std::min(installed_memory_bytes(), container_allowance().limit);
+}
+
+std::uint64_t available_memory_bytes() {
+  const std::uint64_t machine =
+      field_in_kilobytes("/proc/meminfo", "MemAvailable:").value_or(installed_memory_bytes());
+  const Allowance container = container_allowance();
+  return std::min({machine, container.left, physical_memory_bytes()});
+}
+
+}  // namespace snowshed

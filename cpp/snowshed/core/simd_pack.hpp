@@ -1,0 +1,160 @@
+// A SIMD register's worth of values, by the compiler's vector extension: with AVX-512
+// `SimdPack<float>` holds 16 floats, `SimdPack<double>` 8 doubles. Arithmetic and comparison work
+// as on scalars; a comparison gives a mask for `select`. Functions written for `V` accept a plain
+// float or double too, which is how the material laws are tested.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "snowshed/core/variant.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+#if defined(__AVX512F__)
+inline constexpr int simd_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int simd_bytes = 32;
+#else
+inline constexpr int simd_bytes = 16;
+#endif
+
+template <class T>
+struct SimdTypes;
+template <>
+struct SimdTypes<float> {
+  typedef float type __attribute__((vector_size(simd_bytes), may_alias));
+  typedef std::int32_t mask __attribute__((vector_size(simd_bytes), may_alias));
+};
+template <>
+struct SimdTypes<double> {
+  typedef double type __attribute__((vector_size(simd_bytes), may_alias));
+  typedef std::int64_t mask __attribute__((vector_size(simd_bytes), may_alias));
+};
+
+template <class T>
+using SimdPack = typename SimdTypes<T>::type;
+
+/// What a comparison of SimdPack<T> gives: in each lane all bits or none.
+template <class T>
+using SimdMask = typename SimdTypes<T>::mask;
+
+template <class T>
+inline constexpr int simd_width = simd_bytes / int(sizeof(T));
+
+/// The scalar inside V: float for SimdPack<float> and for float.
+template <class V, class = void>
+struct ScalarOf {
+  using type = std::remove_cv_t<std::remove_reference_t<decltype(std::declval<V&>()[0])>>;
+};
+template <class V>
+struct ScalarOf<V, std::enable_if_t<std::is_floating_point_v<V>>> {
+  using type = V;
+};
+template <class V>
+using Scalar = typename ScalarOf<V>::type;
+
+template <class V>
+inline constexpr bool is_simd_pack = !std::is_floating_point_v<V>;
+
+/// A value as a pack: all lanes equal to it, or the pack itself where it is one already.
+template <class V, class C>
+SNOWSHED_INLINE V broadcast(const C& value) {
+  if constexpr (std::is_same_v<V, C>)
+    return value;
+  else if constexpr (is_simd_pack<V>)
+    return Scalar<V>(value) - V{};
+  else
+    return V(value);
+}
+
+/// mask ? a : b, lane by lane.
+template <class M, class V>
+SNOWSHED_INLINE V select(const M& mask, const V& a, const V& b) {
+  return mask ? a : b;
+}
+
+/// Bits that are set in any lane.
+template <class M>
+SNOWSHED_INLINE auto bits_in(const M& mask) {
+  constexpr int n = int(sizeof(M) / sizeof(mask[0]));
+  auto bits = mask[0];
+  for (int i = 1; i < n; ++i) bits |= mask[i];
+  return bits;
+}
+
+template <class M>
+SNOWSHED_INLINE bool any(const M& mask) {
+  if constexpr (std::is_integral_v<M>)
+    return mask;
+  else
+    return bits_in(mask) != 0;
+}
+
+template <class V>
+SNOWSHED_INLINE V sqrt(const V& x) {
+  if constexpr (is_simd_pack<V>) {
+    V r;
+    for (int i = 0; i < int(sizeof(V) / sizeof(x[0])); ++i) r[i] = std::sqrt(x[i]);
+    return r;
+  } else {
+    return std::sqrt(x);
+  }
+}
+
+template <class V>
+SNOWSHED_INLINE V abs(const V& x) {
+  return select(x < Scalar<V>(0), V(-x), x);
+}
+template <class V>
+SNOWSHED_INLINE V max(const V& a, const V& b) {
+  return select(a > b, a, b);
+}
+template <class V>
+SNOWSHED_INLINE V min(const V& a, const V& b) {
+  return select(a < b, a, b);
+}
+template <class V>
+SNOWSHED_INLINE V clamp(const V& x, const V& lo, const V& hi) {
+  return max(lo, min(x, hi));
+}
+
+/// The largest lane.
+template <class V>
+SNOWSHED_INLINE Scalar<V> largest(const V& x) {
+  if constexpr (is_simd_pack<V>) {
+    Scalar<V> r = x[0];
+    for (int i = 1; i < int(sizeof(V) / sizeof(x[0])); ++i) r = x[i] > r ? x[i] : r;
+    return r;
+  } else {
+    return x;
+  }
+}
+
+/// Read the first n values at p; the lanes beyond repeat the first one, so that they hold
+/// harmless numbers without touching memory that belongs to somebody else.
+template <class T>
+SNOWSHED_INLINE SimdPack<T> load(const T* p, int n) {
+  SimdPack<T> v;
+  if (n == simd_width<T>) {
+    std::memcpy(&v, p, sizeof v);
+  } else {
+    v = broadcast<SimdPack<T>>(p[0]);
+    for (int i = 1; i < n; ++i) v[i] = p[i];
+  }
+  return v;
+}
+
+template <class T>
+SNOWSHED_INLINE void store(T* p, const SimdPack<T>& v, int n) {
+  if (n == simd_width<T>) {
+    std::memcpy(p, &v, sizeof v);
+  } else {
+    for (int i = 0; i < n; ++i) p[i] = v[i];
+  }
+}
+
+SNOWSHED_VARIANT_END

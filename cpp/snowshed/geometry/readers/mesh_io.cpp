@@ -1,0 +1,37 @@
+#include "snowshed/geometry/readers/mesh_io.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/readers/file_bytes.hpp"
+#include "snowshed/geometry/readers/mesh_formats.hpp"
+
+namespace snowshed {
+namespace {
+
+TriangleMesh parse(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto parser = extension == ".stl"   ? parse_stl
+                      : extension == ".obj" ? parse_obj
+                      : extension == ".ply" ? parse_ply
+                                            : nullptr;
+  if (!parser) throw InputError(path.string(), "not a mesh file; allowed: .stl, .obj, .ply");
+  return parser(path, read_bytes(path));
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& path, double scale) {
+  TriangleMesh mesh = parse(path);
+  for (Vec3& vertex : mesh.vertices) vertex *= scale;
+  require_valid_numbers(mesh, path.string());
+  merge_identical_vertices(mesh);
+  require_solid(mesh, path.string());
+  return mesh;
+}
+
+}  // namespace snowshed

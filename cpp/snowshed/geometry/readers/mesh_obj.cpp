@@ -1,0 +1,46 @@
+#include <cstdint>
+
+#include "snowshed/geometry/readers/mesh_formats.hpp"
+#include "snowshed/geometry/readers/text_scanner.hpp"
+
+namespace snowshed {
+namespace {
+
+/// "7", "7/1", "7/1/2", "7//2", or counted back from the last vertex: "-1".
+std::uint32_t vertex_index(const TextScanner& scanner, std::string_view word, std::size_t count) {
+  const auto given = scanner.parse<std::int64_t>(word.substr(0, word.find('/')));
+  const auto last = static_cast<std::int64_t>(count);
+  const std::int64_t index = given > 0 ? given - 1 : last + given;
+  if (given == 0 || given > last || index < 0)
+    scanner.fail("vertex " + std::to_string(given) + " of a face; " + std::to_string(count) +
+                 " vertices so far");
+  return static_cast<std::uint32_t>(index);
+}
+
+}  // namespace
+
+TriangleMesh parse_obj(const std::filesystem::path& path, std::string_view bytes) {
+  TriangleMesh mesh;
+  TextScanner scanner(path, bytes);
+  while (scanner.next_line()) {
+    const auto& words = scanner.words();
+    if (words[0] == "v") {
+      if (mesh.vertices.size() >= max_mesh_items) scanner.fail("more than 2e7 vertices");
+      mesh.vertices.emplace_back(scanner.number<double>(1), scanner.number<double>(2),
+                                 scanner.number<double>(3));
+    } else if (words[0] == "f") {
+      if (words.size() < 4) scanner.fail("a face with fewer than three vertices");
+      const auto corner = [&](std::size_t i) {
+        return vertex_index(scanner, words[i], mesh.vertices.size());
+      };
+      const std::uint32_t first = corner(1);
+      for (std::size_t i = 3; i < words.size(); ++i) {
+        if (mesh.triangles.size() >= max_mesh_items) scanner.fail("more than 2e7 triangles");
+        mesh.triangles.push_back({first, corner(i - 1), corner(i)});
+      }
+    }  // anything else is about looks
+  }
+  return mesh;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,97 @@
+#include "snowshed/geometry/readers/npy_io.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <regex>
+
+#include "snowshed/geometry/readers/byte_reader.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr std::size_t max_header = 1024;
+
+struct ArrayHeader {
+  std::string type;
+  std::vector<std::size_t> shape;
+  std::size_t data_offset;
+};
+
+[[noreturn]] void fail(const std::filesystem::path& path, std::size_t offset,
+                       const std::string& what) {
+  throw InputError(at_byte(path, offset), what);
+}
+
+/// The value of `key` in the header's dictionary, as written.
+std::string entry(const std::filesystem::path& path, const std::string& header,
+                  const std::string& key, const std::string& pattern, const char* allowed) {
+  std::smatch match;
+  if (!std::regex_search(header, match, std::regex("'" + key + "' *: *(" + pattern + ") *[,}]")))
+    fail(path, 10, "'" + key + "' of the array; allowed: " + allowed);
+  return match[1];
+}
+
+std::vector<std::size_t> parse_shape(const std::string& tuple) {
+  std::vector<std::size_t> shape;
+  std::size_t at = 0;
+  while ((at = tuple.find_first_of("0123456789", at)) != std::string::npos) {
+    std::size_t used = 0;
+    shape.push_back(std::stoull(tuple.substr(at), &used));
+    at += used;
+  }
+  return shape;
+}
+
+ArrayHeader parse_header(const std::filesystem::path& path, const std::string& bytes) {
+  if (bytes.compare(0, 6, "\x93NUMPY", 6) != 0) fail(path, 0, "not a .npy file");
+  ByteReader reader(path, bytes, 6, ByteOrder::little);
+  const int major = reader.read<std::uint8_t>();
+  reader.skip(1);
+  if (major < 1 || major > 3)
+    fail(path, 6, "format version " + std::to_string(major) + "; allowed: 1 to 3");
+  const std::size_t length =
+      major == 1 ? reader.read<std::uint16_t>() : reader.read<std::uint32_t>();
+  if (length > max_header || length > reader.remaining())
+    fail(path, 8,
+         "a header of " + std::to_string(length) + " bytes; at most 1024, within the file");
+  const std::size_t begin = bytes.size() - reader.remaining();
+  const std::string text = bytes.substr(begin, length);
+  ArrayHeader header;
+  header.type = entry(path, text, "descr", "'<f[48]'", "'<f4' and '<f8'");
+  entry(path, text, "fortran_order", "False", "False (C order)");
+  header.shape = parse_shape(entry(path, text, "shape", R"(\( *\d{1,9}( *, *\d{1,9}){1,2} *,? *\))",
+                                   "two or three counts"));
+  header.data_offset = begin + length;
+  return header;
+}
+
+/// The number of values, which must fill the rest of the file.
+std::size_t checked_count(const std::filesystem::path& path, const ArrayHeader& header,
+                          std::size_t bytes_left) {
+  const std::size_t value_size = header.type == "'<f4'" ? 4 : 8;
+  double count = 1;
+  for (const std::size_t n : header.shape) count *= static_cast<double>(n);
+  if (count * value_size != static_cast<double>(bytes_left))
+    fail(path, header.data_offset,
+         "the shape asks for " + std::to_string(count * value_size) +
+             " bytes of values; there are " + std::to_string(bytes_left));
+  return bytes_left / value_size;
+}
+
+}  // namespace
+
+NpyArray read_npy(const std::filesystem::path& path) {
+  const std::string bytes = read_bytes(path);
+  const ArrayHeader header = parse_header(path, bytes);
+  const std::size_t count = checked_count(path, header, bytes.size() - header.data_offset);
+  ByteReader reader(path, bytes, header.data_offset, ByteOrder::little);
+  NpyArray array{header.shape, std::vector<float>(count)};
+  for (float& value : array.values) {
+    value =
+        header.type == "'<f4'" ? reader.read<float>() : static_cast<float>(reader.read<double>());
+    if (!std::isfinite(value)) reader.fail("the value before this byte is not finite");
+  }
+  return array;
+}
+
+}  // namespace snowshed

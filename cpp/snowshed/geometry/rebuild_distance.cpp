@@ -1,0 +1,61 @@
+#include "snowshed/geometry/rebuild_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/nearest_seed.hpp"
+
+namespace snowshed {
+namespace {
+
+using Index = NearestSeed::Index;
+
+/// Lowers rebuilt magnitudes that exceed a neighbour's by more than the spacing: those of a file
+/// that are not quite distances would else make a step at the edge of the band.
+void limit_slope(GridSamples& samples, const NearestSeed& grid, double band) {
+  const auto lower = [&](const Index& n, int step) {
+    float& value = samples.values[grid.at(n)];
+    if (std::abs(value) < band) return;
+    for (const Index& from :
+         {Index{n.i + step, n.j, n.k}, {n.i, n.j + step, n.k}, {n.i, n.j, n.k + step}}) {
+      if (!grid.contains(from)) continue;
+      const double most = std::abs(samples.values[grid.at(from)]) + samples.spacing;
+      if (std::abs(value) > most) value = static_cast<float>(std::copysign(most, value));
+    }
+  };
+  for (int round = 0; round < 2; ++round) {
+    grid.for_each_node([&](const Index& n) { lower(n, -1); });
+    grid.for_each_node_backwards([&](const Index& n) { lower(n, 1); });
+  }
+}
+
+/// Whether values change sign over one spacing by more than a distance can.
+bool cross_too_steeply(const GridSamples& samples, const NearestSeed& grid) {
+  bool found = false;
+  grid.for_each_edge([&](const Index& n, const Index& next) {
+    const double value = samples.values[grid.at(n)], other = samples.values[grid.at(next)];
+    found |= (value < 0) != (other < 0) && std::abs(other - value) > 1.5 * samples.spacing;
+  });
+  return found;
+}
+
+}  // namespace
+
+void rebuild_distance(GridSamples& samples, double band, const std::string& where) {
+  NearestSeed grid(samples.origin, samples.spacing, samples.counts);
+  const std::vector<Vec3> surface = zero_crossings(grid, samples.values);
+  if (surface.empty()) throw InputError(where, "no value is negative: the solid is empty");
+  grid.broadcast(surface);
+  if (cross_too_steeply(samples, grid)) band = 0;  // then none of them is a distance
+  grid.for_each_node([&](const Index& n) {
+    float& value = samples.values[grid.at(n)];
+    if (std::abs(value) < band) return;
+    const double distance = std::max(band, grid.distance(n));
+    value = static_cast<float>(value < 0 ? -distance : distance);
+  });
+  if (band > 0) limit_slope(samples, grid, band);
+}
+
+}  // namespace snowshed

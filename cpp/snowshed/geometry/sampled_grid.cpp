@@ -1,0 +1,158 @@
+#include "snowshed/geometry/sampled_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/bounds.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Neighbouring samples of a distance differ by at most the spacing; this much more is allowed
+/// for distances that were computed approximately.
+constexpr double slope_tolerance = 1.25;
+
+std::size_t index_of(const GridSamples& s, std::size_t i, std::size_t j, std::size_t k) {
+  return (i * s.counts[1] + j) * s.counts[2] + k;
+}
+
+template <class Visit>
+void for_each_sample(const GridSamples& s, Visit visit) {
+  for (std::size_t i = 0; i < s.counts[0]; ++i)
+    for (std::size_t j = 0; j < s.counts[1]; ++j)
+      for (std::size_t k = 0; k < s.counts[2]; ++k) visit(i, j, k);
+}
+
+std::string place(std::size_t i, std::size_t j, std::size_t k) {
+  std::ostringstream text;
+  text << "sample [" << i << "][" << j << "][" << k << "]";
+  return text.str();
+}
+
+void check_counts(const GridSamples& s, const std::string& where) {
+  std::size_t total = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t n = s.counts[axis], least = axis == 1 ? 1 : 2;
+    if (n < least || n > s.values.size())
+      throw InputError(where, std::to_string(n) + " samples along axis " + std::to_string(axis) +
+                                  "; at least 2 are needed");
+    total *= n;
+    if (total > s.values.size()) break;  // before it overflows
+  }
+  if (total != s.values.size()) throw InputError(where, "the counts do not fit the values");
+}
+
+void check_values(const GridSamples& s, const std::string& where) {
+  const std::size_t strides[3] = {s.counts[1] * s.counts[2], s.counts[2], 1};
+  bool any_inside = false;
+  for_each_sample(s, [&](std::size_t i, std::size_t j, std::size_t k) {
+    const std::size_t n = index_of(s, i, j, k), ijk[3] = {i, j, k};
+    if (!std::isfinite(s.values[n])) throw InputError(where, place(i, j, k) + " is not finite");
+    any_inside = any_inside || s.values[n] < 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (ijk[axis] == 0) continue;
+      const double step = std::abs(double(s.values[n]) - s.values[n - strides[axis]]);
+      if (step <= slope_tolerance * s.spacing) continue;
+      std::ostringstream what;
+      what << place(i, j, k) << " differs from its neighbour by " << step << " m over " << s.spacing
+           << " m: not a signed distance in metres";
+      throw InputError(where, what.str());
+    }
+  });
+  if (!any_inside) throw InputError(where, "no sample is negative: the solid is empty");
+}
+
+class SampledGrid final : public LevelSet {
+ public:
+  explicit SampledGrid(GridSamples samples)
+      : samples_(std::move(samples)), flat_(samples_.counts[1] == 1) {
+    for (int axis = 0; axis < 3; ++axis)
+      size_[axis] = samples_.spacing * static_cast<double>(samples_.counts[axis] - 1);
+    deepest_ = -*std::min_element(samples_.values.begin(), samples_.values.end());
+    find_bounds();
+  }
+
+  double distance(const Vec3& x) const override {
+    Vec3 p = x - samples_.origin;
+    if (flat_) p.y() = 0;
+    const Vec3 clamped = p.cwiseMax(0.0).cwiseMin(size_);
+    return interpolate(clamped / samples_.spacing) + (p - clamped).norm();
+  }
+
+  Vec3 normal(const Vec3& x) const override {
+    // The trilinear gradient jumps from cell to cell; a difference over a cell does not.
+    const double h = samples_.spacing / 2;
+    Vec3 gradient;
+    for (int axis = 0; axis < 3; ++axis)
+      gradient[axis] = distance(x + h * Vec3::Unit(axis)) - distance(x - h * Vec3::Unit(axis));
+    const double norm = gradient.norm();
+    return norm > 0.1 * samples_.spacing ? Vec3(gradient / norm) : LevelSet::normal(x);
+  }
+
+  Bounds bounds() const override { return bounds_; }
+  double inradius() const override { return deepest_; }
+
+ private:
+  /// `u`: position in units of the spacing, within the grid.
+  double interpolate(const Vec3& u) const {
+    std::size_t low[3], high[3];
+    double part[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t last = samples_.counts[axis] - 1;
+      low[axis] = std::min(static_cast<std::size_t>(u[axis]), last);
+      high[axis] = std::min(low[axis] + 1, last);
+      part[axis] = u[axis] - static_cast<double>(low[axis]);
+    }
+    const auto along_z = [&](std::size_t i, std::size_t j) {
+      const double a = samples_.values[index_of(samples_, i, j, low[2])];
+      return a + part[2] * (samples_.values[index_of(samples_, i, j, high[2])] - a);
+    };
+    const auto along_yz = [&](std::size_t i) {
+      const double a = along_z(i, low[1]);
+      return flat_ ? a : a + part[1] * (along_z(i, high[1]) - a);
+    };
+    const double a = along_yz(low[0]);
+    return a + part[0] * (along_yz(high[0]) - a);
+  }
+
+  /// A cell reaches inside only if one of its corners is negative; beyond the grid the
+  /// solid goes on for as far as the outermost samples are negative.
+  void find_bounds() {
+    bounds_ = no_bounds();
+    for_each_sample(samples_, [&](std::size_t i, std::size_t j, std::size_t k) {
+      const double value = samples_.values[index_of(samples_, i, j, k)];
+      if (value >= 0) return;
+      const Vec3 at = samples_.origin + samples_.spacing * Vec3(i, j, k);
+      bounds_ = unite(bounds_, {at, at});
+    });
+    bounds_ = expanded(bounds_, samples_.spacing);
+    const Vec3 grid_min = samples_.origin, grid_max = samples_.origin + size_;
+    const double beyond = std::max(deepest_, 0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (bounds_.min[axis] < grid_min[axis]) bounds_.min[axis] = grid_min[axis] - beyond;
+      if (bounds_.max[axis] > grid_max[axis]) bounds_.max[axis] = grid_max[axis] + beyond;
+    }
+    if (!flat_) return;
+    bounds_.min.y() = -infinity;
+    bounds_.max.y() = infinity;
+  }
+
+  GridSamples samples_;
+  bool flat_;
+  Vec3 size_;
+  double deepest_;
+  Bounds bounds_;
+};
+
+}  // namespace
+
+Shape make_sampled_grid(GridSamples samples, const std::string& where) {
+  check_counts(samples, where);
+  check_values(samples, where);
+  return std::make_shared<SampledGrid>(std::move(samples));
+}
+
+}  // namespace snowshed

@@ -1,0 +1,132 @@
+#include "snowshed/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "snowshed/core/errors.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr std::size_t buffer_bytes = std::size_t{1} << 16;
+// Linux transfers no more than 2 GiB per call; smaller pieces are as fast.
+constexpr std::size_t largest_write = std::size_t{1} << 30;
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+/// Unique among the threads and processes that may write the same file at once.
+std::filesystem::path beside(const std::filesystem::path& path) {
+  static std::atomic<unsigned> counter{0};
+  std::filesystem::path name = path;
+  name += "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".partial";
+  return name;
+}
+
+bool is_device_or_pipe(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  return std::filesystem::is_other(status);
+}
+
+int retry_open(const std::filesystem::path& path, int flags) {
+  int descriptor;
+  do {
+    descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+  } while (descriptor < 0 && errno == EINTR);
+  return descriptor;
+}
+
+/// Without this a power cut may undo the rename. Some file systems refuse to flush a folder;
+/// the file itself is safe already, so that is not an error.
+void sync_folder(const std::filesystem::path& path) {
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  const int descriptor = retry_open(folder, O_RDONLY | O_DIRECTORY);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
+  int flags = O_WRONLY;
+  if (!is_device_or_pipe(path_)) {
+    temporary_ = beside(path_);
+    flags |= O_CREAT | O_EXCL;
+  }
+  descriptor_ = retry_open(temporary_.empty() ? path_ : temporary_, flags);
+  if (descriptor_ < 0) {
+    temporary_.clear();  // it is not ours to remove
+    fail("cannot create the file");
+  }
+  buffer_.reserve(buffer_bytes);
+}
+
+AtomicFile::~AtomicFile() { discard(); }
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+  const char* begin = static_cast<const char*>(data);
+  if (buffer_.size() + bytes > buffer_bytes) flush();
+  if (bytes > buffer_bytes)
+    write_through(begin, bytes);
+  else
+    buffer_.insert(buffer_.end(), begin, begin + bytes);
+}
+
+void AtomicFile::commit() {
+  flush();
+  sync();
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail("cannot close the file");
+  if (temporary_.empty()) return;
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot put the file in place");
+  temporary_.clear();
+  sync_folder(path_);
+}
+
+void AtomicFile::flush() {
+  write_through(buffer_.data(), buffer_.size());
+  buffer_.clear();
+}
+
+void AtomicFile::write_through(const char* data, std::size_t bytes) {
+  while (bytes > 0) {
+    const ssize_t written =
+        ::write(descriptor_, data, bytes < largest_write ? bytes : largest_write);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("cannot write");
+    data += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+}
+
+void AtomicFile::sync() {
+  // Devices, pipes and some network folders cannot be flushed and say so with EINVAL or ENOTSUP.
+  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS)
+    fail("cannot write");
+}
+
+void AtomicFile::discard() noexcept {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  temporary_.clear();
+}
+
+void AtomicFile::fail(const char* action) {
+  const int error = errno;  // before `discard` overwrites it
+  discard();
+  throw FileError(path_.string() + ": " + action + ": " + reason(error));
+}
+
+void write_atomic(const std::filesystem::path& path, std::string_view content) {
+  AtomicFile file(path);
+  file.write(content);
+  file.commit();
+}
+
+}  // namespace snowshed

@@ -1,0 +1,131 @@
+#include "snowshed/io/vtp_writer.hpp"
+
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <type_traits>
+
+#include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/xml_text.hpp"
+
+namespace snowshed {
+namespace {
+
+template <class T>
+constexpr const char* vtk_type() {
+  if constexpr (std::is_same_v<T, float>) return "Float32";
+  if constexpr (std::is_same_v<T, double>) return "Float64";
+  if constexpr (std::is_same_v<T, std::int32_t>) return "Int32";
+  if constexpr (std::is_same_v<T, std::int64_t>) return "Int64";
+  if constexpr (std::is_same_v<T, std::uint16_t>) return "UInt16";
+  if constexpr (std::is_same_v<T, std::uint8_t>) return "UInt8";
+}
+
+/// The raw data that follow the XML: each block is preceded by its length.
+class Appended {
+ public:
+  /// The XML element that refers to the block added by it.
+  template <class T>
+  std::string add(const std::string& name, int components, const T* data, std::size_t count) {
+    blocks_.push_back({data, count * sizeof(T)});
+    const std::string element = std::string("        <DataArray type=\"") + vtk_type<T>() +
+                                "\" Name=\"" + xml_escape(name) + "\" NumberOfComponents=\"" +
+                                std::to_string(components) + "\" format=\"appended\" offset=\"" +
+                                std::to_string(offset_) + "\"/>\n";
+    offset_ += sizeof(std::uint64_t) + count * sizeof(T);
+    return element;
+  }
+
+  void write(AtomicFile& file) const {
+    for (const Block& block : blocks_) {
+      file.write(&block.bytes, sizeof block.bytes);
+      file.write(block.data, block.bytes);
+    }
+  }
+
+ private:
+  struct Block {
+    const void* data;
+    std::uint64_t bytes;
+  };
+  std::vector<Block> blocks_;
+  std::uint64_t offset_ = 0;
+};
+
+std::string point_data(const std::vector<PointArray>& arrays, std::size_t points,
+                       Appended& appended) {
+  std::string xml;
+  for (const PointArray& array : arrays)
+    std::visit(
+        [&](const auto& values) {
+          if (array.components < 1 || values.size() != points * std::size_t(array.components))
+            throw std::invalid_argument("point array '" + array.name + "' has " +
+                                        std::to_string(values.size()) + " values for " +
+                                        std::to_string(points) + " points of " +
+                                        std::to_string(array.components) + " components");
+          xml += appended.add(array.name, array.components, values.data(), values.size());
+        },
+        array.values);
+  return xml;
+}
+
+/// Every point is a cell of its own, so that filters on cells (threshold, clip) see particles.
+template <class Index, class Real>
+void write(const std::filesystem::path& path, const std::vector<std::array<Real, 3>>& points,
+           const std::vector<PointArray>& arrays) {
+  const std::size_t count = points.size();
+  std::vector<Index> index(count + 1);  // 0, 1, …: connectivity; from 1 on: ends of the cells
+  std::iota(index.begin(), index.end(), Index{0});
+
+  Appended appended;
+  const std::string n = std::to_string(count);
+  const Real* coordinates = points.empty() ? nullptr : points.front().data();
+  std::string xml =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n"
+      "  <PolyData>\n"
+      "    <Piece NumberOfPoints=\"" +
+      n + "\" NumberOfVerts=\"" + n +
+      "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
+  xml += "      <Points>\n" + appended.add("position", 3, coordinates, 3 * count) +
+         "      </Points>\n";
+  xml += "      <PointData>\n" + point_data(arrays, count, appended) + "      </PointData>\n";
+  xml += "      <Verts>\n" + appended.add("connectivity", 1, index.data(), count) +
+         appended.add("offsets", 1, index.data() + 1, count) + "      </Verts>\n";
+  xml +=
+      "    </Piece>\n"
+      "  </PolyData>\n"
+      "  <AppendedData encoding=\"raw\">\n_";
+
+  AtomicFile file(path);
+  file.write(xml);
+  appended.write(file);
+  file.write("\n  </AppendedData>\n</VTKFile>\n");
+  file.commit();
+}
+
+template <class Real>
+void write_with_smallest_index(const std::filesystem::path& path,
+                               const std::vector<std::array<Real, 3>>& points,
+                               const std::vector<PointArray>& arrays) {
+  if (points.size() < std::size_t(std::numeric_limits<std::int32_t>::max()))
+    write<std::int32_t>(path, points, arrays);
+  else
+    write<std::int64_t>(path, points, arrays);
+}
+
+}  // namespace
+
+void write_vtp(const std::filesystem::path& path, const std::vector<std::array<float, 3>>& points,
+               const std::vector<PointArray>& arrays) {
+  write_with_smallest_index(path, points, arrays);
+}
+
+void write_vtp(const std::filesystem::path& path, const std::vector<std::array<double, 3>>& points,
+               const std::vector<PointArray>& arrays) {
+  write_with_smallest_index(path, points, arrays);
+}
+
+}  // namespace snowshed

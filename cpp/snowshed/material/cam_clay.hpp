@@ -1,0 +1,221 @@
+// Cohesive Modified Cam-Clay snow (Gaume et al. 2018; thesis 1.2.5-1.2.7): the yield surface, its
+// hardening law and the implicit associative return mapping, all in the p-q plane.
+//
+//   y(p, q) = (1 + 2 beta) q^2 + M^2 (p + beta p0)(p - p0) <= 0      (1.2.6)
+//   p0 = K sinh(xi max(-e_v, 0)),  K = E/(3 - 6 nu)                   (1.2.7)
+//
+// p is positive in compression; e_v, the volumetric plastic strain, is negative in compaction.
+#pragma once
+
+#include "snowshed/core/simd_math.hpp"
+#include "snowshed/material/elasticity.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// Pressure and Mises stress in the Kirchhoff measure, Pa.
+template <class V>
+struct PQ {
+  V p, q;
+};
+
+/// The constants are scalars, the same for all lanes of a state, or lanes themselves, where each
+/// particle has its own.
+template <class C>
+struct CamClay {
+  using T = Scalar<C>;
+  Elasticity<C> elastic;
+  C m2{};         ///< M^2, M the slope of the critical state line
+  C beta{};       ///< cohesion: tensile strength over p0
+  C xi{};         ///< hardening factor
+  C hardening{};  ///< K, Pa
+
+  static constexpr bool plastic = true;
+
+  /// Constants from E (Pa), nu, M, beta, xi. M is kept off zero: the frictionless limit, in which
+  /// snow still has its tensile and preconsolidation pressures but carries no shear.
+  static CamClay from(double youngs_modulus, double poissons_ratio, double critical_state_slope,
+                      double cohesion, double hardening_factor, int dimension) {
+    const double slope = critical_state_slope > 1e-4 ? critical_state_slope : 1e-4;
+    CamClay c;
+    c.elastic = Elasticity<C>::from(youngs_modulus, poissons_ratio, dimension);
+    c.m2 = C(slope * slope);
+    c.beta = C(cohesion);
+    c.xi = C(hardening_factor);
+    c.hardening = C(youngs_modulus / (3 - 6 * poissons_ratio));
+    return c;
+  }
+
+  /// The volumetric plastic strain at which p0 has the given value (inverse of 1.2.7).
+  double initial_plastic_strain(double p0) const {
+    return -std::asinh(p0 / double(hardening)) / double(xi);
+  }
+
+  /// (1.2.7); `slope` receives d p0 / d e_v.
+  template <class V>
+  SNOWSHED_INLINE V preconsolidation(const V& ev, V& slope) const {
+    const auto k = hyperbolic(max(V(-xi * ev), broadcast<V>(T(0))));
+    slope = select(ev < T(0), V(-xi * k.cosh), broadcast<V>(T(0)));
+    return k.sinh;
+  }
+  template <class V>
+  SNOWSHED_INLINE V preconsolidation(const V& ev) const {
+    V slope;
+    return preconsolidation(ev, slope);
+  }
+
+  /// (1.2.6), Pa^2.
+  template <class V>
+  SNOWSHED_INLINE V yield(const PQ<V>& s, const V& p0) const {
+    return (T(1) + T(2) * beta) * s.q * s.q + m2 * (s.p + beta * p0) * (s.p - p0);
+  }
+
+  /// Brings an elastic trial back to the yield surface; returns whether any lane yielded.
+  /// Backward Euler with hardening: with D the change of e_v,
+  ///   p = p_tr + K_d D,   q = q_tr N / (N - c D),   y(p, q, p0(e_v + D)) = 0,
+  /// where N = 2p - (1 - beta) p0 is y_p/M^2 and c = 6 mu (1 + 2 beta)/M^2.
+  /// D is bracketed: from zero (the trial, y > 0) to where the flow would turn purely deviatoric
+  /// (N = 0, y < 0), or, where softening takes p0 to zero first, to the origin. Newton steps that
+  /// leave the bracket are replaced by bisection.
+  template <class V>
+  SNOWSHED_INLINE bool return_map(PQ<V>& s, V& ev) const {
+    const V p0 = preconsolidation(ev);
+    const V overshoot = yield(s, p0);
+    const auto yields = overshoot > T(0);
+    if (!any(yields)) return false;
+    project(s, ev, yields);
+    return true;
+  }
+
+ private:
+  /// K sinh(u) and K cosh(u), Pa.
+  template <class V>
+  struct Hyperbolic {
+    V sinh, cosh;
+  };
+  template <class V>
+  SNOWSHED_INLINE Hyperbolic<V> hyperbolic(const V& u) const {
+    const V growth = expm1(u);  // exp(u) - 1
+    const V ratio = growth / (growth + T(1));
+    return {T(0.5) * hardening * (growth + ratio), T(0.5) * hardening * (growth - ratio + T(2))};
+  }
+
+  /// The same at u + w from the values at u, by the addition theorems with their series in w: exact
+  /// to rounding while |w| <= near_enough. A fraction of the cost of an exponential.
+  static constexpr T near_enough = T(0.01);
+  template <class V>
+  static SNOWSHED_INLINE Hyperbolic<V> shifted(const Hyperbolic<V>& k, const V& w) {
+    const V w2 = w * w;
+    const V sinh_w = w * (T(1) + w2 * (T(1) / T(6) + w2 * T(1) / T(120)));
+    const V cosh_w = T(1) + w2 * (T(0.5) + w2 * (T(1) / T(24) + w2 * T(1) / T(720)));
+    return {k.sinh * cosh_w + k.cosh * sinh_w, k.cosh * cosh_w + k.sinh * sinh_w};
+  }
+
+  template <class V, class M>
+  __attribute__((noinline)) void project(PQ<V>& s, V& ev, const M& yields) const {
+    const V zero = broadcast<V>(T(0));
+    const PQ<V> trial = s;
+    const V p0_old = preconsolidation(ev);
+    const V to_origin = -trial.p / elastic.bulk;  // D at which p = 0
+    const V n_trial =
+        T(2) * trial.p - (T(1) - beta) * p0_old;  // where the trial lies of the centre
+    const auto compacts = n_trial > T(0);
+
+    // The far end of the bracket. Compaction: p = 0 lies past the centre. Dilation: p0 reaches
+    // zero at D = -e_v (when e_v < 0).
+    const V far = select(compacts, to_origin, max(V(-ev), zero));
+    // No strength is left at the end: either p0 stays zero on the way to p = 0, or tension
+    // outlasts the softening. The stress drops to the origin and e_v takes what is left over.
+    const V p0_origin = preconsolidation(V(ev + to_origin));
+    const V one = broadcast<V>(T(1));
+    const V is_loose = select(compacts, V(select(p0_origin <= T(0), one, zero)),
+                              V(select(ev + to_origin >= T(0), one, zero)));
+
+    const V d = root(trial, ev, p0_old, n_trial, far, V(select(yields, zero, one) + is_loose));
+
+    const V p = trial.p + elastic.bulk * d;
+    const V p0 = preconsolidation(V(ev + d));
+    const V p_on = clamp(p, V(-beta * p0), p0);
+    // Exactly on the surface, and never more shear than the trial had.
+    const V q_on = min(
+        trial.q, sqrt(max(V(m2 / (T(1) + T(2) * beta) * (p_on + beta * p0) * (p0 - p_on)), zero)));
+    const auto free = is_loose > T(0);
+    s.p = select(yields, select(free, zero, p_on), trial.p);
+    s.q = select(yields, select(free, zero, q_on), trial.q);
+    // e_v takes exactly the volume that the elastic strain gave up: p = p_tr + K_d D.
+    ev = select(yields, V(ev + select(free, to_origin, V((p_on - trial.p) / elastic.bulk))), ev);
+  }
+
+  /// Safeguarded Newton for D; lanes with `skip` > 0 are left at zero.
+  template <class V>
+  SNOWSHED_INLINE V root(const PQ<V>& trial, const V& ev, const V& p0_old, const V& n_trial,
+                         const V& far, const V& skip) const {
+    constexpr T tolerance = sizeof(T) == 4 ? T(3e-7) : T(1e-15);
+    const V zero = broadcast<V>(T(0));
+    const C c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
+    // Close to the root a change of pressures that rounding hides ends the search.
+    const V unseen = T(0.2) * tolerance * (abs(trial.p) + beta * p0_old);
+    V near = zero, end = far;
+    // Snow that spread far beyond its strength (u < -1) keeps none: no need to follow it further.
+    const auto at_trial = hyperbolic(max(V(-xi * ev), broadcast<V>(T(-1))));
+    const bool stays_near = !any(abs(V(xi * far)) > near_enough);
+
+    // First guess: N (q_tr/q_s - 1) + c D = 0, which is y = 0 written for the shear q_s that the
+    // surface allows, with N linear in D and q_s as at the trial, or that of snow near the tips
+    // where the trial lies beyond them. Never past the centre line; zero, the trial itself, where
+    // hardly any shear is to be given up.
+    const V inside =
+        max(V((trial.p + beta * p0_old) * (p0_old - trial.p)), V(T(0.05) * p0_old * p0_old));
+    const V q_s = sqrt(V(m2 / (T(1) + T(2) * beta) * inside));
+    const V excess = clamp(V(trial.q / (q_s + T(1e-30)) - T(1)), zero, broadcast<V>(T(1e6)));
+    const V n_slope_trial = T(2) * elastic.bulk + (T(1) - beta) * xi * at_trial.cosh;
+    V d = -n_trial * excess / (c + n_slope_trial * excess);
+    d = select(abs(d) < abs(far), d, V(T(0.5) * far));
+    auto active = skip <= T(0);
+    for (int iteration = 0; iteration < 100; ++iteration) {
+      V p0, p0_slope;
+      if (stays_near) {
+        const auto k = shifted(at_trial, V(-xi * d));
+        p0 = max(k.sinh, zero);
+        p0_slope = select(k.sinh > T(0), V(-xi * k.cosh), zero);
+      } else {
+        p0 = preconsolidation(V(ev + d), p0_slope);
+      }
+      const V p = trial.p + elastic.bulk * d;
+      const V n = T(2) * p - (T(1) - beta) * p0;
+      const V n_slope = T(2) * elastic.bulk - (T(1) - beta) * p0_slope;
+      const V flow = n - c * d;  // has the sign of n: |flow| >= |n|
+      const V ratio = n / select(abs(flow) > T(0), flow, zero + T(1));
+      const V q = trial.q * ratio;
+      const V q_slope =
+          trial.q * c * (n - d * n_slope) / select(abs(flow) > T(0), V(flow * flow), zero + T(1));
+      const V shear = (T(1) + T(2) * beta) / m2 * q * q;
+      const V y = shear + (p + beta * p0) * (p - p0);
+      const auto before_centre = n * n_trial > T(0);
+      // As near to zero as rounding lets y come; not where it overflows.
+      const V size = shear + (abs(p) + beta * p0) * (abs(p) + p0);
+      const auto found = before_centre & (abs(y) < tolerance * size);
+      const V y_slope = T(2) * (T(1) + T(2) * beta) / m2 * q * q_slope +
+                        (elastic.bulk + beta * p0_slope) * (p - p0) +
+                        (p + beta * p0) * (elastic.bulk - p0_slope);
+      // Past the root: inside the surface, or beyond the centre line.
+      const auto past = (y <= T(0)) | (n * n_trial <= T(0));
+      near = select(past, near, d);
+      end = select(past, d, end);
+      const V newton = d - y / select(abs(y_slope) > T(0), y_slope, zero + T(1));
+      const V lo = min(near, end), hi = max(near, end);
+      const auto usable = (newton > lo) & (newton < hi) & before_centre;
+      const V next = select(usable, newton, V(T(0.5) * (near + end)));
+      const V change = abs(V(next - d));
+      const auto moved =
+          (change > tolerance * abs(next)) &
+          ((change * (elastic.bulk - p0_slope) > unseen) | (abs(y) > T(0.01) * size));
+      active = active & !found;
+      d = select(active, next, d);
+      active = active & moved;
+      if (!any(active)) break;
+    }
+    return select(skip > T(0), zero, d);
+  }
+};
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,25 @@
+// The parameters of snow, and the laws it may follow.
+#pragma once
+
+namespace snowshed {
+
+enum class SnowModel { cam_clay, elastic };
+
+/// The number of different snows a scene may have: a particle stores which one is its own in a
+/// byte.
+inline constexpr int max_materials = 256;
+
+/// Cohesive Modified Cam-Clay snow (Gaume et al. 2018; thesis 1.2.5-1.2.7).
+/// Defaults: the calibrated snow of Table 4.3.1.
+struct Snow {
+  SnowModel model = SnowModel::cam_clay;
+  double density = 210.0;                    // kg/m3
+  double youngs_modulus = 1.0e6;             // Pa
+  double poissons_ratio = 0.3;               // -
+  double critical_state_slope = 0.5;         // M, -
+  double preconsolidation_pressure = 7.0e3;  // p0, Pa, initial value
+  double cohesion = 0.2;                     // beta, -
+  double hardening_factor = 0.1;             // xi, -
+};
+
+}  // namespace snowshed

@@ -1,0 +1,158 @@
+#include "snowshed/methods/mpm/boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/geometry/combine.hpp"
+
+namespace snowshed {
+
+Obstacle thick_enough(Obstacle obstacle, double dx) {
+  const double missing = dx - obstacle.shape->inradius();
+  if (missing > 0) obstacle.shape = dilate(obstacle.shape, missing);
+  return obstacle;
+}
+
+template <class T, int D>
+Contacts<T, D>::Contacts(std::vector<Obstacle> obstacles, double dx) : dx_(dx) {
+  for (Obstacle& o : obstacles) {
+    laws_.push_back(o.law);
+    any_motion_ = any_motion_ || o.motion.has_value();
+    obstacles_.push_back(thick_enough(std::move(o), dx));
+  }
+}
+
+namespace {
+
+template <int D>
+VecD<D> node_position(const BlockCoord<D>& block, int node, double dx) {
+  constexpr int B = block_edge<D>;
+  VecD<D> x;
+  for (int d = D - 1; d >= 0; --d, node /= B) x[d] = (block[d] * B + node % B) * dx;
+  return x;
+}
+
+template <int D>
+VecD<D> block_centre(const BlockCoord<D>& block, double dx) {
+  constexpr int B = block_edge<D>;
+  VecD<D> x;
+  for (int d = 0; d < D; ++d) x[d] = (block[d] * B + 0.5 * (B - 1)) * dx;
+  return x;
+}
+
+}  // namespace
+
+template <class T, int D>
+void Contacts<T, D>::find_block(BlockKey key, double time, bool moving,
+                                std::vector<Contact<T>>& found) const {
+  const BlockCoord<D> block = block_coord<D>(key);
+  const double reach = 0.5 * block_edge<D> * dx_ * std::sqrt(double(D));
+  const double on_surface = 1e-6 * dx_;  // a node on the surface belongs to the obstacle
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    const Obstacle& obstacle = obstacles_[o];
+    if (obstacle.motion.has_value() != moving) continue;
+    const RigidPose pose = moving ? obstacle.motion->at(time) : RigidPose{};
+    const auto local = [&](const Vec3& x) { return moving ? pose.to_body(x) : x; };
+    if (obstacle.shape->distance(local(embed(block_centre<D>(block, dx_)))) > reach) continue;
+    for (int node = 0; node < block_nodes<D>; ++node) {
+      const Vec3 x = embed(node_position<D>(block, node, dx_));
+      const Vec3 body = local(x);
+      if (!(obstacle.shape->distance(body) <= on_surface)) continue;
+      Vec3 normal = obstacle.shape->normal(body);
+      if (moving) normal = pose.normal_to_world(normal);
+      VecD<D> n = section<D>(normal);
+      n = n.norm() > 1e-9 ? VecD<D>(n.normalized()) : VecD<D>(VecD<D>::Unit(D - 1));
+      const VecD<D> v = section<D>(moving ? pose.velocity(x) : Vec3::Zero());
+      Contact<T> c{};
+      c.node = node;
+      c.obstacle = std::int32_t(o);
+      for (int d = 0; d < D; ++d) {
+        c.normal[d] = T(n[d]);
+        c.velocity[d] = T(v[d]);
+      }
+      c.bilateral = obstacle.law.condition == Condition::slip && n[D - 1] > 0.0;
+      found.push_back(c);
+    }
+  }
+}
+
+template <class T, int D>
+void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double time, int threads) {
+  const std::ptrdiff_t n = std::ptrdiff_t(grid_blocks.size());
+  std::vector<std::vector<Contact<T>>> found(grid_blocks.size());
+  parallel_for(n, threads, 8, [&](std::ptrdiff_t i) {
+    const auto old = std::lower_bound(blocks_.begin(), blocks_.end(), grid_blocks[i]);
+    if (old != blocks_.end() && *old == grid_blocks[i]) {
+      const std::size_t b = std::size_t(old - blocks_.begin());
+      found[i].assign(contacts_.begin() + first_[b], contacts_.begin() + first_[b + 1]);
+    } else {
+      find_block(grid_blocks[i], time, false, found[i]);
+      if (any_motion_) find_block(grid_blocks[i], time, true, found[i]);
+    }
+  });
+  blocks_ = grid_blocks;
+  first_.assign(1, 0);
+  contacts_.clear();
+  for (const auto& block : found) {
+    contacts_.insert(contacts_.end(), block.begin(), block.end());
+    first_.push_back(contacts_.size());
+  }
+}
+
+template <class T, int D>
+void Contacts<T, D>::follow(double time) {
+  if (!any_motion_) return;
+  const std::vector<StoredImpulse> stored = stored_impulses();
+  std::vector<Contact<T>> all;
+  std::vector<std::size_t> first{0};
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
+      if (!obstacles_[contacts_[i].obstacle].motion) all.push_back(contacts_[i]);
+    find_block(blocks_[b], time, true, all);
+    first.push_back(all.size());
+  }
+  contacts_ = std::move(all);
+  first_ = std::move(first);
+  restore(stored);
+}
+
+template <class T, int D>
+bool Contacts<T, D>::moves(std::size_t block) const {
+  if (!any_motion_) return false;
+  const auto in_motion = [](const Contact<T>& c) {
+    return std::any_of(c.velocity, c.velocity + D, [](T v) { return v != T(0); });
+  };
+  return std::any_of(contacts_.begin() + first_[block], contacts_.begin() + first_[block + 1],
+                     in_motion);
+}
+
+template <class T, int D>
+std::vector<typename Contacts<T, D>::StoredImpulse> Contacts<T, D>::stored_impulses() const {
+  std::vector<StoredImpulse> stored;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
+      if (contacts_[i].next_normal_impulse > T(0))
+        stored.push_back({blocks_[b], contacts_[i].node, contacts_[i].obstacle,
+                          double(contacts_[i].next_normal_impulse)});
+  return stored;
+}
+
+template <class T, int D>
+void Contacts<T, D>::restore(const std::vector<StoredImpulse>& stored) {
+  for (const StoredImpulse& d : stored) {
+    const auto at = std::lower_bound(blocks_.begin(), blocks_.end(), d.block);
+    if (at == blocks_.end() || *at != d.block) continue;
+    const std::size_t b = std::size_t(at - blocks_.begin());
+    for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
+      if (contacts_[i].node == d.node && contacts_[i].obstacle == d.obstacle)
+        contacts_[i].normal_impulse = contacts_[i].next_normal_impulse = T(d.amount);
+  }
+}
+
+template class Contacts<float, 2>;
+template class Contacts<float, 3>;
+template class Contacts<double, 2>;
+template class Contacts<double, 3>;
+
+}  // namespace snowshed

@@ -1,0 +1,71 @@
+// Collision objects on the grid: which nodes an obstacle constrains, and how.
+//
+// The conditions are the thesis's (1.2.3). Two things are ours:
+// - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
+//   contacts have a memory that outlives a step.
+// - SLIP holds snow down only where gravity presses it on, and only against a pull that is
+//   shorter-lived than the push before it. On the underside of a panel it lets go, as SEPARATE
+//   does, so that snow never hangs from a panel's back.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/methods/mpm/block_layout.hpp"
+#include "snowshed/methods/obstacle.hpp"
+
+namespace snowshed {
+
+/// The same obstacle as the grid must see it: a body thinner than two cells would slip between
+/// the nodes, so its surface is moved out until it is two cells thick.
+Obstacle thick_enough(Obstacle obstacle, double dx);
+
+/// All contacts of a layout's grid blocks.
+template <class T, int D>
+class Contacts {
+ public:
+  Contacts(std::vector<Obstacle> obstacles, double dx);
+
+  const std::vector<ContactLaw>& laws() const { return laws_; }
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  bool any_motion() const { return any_motion_; }
+
+  /// Finds the constrained nodes of new grid blocks; blocks that stay keep theirs.
+  void relocate(const std::vector<BlockKey>& grid_blocks, double time, int threads = 1);
+
+  /// Follows moving obstacles to `time`. Nothing to do where none moves.
+  void follow(double time);
+
+  Contact<T>* of_block(std::size_t block) { return contacts_.data() + first_[block]; }
+  int count(std::size_t block) const { return int(first_[block + 1] - first_[block]); }
+
+  /// Whether an obstacle moves through a block.
+  bool moves(std::size_t block) const;
+
+  /// Makes the stored impulses of the step just taken the present ones.
+  void commit(std::size_t block) {
+    for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
+      contacts_[i].normal_impulse = contacts_[i].next_normal_impulse;
+  }
+
+  /// A contact with stored impulse (N s), for checkpoints.
+  struct StoredImpulse {
+    BlockKey block;
+    std::int32_t node, obstacle;
+    double amount;
+  };
+  std::vector<StoredImpulse> stored_impulses() const;
+  void restore(const std::vector<StoredImpulse>& stored_impulses);
+
+ private:
+  void find_block(BlockKey block, double time, bool moving, std::vector<Contact<T>>& found) const;
+
+  std::vector<Obstacle> obstacles_;
+  std::vector<ContactLaw> laws_;
+  double dx_;
+  bool any_motion_ = false;
+  std::vector<BlockKey> blocks_;
+  std::vector<std::size_t> first_{0};
+  std::vector<Contact<T>> contacts_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,50 @@
+// The grid's arrays: a tile of sums for each block with particles, and for each grid block the
+// gathered sums and the velocities.
+#pragma once
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/methods/mpm/block_layout.hpp"
+
+namespace snowshed {
+
+template <class T, int D>
+struct Grid {
+  int tile_size;  // values per tile
+  AlignedVector<T> tiles, sums, velocities;
+  std::vector<BlockStats> block_stats;  // per particle block
+  std::vector<NodeStats> node_stats;    // per grid block
+  std::vector<std::uint8_t> touched;    // per grid block: whether any particle reaches it
+
+  static constexpr int block_size = block_nodes<D> * node_values;
+
+  explicit Grid(Basis basis) : tile_size(tile_nodes<D>(basis) * node_values) {}
+
+  void resize(const BlockLayout<D>& layout) {
+    const std::size_t blocks = layout.particle_blocks.size(), nodes = layout.grid_blocks.size();
+    make_room(tiles, blocks * tile_size);
+    make_room(sums, nodes * block_size);
+    make_room(velocities, nodes * block_size);
+    block_stats.resize(blocks);
+    node_stats.resize(nodes);
+    touched.resize(nodes);
+  }
+
+  /// What the arrays held is not kept: all of it is computed anew after a change of layout.
+  static void make_room(AlignedVector<T>& values, std::size_t n) {
+    if (n > values.capacity()) {
+      AlignedVector<T>().swap(values);
+      values.reserve(n + n / 8);  // doubling would hold as much again
+    }
+    values.resize(n);
+  }
+
+  T* tile(std::size_t block) { return tiles.data() + block * tile_size; }
+  T* sum(std::size_t block) { return sums.data() + block * block_size; }
+  T* velocity(std::size_t block) { return velocities.data() + block * block_size; }
+
+  std::size_t bytes() const {
+    return (tiles.capacity() + sums.capacity() + velocities.capacity()) * sizeof(T);
+  }
+};
+
+}  // namespace snowshed

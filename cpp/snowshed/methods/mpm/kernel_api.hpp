@@ -1,0 +1,165 @@
+// What the solver and the kernels agree on: raw views, and one table of functions per combination
+// of features. The kernels are compiled once for each instruction set (cmake/KernelVariants.cmake),
+// so nothing here depends on one.
+#pragma once
+
+#include <cstdint>
+
+#include "snowshed/material/snow.hpp"
+#include "snowshed/methods/contact_law.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
+
+namespace snowshed {
+
+/// Nodes along one edge of a grid block.
+template <int D>
+inline constexpr int block_edge = D == 3 ? 4 : 8;
+
+template <int D>
+inline constexpr int block_nodes = block_edge<D> * block_edge<D> * (D == 3 ? block_edge<D> : 1);
+
+/// Values per node, one 256-bit load in single precision.
+/// Sums:       mass, momentum (3), force (3), unused.
+/// Velocities: new velocity (3), unused, then its change over the step (FLIP) or itself (APIC).
+inline constexpr int node_values = 8;
+
+/// Nodes that a particle touches along one direction.
+constexpr int support(Basis basis) { return basis == Basis::quadratic ? 3 : 4; }
+
+/// Distance, in cells, from a particle's lowest node to the particle, less its fraction.
+constexpr double base_offset(Basis basis) { return basis == Basis::quadratic ? 0.5 : 1.0; }
+
+/// Edge of a block's tile: its own nodes, those its particles reach beyond, and one more on
+/// either side so that particles may stray by a cell before they must be sorted again.
+template <int D>
+constexpr int tile_edge(Basis basis) {
+  return block_edge<D> + support(basis) + 1;
+}
+template <int D>
+constexpr int tile_nodes(Basis basis) {
+  const int n = tile_edge<D>(basis);
+  return D == 3 ? n * n * n : n * n;
+}
+
+template <int D>
+inline constexpr int neighbour_count = D == 3 ? 27 : 9;
+
+/// Particle arrays, structure of arrays. `cell` is the position in cells relative to the block's
+/// first node, less base_offset, so that its integer part is the lowest node touched.
+template <class T>
+struct ParticleView {
+  T* cell[3];
+  T* velocity[3];
+  T* affine[9];             // APIC only: C, row by row, 1/s
+  T* be_minus_identity[6];  // b_e the elastic left Cauchy-Green tensor
+  T* plastic;               // volumetric plastic strain; plastic laws only
+  T* mass;
+  const std::uint8_t* material_id;  // by kind only: which snow
+};
+
+/// What the kernels need of a snow. C is a scalar, or lanes: of the particles of a chunk.
+template <class C>
+struct MaterialConstants {
+  C lambda, mu, bulk;         // Pa, see Elasticity
+  C m2, beta, xi, hardening;  // see CamClay
+  C specific_volume;          // m3/kg, before any deformation
+};
+
+template <class T>
+struct StepParameters {
+  T dt, dx, gravity, flip_ratio;
+  T friction_rate;                    // dt over the friction memory, see NodeKernels::apply
+  const MaterialConstants<T>* snows;  // by kind
+};
+
+/// Largest norm of the elastic Hencky strain that single precision still resolves: compression to
+/// a twentieth or stretching by twenty. Snow yields long before; only bodies much too soft for
+/// their speed get there.
+inline constexpr double elastic_strain_limit = 3.0;
+
+/// Bits of `BlockStats::reach`: nodes below a block, or above it, along a direction.
+constexpr int below(int direction) { return 1 << (2 * direction); }
+constexpr int above(int direction) { return 2 << (2 * direction); }
+
+/// What a kernel reports of one block of particles.
+struct BlockStats {
+  double speed_squared = 0;   // largest, of velocity and of motion, m2/s2
+  double strain = 0;          // largest |dt grad v| component; of `probe` only
+  int reach = 0;              // which blocks around it hold nodes that its particles touch
+  bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
+  std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
+  double elastic_strain = 0;  // of that particle
+  double kinetic = 0, elastic = 0, plastic = 0;  // J; with energy books only
+  double stress_power = 0;  // W, of the new stresses along the motion just made
+};
+
+/// What a kernel reports of one block of nodes.
+struct NodeStats {
+  double low[3], high[3];  // bounds of the new velocities; low > high: no snow here
+  double kinetic_before = 0, kinetic_after = 0;   // of the grid, J; before forces, after contact
+  double friction = 0, sticking = 0, impact = 0;  // taken by contact, J
+  double stress_work = 0;  // J, of the stresses at the velocities before the step
+};
+
+/// How the nodes of a step would have moved a block of particles that sleeps: means over its mass.
+struct CarriedMotion {
+  double speed_squared = 0;            // m2/s2
+  double change[3] = {0.0, 0.0, 0.0};  // of its velocity in the step, by all forces, m/s
+};
+
+/// A node that an obstacle constrains.
+template <class T>
+struct Contact {
+  std::int32_t node;
+  std::int32_t obstacle;
+  T normal[3];
+  T velocity[3];          // of the obstacle at the node
+  T normal_impulse;       // stored normal impulse, N s, that friction has yet to be charged for
+  T next_normal_impulse;  // the same after the step being tried
+  bool bilateral;         // SLIP: no separation here
+};
+
+template <class T>
+struct Kernels {
+  /// Sums of a block's particles onto its tile, from their present state.
+  void (*scatter)(const StepParameters<T>&, const ParticleView<T>&, int first, int count, T* tile,
+                  BlockStats&);
+  /// One step of a block's particles from the velocities of the 3^D blocks around, and their sums
+  /// for the next step.
+  void (*g2p2g)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
+                const T* const* velocities, T* tile, BlockStats&);
+  /// Only the largest |dt grad v| that `g2p2g` would impose.
+  void (*probe)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
+                const T* const* velocities, BlockStats&);
+  /// Adds the tiles of the 3^D particle blocks around (null: none) to a block's node sums.
+  void (*gather)(const T* const* tiles, T* sums);
+  /// Node velocities from the sums: forces, gravity, contact.
+  void (*update)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
+                 int contact_count, const ContactLaw*, NodeStats&);
+  /// What the 3^D blocks of nodes around (null: at rest) would do to the snow on a tile.
+  void (*carried_motion)(const T* tile, const T* const* sums, const T* const* velocities,
+                         CarriedMotion&);
+};
+
+struct KernelChoice {
+  int dimension;
+  Transfer transfer;
+  Basis basis;
+  SnowModel model;  // of the only snow
+  bool several_materials = false;
+  bool energy = false;
+
+  /// Whether the kernels look up each particle's snow, of whatever model. With energy books they
+  /// always do: books are for checks, and not worth kernels of each model.
+  bool material_per_particle() const { return several_materials || energy; }
+};
+
+/// The best build of the chosen kernels for this machine.
+template <class T>
+Kernels<T> select_kernels(const KernelChoice&);
+
+/// "avx512", "avx2" or "baseline": what select_kernels uses here. The environment variable
+/// SNOWSHED_KERNELS forces one.
+const char* kernel_variant();
+
+}  // namespace snowshed

@@ -1,0 +1,48 @@
+// Quadratic and cubic B-spline weights (thesis 1.2.17-1.2.22).
+#pragma once
+
+#include "snowshed/core/simd_pack.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// Weights and derivatives (per cell) at the nodes a particle touches along one direction; f in
+/// [0, 1) is the particle's fraction past its lowest node plus base_offset.
+template <Basis basis>
+struct BSpline;
+
+template <>
+struct BSpline<Basis::quadratic> {
+  static constexpr int support = 3;
+  template <class V>
+  static SNOWSHED_INLINE void evaluate(const V& f, V (&w)[3], V (&g)[3]) {
+    using T = Scalar<V>;
+    const V r = T(1) - f, h = f - T(0.5);
+    w[0] = T(0.5) * r * r;
+    w[1] = T(0.75) - h * h;
+    w[2] = T(0.5) * f * f;
+    g[0] = -r;
+    g[1] = T(-2) * h;
+    g[2] = f;
+  }
+};
+
+template <>
+struct BSpline<Basis::cubic> {
+  static constexpr int support = 4;
+  template <class V>
+  static SNOWSHED_INLINE void evaluate(const V& f, V (&w)[4], V (&g)[4]) {
+    using T = Scalar<V>;
+    const V r = T(1) - f, f2 = f * f, r2 = r * r;
+    w[0] = T(1.0 / 6) * r2 * r;
+    w[1] = T(2.0 / 3) - f2 + T(0.5) * f2 * f;
+    w[2] = T(2.0 / 3) - r2 + T(0.5) * r2 * r;
+    w[3] = T(1.0 / 6) * f2 * f;
+    g[0] = T(-0.5) * r2;
+    g[1] = f * (T(1.5) * f - T(2));
+    g[2] = -r * (T(1.5) * r - T(2));
+    g[3] = T(0.5) * f2;
+  }
+};
+
+SNOWSHED_VARIANT_END

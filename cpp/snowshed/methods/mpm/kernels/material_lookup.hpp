@@ -1,0 +1,74 @@
+// The snow of the particles in a chunk: one for all of them, whose constants are scalars, or each
+// particle's own, whose constants are lanes.
+#pragma once
+
+#include "snowshed/material/cam_clay.hpp"
+#include "snowshed/material/elastic.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+template <template <class> class Law, class C>
+struct ChunkMaterial {
+  static constexpr bool plastic = Law<C>::plastic;
+  Law<C> law;
+  C specific_volume;  // m3/kg, before any deformation
+};
+
+template <class C>
+SNOWSHED_INLINE ChunkMaterial<Elastic, C> elastic_snow(const MaterialConstants<C>& k) {
+  return {{{k.lambda, k.mu, k.bulk}}, k.specific_volume};
+}
+template <class C>
+SNOWSHED_INLINE ChunkMaterial<CamClay, C> cam_clay_snow(const MaterialConstants<C>& k) {
+  return {{{k.lambda, k.mu, k.bulk}, k.m2, k.beta, k.xi, k.hardening}, k.specific_volume};
+}
+
+/// The only snow of a scene.
+template <class T, template <class> class Law>
+struct SingleMaterial {
+  using Chunk = ChunkMaterial<Law, T>;
+
+  explicit SingleMaterial(const MaterialConstants<T>* snows) {
+    if constexpr (Chunk::plastic)
+      snow = cam_clay_snow(snows[0]);
+    else
+      snow = elastic_snow(snows[0]);
+  }
+
+  SNOWSHED_INLINE const Chunk& of(const ParticleView<T>&, int, int) const { return snow; }
+
+  Chunk snow;
+};
+
+/// Several snows, of either law: an elastic one has Cam-Clay constants that never yield (see
+/// material_constants).
+template <class T>
+struct MaterialPerParticle {
+  using Chunk = ChunkMaterial<CamClay, SimdPack<T>>;
+
+  explicit MaterialPerParticle(const MaterialConstants<T>* snows) : snows(snows) {}
+
+  /// Of `n` particles from `first`; as in `load`, lanes beyond repeat the first.
+  SNOWSHED_INLINE Chunk of(const ParticleView<T>& p, int first, int n) const {
+    const MaterialConstants<T>* own[simd_width<T>];
+    for (int l = 0; l < simd_width<T>; ++l) own[l] = &snows[p.material_id[first + (l < n ? l : 0)]];
+    using K = MaterialConstants<T>;
+    return cam_clay_snow(MaterialConstants<SimdPack<T>>{
+        gather_constants(own, &K::lambda), gather_constants(own, &K::mu),
+        gather_constants(own, &K::bulk), gather_constants(own, &K::m2),
+        gather_constants(own, &K::beta), gather_constants(own, &K::xi),
+        gather_constants(own, &K::hardening), gather_constants(own, &K::specific_volume)});
+  }
+
+  SNOWSHED_INLINE static SimdPack<T> gather_constants(const MaterialConstants<T>* const* own,
+                                                      T MaterialConstants<T>::* constant) {
+    auto lanes = broadcast<SimdPack<T>>(own[0]->*constant);
+    for (int l = 1; l < simd_width<T>; ++l) lanes[l] = own[l]->*constant;
+    return lanes;
+  }
+
+  const MaterialConstants<T>* snows;
+};
+
+SNOWSHED_VARIANT_END

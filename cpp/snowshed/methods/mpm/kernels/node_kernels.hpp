@@ -1,0 +1,222 @@
+// The grid side of a step: sums from the tiles, velocities from the sums (thesis 1.2.9), contact.
+#pragma once
+
+#include <limits>
+
+#include "snowshed/methods/mpm/kernels/chunk.hpp"
+#include "snowshed/methods/mpm/kernels/tile.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+template <class T, int D, Basis basis, bool flip, bool energy>
+struct NodeKernels {
+  /// kg. A node that a particle barely touches may have a mass whose inverse overflows.
+  static constexpr T least_mass = T(1e-30);
+
+  static void gather(const T* const* tiles, T* sums) {
+    std::memset(sums, 0, block_nodes<D> * node_values * sizeof(T));
+    Node<T>* out = reinterpret_cast<Node<T>*>(sums);
+    for_each_shared_row<D, basis>([&](int neighbour, int node, int tile_node, auto length) {
+      // Seen from the particle block this block is the neighbour on the opposite side.
+      const T* tile = tiles[neighbour_count<D> - 1 - neighbour];
+      if (!tile) return;
+      const Node<T>* in = reinterpret_cast<const Node<T>*>(tile);
+      for (int k = 0; k < length; ++k) out[node + k] += in[tile_node + k];
+    });
+  }
+
+  static void update(const StepParameters<T>& step, const T* sums, T* velocities,
+                     Contact<T>* contacts, int contact_count, const ContactLaw* laws,
+                     NodeStats& stats) {
+    const Node<T>* in = reinterpret_cast<const Node<T>*>(sums);
+    Node<T>* out = reinterpret_cast<Node<T>*>(velocities);
+    Node<T> gravity{};
+    gravity[D - 1] = -step.dt * step.gravity;
+    Node<T> low = std::numeric_limits<T>::max() - Node<T>{}, high = -low;
+    for (int k = 0; k < block_nodes<D>; ++k) {
+      const T mass = in[k][0];
+      if (!(mass > least_mass)) {
+        out[k] = Node<T>{};
+        continue;
+      }
+      const Node<T> old = velocity(in[k]);
+      const Node<T> now = old + force(in[k]) * (step.dt / mass) + gravity;
+      out[k] = with_second_half(now, old);
+      low = now < low ? now : low;
+      high = now > high ? now : high;
+    }
+    for (int c = 0; c < contact_count; ++c) {
+      const Node<T>& sum = in[contacts[c].node];
+      if (sum[0] > least_mass) {
+        Node<T> node = out[contacts[c].node];
+        apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
+        out[contacts[c].node] = with_second_half(node, velocity(sum));
+        low = node < low ? node : low;
+        high = node > high ? node : high;
+      } else {
+        contacts[c].next_normal_impulse = 0;
+      }
+    }
+    for (int d = 0; d < D; ++d) {
+      stats.low[d] = double(low[d]);
+      stats.high[d] = double(high[d]);
+    }
+    if constexpr (energy) record_kinetic_energy(step, in, out, stats);
+  }
+
+  static void carried_motion(const T* tile, const T* const* sums, const T* const* velocities,
+                             CarriedMotion& motion) {
+    const Node<T>* snow = reinterpret_cast<const Node<T>*>(tile);
+    double mass = 0, change[D] = {}, squared = 0;
+    for_each_shared_row<D, basis>([&](int neighbour, int node, int tile_node, auto length) {
+      for (int k = 0; k < length; ++k) {
+        const double m = double(snow[tile_node + k][0]);
+        mass += m;
+        if (!sums[neighbour] || m == 0) continue;
+        const Node<T>& sum = reinterpret_cast<const Node<T>*>(sums[neighbour])[node + k];
+        const Node<T>& now = reinterpret_cast<const Node<T>*>(velocities[neighbour])[node + k];
+        if (!(sum[0] > least_mass)) continue;
+        const Node<T> before = velocity(sum);
+        for (int d = 0; d < D; ++d) {
+          squared += m * double(now[d]) * double(now[d]);
+          change[d] += m * (double(now[d]) - double(before[d]));
+        }
+      }
+    });
+    motion.speed_squared = squared / mass;
+    for (int d = 0; d < D; ++d) motion.change[d] = change[d] / mass;
+  }
+
+ private:
+  /// Velocity before the step, in the first three values (the fourth is zero).
+  static SNOWSHED_INLINE Node<T> velocity(const Node<T>& sum) {
+    return __builtin_shufflevector(sum, sum, 1, 2, 3, 7, 7, 7, 7, 7) / sum[0];
+  }
+  static SNOWSHED_INLINE Node<T> force(const Node<T>& sum) {
+    return __builtin_shufflevector(sum, sum, 4, 5, 6, 7, 7, 7, 7, 7);
+  }
+  /// What the particles' velocities take from the node goes into its second half.
+  static SNOWSHED_INLINE Node<T> with_second_half(const Node<T>& now, const Node<T>& old) {
+    const Node<T> second = flip ? Node<T>(now - old) : now;
+    return __builtin_shufflevector(now, second, 0, 1, 2, 3, 8, 9, 10, 11);
+  }
+
+  static void record_kinetic_energy(const StepParameters<T>& step, const Node<T>* in,
+                                    const Node<T>* out, NodeStats& stats) {
+    for (int k = 0; k < block_nodes<D>; ++k) {
+      const double mass = double(in[k][0]);
+      if (!(mass > double(least_mass))) continue;
+      for (int d = 0; d < D; ++d) {
+        stats.kinetic_before += 0.5 * double(in[k][1 + d]) * double(in[k][1 + d]) / mass;
+        stats.kinetic_after += 0.5 * mass * double(out[k][d]) * double(out[k][d]);
+        stats.stress_work += double(step.dt) * double(in[k][4 + d]) * double(in[k][1 + d]) / mass;
+      }
+    }
+  }
+
+  /// Energy that a contact took which brought a node, or one direction of it, to a velocity of its
+  /// own. Over the step the node's velocity went from `before` to `after`; without the contact it
+  /// would have been `free`. Particles move with `after`, so that stresses and gravity did the work
+  /// m (free - before) . after; the contact took what of this is not kinetic energy now.
+  static double taken_by_holding(T mass, const T (&before)[D], const T (&free)[D],
+                                 const T (&after)[D]) {
+    double sum = 0;
+    for (int d = 0; d < D; ++d) {
+      const double b = before[d], f = free[d], a = after[d];
+      sum += (f - b) * a + 0.5 * (b * b - a * a);
+    }
+    return double(mass) * sum;
+  }
+
+  /// The same of a bounded impulse, which leaves the node free to answer to the stresses: minus its
+  /// work at the mean velocity.
+  static double taken_by_impulse(T mass, const T (&before)[D], const T (&free)[D],
+                                 const T (&after)[D]) {
+    double work = 0;
+    for (int d = 0; d < D; ++d)
+      work += 0.5 * (double(after[d]) - double(free[d])) * (double(before[d]) + double(after[d]));
+    return -double(mass) * work;
+  }
+
+  static double taken(bool held, T mass, const T (&before)[D], const T (&free)[D],
+                      const T (&after)[D]) {
+    return held ? taken_by_holding(mass, before, free, after)
+                : taken_by_impulse(mass, before, free, after);
+  }
+
+  /// Work of a node's stresses at the change of a velocity.
+  static double work(const StepParameters<T>& step, const Node<T>& sum, const T (&from)[D],
+                     const T (&to)[D]) {
+    double w = 0;
+    for (int d = 0; d < D; ++d) w += double(sum[4 + d]) * (double(to[d]) - double(from[d]));
+    return double(step.dt) * w;
+  }
+
+  /// The parts of a vector along a normal and across it.
+  struct Parts {
+    T normal[D], tangential[D];
+    Parts(const T (&v)[D], const T (&n)[3]) {
+      T along = 0;
+      for (int d = 0; d < D; ++d) along += v[d] * n[d];
+      for (int d = 0; d < D; ++d) {
+        normal[d] = along * n[d];
+        tangential[d] = v[d] - normal[d];
+      }
+    }
+  };
+
+  /// STICKY, SLIP, SEPARATE (thesis 1.2.3), with Coulomb friction on the running mean of the net
+  /// normal impulse. Each contact has a store of normal impulse: what presses on the obstacle
+  /// fills it, pull empties it, and it drains at the rate 1/(friction memory); friction is charged
+  /// for what drains. Over time every newton-second of net push is charged once. Charging each
+  /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates
+  /// on its panel (SLIP cancels the pulls but forgets them), up to holding it where it should
+  /// slide. Pull beyond the store is let go, so that SLIP does not glue.
+  static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
+                    const Node<T>& sum, Node<T>& node, NodeStats& stats) {
+    const T mass = sum[0];
+    T before[D], free[D], stored_impulses[D], after[D];
+    T normal_speed = 0;
+    for (int d = 0; d < D; ++d) {
+      before[d] = sum[1 + d] / mass;
+      free[d] = node[d];
+      normal_speed += (free[d] - c.velocity[d]) * c.normal[d];
+    }
+    if (law.condition == Condition::sticky) {
+      for (int d = 0; d < D; ++d) node[d] = after[d] = c.velocity[d];
+      if constexpr (energy) {
+        stats.sticking += taken_by_holding(mass, before, free, after);
+        stats.stress_work += work(step, sum, before, after);
+      }
+      return;
+    }
+    const T drained = c.normal_impulse * step.friction_rate;
+    const T left = c.normal_impulse - drained;
+    const T least_push = c.bilateral ? -left : T(0);
+    T push = -mass * normal_speed;
+    const bool lets_go = push < least_push;
+    if (lets_go) push = least_push;
+    c.next_normal_impulse = left + push;
+
+    T slip[D], slip_squared = 0;
+    const T along = normal_speed + push / mass;  // normal speed that remains
+    for (int d = 0; d < D; ++d) {
+      stored_impulses[d] = free[d] + push / mass * c.normal[d];
+      slip[d] = stored_impulses[d] - c.velocity[d] - along * c.normal[d];
+      slip_squared += slip[d] * slip[d];
+    }
+    const T slip_impulse = mass * std::sqrt(slip_squared);
+    const T friction = T(law.friction) * drained;
+    const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
+    for (int d = 0; d < D; ++d) node[d] = after[d] = stored_impulses[d] - lost * slip[d];
+    if constexpr (energy) {
+      const Parts was(before, c.normal), would(free, c.normal), is(after, c.normal);
+      stats.impact += taken(!lets_go, mass, was.normal, would.normal, is.normal);
+      if (!lets_go) stats.stress_work += work(step, sum, was.normal, is.normal);
+      if (lost == T(1)) stats.stress_work += work(step, sum, was.tangential, is.tangential);
+      stats.friction += taken(lost == T(1), mass, was.tangential, would.tangential, is.tangential);
+    }
+  }
+};
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,403 @@
+// The particle side of a step. Thesis 1.2.2: transfer to the grid (1.2.10, 1.2.23), forces (1.2.13
+// in Kirchhoff form), elastic trial (1.2.14), return mapping, transfer back (1.2.24-1.2.26).
+//
+// `g2p2g` takes a particle through a whole step and straight on to the sums of the next one, so
+// that its state is read and written once.
+#pragma once
+
+#include "snowshed/methods/mpm/kernels/chunk.hpp"
+#include "snowshed/methods/mpm/kernels/material_lookup.hpp"
+#include "snowshed/methods/mpm/kernels/tile.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
+struct ParticleKernels {
+  using Snow = typename Snows::Chunk;
+  using V = SimdPack<T>;
+  using Tensor = Sym<V, D>;
+  static constexpr int W = simd_width<T>;
+  static constexpr int S = support(basis);
+  static constexpr int N = tile_edge<D>(basis);
+  static constexpr bool apic = transfer == Transfer::apic;
+  /// APIC's inertia D_p = dx^2/4 (quadratic) or dx^2/3 (cubic), inverse, per cell squared.
+  static constexpr T apic_scale = basis == Basis::quadratic ? T(4) : T(3);
+
+  const StepParameters<T>& step;
+  const ParticleView<T>& p;
+  const Snows snows;
+  BlockStats& stats;
+
+  ParticleKernels(const StepParameters<T>& s, const ParticleView<T>& v, BlockStats& b)
+      : step(s), p(v), snows(s.snows), stats(b) {}
+
+  /// One chunk's state in registers.
+  struct State {
+    V cell[D], velocity[D], affine[apic ? D * D : 1], plastic, mass;
+    Tensor be_minus_identity;
+  };
+
+  SNOWSHED_INLINE void read(State& s, int at, int n) const {
+    for (int d = 0; d < D; ++d) {
+      s.cell[d] = load(p.cell[d] + at, n);
+      s.velocity[d] = load(p.velocity[d] + at, n);
+    }
+    for (int k = 0; k < Tensor::size; ++k)
+      s.be_minus_identity.c[k] = load(p.be_minus_identity[k] + at, n);
+    if constexpr (apic)
+      for (int k = 0; k < D * D; ++k) s.affine[k] = load(p.affine[k] + at, n);
+    if constexpr (Snow::plastic) s.plastic = load(p.plastic + at, n);
+    s.mass = load(p.mass + at, n);
+  }
+
+  SNOWSHED_INLINE void write(const State& s, int at, int n) const {
+    for (int d = 0; d < D; ++d) {
+      store(p.cell[d] + at, s.cell[d], n);
+      store(p.velocity[d] + at, s.velocity[d], n);
+    }
+    for (int k = 0; k < Tensor::size; ++k)
+      store(p.be_minus_identity[k] + at, s.be_minus_identity.c[k], n);
+    if constexpr (apic)
+      for (int k = 0; k < D * D; ++k) store(p.affine[k] + at, s.affine[k], n);
+    if constexpr (Snow::plastic) store(p.plastic + at, s.plastic, n);
+  }
+
+  // --- grid to particles ------------------------------------------------------------------
+
+  SNOWSHED_INLINE static auto gradient_only(const Stencil<T, D, basis>& stencil, int l) {
+    return [&stencil, l](int d, int k) { return stencil.gradient[d][k][l]; };
+  }
+  /// APIC: the first four values of a node meet the derivative, the others the arm.
+  SNOWSHED_INLINE static auto gradient_then_arm(const Stencil<T, D, basis>& stencil, int l) {
+    return [&stencil, l](int d, int k) {
+      const T g = stencil.gradient[d][k][l];
+      const T a = stencil.weight[d][k][l] * stencil.arm(d, k, l);
+      return Node<T>{g, g, g, g, a, a, a, a};
+    };
+  }
+  SNOWSHED_INLINE static auto arm_then_gradient(const Stencil<T, D, basis>& stencil, int l) {
+    return [&stencil, l](int d, int k) {
+      const T g = stencil.gradient[d][k][l];
+      const T a = stencil.weight[d][k][l] * stencil.arm(d, k, l);
+      return Node<T>{a, a, a, a, g, g, g, g};
+    };
+  }
+
+  /// Everything the grid tells a chunk.
+  struct Motion {
+    V pic[D], change[D], gradient[D][D];  // gradient[i][j] = dt d v_i / d x_j
+    V affine[apic ? D * D : 1];
+  };
+
+  SNOWSHED_INLINE void interpolate(const Stencil<T, D, basis>& stencil, const T* tile, int n,
+                                   Motion& m) const {
+    constexpr int row = (1 + D) * node_values;
+    alignas(64) T raw[W][row];
+    for (int l = 0; l < n; ++l) {
+      NodeSums<T, D> sums;
+      if constexpr (apic)
+        sums = interpolate_nodes(stencil, l, tile, gradient_then_arm(stencil, l));
+      else
+        sums = interpolate_nodes(stencil, l, tile, gradient_only(stencil, l));
+      std::memcpy(raw[l], &sums, sizeof sums);
+    }
+    for (int l = n; l < W; ++l) std::memcpy(raw[l], raw[0], sizeof raw[0]);
+    const auto column = [&raw](int c) {
+      V v;
+      for (int l = 0; l < W; ++l) v[l] = raw[l][c];
+      return v;
+    };
+    const T per_step = step.dt / step.dx;
+    for (int i = 0; i < D; ++i) {
+      m.pic[i] = column(i);
+      if constexpr (!apic) m.change[i] = column(4 + i);
+      for (int j = 0; j < D; ++j) {
+        m.gradient[i][j] = column(node_values * (1 + j) + i) * per_step;
+        if constexpr (apic)
+          m.affine[i * D + j] = column(node_values * (1 + j) + 4 + i) * (apic_scale / step.dx);
+      }
+    }
+  }
+
+  SNOWSHED_INLINE V largest_gradient(const Motion& m) const {
+    V r = abs(m.gradient[0][0]);
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) r = max(r, abs(m.gradient[i][j]));
+    return r;
+  }
+
+  // --- the particle's own step ------------------------------------------------------------
+
+  SNOWSHED_INLINE void move(State& s, const Motion& m) const {
+    for (int d = 0; d < D; ++d) {
+      s.cell[d] += m.pic[d] * (step.dt / step.dx);
+      if constexpr (apic)
+        s.velocity[d] = m.pic[d];
+      else  // (1.2.26)
+        s.velocity[d] = m.pic[d] + step.flip_ratio * (s.velocity[d] + m.change[d] - m.pic[d]);
+    }
+    if constexpr (apic)
+      for (int k = 0; k < D * D; ++k) s.affine[k] = m.affine[k];
+  }
+
+  /// b <- (I + G) b (I + G)^T with G = dt grad v (1.2.14), on b - I: with H = G b,
+  /// a <- a + H + H^T + H G^T.
+  SNOWSHED_INLINE void update_left_cauchy_green(State& s, const Motion& m) const {
+    V h[D][D];
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) {
+        V sum = m.gradient[i][j];
+        for (int k = 0; k < D; ++k) sum += m.gradient[i][k] * s.be_minus_identity(k, j);
+        h[i][j] = sum;
+      }
+    for (int i = 0; i < D; ++i)
+      for (int j = i; j < D; ++j) {
+        V sum = h[i][j] + h[j][i];
+        for (int k = 0; k < D; ++k) sum += h[i][k] * m.gradient[j][k];
+        s.be_minus_identity(i, j) += sum;
+      }
+  }
+
+  /// Kirchhoff stress of the present elastic strain; for plastic laws after bringing the strain
+  /// back to the yield surface, unless `committed` says that it is there already.
+  SNOWSHED_INLINE Tensor stress(State& s, const Snow& snow, int n, bool committed) const {
+    const auto& el = snow.law.elastic;
+    Tensor e = hencky_strain(s.be_minus_identity);
+    const V volumetric = trace(e);
+    const V third = volumetric * (T(1) / T(D));
+    Tensor dev = e;
+    for (int k = 0; k < D; ++k) dev.c[k] -= third;
+    V p_now = -el.bulk * volumetric;
+    V shear_scale = broadcast<V>(T(2) * el.mu);
+    if constexpr (Snow::plastic) {
+      const V q_trial = sqrt(V(T(6) * norm_squared(dev))) * el.mu;  // q = sqrt(3/2 s:s)
+      PQ<V> pq{p_now, q_trial};
+      if (!committed && snow.law.return_map(pq, s.plastic)) {
+        const auto sheared = q_trial > T(0);
+        const V keep = select(sheared, V(pq.q / select(sheared, q_trial, broadcast<V>(T(1)))),
+                              broadcast<V>(T(1)));
+        const V new_third = pq.p * (T(-1) / (el.bulk * T(D)));
+        for (int k = 0; k < Tensor::size; ++k) e.c[k] = keep * dev.c[k];
+        for (int k = 0; k < D; ++k) e.c[k] += new_third;
+        const Tensor returned = cauchy_green_minus_identity(e);
+        const auto changed = (pq.p != p_now) | (pq.q != q_trial);
+        for (int k = 0; k < Tensor::size; ++k)
+          s.be_minus_identity.c[k] = select(changed, returned.c[k], s.be_minus_identity.c[k]);
+        shear_scale *= keep;
+      }
+      if constexpr (energy) record_energy(PQ<V>{p_now, q_trial}, pq, s.mass, snow, n);
+      p_now = pq.p;
+    }
+    Tensor tau;
+    for (int k = 0; k < Tensor::size; ++k) tau.c[k] = shear_scale * dev.c[k];
+    for (int k = 0; k < D; ++k) tau.c[k] -= p_now;
+    return tau;
+  }
+
+  /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work of the
+  /// return, stress times plastic strain. (The trial's elastic energy less the present one would
+  /// count the square of each step's plastic strain on top, an error that does not fade with time.)
+  void record_energy(const PQ<V>& trial, const PQ<V>& now, const V& mass, const Snow& snow,
+                     int n) const {
+    const auto& el = snow.law.elastic;
+    for (int l = 0; l < n; ++l) {
+      const double volume = double(mass[l]) * double(snow.specific_volume[l]);
+      const double p = now.p[l], q = now.q[l];
+      const double bulk = el.bulk[l], mu = el.mu[l];
+      stats.elastic += volume * (p * p / (2 * bulk) + q * q / (6 * mu));
+      stats.plastic += volume * (p * (trial.p[l] - p) / bulk + q * (trial.q[l] - q) / (3 * mu));
+    }
+  }
+
+  /// Of the new stresses along the motion just made.
+  void record_stress_power(const State& s, const Motion& m, const Tensor& tau, const Snow& snow,
+                           int n) const {
+    V work = broadcast<V>(T(0));
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) work += tau(i, j) * m.gradient[i][j];
+    for (int l = 0; l < n; ++l)
+      stats.stress_power -=
+          double(s.mass[l]) * double(snow.specific_volume[l]) * double(work[l]) / double(step.dt);
+  }
+
+  void record_kinetic_energy(const State& s, int n) const {
+    for (int l = 0; l < n; ++l) {
+      double v2 = 0;
+      for (int d = 0; d < D; ++d) v2 += double(s.velocity[d][l]) * double(s.velocity[d][l]);
+      if constexpr (apic) {
+        const double inertia = double(step.dx) * double(step.dx) / double(apic_scale);
+        for (int k = 0; k < D * D; ++k)
+          v2 += inertia * double(s.affine[k][l]) * double(s.affine[k][l]);
+      }
+      stats.kinetic += 0.5 * double(s.mass[l]) * v2;
+    }
+  }
+
+  // --- particles to grid ------------------------------------------------------------------
+
+  /// Adds a chunk to the tile: mass, momentum, and the force -V0 tau grad w (1.2.13).
+  SNOWSHED_INLINE void scatter_chunk(const Stencil<T, D, basis>& stencil, const State& s,
+                                     const Tensor& tau, const Snow& snow, int n, T* tile) const {
+    V momentum[D], force[D][D], shear[D][D];
+    const V force_scale = s.mass * (-snow.specific_volume / step.dx);
+    for (int i = 0; i < D; ++i) {
+      momentum[i] = s.mass * s.velocity[i];
+      for (int j = 0; j < D; ++j) {
+        force[i][j] = force_scale * tau(i, j);
+        if constexpr (apic) shear[i][j] = s.mass * s.affine[i * D + j] * step.dx;
+      }
+    }
+    for (int l = 0; l < n; ++l) {
+      // Built from scalars, not element by element: that would go through memory and stall.
+      NodeSums<T, D> a;
+      const T third = D == 3 ? momentum[D - 1][l] : T(0);
+      a.value = Node<T>{s.mass[l], momentum[0][l], momentum[1][l], third, 0, 0, 0, 0};
+      for (int j = 0; j < D; ++j) {
+        const T f0 = force[0][j][l], f1 = force[1][j][l], f2 = D == 3 ? force[D - 1][j][l] : T(0);
+        if constexpr (apic) {
+          const T s0 = shear[0][j][l], s1 = shear[1][j][l], s2 = D == 3 ? shear[D - 1][j][l] : T(0);
+          a.along[j] = Node<T>{0, s0, s1, s2, f0, f1, f2, 0};
+        } else {
+          a.along[j] = Node<T>{0, 0, 0, 0, f0, f1, f2, 0};
+        }
+      }
+      if constexpr (apic)
+        scatter_nodes(stencil, l, a, tile, arm_then_gradient(stencil, l));
+      else
+        scatter_nodes(stencil, l, a, tile, gradient_only(stencil, l));
+    }
+  }
+
+  /// |e|^2 of the Hencky strain that goes with a stress.
+  SNOWSHED_INLINE V elastic_strain_squared(const Tensor& tau, const Snow& snow) const {
+    const V mean = trace(tau) * (T(1) / T(D));
+    const V volumetric = mean / snow.law.elastic.bulk;
+    Tensor dev = tau;
+    for (int k = 0; k < D; ++k) dev.c[k] -= mean;
+    for (int k = 0; k < Tensor::size; ++k) dev.c[k] *= T(0.5) / snow.law.elastic.mu;
+    return norm_squared(dev) + volumetric * volumetric * (T(1) / T(D));
+  }
+
+  /// Notes a particle whose strain is beyond the limit; what is not finite is, too.
+  SNOWSHED_INLINE void check(const V& strain_squared, int at, int n) const {
+    const auto sound = strain_squared <= T(elastic_strain_limit * elastic_strain_limit);
+    if (!any(sound == 0)) return;
+    for (int l = 0; l < n; ++l) {
+      if (sound[l]) continue;
+      stats.unsound = at + l;
+      stats.elastic_strain = std::sqrt(double(strain_squared[l]));
+    }
+  }
+
+  // --- blocks -----------------------------------------------------------------------------
+
+  /// Calls f(first particle, number) for each chunk of a block.
+  template <class F>
+  SNOWSHED_INLINE static void for_each_chunk(int first, int count, F f) {
+    for (int at = first; at < first + count; at += W)
+      f(at, first + count - at < W ? first + count - at : W);
+  }
+
+  void scatter_block(int first, int count, T* tile) const {
+    SimdMask<T> reach{};
+    for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
+      State s;
+      read(s, at, n);
+      Stencil<T, D, basis> stencil;
+      stencil.place(s.cell, n);
+      if (!stencil.inside) {
+        stats.escaped = true;
+        return;
+      }
+      const Snow& snow = snows.of(p, at, n);
+      const Tensor tau = stress(s, snow, n, true);
+      scatter_chunk(stencil, s, tau, snow, n, tile);
+      reach |= stencil.reach;
+      if constexpr (energy) record_kinetic_energy(s, n);
+    });
+    stats.reach = int(bits_in(reach));
+  }
+
+  void g2p2g_block(int first, int count, const T* velocities, T* tile) const {
+    V speed = broadcast<V>(T(0));
+    SimdMask<T> reach{};
+    for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
+      State s;
+      read(s, at, n);
+      Stencil<T, D, basis> stencil;
+      stencil.place(s.cell, n);
+      Motion m;
+      interpolate(stencil, velocities, n, m);
+      move(s, m);
+      update_left_cauchy_green(s, m);
+      const Snow& snow = snows.of(p, at, n);
+      const Tensor tau = stress(s, snow, n, false);
+      write(s, at, n);
+
+      V v2 = s.velocity[0] * s.velocity[0], u2 = m.pic[0] * m.pic[0];
+      for (int d = 1; d < D; ++d) {
+        v2 += s.velocity[d] * s.velocity[d];
+        u2 += m.pic[d] * m.pic[d];
+      }
+      speed = max(speed, max(v2, u2));
+      if constexpr (energy) record_stress_power(s, m, tau, snow, n);
+      check(elastic_strain_squared(tau, snow) + T(0) * v2, at, n);
+      if constexpr (energy) record_kinetic_energy(s, n);
+
+      stencil.place(s.cell, n);
+      reach |= stencil.reach;
+      if (stencil.inside)
+        scatter_chunk(stencil, s, tau, snow, n, tile);
+      else
+        stats.escaped = true;
+    });
+    stats.reach = int(bits_in(reach));
+    stats.speed_squared = double(largest(speed));
+  }
+
+  void probe_block(int first, int count, const T* velocities) const {
+    V strain = broadcast<V>(T(0));
+    for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
+      V cell[D];
+      for (int d = 0; d < D; ++d) cell[d] = load(p.cell[d] + at, n);
+      Stencil<T, D, basis> stencil;
+      stencil.place(cell, n);
+      Motion m;
+      interpolate(stencil, velocities, n, m);
+      strain = max(strain, largest_gradient(m));
+    });
+    stats.strain = double(largest(strain));
+  }
+
+  // --- entries of the table ---------------------------------------------------------------
+
+  static constexpr int tile_size = tile_nodes<D>(basis) * node_values;
+
+  static void load_velocities(const T* const* blocks, T* tile) {
+    for_each_shared_row<D, basis>([&](int neighbour, int from, int to, auto length) {
+      std::memcpy(tile + to * node_values, blocks[neighbour] + from * node_values,
+                  length * node_values * sizeof(T));
+    });
+  }
+
+  static void scatter(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
+                      T* tile, BlockStats& stats) {
+    std::memset(tile, 0, tile_size * sizeof(T));
+    ParticleKernels(step, p, stats).scatter_block(first, count, tile);
+  }
+  static void g2p2g(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
+                    const T* const* velocities, T* tile, BlockStats& stats) {
+    alignas(64) T around[tile_size];
+    load_velocities(velocities, around);
+    std::memset(tile, 0, tile_size * sizeof(T));
+    ParticleKernels(step, p, stats).g2p2g_block(first, count, around, tile);
+  }
+  static void probe(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
+                    const T* const* velocities, BlockStats& stats) {
+    alignas(64) T around[tile_size];
+    load_velocities(velocities, around);
+    ParticleKernels(step, p, stats).probe_block(first, count, around);
+  }
+};
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,25 @@
+// What the solver derives, once, of each of a run's snows.
+#pragma once
+
+#include "snowshed/material/elasticity.hpp"
+#include "snowshed/material/snow.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/methods/mpm/settings.hpp"
+
+namespace snowshed {
+
+struct Material {
+  Elasticity<double> elastic;
+  double density = 0;                 // kg/m3, initial
+  double initial_plastic_strain = 0;  // volumetric; elastic snow has none
+  double elastic_time_step = 0;       // s
+
+  Material(const Snow&, int dimension, const MpmSettings&);
+};
+
+/// The constants the kernels take. Those of elastic snow are Cam-Clay's with a yield function that
+/// is zero everywhere (M = 0, beta = -1/2), so that it may stand beside snow that yields.
+template <class T>
+MaterialConstants<T> material_constants(const Snow&, int dimension);
+
+}  // namespace snowshed

@@ -1,0 +1,42 @@
+// Sorting particles into grid blocks.
+#pragma once
+
+#include "snowshed/core/vec.hpp"
+#include "snowshed/methods/mpm/block_layout.hpp"
+#include "snowshed/methods/mpm/particles.hpp"
+
+namespace snowshed {
+
+/// Where a position (metres) lies: its block, and within it the `cell` coordinates.
+template <int D>
+struct Placement {
+  BlockCoord<D> block;
+  std::array<double, D> cell;
+
+  static Placement of(const VecD<D>& position, double dx, Basis basis);
+};
+
+/// The position (metres) of cell coordinates in a block.
+template <class T, int D>
+VecD<D> position_of(const Particles<T, D>& particles, std::size_t i, BlockKey block, double dx,
+                    Basis basis) {
+  const BlockCoord<D> c = block_coord<D>(block);
+  VecD<D> x;
+  for (int d = 0; d < D; ++d)
+    x[d] = (double(particles.cell[d][i]) + base_offset(basis) + double(c[d]) * block_edge<D>)*dx;
+  return x;
+}
+
+/// Sorts particles that have moved back into blocks; stable, so the result does not depend on the
+/// number of threads. `blocks` holds the block each particle's `cell` refers to. Returns whether
+/// the set of blocks changed. Throws SimulationError where one has left the addressable grid
+/// (2^20 blocks to each side) or is not finite.
+template <class T, int D>
+bool sort_particles(Particles<T, D>& particles, std::vector<BlockKey> blocks, BlockLayout<D>&,
+                    int threads);
+
+/// The block of each particle as the layout has it.
+template <int D>
+std::vector<BlockKey> blocks_of_particles(const BlockLayout<D>&);
+
+}  // namespace snowshed

@@ -1,0 +1,124 @@
+// The particles: structure of arrays, sorted by grid block.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/core/vec.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
+
+namespace snowshed {
+
+/// State of all particles in D dimensions. Arrays that a scene does not need stay empty.
+template <class T, int D>
+struct Particles {
+  static constexpr int strain_size = D * (D + 1) / 2;
+
+  std::array<AlignedVector<T>, D> cell;        // in cells, relative to the block (ParticleView)
+  std::array<AlignedVector<T>, D> velocity;    // m/s
+  std::array<AlignedVector<T>, D * D> affine;  // APIC only, 1/s
+  std::array<AlignedVector<T>, strain_size> be_minus_identity;  // b_e - I
+  AlignedVector<T> plastic;                                     // plastic laws, and with kinds
+  AlignedVector<T> mass;                                        // kg (per metre of width in 2D)
+  AlignedVector<std::uint32_t> id;
+  AlignedVector<std::uint16_t> event;       // in which each was released
+  AlignedVector<std::uint8_t> material_id;  // several snows or energy books: which snow
+
+  bool has_affine = false, has_plastic = false, has_material_id = false;
+
+  std::size_t size() const { return mass.size(); }
+
+  /// Calls f(name, array) for every array in use: the one list of what a particle is.
+  template <class F>
+  void for_each_array(F f) {
+    each(*this, f);
+  }
+  template <class F>
+  void for_each_array(F f) const {
+    each(*this, f);
+  }
+
+  void resize(std::size_t n) {
+    for_each_array([n](const char*, auto& array) { array.resize(n); });
+  }
+
+  ParticleView<T> view() {
+    ParticleView<T> v{};
+    for (int d = 0; d < D; ++d) {
+      v.cell[d] = cell[d].data();
+      v.velocity[d] = velocity[d].data();
+    }
+    for (int k = 0; k < strain_size; ++k) v.be_minus_identity[k] = be_minus_identity[k].data();
+    for (int k = 0; k < D * D; ++k) v.affine[k] = affine[k].data();
+    v.plastic = plastic.data();
+    v.mass = mass.data();
+    v.material_id = material_id.data();
+    return v;
+  }
+
+  /// Mean velocity of the particles [begin, end), m/s.
+  VecD<D> mean_velocity(std::ptrdiff_t begin, std::ptrdiff_t end) const {
+    VecD<D> mean;
+    for (int d = 0; d < D; ++d)
+      mean[d] = std::accumulate(velocity[d].begin() + begin, velocity[d].begin() + end, 0.0);
+    return mean / double(end - begin);
+  }
+
+  /// Root of the mean square of their speeds, m/s.
+  double rms_speed(std::ptrdiff_t begin, std::ptrdiff_t end) const {
+    double sum = 0;
+    for (const auto& v : velocity)
+      sum += std::inner_product(v.begin() + begin, v.begin() + end, v.begin() + begin, 0.0);
+    return std::sqrt(sum / double(end - begin));
+  }
+
+  /// Stops the particles [begin, end).
+  void zero_velocity(std::ptrdiff_t begin, std::ptrdiff_t end) {
+    const auto stop = [&](auto& array) {
+      std::fill(array.begin() + begin, array.begin() + end, T(0));
+    };
+    for (auto& v : velocity) stop(v);
+    if (has_affine)
+      for (auto& c : affine) stop(c);
+  }
+
+  /// Rearranges: the new particle i is the old particle order[i].
+  void permute(const std::vector<std::uint32_t>& order, int threads) {
+    for_each_array([&order, threads](const char*, auto& array) {
+      std::remove_reference_t<decltype(array)> sorted;
+      sorted.resize(order.size());
+      parallel_for_each(std::ptrdiff_t(order.size()), threads,
+                        [&](std::ptrdiff_t i) { sorted[i] = array[order[i]]; });
+      array.swap(sorted);
+    });
+  }
+
+ private:
+  template <class Self, class F>
+  static void each(Self& self, F& f) {
+    static constexpr const char* axis[] = {"0", "1", "2", "3", "4", "5", "6", "7", "8"};
+    const auto all = [&f](const char* name, auto& arrays) {
+      for (std::size_t k = 0; k < arrays.size(); ++k)
+        f((std::string(name) + axis[k]).c_str(), arrays[k]);
+    };
+    all("cell", self.cell);
+    all("velocity", self.velocity);
+    if (self.has_affine) all("affine", self.affine);
+    all("strain", self.be_minus_identity);
+    if (self.has_plastic) f("plastic", self.plastic);
+    f("mass", self.mass);
+    f("id", self.id);
+    f("event", self.event);
+    if (self.has_material_id) f("kind", self.material_id);
+  }
+};
+
+}  // namespace snowshed

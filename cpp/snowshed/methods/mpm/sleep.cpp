@@ -1,0 +1,168 @@
+#include "snowshed/methods/mpm/sleep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace snowshed {
+namespace {
+
+/// How much faster than the limit a single particle of a slow block may be.
+constexpr double most_over_mean = 5;
+
+/// Growth of the mean velocity from one half of a quiet spell to the other, along the latter and
+/// over the limit, that is still taken for the noise of vibrations.
+constexpr double noise = 0.005;
+
+/// Change of the mean velocity from one half to the other, over that of free fall, of snow that
+/// must be in flight.
+constexpr double flight = 0.5;
+
+/// Looks that the mean of a half takes, however long the steps are.
+constexpr double least_samples = 4;
+
+template <int D>
+std::vector<std::int32_t> particle_counts(const BlockLayout<D>& layout) {
+  std::vector<std::int32_t> counts;
+  for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
+    counts.push_back(layout.first[b + 1] - layout.first[b]);
+  return counts;
+}
+
+}  // namespace
+
+template <int D>
+typename Sleep<D>::State Sleep<D>::awake_since(double now) {
+  State state;
+  state.since = now;
+  return state;
+}
+
+template <int D>
+void Sleep<D>::relocate(const BlockLayout<D>& layout, double now) {
+  std::vector<State> states(layout.particle_blocks.size(), awake_since(now));
+  std::vector<std::int32_t> counts = particle_counts(layout);
+  std::size_t old = 0;
+  for (std::size_t b = 0; b < states.size(); ++b) {
+    while (old < keys_.size() && keys_[old] < layout.particle_blocks[b]) ++old;
+    if (old == keys_.size()) break;
+    if (keys_[old] != layout.particle_blocks[b]) continue;
+    states[b] = states_[old];
+    // Snow that sleeps does not leave its block, so any change is snow that came.
+    if (states[b].asleep && counts[b] != counts_[old]) states[b] = awake_since(now);
+  }
+  keys_ = layout.particle_blocks;
+  counts_ = std::move(counts);
+  states_ = std::move(states);
+  list_blocks(layout);
+}
+
+template <int D>
+void Sleep<D>::wake_all(const BlockLayout<D>& layout, double now) {
+  std::fill(states_.begin(), states_.end(), awake_since(now));
+  list_blocks(layout);
+}
+
+template <int D>
+void Sleep<D>::restore(const BlockLayout<D>& layout, std::vector<State> states) {
+  keys_ = layout.particle_blocks;
+  counts_ = particle_counts(layout);
+  states_ = std::move(states);
+  list_blocks(layout);
+}
+
+template <int D>
+std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double now, int steps,
+                                           double dt, const BlockProbe& block_probe) {
+  bool woken = false;
+  const auto wake = [&](std::int32_t b) {
+    states_[b] = awake_since(now);
+    woken = true;
+  };
+  for (std::int32_t b : border_) {
+    if (is_pushed(states_[b], steps, dt, block_probe.carried(b))) wake(b);
+  }
+  for (std::size_t b = 0; b < states_.size(); ++b)
+    if (states_[b].asleep && block_probe.obstacle_moves(std::int32_t(b))) wake(std::int32_t(b));
+  std::vector<std::int32_t> fallen;
+  for (std::int32_t b : awake_) {
+    if (!is_slow(block_probe.speed(b), block_probe.fastest(b)) || block_probe.obstacle_moves(b))
+      states_[b] = awake_since(now);
+    else if (falls_asleep(states_[b], now, block_probe.velocity(b)))
+      fallen.push_back(b);
+  }
+  for (std::int32_t b : fallen) {
+    states_[b].asleep = true;
+    states_[b].sum.setZero();
+  }
+  if (woken || !fallen.empty()) list_blocks(layout);
+  return fallen;
+}
+
+template <int D>
+bool Sleep<D>::is_slow(double rms_speed, double fastest) const {
+  return rms_speed < limit_ && fastest < most_over_mean * limit_;
+}
+
+/// Whether the awake snow beside a sleeping block moves it, or presses harder than it withstands.
+/// Its own snow does not answer to forces, so these are summed up, older ones fading.
+template <int D>
+bool Sleep<D>::is_pushed(State& s, int steps, double dt, const CarriedMotion& carried) const {
+  s.sum *= std::max(0.0, 1.0 - steps * dt / time_);
+  for (int d = 0; d < D; ++d) s.sum[d] += steps * carried.change[d];
+  return carried.speed_squared > limit_ * limit_ || s.sum.norm() > limit_;
+}
+
+/// Whether a slow block has been slow for long enough and is neither setting off nor in flight:
+/// from the first half of that time to the second it did not speed up along its motion, nor change
+/// its velocity as gravity alone would. Means over time tell motion from vibration.
+template <int D>
+bool Sleep<D>::falls_asleep(State& s, double now, const VecD<D>& velocity) const {
+  s.sum += velocity;
+  s.samples += 1;
+  if (s.samples < least_samples || now - s.since < 0.5 * time_) return false;
+  if (s.halfway && now - s.since < time_) return false;
+  const VecD<D> mean = s.sum / s.samples;
+  const VecD<D> change = mean - s.first_half;
+  const bool sets_off = change.dot(mean) > noise * limit_ * mean.norm();
+  const bool flies = gravity_ > 0 && change.norm() > flight * gravity_ * 0.5 * time_;
+  if (s.halfway && !sets_off && !flies) return true;
+  // The end of the first half, or the second half becomes the first one.
+  s.since = now - 0.5 * time_;
+  s.halfway = true;
+  s.first_half = mean;
+  s.sum.setZero();
+  s.samples = 0;
+  return false;
+}
+
+template <int D>
+void Sleep<D>::list_blocks(const BlockLayout<D>& layout) {
+  awake_.clear();
+  awake_particles_ = 0;
+  for (std::size_t b = 0; b < states_.size(); ++b) {
+    if (states_[b].asleep) continue;
+    awake_.push_back(std::int32_t(b));
+    awake_particles_ += counts_[b];
+  }
+  touched_.assign(layout.grid_blocks.size(), false);
+  for (std::int32_t b : awake_)
+    for (std::int32_t g : layout.around_particles[b]) touched_[g] = true;
+  active_.clear();
+  idle_.clear();
+  for (std::size_t g = 0; g < touched_.size(); ++g)
+    (touched_[g] ? active_ : idle_).push_back(std::int32_t(g));
+  border_.clear();
+  if (idle_.empty() && awake_.size() == states_.size()) return;
+  for (std::size_t b = 0; b < states_.size(); ++b) {
+    if (!states_[b].asleep) continue;
+    const auto& around = layout.around_particles[b];
+    if (std::any_of(around.begin(), around.end(), [&](std::int32_t g) { return touched_[g]; }))
+      border_.push_back(std::int32_t(b));
+  }
+}
+
+template class Sleep<2>;
+template class Sleep<3>;
+
+}  // namespace snowshed

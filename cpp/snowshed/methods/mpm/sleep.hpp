@@ -1,0 +1,90 @@
+// Snow at rest: which blocks of particles sleep, and which blocks of nodes are then not needed.
+//
+// A block of particles falls asleep when it has been slower than a limit for some time, and its
+// snow did not speed up along its motion meanwhile, nor change its velocity as snow in flight does:
+// what is just setting off, or turns in the air, is slow, too. Its speed is the
+// root of the mean square over its particles; no single one may be several times faster. A sleeping
+// block takes no part in a step, but keeps its mass and its stresses on its tile, so that its
+// neighbours rest on it. It wakes when nodes that it shares with awake snow would carry it faster
+// than the limit, or when the forces at them, left to act for as long as it takes to fall asleep,
+// would make it so; when particles come to it; and when an obstacle moves through its nodes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "snowshed/core/vec.hpp"
+#include "snowshed/methods/mpm/block_layout.hpp"
+
+namespace snowshed {
+
+template <int D>
+class Sleep {
+ public:
+  /// Speed limit (m/s; 0: nothing ever sleeps), time (s), and gravity (m/s2), which tells flight.
+  Sleep(double speed, double time, double gravity)
+      : limit_(speed), time_(time), gravity_(gravity) {}
+
+  /// What must be known of a particle block to let it fall asleep or to wake it.
+  struct BlockProbe {
+    std::function<double(std::int32_t)> fastest;         // speed of its fastest particle, m/s
+    std::function<double(std::int32_t)> speed;           // root of the mean square, m/s
+    std::function<VecD<D>(std::int32_t)> velocity;       // mean, m/s
+    std::function<CarriedMotion(std::int32_t)> carried;  // how its nodes would have moved it
+    std::function<bool(std::int32_t)> obstacle_moves;    // whether one does, through its nodes
+  };
+
+  /// Looks at all blocks, at a time, after some steps of dt; returns the blocks that fall asleep.
+  std::vector<std::int32_t> update(const BlockLayout<D>& layout, double now, int steps, double dt,
+                                   const BlockProbe& block_probe);
+
+  /// After a sort: blocks that kept their particles keep their state, all others are awake.
+  void relocate(const BlockLayout<D>& layout, double now);
+
+  /// Everything awake, from now on.
+  void wake_all(const BlockLayout<D>& layout, double now);
+
+  /// Whether anything can sleep at all.
+  bool allowed() const { return limit_ > 0; }
+  /// Particle blocks that take part in a step, and the grid blocks that they touch; ascending.
+  const std::vector<std::int32_t>& awake() const { return awake_; }
+  const std::vector<std::int32_t>& active() const { return active_; }
+  bool is_active(std::int32_t grid_block) const { return touched_[grid_block]; }
+  /// Grid blocks that only sleeping snow touches.
+  const std::vector<std::int32_t>& idle() const { return idle_; }
+  std::int64_t awake_particles() const { return awake_particles_; }
+
+  /// What is known of one block of particles.
+  struct State {
+    bool asleep = false;
+    double since = 0;  // start of the present quiet spell, s
+    /// Awake: sum of mean velocities in this half of the spell. Asleep: the velocity that forces
+    /// would have given it lately. m/s
+    VecD<D> sum = VecD<D>::Zero();
+    double samples = 0;                    // their number
+    bool halfway = false;                  // whether the first half of the spell is over, and
+    VecD<D> first_half = VecD<D>::Zero();  // the mean velocity in it, m/s
+  };
+  const std::vector<State>& states() const { return states_; }
+  /// States from a checkpoint, one for each particle block of the layout.
+  void restore(const BlockLayout<D>& layout, std::vector<State> states);
+
+ private:
+  static State awake_since(double now);
+  bool is_slow(double rms_speed, double fastest) const;
+  bool is_pushed(State& state, int steps, double dt, const CarriedMotion& carried) const;
+  bool falls_asleep(State& state, double now, const VecD<D>& velocity) const;
+  void list_blocks(const BlockLayout<D>& layout);
+
+  double limit_, time_, gravity_;
+  std::vector<BlockKey> keys_;        // of the layout that `states_` belongs to
+  std::vector<std::int32_t> counts_;  // particles in each of its blocks
+  std::vector<State> states_;
+  std::vector<std::int32_t> awake_, active_, idle_;
+  std::vector<bool> touched_;         // by awake snow: whether a grid block is active
+  std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow
+  std::int64_t awake_particles_ = 0;
+};
+
+}  // namespace snowshed

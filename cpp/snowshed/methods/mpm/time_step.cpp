@@ -1,0 +1,20 @@
+#include "snowshed/methods/mpm/time_step.hpp"
+
+#include <cmath>
+
+#include "snowshed/material/elasticity.hpp"
+
+namespace snowshed {
+
+double elastic_time_step(double youngs_modulus, double poissons_ratio, double density,
+                         int dimension, double dx, Basis basis) {
+  const auto e = Elasticity<double>::from(youngs_modulus, poissons_ratio, dimension);
+  const double stiffness = dimension * e.bulk;  // d lambda + 2 mu
+  return dx * std::sqrt(2 / (stability_number(basis) * stiffness / density));
+}
+
+double next_time_step(double elastic_limit, double speed, double dx, double factor) {
+  return factor / (1 / elastic_limit + 2 * speed / dx);
+}
+
+}  // namespace snowshed

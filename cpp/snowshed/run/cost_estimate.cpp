@@ -1,0 +1,202 @@
+#include "snowshed/run/cost_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/memory.hpp"
+#include "snowshed/material/elasticity.hpp"
+#include "snowshed/methods/mpm/time_step.hpp"
+#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/scene_json.hpp"
+#include "snowshed/scene/shape_measure.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Memory of the solver. A particle holds position, velocity, deformation gradient, affine
+/// matrix, volume, mass, plastic strain and sorting keys; a grid node mass, momentum and force,
+/// in blocks that are only partly filled.
+struct Storage {
+  double bytes_per_particle, bytes_per_voxel;
+};
+
+constexpr Storage storage(int dimension, Precision precision) {
+  const bool single = precision == Precision::float32;
+  if (dimension == 2) return single ? Storage{90.0, 32.0} : Storage{180.0, 64.0};
+  return single ? Storage{150.0, 48.0} : Storage{300.0, 96.0};
+}
+
+/// Grid voxels in use for each voxel of snow: the splines reach beyond it, and it spreads.
+constexpr double grid_spread = 4.0;
+
+/// From the last impact to rest, snow loses the speed of its fall at about the acceleration of
+/// gravity: 0.2 to 0.35 s in the laboratory scene, 0.5 to 0.7 s where it falls from 2 m. Less than
+/// this it never took:
+constexpr double least_settling_time = 0.25;  // s
+
+/// Share of the older snow that new snow keeps awake from its first landing to rest: about a half
+/// in the laboratory scene and on the wide stacks of chapter 5.
+constexpr double woken_share = 0.5;
+
+double snow_volume(const Scene& scene, int event) {
+  double volume = 0.0;
+  for (const auto& body : assemble_bodies(scene, event))
+    volume += shape_volume(body.shape, scene.dimension).value_or(0.0);
+  return volume;
+}
+
+/// Mean acceleration down the panel, from gravity less friction.
+double slide_acceleration(const Scene& scene) {
+  if (scene.panel->condition == Condition::sticky) return 0.0;
+  const PanelFrame frame = panel_frame(scene);
+  const double sine = -frame.slope.z(), cosine = frame.normal.z();
+  return std::max(0.0, scene.gravity * (sine - scene.panel->friction * cosine));
+}
+
+/// Time to fall `height` (measured vertically) with a downward velocity relative to the ground.
+double fall_duration(double height, double downward, double gravity) {
+  if (height <= 0.0) return 0.0;
+  const double root = std::sqrt(downward * downward + 2.0 * gravity * height);
+  return downward + root > 0.0 ? 2.0 * height / (downward + root)  // no cancellation
+                               : std::numeric_limits<double>::infinity();
+}
+
+/// How fast a velocity brings a point nearer to the ground below it; the height is linear.
+double approach(const Scene& scene, const Vec3& velocity) {
+  return -height_above_ground(scene, velocity);
+}
+
+/// The slab's rear slides off the lower edge and falls freely.
+void add_slab(const Scene& scene, CostEstimate& estimate_cost) {
+  const PanelFrame frame = panel_frame(scene);
+  const double distance = (scene.panel->length + scene.slab->length) / 2.0;
+  const double acceleration = slide_acceleration(scene);
+  estimate_cost.slides = acceleration > 0.0;
+  if (!estimate_cost.slides) return;
+  estimate_cost.slide_time = std::sqrt(2.0 * distance / acceleration);
+  const Vec3 velocity = acceleration * estimate_cost.slide_time * frame.slope;
+  estimate_cost.fall_time =
+      fall_duration(scene.panel->height, approach(scene, velocity), scene.gravity);
+
+  const double ahead = std::max(0.0, (scene.panel->length - scene.slab->length) / 2.0);
+  const double front_slides = std::sqrt(2.0 * ahead / acceleration);
+  const Vec3 front_velocity = acceleration * front_slides * frame.slope;
+  estimate_cost.first_landing =
+      front_slides +
+      fall_duration(scene.panel->height, approach(scene, front_velocity), scene.gravity);
+}
+
+/// Speed of what falls last when it lands, over gravity.
+double time_to_lose_speed(const Scene& scene, const CostEstimate& estimate_cost) {
+  if (!(scene.gravity > 0.0) || !estimate_cost.slides) return 0.0;
+  const double along = slide_acceleration(scene) * estimate_cost.slide_time;
+  return std::sqrt(along * along + 2.0 * scene.gravity * scene.panel->height) / scene.gravity;
+}
+
+double longest_body_fall(const Scene& scene) {
+  double longest = 0.0;
+  for (const auto& body : scene.bodies) {
+    const auto bounds = shape_bounds(body.shape);
+    if (!bounds) continue;
+    const double height = height_above_ground(scene, bounds->center());
+    longest =
+        std::max(longest, fall_duration(height, approach(scene, body.velocity), scene.gravity));
+  }
+  return longest;
+}
+
+void add_times(const Scene& scene, CostEstimate& estimate_cost) {
+  if (scene.slab) add_slab(scene, estimate_cost);
+  const double bodies = longest_body_fall(scene);
+  const double slab = estimate_cost.slide_time + estimate_cost.fall_time;
+  if (bodies > slab) estimate_cost.fall_time = bodies;
+  if (!scene.bodies.empty()) estimate_cost.first_landing = 0.0;
+  const double settling = std::max(least_settling_time, time_to_lose_speed(scene, estimate_cost));
+  estimate_cost.event_time = std::min(std::max(slab, bodies) + settling, scene.events.max_time);
+}
+
+/// New snow is awake from its release to rest, older snow in part, once something lands on it.
+double count_updates(const Scene& scene, const CostEstimate& estimate_cost) {
+  double old_awake = 1.0;
+  if (scene.numerics.sleep_speed > 0.0)
+    old_awake =
+        woken_share * std::max(0.0, 1.0 - estimate_cost.first_landing / estimate_cost.event_time);
+  double particles = 0.0, old = 0.0;
+  for (double fresh : estimate_cost.particles) {
+    particles += fresh + old_awake * old;
+    old += fresh;
+  }
+  return particles * std::ceil(estimate_cost.event_time / estimate_cost.time_step);
+}
+
+std::vector<double> count_particles(const Scene& scene) {
+  std::vector<double> counts;
+  const double voxel = std::pow(scene.numerics.dx, scene.dimension);
+  for (int event = 1; event <= scene.events.count; ++event)
+    counts.push_back(
+        std::round(snow_volume(scene, event) / voxel * scene.seeding.particles_per_voxel));
+  return counts;
+}
+
+/// Of elastic waves of compression, m/s.
+double wave_speed(const Snow& snow) {
+  const auto elastic = Elasticity<double>::from(snow.youngs_modulus, snow.poissons_ratio, 3);
+  return std::sqrt((elastic.lambda + 2.0 * elastic.mu) / snow.density);
+}
+
+std::string gigabytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g GB", bytes / 1e9);
+  return text;
+}
+
+}  // namespace
+
+double stable_time_step(const Scene& scene) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const Snow& snow : assemble_snows(scene))
+    limit = std::min(limit,
+                     elastic_time_step(snow.youngs_modulus, snow.poissons_ratio, snow.density,
+                                       scene.dimension, scene.numerics.dx, scene.numerics.basis));
+  return next_time_step(limit, 0.0, scene.numerics.dx, scene.numerics.step_factor);
+}
+
+CostEstimate estimate_cost(const Scene& scene) {
+  return estimate_cost(scene, count_particles(resolve(scene)));
+}
+
+CostEstimate estimate_cost(const Scene& given, std::vector<double> particles) {
+  const Scene scene = resolve(given);
+  CostEstimate estimate_cost;
+  estimate_cost.total_particles = std::accumulate(particles.begin(), particles.end(), 0.0);
+  estimate_cost.particles = std::move(particles);
+  for (const Snow& snow : assemble_snows(scene))
+    estimate_cost.wave_speed = std::max(estimate_cost.wave_speed, wave_speed(snow));
+  estimate_cost.time_step = stable_time_step(scene);
+  add_times(scene, estimate_cost);
+  estimate_cost.steps =
+      scene.events.count * std::ceil(estimate_cost.event_time / estimate_cost.time_step);
+  estimate_cost.updates = count_updates(scene, estimate_cost);
+  const auto [per_particle, per_voxel] = storage(scene.dimension, scene.numerics.precision);
+  const double voxels =
+      grid_spread * estimate_cost.total_particles / scene.seeding.particles_per_voxel;
+  estimate_cost.bytes = per_particle * estimate_cost.total_particles + per_voxel * voxels;
+  return estimate_cost;
+}
+
+void check_memory(double bytes, double available) {
+  if (bytes > available)
+    throw InputError("/", "needs " + gigabytes(bytes) + " of memory, of which there are " +
+                              gigabytes(available) + "; give fewer particles or a larger dx");
+}
+
+void check_memory(double bytes) {
+  check_memory(bytes, static_cast<double>(physical_memory_bytes()));
+}
+
+}  // namespace snowshed

@@ -1,0 +1,83 @@
+#include "snowshed/run/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/core/timer.hpp"
+#include "snowshed/run/simulation.hpp"
+#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/enum_names.hpp"
+#include "snowshed/scene/scene_json.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double measured_particles = 50000;
+
+/// The speed is measured on a slab still whole; spread and yielding snow takes longer by this
+/// factor over an event of the laboratory scene (2D 1.3, 3D 1.4).
+constexpr double broken_snow = 1.35;
+
+void list_features(const Scene& s, Plan& plan) {
+  const auto feature = [&plan](bool used, const std::string& name) {
+    (used ? plan.used : plan.left_out).push_back(name);
+  };
+  feature(s.dimension == 3, "third dimension");
+  feature(s.numerics.precision == Precision::float64, "double precision");
+  const std::vector<Snow> snows = assemble_snows(s);
+  const bool yields = std::any_of(snows.begin(), snows.end(), [](const Snow& snow) {
+    return snow.model == SnowModel::cam_clay;
+  });
+  feature(yields, "plasticity and hardening (Cam-Clay)");
+  feature(snows.size() > 1, "several snows");
+  feature(s.numerics.transfer == Transfer::apic, "APIC affine velocities");
+  feature(s.numerics.basis == Basis::cubic, "cubic B-splines");
+  bool conditions[3] = {s.domain.has_value(), false, false}, moving = false;
+  for (const ObstacleSpec& o : assemble_obstacles(s)) {
+    conditions[int(o.condition)] = true;
+    moving = moving || o.motion.has_value();
+  }
+  for (Condition c : {Condition::sticky, Condition::slip, Condition::separate})
+    feature(conditions[int(c)], std::string(name_of(c)) + " contact");
+  feature(moving, "moving obstacles");
+  feature(s.domain.has_value(), "domain walls");
+  feature(s.events.between == Between::reseed && s.events.count > 1, "reseeding between events");
+  feature(s.numerics.sleep_speed > 0, "sleep of snow at rest");
+  feature(s.output.energy, "energy books");
+  feature(s.output.snapshot_interval > 0, "snapshots during events");
+}
+
+/// Particle updates per second on this machine, on the scene with fewer particles.
+double measured_speed(Scene scene, const std::filesystem::path& base_dir,
+                      const CostEstimate& cost) {
+  const double n = cost.particles.empty() ? 0.0 : cost.particles.front();
+  if (n > measured_particles)
+    scene.numerics.dx *= std::pow(n / measured_particles, 1.0 / scene.dimension);
+  scene.seeding.pattern = SeedPattern::jittered;  // seeds fast
+  Simulation sim(scene, base_dir);
+  sim.begin_event();
+  const Stopwatch clock;
+  sim.run([&clock](const RunReport&) { return clock.seconds() < 0.3; }, 0.05);
+  return double(sim.solver().counters().particle_updates) / clock.seconds();
+}
+
+}  // namespace
+
+double expected_work(const Scene& scene, const std::filesystem::path& base_dir) {
+  return broken_snow * Simulation(scene, base_dir).cost().updates;
+}
+
+Plan plan(const Scene& given, const std::filesystem::path& base_dir) {
+  const Scene scene = resolve(given);
+  Plan p;
+  list_features(scene, p);
+  const Simulation sim(scene, base_dir);
+  p.cost = sim.cost();
+  p.threads = sim.threads();
+  p.kernels = kernel_variant();
+  p.updates_per_s = measured_speed(scene, base_dir, p.cost);
+  p.wall_time = broken_snow * p.cost.updates / std::max(p.updates_per_s, 1.0);
+  return p;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,29 @@
+// What running a scene would use and cost, before it runs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "snowshed/run/cost_estimate.hpp"
+
+namespace snowshed {
+
+struct Plan {
+  std::vector<std::string> used, left_out;  // features, in words
+  CostEstimate cost;
+  double updates_per_s = 0;  // particle updates, measured here and now on a small copy
+  double wall_time = 0;      // s, expected
+  int threads = 0;
+  std::string kernels;  // instruction set
+};
+
+/// Expected work of a run: particle updates of whole snow, of which updates of spread and yielding
+/// snow count more. Nothing is measured. Throws InputError as running would.
+double expected_work(const Scene& scene, const std::filesystem::path& base_dir = ".");
+
+/// Throws InputError as running would. Takes a fraction of a second: the speed is measured on the
+/// scene itself, coarsened to at most 50 000 particles.
+Plan plan(const Scene& scene, const std::filesystem::path& base_dir = ".");
+
+}  // namespace snowshed

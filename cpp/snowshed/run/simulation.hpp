@@ -1,0 +1,129 @@
+// A scene being simulated: one slide-off event after another onto what lies there already.
+// This is what Python and snowshed-run drive; the loop over events is theirs.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snowshed/methods/mpm/solver.hpp"
+#include "snowshed/run/cost_estimate.hpp"
+#include "snowshed/run/rest_detector.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+class SnapshotSeries;
+
+/// How `Simulation::run` came back.
+enum class RunEnd { rest, time_limit, paused };
+
+/// What an observer is told while an event runs.
+struct RunReport {
+  double time = 0;       // s, in this event
+  double time_step = 0;  // s
+  double rms_speed = 0;  // m/s
+  double progress = 0;   // estimated part of the event that is done, 0 to 1
+  double updates_per_s = 0;
+  std::int64_t steps = 0;
+  std::size_t particles = 0;
+};
+
+/// The conversion of the stack between events with between = "reseed".
+struct Reseeding {
+  struct Cloud {
+    std::vector<Vec3> positions;    // m
+    std::vector<double> masses;     // kg
+    std::vector<double> densities;  // kg/m3, initial
+    std::vector<bool> on_panel;
+  };
+  Cloud before, after;
+};
+
+class Simulation {
+ public:
+  /// Builds obstacles, reads all files and checks that the scene fits into memory; seeds nothing
+  /// yet. Relative file names are looked for in `base_dir`. Throws InputError.
+  explicit Simulation(const Scene& scene, const std::filesystem::path& base_dir = ".");
+  ~Simulation();
+
+  /// Lays the next event's snow: the slab on the panel (above what remained there, unless that is
+  /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
+  /// "reseed", from the second event on the stack is first turned into a solid and seeded afresh at
+  /// rest, in its initial state, with its mass; event and snow of a new particle are those of the
+  /// old one nearest to it, and each snow keeps its mass. Throws InputError where the snow of this
+  /// event cannot be seeded, SimulationError where the stack cannot be converted.
+  std::optional<Reseeding> begin_event();
+
+  /// Runs the present event until the snow rests, the time limit, or `observer`, called every
+  /// `interval` seconds of wall time, returns false; then it goes on to the next safe point, so
+  /// that a checkpoint resumes to the same bits, and returns `paused`. Call again to go on.
+  RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
+
+  /// Takes `count` steps of the present event, whether the snow rests or not. For those who drive
+  /// the snow themselves: between steps, `kick` adds to the velocities, particles ordered by id.
+  void step(int count = 1);
+  void add_velocity(const std::vector<Vec3>& velocity_changes) {
+    solver_->add_velocity(velocity_changes);
+  }
+
+  /// What time does to the snow between two events, see Method::settle. Throws InputError while an
+  /// event runs.
+  void settle(const std::vector<double>& drops, const std::vector<double>& plastic_changes);
+
+  /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
+  void write_snapshots(const std::filesystem::path& folder, double interval);
+
+  void save(const std::filesystem::path& checkpoint) const;
+  /// Throws InputError where the file is not a sound checkpoint.
+  static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint);
+
+  const Scene& scene() const { return scene_; }
+  const std::vector<Snow>& snows() const { return snows_; }  ///< by ParticleState::kinds
+  const CostEstimate& cost() const { return cost_; }
+  const Method& solver() const { return *solver_; }
+  int event() const { return event_; }
+  bool event_running() const { return running_; }
+  double event_time() const { return solver_->time() - event_start_; }
+  int threads() const;
+
+  /// For each position, whether it is that of snow on the panel.
+  std::vector<bool> on_panel(const std::vector<Vec3>& positions) const;
+
+  /// Signed distance to the nearest of the scene's obstacles where they are now, m; ground, panel
+  /// and domain do not count. Infinite without any.
+  double obstacle_distance(const Vec3& x) const;
+
+  /// One .vtp with all particles and their quantities.
+  void write_vtp(const std::filesystem::path&) const;
+
+ private:
+  double lift_of_next_slab() const;
+  struct SeededBody {
+    double mass;    // kg
+    double height;  // m, along the panel's normal, of what lies over the panel
+  };
+  SeededBody seed_body(const BodySpec&, const std::string& path, std::uint64_t seed);
+  double height_over_panel(const std::vector<Vec3>& positions) const;
+  Reseeding reseed_stack();
+  RunReport report(double rms_speed) const;
+
+  Scene scene_;
+  std::vector<Snow> snows_;  // by kind
+  std::filesystem::path base_dir_;
+  CostEstimate cost_;
+  std::vector<Obstacle> obstacles_;  // those of the scene's list
+  std::unique_ptr<Method> solver_;
+  std::unique_ptr<SnapshotSeries> snapshots_;
+  RestDetector rest_;
+  int event_ = 0;
+  bool running_ = false;
+  double event_start_ = 0;  // s
+  double event_mass_ = 0;   // kg, laid by the present event
+  double laid_height_ = 0;  // m, on the panel, of all snow laid so far had none of it left
+};
+
+}  // namespace snowshed

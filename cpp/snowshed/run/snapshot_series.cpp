@@ -1,0 +1,57 @@
+#include "snowshed/run/snapshot_series.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "snowshed/io/vtp_writer.hpp"
+
+namespace snowshed {
+namespace {
+
+template <class To, class From>
+std::vector<To> converted(const std::vector<From>& from) {
+  return std::vector<To>(from.begin(), from.end());
+}
+
+}  // namespace
+
+void write_particles(const std::filesystem::path& file, const Method& solver) {
+  const ParticleState s = solver.state();
+  std::vector<std::array<float, 3>> points;
+  std::vector<float> velocity;
+  points.reserve(s.positions.size());
+  for (std::size_t i = 0; i < s.positions.size(); ++i) {
+    const Eigen::Vector3f x = s.positions[i].cast<float>(), v = s.velocities[i].cast<float>();
+    points.push_back({x[0], x[1], x[2]});
+    velocity.insert(velocity.end(), {v[0], v[1], v[2]});
+  }
+  std::vector<PointArray> arrays{
+      {"velocity", 3, std::move(velocity)},
+      {"mass", 1, converted<float>(s.masses)},
+      {"event", 1, s.events},
+      {"density", 1, converted<float>(s.densities)},
+      {"pressure", 1, converted<float>(s.pressures)},
+      {"volumetric_plastic_strain", 1, converted<float>(s.plastic_strains)},
+      {"id", 1, converted<std::int32_t>(s.ids)}};
+  if (!s.material_ids.empty()) arrays.push_back({"snow", 1, s.material_ids});
+  write_vtp(file, points, arrays);
+}
+
+SnapshotSeries::SnapshotSeries(std::filesystem::path folder, double interval, double time)
+    : folder_(std::move(folder)),
+      interval_(interval),
+      // On multiples of the interval, so that a resumed run writes the same snapshots.
+      next_(std::ceil(time / interval - 1e-9) * interval),
+      series_((std::filesystem::create_directories(folder_),
+               PvdSeries::reopen(folder_ / "snapshots.pvd", next_))) {}
+
+void SnapshotSeries::write(const Method& solver) {
+  char name[32];
+  std::snprintf(name, sizeof name, "snapshot_%06lld.vtp",
+                static_cast<long long>(std::llround(next_ / interval_)));
+  write_particles(folder_ / name, solver);
+  series_.append(solver.time(), name);
+  while (next_ <= solver.time()) next_ += interval_;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,110 @@
+#include "snowshed/sampling/sample_elimination.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <utility>
+
+#include "snowshed/particles/point_grid.hpp"
+
+namespace snowshed {
+namespace {
+
+/// How much two points crowd each other: (1 - d / (2 r_max))^8 as a fixed-point number,
+/// with d no smaller than 2 r_min (Yuksel, equations 1, 5 and 6).
+class Crowding {
+ public:
+  Crowding(int dimension, double point_measure, double kept_ratio) {
+    const double r_max = dimension == 2 ? std::sqrt(point_measure / (2 * std::sqrt(3.0)))
+                                        : std::cbrt(point_measure / (4 * std::sqrt(2.0)));
+    reach_ = 2 * r_max;
+    per_reach_ = 1 / reach_;
+    nearest_ = reach_ * 0.65 * (1 - kept_ratio * std::sqrt(kept_ratio));
+  }
+
+  double reach() const { return reach_; }
+
+  std::int64_t operator()(const Vec3& a, const Vec3& b) const {
+    const double squared = (a - b).squaredNorm();
+    if (squared >= reach_ * reach_) return 0;
+    const double w = 1 - std::max(std::sqrt(squared), nearest_) * per_reach_;
+    const double w2 = w * w, w4 = w2 * w2;
+    return static_cast<std::int64_t>(w4 * w4 * 0x1p40);
+  }
+
+ private:
+  double reach_, per_reach_, nearest_;
+};
+
+/// Points queued by how crowded they are. Weights only fall, so an entry of the queue is an
+/// upper bound of its point's weight and need be corrected only when it comes to the front.
+class CrowdedFirst {
+ public:
+  explicit CrowdedFirst(std::vector<std::int64_t> weights) : weights_(std::move(weights)) {
+    std::vector<Entry> entries(weights_.size());
+    for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i] = {weights_[i], i};
+    queue_ = Queue(std::less<Entry>(), std::move(entries));
+  }
+
+  std::uint32_t pop() {
+    for (;;) {
+      const auto [weight, point] = queue_.top();
+      queue_.pop();
+      if (weight == weights_[point]) {
+        weights_[point] = gone;
+        return point;
+      }
+      queue_.push({weights_[point], point});
+    }
+  }
+
+  bool bilateral(std::uint32_t point) const { return weights_[point] != gone; }
+
+  void lower(std::uint32_t point, std::int64_t by) {
+    if (bilateral(point)) weights_[point] -= by;
+  }
+
+ private:
+  using Entry = std::pair<std::int64_t, std::uint32_t>;
+  using Queue = std::priority_queue<Entry>;
+  static constexpr std::int64_t gone = -1;
+
+  std::vector<std::int64_t> weights_;
+  Queue queue_;
+};
+
+}  // namespace
+
+std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count, int dimension,
+                                    double point_measure) {
+  const std::vector<Vec3>& points = candidates.points;
+  const double kept_ratio = static_cast<double>(count) / candidates.inside_count;
+  const Crowding crowding(dimension, point_measure, kept_ratio);
+  const PointGrid grid(points, crowding.reach());
+
+  std::vector<std::int64_t> weights(points.size(), 0);
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    grid.for_each_near(points[i], [&](std::uint32_t j, const Vec3& other) {
+      if (j != i) weights[i] += crowding(points[i], other);
+    });
+
+  CrowdedFirst queue(std::move(weights));
+  for (std::size_t left = candidates.inside_count; left > count;) {
+    const std::uint32_t i = queue.pop();
+    left -= candidates.inside[i];
+    grid.for_each_near(points[i], [&](std::uint32_t j, const Vec3& other) {
+      const std::int64_t by = crowding(points[i], other);
+      if (by > 0) queue.lower(j, by);
+    });
+  }
+
+  std::vector<Vec3> kept;
+  kept.reserve(count);
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (candidates.inside[i] && queue.bilateral(i)) kept.push_back(points[i]);
+  return kept;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,224 @@
+#include "snowshed/scene/build_shape.hpp"
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "snowshed/core/angles.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/bounds.hpp"
+#include "snowshed/geometry/combine.hpp"
+#include "snowshed/geometry/mesh_level_set.hpp"
+#include "snowshed/geometry/primitives.hpp"
+#include "snowshed/geometry/readers/mesh_io.hpp"
+#include "snowshed/geometry/readers/npy_io.hpp"
+#include "snowshed/geometry/readers/vdb_file.hpp"
+#include "snowshed/geometry/sampled_grid.hpp"
+
+namespace snowshed {
+namespace {
+
+// Beyond this, squares and differences of coordinates lose the millimetres.
+constexpr double largest = 1e9;    // m
+constexpr double smallest = 1e-9;  // m
+
+/// Reads the fields of one ShapeSpec and names the culprit when one is bad.
+class Builder {
+ public:
+  Builder(const ShapeSpec& spec, int dimension, const std::string& path,
+          const std::filesystem::path& base_dir, int depth)
+      : spec_(spec), dimension_(dimension), path_(path), base_dir_(base_dir), depth_(depth) {}
+
+  Shape build() const {
+    if (depth_ > max_shape_depth)
+      fail("", "shapes nested deeper than " + std::to_string(max_shape_depth) + " levels");
+    static const std::map<std::string, Shape (Builder::*)() const> makers = {
+        {"plane", &Builder::plane},
+        {"box", &Builder::box},
+        {"sphere", &Builder::sphere},
+        {"cylinder", &Builder::cylinder},
+        {"capsule", &Builder::capsule},
+        {"plate", &Builder::plate},
+        {"mesh", &Builder::mesh},
+        {"grid", &Builder::grid},
+        {"vdb", &Builder::vdb},
+        {"union", &Builder::make_union},
+        {"difference", &Builder::difference},
+        {"transform", &Builder::transformed},
+    };
+    const auto maker = makers.find(spec_.type);
+    if (maker != makers.end()) return (this->*maker->second)();
+    std::string allowed;
+    for (const auto& entry : makers) allowed += (allowed.empty() ? "" : ", ") + entry.first;
+    fail("/type", "'" + spec_.type + "' is not a shape; allowed: " + allowed);
+  }
+
+ private:
+  Shape plane() const {
+    return make_plane(point(spec_.center, "/center"), direction(spec_.normal, "/normal"));
+  }
+
+  Shape box() const {
+    const Vec3 center = point(spec_.center, "/center");
+    Vec3 size;
+    for (int axis = 0; axis < 3; ++axis)
+      size[axis] = axis == 1 && dimension_ == 2 ? infinity : length(spec_.size[axis], "/size");
+    return make_box(center, size);
+  }
+
+  Shape sphere() const {
+    return make_sphere(point(spec_.center, "/center"), length(spec_.radius, "/radius"));
+  }
+
+  Shape cylinder() const {
+    check_axis();
+    return make_cylinder(spec_.from, spec_.to, length(spec_.radius, "/radius"));
+  }
+
+  Shape capsule() const {
+    check_axis();
+    return make_capsule(spec_.from, spec_.to, length(spec_.radius, "/radius"));
+  }
+
+  Shape plate() const {
+    const Vec3 normal = direction(spec_.normal, "/normal");
+    if (std::hypot(normal.x(), normal.z()) < 1e-6)
+      fail("/normal", describe(spec_.normal) +
+                          " is along y; a plate needs a normal with a part "
+                          "in the x-z plane");
+    return make_plate(point(spec_.center, "/center"), normal, length(spec_.length, "/length"),
+                      dimension_ == 2 ? infinity : length(spec_.width, "/width"),
+                      length(spec_.thickness, "/thickness"));
+  }
+
+  Shape mesh() const {
+    const double scale = length(spec_.scale, "/scale");
+    return in_scene(make_mesh(read_mesh(file(), scale)));
+  }
+
+  Shape grid() const {
+    GridSamples samples;
+    samples.origin = point(spec_.origin, "/origin", any_y);
+    samples.spacing = length(spec_.spacing, "/spacing");
+    const std::filesystem::path path = file();
+    NpyArray array = read_npy(path);
+    const std::vector<std::size_t>& n = array.shape;
+    const bool flat = n.size() == 2;
+    if (flat && dimension_ == 3)
+      throw InputError(path.string(),
+                       "a two-dimensional array; a three-dimensional scene needs "
+                       "a grid with the indices [x][y][z]");
+    samples.counts = {n[0], flat ? 1 : n[1], flat ? n[1] : n[2]};
+    samples.values = std::move(array.values);
+    return in_scene(make_sampled_grid(std::move(samples), path.string()));
+  }
+
+  Shape vdb() const {
+    const VdbSource source{file(), spec_.grid, length(spec_.threshold, "/threshold"),
+                           length(spec_.scale, "/scale")};
+    return in_scene(make_sampled_grid(read_vdb(source), source.path.string()));
+  }
+
+  Shape make_union() const { return unite(children(1)); }
+
+  Shape difference() const {
+    std::vector<Shape> shapes = children(2);
+    Shape first = shapes.front();
+    shapes.erase(shapes.begin());
+    return subtract(std::move(first), std::move(shapes));
+  }
+
+  Shape transformed() const {
+    if (spec_.shapes.size() != 1)
+      fail("/shapes", std::to_string(spec_.shapes.size()) + " shapes; a transform takes one");
+    const Vec3 translation = point(spec_.translate, "/translate");
+    const Vec3 axis = direction(spec_.axis, "/axis", any_y);
+    if (dimension_ == 2 && std::hypot(axis.x(), axis.z()) > 0)
+      fail("/axis", describe(spec_.axis) +
+                        " is not along y, the only axis that keeps a "
+                        "two-dimensional scene in its plane");
+    if (!(std::abs(spec_.angle) <= 36000))
+      fail("/angle", describe(spec_.angle) + "; allowed: -36000 to 36000 degrees");
+    const double angle = radians(std::fmod(spec_.angle, 360.0));
+    return transform(children(1).front(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(),
+                     translation);
+  }
+
+  std::vector<Shape> children(std::size_t at_least) const {
+    if (spec_.shapes.size() < at_least)
+      fail("/shapes", std::to_string(spec_.shapes.size()) + " shapes; at least " +
+                          std::to_string(at_least) + " needed");
+    std::vector<Shape> shapes;
+    for (std::size_t i = 0; i < spec_.shapes.size(); ++i)
+      shapes.push_back(Builder(spec_.shapes[i], dimension_, path_ + "/shapes/" + std::to_string(i),
+                               base_dir_, depth_ + 1)
+                           .build());
+    return shapes;
+  }
+
+  /// Solids that vary along y have normals out of the plane of a two-dimensional scene.
+  Shape in_scene(Shape shape) const {
+    return dimension_ == 2 ? cross_section(std::move(shape)) : shape;
+  }
+
+  std::filesystem::path file() const {
+    if (spec_.file.empty()) fail("/file", "missing; a file name is needed");
+    return base_dir_ / spec_.file;
+  }
+
+  void check_axis() const {
+    if ((point(spec_.to, "/to") - point(spec_.from, "/from")).norm() < smallest)
+      fail("/to", describe(spec_.to) + " equals 'from'; the ends of the axis must differ");
+  }
+
+  enum InPlane { in_plane, any_y };
+
+  Vec3 point(const Vec3& value, const char* field, InPlane plane = in_plane) const {
+    if (!(value.cwiseAbs().maxCoeff() <= largest) || !value.allFinite())
+      fail(field, describe(value) + "; allowed: finite coordinates up to 1e9 m");
+    if (plane == in_plane && dimension_ == 2 && value.y() != 0)
+      fail(field, describe(value) + "; y must be 0 in a two-dimensional scene");
+    return value;
+  }
+
+  Vec3 direction(const Vec3& value, const char* field, InPlane plane = in_plane) const {
+    const Vec3 v = point(value, field, plane);
+    if (v.norm() < smallest) fail(field, describe(value) + "; a direction must not be zero");
+    return v.normalized();
+  }
+
+  double length(double value, const char* field) const {
+    if (!(value >= smallest && value <= largest))
+      fail(field, describe(value) + "; must be positive (1e-9 to 1e9)");
+    return value;
+  }
+
+  static std::string describe(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+  }
+
+  static std::string describe(const Vec3& v) {
+    return "[" + describe(v.x()) + ", " + describe(v.y()) + ", " + describe(v.z()) + "]";
+  }
+
+  [[noreturn]] void fail(const std::string& field, const std::string& what) const {
+    throw InputError(path_ + field, what);
+  }
+
+  const ShapeSpec& spec_;
+  const int dimension_;
+  const std::string& path_;
+  const std::filesystem::path& base_dir_;
+  const int depth_;
+};
+
+}  // namespace
+
+Shape build_shape(const ShapeSpec& spec, int dimension, const std::string& json_path,
+                  const std::filesystem::path& base_dir) {
+  return Builder(spec, dimension, json_path, base_dir, 1).build();
+}
+
+}  // namespace snowshed

@@ -1,0 +1,92 @@
+// Visitor that holds every field of a scene against its range.
+#pragma once
+
+#include <cmath>
+
+#include "snowshed/scene/walker.hpp"
+
+namespace snowshed {
+
+class Checker : public Walker<Checker> {
+ public:
+  using Walker::Walker;
+
+  void version(const char*, int, const char*) {}
+
+  void number(const char* key, double& value, const char* unit, const Range& range, const char*) {
+    check(at(key), value, range.in(dimension_), unit);
+  }
+
+  template <class Int>
+  void integer(const char* key, Int& value, const Range& range, const char*) {
+    check(at(key), static_cast<double>(value), range);
+  }
+
+  void flag(const char*, bool&, const char*) {}
+
+  void text(const char* key, std::string& value, const char*) {
+    if (!is_utf8(value)) throw InputError(at(key), quote(value) + " is not valid UTF-8");
+  }
+
+  void file(const char* key, std::string& value, const char* doc) {
+    text(key, value, doc);
+    if (value.empty() || value.find('\0') != std::string::npos)
+      throw InputError(at(key), quote(value) + " is not the name of a file");
+  }
+
+  template <class E>
+  void choice(const char* key, E& value, const char*) {
+    if (!name_of(value))
+      throw InputError(at(key), std::to_string(static_cast<int>(value)) + " is no known choice");
+  }
+
+  void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char*) {
+    if (dimension_ == 2) {
+      check(at(key) + "/0", value.x(), range, unit);
+      check(at(key) + "/1", value.z(), range, unit);
+    } else {
+      for (int i = 0; i < 3; ++i) check(at(key) + "/" + std::to_string(i), value[i], range, unit);
+    }
+  }
+
+  void direction(const char* key, Vec3& value, const char* doc) {
+    vector(key, value, "", between(-1e6, 1e6), doc);
+    const double length = dimension_ == 2 ? std::hypot(value.x(), value.z()) : value.norm();
+    // Shorter ones lose their direction to rounding when squared.
+    constexpr double shortest = 1e-100;
+    if (length < shortest) throw InputError(at(key), "a direction must not be zero");
+  }
+
+  void axis(const char* key, Vec3& value, const char* doc) {
+    if (dimension_ == 3) direction(key, value, doc);
+  }
+
+  void spin(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
+    if (dimension_ == 3)
+      vector(key, value, unit, range, doc);
+    else
+      check(at(key), value.y(), range, unit);
+  }
+
+  template <class T>
+  void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {
+    check_count(at(key), items.size(), count);
+    Walker::list(key, items, count, doc);
+  }
+
+ protected:
+  static void check(const std::string& path, double value, const Range& range,
+                    const std::string& unit = "") {
+    if (!range.contains(value))
+      throw InputError(path,
+                       show(value) + " is outside the allowed range (" + range.text(unit) + ")");
+  }
+
+  static void check_count(const std::string& path, std::size_t size, const Range& count) {
+    if (!count.contains(static_cast<double>(size)))
+      throw InputError(path, std::to_string(size) + " entries are outside the allowed number (" +
+                                 count.text() + ")");
+  }
+};
+
+}  // namespace snowshed

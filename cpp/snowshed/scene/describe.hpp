@@ -1,0 +1,263 @@
+// The form of a scene, described once: key, member, unit, range and meaning of every field.
+//
+// `describe(visitor, object)` shows a visitor each field in turn. From it come reading (Reader),
+// checking (Checker), writing (Writer), the JSON Schema (SchemaWriter) and the paths in error
+// messages (Locator). Defaults are the members' initial values in scene.hpp. A visitor has:
+//
+//   version(key, number, doc)                a fixed number
+//   number(key, member, unit, range, doc)    integer(key, member, range, doc)
+//   flag(key, member, doc)                   text(key, member, doc)    file(key, member, doc)
+//   choice(key, member, doc)                 an enumeration, see enum_names.hpp
+//   vector(key, member, unit, range, doc)    [x, y, z], in 2D [x, z]; range of each component
+//   direction(key, member, doc)              the same, any length but zero
+//   axis(key, member, doc)                   a direction in 3D; absent in 2D, where it is +y
+//   spin(key, member, unit, range, doc)      a vector in 3D; in 2D a number, about +y
+//   object(key, member, need, doc)   optional(key, member, doc)   list(key, member, count, doc)
+//   variants(key, member, doc), variant(name, doc)..., end_variants()
+//                                            fields after variant(name) belong to that kind only
+#pragma once
+
+#include "snowshed/scene/enum_names.hpp"
+#include "snowshed/scene/range.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+// Limits far beyond any structure or snow; they keep arithmetic on untrusted input finite.
+namespace allowed {
+inline constexpr Range coordinate = between(-1e6, 1e6);         // m
+inline constexpr Range size = positive.up_to(1e6);              // m
+inline constexpr Range size_or_zero = non_negative.up_to(1e6);  // m
+inline constexpr Range pressure = positive.up_to(1e12);         // Pa
+inline constexpr Range speed = between(-1e4, 1e4);              // m/s, rad/s
+inline constexpr Range time = non_negative.up_to(1e9);          // s
+inline constexpr Range duration = positive.up_to(1e9);          // s
+inline constexpr Range coefficient = non_negative.up_to(100.0);
+}  // namespace allowed
+
+template <class V>
+void describe(V& v, Snow& s) {
+  v.choice("model", s.model, "Law: cohesive Modified Cam-Clay, or elastic without yielding");
+  v.number("density", s.density, "kg/m3", positive.up_to(1000.0), "Initial bulk density");
+  v.number("youngs_modulus", s.youngs_modulus, "Pa", allowed::pressure, "Young's modulus E");
+  v.number("poissons_ratio", s.poissons_ratio, "", non_negative.below(0.5), "Poisson's ratio nu");
+  v.number("critical_state_slope", s.critical_state_slope, "", allowed::coefficient,
+           "Slope M of the critical state line (internal friction)");
+  v.number("preconsolidation_pressure", s.preconsolidation_pressure, "Pa", allowed::pressure,
+           "Initial preconsolidation pressure p0");
+  v.number("cohesion", s.cohesion, "", fraction, "Cohesion beta: tensile strength over p0");
+  v.number("hardening_factor", s.hardening_factor, "", positive.up_to(1e3), "Hardening factor xi");
+}
+
+template <class V>
+void describe(V& v, ShapeSpec& s) {
+  v.variants("type", s.type, "Kind of solid; it decides which other keys are allowed");
+  if (v.variant("plane", "The half-space below a plane")) {
+    v.vector("center", s.center, "m", allowed::coordinate, "A point on the plane");
+    v.direction("normal", s.normal, "Outward normal");
+  }
+  if (v.variant("box", "Box along the axes; unbounded along y in 2D")) {
+    v.vector("center", s.center, "m", allowed::coordinate, "Centre");
+    v.vector("size", s.size, "m", allowed::size.required(), "Edge lengths");
+  }
+  if (v.variant("sphere", "Ball; a disc in 2D")) {
+    v.vector("center", s.center, "m", allowed::coordinate, "Centre");
+    v.number("radius", s.radius, "m", allowed::size.required(), "Radius");
+  }
+  if (v.variant("cylinder", "Cylinder with flat ends")) {
+    v.vector("from", s.from, "m", allowed::coordinate.required(), "One end of the axis");
+    v.vector("to", s.to, "m", allowed::coordinate.required(), "The other end");
+    v.number("radius", s.radius, "m", allowed::size.required(), "Radius");
+  }
+  if (v.variant("capsule", "All points within a radius of a segment")) {
+    v.vector("from", s.from, "m", allowed::coordinate.required(), "One end of the segment");
+    v.vector("to", s.to, "m", allowed::coordinate.required(), "The other end");
+    v.number("radius", s.radius, "m", allowed::size.required(), "Radius");
+  }
+  if (v.variant("plate", "A rectangular board below its face")) {
+    v.vector("center", s.center, "m", allowed::coordinate, "Middle of the face");
+    v.direction("normal", s.normal, "Outward normal of the face; not along y");
+    v.number("length", s.length, "m", allowed::size.required(), "Length, down the slope");
+    v.number("width", s.width, "m", allowed::size.required_in_3d(), "Width, across; ignored in 2D");
+    v.number("thickness", s.thickness, "m", allowed::size.required(), "Thickness, below the face");
+  }
+  if (v.variant("mesh", "Closed triangle mesh")) {
+    v.file("file", s.file, "STL, OBJ or PLY file; relative to the scene file");
+    v.number("scale", s.scale, "m", positive.up_to(1e6), "Length of one unit of the file");
+  }
+  if (v.variant("grid", "Sampled signed distances")) {
+    v.file("file", s.file, "NPY file; relative to the scene file");
+    v.vector("origin", s.origin, "m", allowed::coordinate, "Position of the first sample");
+    v.number("spacing", s.spacing, "m", allowed::size.required(), "Distance between samples");
+  }
+  if (v.variant("vdb", "Level set or fog volume of an OpenVDB file")) {
+    v.file("file", s.file, "VDB file; relative to the scene file");
+    v.text("grid", s.grid, "Name of the grid; empty: the only one of floats");
+    v.number("scale", s.scale, "m", positive.up_to(1e6), "Length of one unit of the file");
+    v.number("threshold", s.threshold, "", positive.up_to(1e6),
+             "Of a fog volume: the solid is where its value is above this");
+  }
+  if (v.variant("union", "Everything in any of the shapes")) {
+    v.list("shapes", s.shapes, between(1, 10000).required(), "The parts");
+  }
+  if (v.variant("difference", "The first shape without the others")) {
+    v.list("shapes", s.shapes, between(2, 10000).required(), "The body, then what is cut away");
+  }
+  if (v.variant("transform", "A shape, rotated about the origin and then moved")) {
+    v.list("shapes", s.shapes, exactly(1).required(), "The shape");
+    v.axis("axis", s.axis, "Rotation axis");
+    v.number("angle", s.angle, "degrees", between(-360.0, 360.0), "Rotation about the axis");
+    v.vector("translate", s.translate, "m", allowed::coordinate, "Translation, after the rotation");
+  }
+  v.end_variants();
+}
+
+template <class V>
+void describe(V& v, MotionSpec& m) {
+  v.vector("velocity", m.velocity, "m/s", allowed::speed, "Velocity");
+  v.spin("angular_velocity", m.angular_velocity, "rad/s", allowed::speed,
+         "Angular velocity about the pivot");
+  v.vector("pivot", m.pivot, "m", allowed::coordinate,
+           "Centre of the rotation; moves with the velocity");
+  v.number("start", m.start, "s", allowed::time,
+           "Start of the motion, on the clock of the whole run");
+  v.number("end", m.end, "s", allowed::time, "End of the motion");
+}
+
+template <class V>
+void describe(V& v, ObstacleSpec& o) {
+  v.text("name", o.name, "Name in messages and results");
+  v.object("shape", o.shape, Need::required, "The solid");
+  v.choice("condition", o.condition, "What snow that touches it may do");
+  v.number("friction", o.friction, "", allowed::coefficient,
+           "Coulomb coefficient; unused when sticky");
+  v.optional("motion", o.motion, "Prescribed rigid motion; fixed without it");
+}
+
+template <class V>
+void describe(V& v, BodySpec& b) {
+  v.object("shape", b.shape, Need::required, "The solid to fill with snow");
+  v.vector("velocity", b.velocity, "m/s", allowed::speed, "Initial velocity");
+  v.integer("event", b.event, non_negative.up_to(1000),
+            "Event at whose start it appears, 1 the first; 0: at the start of every event");
+  v.optional("snow", b.snow, "Snow of its own; what it leaves out is as in the scene's snow");
+}
+
+template <class V>
+void describe(V& v, Panel& p) {
+  v.number("height", p.height, "m", allowed::size_or_zero.required(),
+           "Vertical distance of the lower edge above the ground");
+  v.number("length", p.length, "m", allowed::size.required(), "Length along the slope");
+  v.number("width", p.width, "m", allowed::size.required_in_3d(),
+           "Width across the slope; ignored in 2D");
+  v.number("tilt", p.tilt, "degrees", non_negative.below(90.0), "Tilt from the horizontal");
+  v.number("thickness", p.thickness, "m", allowed::size_or_zero,
+           "Thickness, below the sliding face");
+  v.choice("condition", p.condition, "What snow that touches it may do");
+  v.number("friction", p.friction, "", allowed::coefficient,
+           "Coulomb coefficient; unused when sticky");
+}
+
+template <class V>
+void describe(V& v, Layer& l) {
+  v.number("thickness", l.thickness, "m", allowed::size.required(),
+           "Thickness, normal to the panel");
+  v.optional("snow", l.snow, "Snow of its own; what it leaves out is as in the scene's snow");
+  v.integer("event", l.event, non_negative.up_to(1000),
+            "Event at whose start it is laid, 1 the first; 0: at the start of every event");
+}
+
+template <class V>
+void describe(V& v, Slab& s) {
+  v.number("thickness", s.thickness, "m", allowed::size_or_zero,
+           "Thickness, normal to the panel; 0: that of the layers");
+  v.number("length", s.length, "m", allowed::size_or_zero, "Length; 0: as long as the panel");
+  v.number("width", s.width, "m", allowed::size_or_zero,
+           "Width; 0: two thirds of the panel's; ignored in 2D");
+  v.list("layers", s.layers, between(0, 1000), "In place of a thickness, layers from the panel up");
+}
+
+template <class V>
+void describe(V& v, Ground& g) {
+  v.number("tilt", g.tilt, "degrees", Range{-60.0, 60.0, true, true, Need::optional},
+           "Tilt; positive falls in the slide direction");
+  v.choice("condition", g.condition, "What snow that touches it may do");
+  v.number("friction", g.friction, "", allowed::coefficient,
+           "Coulomb coefficient; unused when sticky");
+}
+
+template <class V>
+void describe(V& v, Domain& d) {
+  v.vector("min", d.min, "m", allowed::coordinate.required(), "Lowest corner");
+  v.vector("max", d.max, "m", allowed::coordinate.required(), "Highest corner");
+}
+
+template <class V>
+void describe(V& v, Seeding& s) {
+  v.number("particles_per_voxel", s.particles_per_voxel, "", non_negative.up_to(1000.0),
+           "Particles per voxel of edge dx, at least 4 in 2D and 6 in 3D; 0: 6 in 2D, 8 in 3D");
+  v.choice("pattern", s.pattern, "How particles are placed");
+  v.integer("seed", s.seed, non_negative, "Seed of the random numbers");
+  v.flag("allow_sparse", s.allow_sparse, "Accept fewer particles per voxel");
+}
+
+template <class V>
+void describe(V& v, MpmSettings& n) {
+  v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
+  v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
+  v.choice("transfer", n.transfer, "How velocities move between particles and grid");
+  v.number("flip_ratio", n.flip_ratio, "", fraction, "Share of FLIP in FLIP/PIC; 0 is pure PIC");
+  v.choice("basis", n.basis, "B-spline of the grid");
+  v.number("step_factor", n.step_factor, "", positive.up_to(1.0),
+           "Time step over the largest stable one");
+  v.number("strain_limit", n.strain_limit, "", positive.up_to(0.5),
+           "Largest |dt grad v| that a step may impose on a particle");
+  v.number("sleep_speed", n.sleep_speed, "m/s", non_negative.up_to(1e4),
+           "Snow slower than this drops out of the steps until something moves it; 0: never");
+  v.number("sleep_time", n.sleep_time, "s", allowed::time,
+           "How long it must have been slower, and not have grown faster");
+  v.integer("threads", n.threads, non_negative.up_to(4096), "Threads; 0: all");
+}
+
+template <class V>
+void describe(V& v, Events& e) {
+  v.integer("count", e.count, between(1, 1000), "Number of slide-off events");
+  v.choice("between", e.between,
+           "Between events, carry the particles on or reseed the stack's volume");
+  v.number("max_time", e.max_time, "s", allowed::duration, "Longest duration of an event");
+  v.number("rest_speed", e.rest_speed, "m/s", positive.up_to(1e4),
+           "Speed below which the snow counts as resting");
+  v.number("rest_time", e.rest_time, "s", allowed::time, "How long it must rest to end the event");
+}
+
+template <class V>
+void describe(V& v, Output& o) {
+  v.number("snapshot_interval", o.snapshot_interval, "s", allowed::time,
+           "Simulated time between particle snapshots; 0: only at the end of an event");
+  v.flag("energy", o.energy, "Keep energy books");
+  v.number("checkpoint_interval", o.checkpoint_interval, "s", allowed::time,
+           "Wall time between checkpoints; 0: none");
+}
+
+template <class V>
+void describe(V& v, Scene& s) {
+  v.version("snowshed", scene_version, "Version of this form");
+  // Before any vector: it decides how they are written.
+  v.integer("dimension", s.dimension, between(2, 3), "2: the plane (x, z); 3: space");
+  v.text("title", s.title, "What this scene is");
+  v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");
+  v.object("snow", s.snow, Need::optional, "The material");
+  v.optional("panel", s.panel,
+             "The panel; its centre is the origin of x, which points down the slide direction");
+  v.optional("slab", s.slab, "The slab laid on the panel, centred, at the start of every event");
+  v.optional("ground", s.ground, "An inclined plane through the origin");
+  v.list("obstacles", s.obstacles, between(0, 10000), "Further solids that snow collides with");
+  v.list("bodies", s.bodies, between(0, 10000), "Further bodies of snow");
+  v.optional("domain", s.domain, "A box with sticky sides; unbounded without it");
+  v.object("seeding", s.seeding, Need::optional, "How snow is filled with particles");
+  v.object("numerics", s.numerics, Need::optional, "The method's settings");
+  v.object("events", s.events, Need::optional, "How many events, and when one ends");
+  v.object("output", s.output, Need::optional, "What is written during a run");
+}
+
+}  // namespace snowshed

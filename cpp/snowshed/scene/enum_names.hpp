@@ -1,0 +1,67 @@
+// The words that stand for the scene's enumerations, in JSON and in messages.
+#pragma once
+
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+template <class E>
+struct Named {
+  E value;
+  const char* name;
+};
+
+/// `EnumNames<E>::list` holds every value of E with its name.
+template <class E>
+struct EnumNames;
+
+template <>
+struct EnumNames<Precision> {
+  static constexpr Named<Precision> list[] = {{Precision::float32, "float"},
+                                              {Precision::float64, "double"}};
+};
+
+template <>
+struct EnumNames<SnowModel> {
+  static constexpr Named<SnowModel> list[] = {{SnowModel::cam_clay, "cam_clay"},
+                                              {SnowModel::elastic, "elastic"}};
+};
+
+template <>
+struct EnumNames<Transfer> {
+  static constexpr Named<Transfer> list[] = {{Transfer::flip, "flip"}, {Transfer::apic, "apic"}};
+};
+
+template <>
+struct EnumNames<Basis> {
+  static constexpr Named<Basis> list[] = {{Basis::quadratic, "quadratic"}, {Basis::cubic, "cubic"}};
+};
+
+template <>
+struct EnumNames<Condition> {
+  static constexpr Named<Condition> list[] = {
+      {Condition::sticky, "sticky"}, {Condition::slip, "slip"}, {Condition::separate, "separate"}};
+};
+
+template <>
+struct EnumNames<SeedPattern> {
+  static constexpr Named<SeedPattern> list[] = {{SeedPattern::regular, "regular"},
+                                                {SeedPattern::jittered, "jittered"},
+                                                {SeedPattern::poisson, "poisson"}};
+};
+
+template <>
+struct EnumNames<Between> {
+  static constexpr Named<Between> list[] = {{Between::carry, "carry"}, {Between::reseed, "reseed"}};
+};
+
+/// The name of a value; null for a value outside the enumeration.
+template <class E>
+constexpr const char* name_of(E value) {
+  for (const auto& named : EnumNames<E>::list) {
+    if (named.value == value) return named.name;
+  }
+  return nullptr;
+}
+
+}  // namespace snowshed

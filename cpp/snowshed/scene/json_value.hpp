@@ -1,0 +1,64 @@
+// From one JSON value to one C++ value, or an InputError that says what was found.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/vec.hpp"
+#include "snowshed/scene/enum_names.hpp"
+#include "snowshed/scene/message_format.hpp"
+#include "snowshed/scene/range.hpp"
+
+namespace snowshed {
+
+/// A value in a message: the scalar itself, or "an object", "an array".
+std::string shown(const nlohmann::json& value);
+
+InputError wrong_type(const std::string& path, const nlohmann::json& value,
+                      const std::string& allowed);
+
+double to_number(const nlohmann::json& value, const std::string& path, const std::string& allowed);
+bool to_flag(const nlohmann::json& value, const std::string& path);
+std::string to_text(const nlohmann::json& value, const std::string& path);
+
+/// "an array of 2 numbers (x, z)" in 2D.
+std::string vector_text(int dimension);
+Vec3 to_vector(const nlohmann::json& value, const std::string& path, int dimension);
+
+/// Also takes whole numbers written as 5.0, which are integers in JSON Schema.
+template <class Int>
+Int to_integer(const nlohmann::json& value, const std::string& path, const Range& range,
+               const std::string& allowed) {
+  const double number = to_number(value, path, allowed);
+  if (std::floor(number) != number) throw wrong_type(path, value, allowed);
+  // Before the conversion, which is undefined for numbers Int cannot hold. The limit itself is
+  // not representable as a double for 64 bits; there the next power of two is already too large.
+  constexpr Int largest = std::numeric_limits<Int>::max();
+  const bool fits = value.is_number_float()
+                        ? number < static_cast<double>(largest)
+                        : number < 0 || value.get<std::uint64_t>() <= std::uint64_t{largest};
+  if (!range.contains(number))
+    throw InputError(path, shown(value) + " is outside the allowed range (" + range.text() + ")");
+  if (!fits)
+    throw InputError(
+        path, shown(value) + " is above " + std::to_string(largest) + ", the largest allowed");
+  return value.get<Int>();
+}
+
+template <class E>
+E to_choice(const nlohmann::json& value, const std::string& path) {
+  std::vector<std::string> names;
+  for (const auto& named : EnumNames<E>::list) {
+    if (value == named.name) return named.value;
+    names.push_back(named.name);
+  }
+  const std::string near = value.is_string() ? suggestion(value.get<std::string>(), names) : "";
+  throw InputError(path, shown(value) + " is none of " + quoted_list(names) + near);
+}
+
+}  // namespace snowshed

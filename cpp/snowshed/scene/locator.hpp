@@ -1,0 +1,84 @@
+// Where a member of a scene stands in its JSON, so that rules can name members, not texts.
+#pragma once
+
+#include <typeindex>
+
+#include "snowshed/scene/walker.hpp"
+
+namespace snowshed {
+
+/// Visitor that looks for the object at an address.
+class Locator : public Walker<Locator> {
+ public:
+  /// `path` receives the JSON pointer when the target is met.
+  Locator(const void* target, std::type_index type, const int& dimension, std::string& path)
+      : Walker("", dimension), target_(target), type_(type), found_(path) {}
+
+  template <class T, class... Rest>
+  void number(const char* key, T& value, const Rest&...) {
+    meet(at(key), value);
+  }
+  template <class T, class... Rest>
+  void integer(const char* key, T& value, const Rest&...) {
+    meet(at(key), value);
+  }
+  template <class T, class... Rest>
+  void vector(const char* key, T& value, const Rest&...) {
+    meet(at(key), value);
+  }
+  template <class T, class... Rest>
+  void spin(const char* key, T& value, const Rest&...) {
+    meet(at(key), value);
+  }
+  void version(const char*, int, const char*) {}
+  void flag(const char* key, bool& value, const char*) { meet(at(key), value); }
+  void text(const char* key, std::string& value, const char*) { meet(at(key), value); }
+  void file(const char* key, std::string& value, const char*) { meet(at(key), value); }
+  template <class E>
+  void choice(const char* key, E& value, const char*) {
+    meet(at(key), value);
+  }
+  void direction(const char* key, Vec3& value, const char*) { meet(at(key), value); }
+  void axis(const char* key, Vec3& value, const char*) { meet(at(key), value); }
+
+  template <class T>
+  void object(const char* key, T& value, Need need, const char* doc) {
+    meet(at(key), value);
+    Walker::object(key, value, need, doc);
+  }
+  template <class T>
+  void optional(const char* key, std::optional<T>& value, const char* doc) {
+    meet(at(key), value);
+    if (value) meet(at(key), *value);
+    Walker::optional(key, value, doc);
+  }
+  template <class T>
+  void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {
+    meet(at(key), items);
+    for (std::size_t i = 0; i < items.size(); ++i)
+      meet(pointer(at(key), std::to_string(i)), items[i]);
+    Walker::list(key, items, count, doc);
+  }
+
+ private:
+  /// Types are compared too: a struct and its first member share an address.
+  template <class T>
+  void meet(const std::string& path, const T& value) {
+    if (&value == target_ && type_ == typeid(T)) found_ = path;
+  }
+
+  const void* target_;
+  std::type_index type_;
+  std::string& found_;
+};
+
+/// JSON pointer of `member`, which must be part of `scene`; "/" for the scene itself.
+template <class T>
+std::string path_of(const Scene& scene, const T& member) {
+  std::string path = "/";
+  Locator locator(&member, typeid(T), scene.dimension, path);
+  describe(locator, const_cast<Scene&>(scene));  // visitors may write; this one does not
+  return path;
+}
+
+}  // namespace snowshed

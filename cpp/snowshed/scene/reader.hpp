@@ -1,0 +1,160 @@
+// Visitor that fills a scene from JSON, and checks each field as it is read.
+#pragma once
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "snowshed/scene/checker.hpp"
+#include "snowshed/scene/json_value.hpp"
+
+namespace snowshed {
+
+class Reader : public Checker {
+ public:
+  Reader(const nlohmann::json& value, std::string path, const int& dimension)
+      : Checker(std::move(path), dimension), object_(value) {
+    if (!object_.is_object()) throw wrong_type(shown_path(path_), object_, "an object");
+  }
+
+  /// Reads `target` from `value`, an object at `path`.
+  template <class T>
+  static void read(const nlohmann::json& value, const std::string& path, const int& dimension,
+                   T& target) {
+    Reader reader(value, path, dimension);
+    describe(reader, target);
+    reader.finish();
+  }
+
+  void version(const char* key, int number, const char*) {
+    const json* value = take(key, Need::required, "the version " + std::to_string(number));
+    if (value && *value != number)
+      throw InputError(at(key), shown(*value) + " is not the version this program reads (" +
+                                    std::to_string(number) + ")");
+  }
+
+  void number(const char* key, double& value, const char* unit, const Range& range,
+              const char* doc) {
+    const std::string allowed = "a number (" + range.in(dimension_).text(unit) + ")";
+    if (const json* given = take(key, range.need, allowed)) {
+      value = to_number(*given, at(key), allowed);
+      Checker::number(key, value, unit, range, doc);
+    }
+  }
+
+  template <class Int>
+  void integer(const char* key, Int& value, const Range& range, const char* doc) {
+    const std::string allowed = "a whole number (" + range.text() + ")";
+    if (const json* given = take(key, range.need, allowed)) {
+      value = to_integer<Int>(*given, at(key), range, allowed);
+      Checker::integer(key, value, range, doc);
+    }
+  }
+
+  void flag(const char* key, bool& value, const char*) {
+    if (const json* given = take(key)) value = to_flag(*given, at(key));
+  }
+
+  void text(const char* key, std::string& value, const char* doc) {
+    if (const json* given = take(key)) {
+      value = to_text(*given, at(key));
+      Checker::text(key, value, doc);
+    }
+  }
+
+  void file(const char* key, std::string& value, const char* doc) {
+    if (const json* given = take(key, Need::required, "a file name")) {
+      value = to_text(*given, at(key));
+      Checker::file(key, value, doc);
+    }
+  }
+
+  template <class E>
+  void choice(const char* key, E& value, const char*) {
+    if (const json* given = take(key)) value = to_choice<E>(*given, at(key));
+  }
+
+  void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
+    if (const json* given = take(key, range.need, vector_text(dimension_))) {
+      value = to_vector(*given, at(key), dimension_);
+      Checker::vector(key, value, unit, range, doc);
+    }
+  }
+
+  void direction(const char* key, Vec3& value, const char* doc) {
+    if (const json* given = take(key)) {
+      value = to_vector(*given, at(key), dimension_);
+      Checker::direction(key, value, doc);
+    }
+  }
+
+  void axis(const char* key, Vec3& value, const char* doc) {
+    if (dimension_ == 3) direction(key, value, doc);
+  }
+
+  void spin(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
+    if (dimension_ == 3) {
+      vector(key, value, unit, range, doc);
+    } else if (const json* given = take(key)) {
+      value = {0.0, to_number(*given, at(key), "a number (about +y, in 2D)"), 0.0};
+      Checker::spin(key, value, unit, range, doc);
+    }
+  }
+
+  template <class T>
+  void object(const char* key, T& value, Need need, const char*) {
+    if (const json* given = take(key, need, "an object")) read(*given, at(key), dimension_, value);
+  }
+
+  template <class T>
+  void optional(const char* key, std::optional<T>& value, const char*) {
+    if (const json* given = take(key)) read(*given, at(key), dimension_, value.emplace());
+  }
+
+  template <class T>
+  void list(const char* key, std::vector<T>& items, const Range& count, const char*) {
+    const json* given = take(key, count.need, "an array");
+    if (!given) return;
+    if (!given->is_array()) throw wrong_type(at(key), *given, "an array");
+    check_count(at(key), given->size(), count);
+    items.assign(given->size(), T{});
+    for (std::size_t i = 0; i < items.size(); ++i)
+      read((*given)[i], at(key) + "/" + std::to_string(i), dimension_, items[i]);
+  }
+
+  void variants(const char* key, std::string& type, const char* doc) {
+    const json* given = take(key, Need::required, "a text");
+    if (!given) throw *missing_;  // without it no other key makes sense
+    type = to_text(*given, at(key));
+    Checker::variants(key, type, doc);
+  }
+
+ private:
+  using json = nlohmann::json;
+
+  /// The value of `key`, or null if it is not there. A missing required key is reported only in
+  /// `finish`, after unknown ones: a misspelt key is both, and the misspelling is what helps.
+  const json* take(const char* key, Need need = Need::optional, const std::string& allowed = "") {
+    keys_.push_back(key);
+    const auto found = object_.find(key);
+    if (found != object_.end()) return &*found;
+    if (is_required(need, dimension_) && !missing_)
+      missing_ = InputError(at(key), "missing: " + allowed + " is required");
+    return nullptr;
+  }
+
+  void finish() const {
+    for (const auto& [key, value] : object_.items()) {
+      if (std::find(keys_.begin(), keys_.end(), key) != keys_.end()) continue;
+      const std::string near = suggestion(key, keys_);
+      throw InputError(at(key),
+                       "unknown key" + (near.empty() ? "; allowed: " + quoted_list(keys_) : near));
+    }
+    if (missing_) throw *missing_;
+  }
+
+  const json& object_;
+  std::vector<std::string> keys_;
+  std::optional<InputError> missing_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,114 @@
+#include "snowshed/scene/scene_json.hpp"
+
+#include <fstream>
+
+#include "snowshed/scene/json_text.hpp"
+#include "snowshed/scene/reader.hpp"
+#include "snowshed/scene/validation.hpp"
+#include "snowshed/scene/writer.hpp"
+
+namespace snowshed {
+namespace {
+
+/// At most one byte more than is allowed, whatever the file is.
+std::string read_text(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw InputError(file.string(), "no such file");
+  if (std::filesystem::is_directory(file)) throw InputError(file.string(), "is a folder");
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  char block[1 << 16];
+  while (stream && text.size() <= max_text_bytes) {
+    stream.read(block, sizeof block);
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.eof() && text.size() <= max_text_bytes)
+    throw InputError(file.string(), "cannot be read");
+  return text;
+}
+
+void with_absolute_files(const std::filesystem::path& folder, ShapeSpec& shape) {
+  if (!shape.file.empty())  // absolute ones stay
+    shape.file = (folder / shape.file).lexically_normal().string();
+  for (auto& part : shape.shapes) with_absolute_files(folder, part);
+}
+
+/// Completes snow of a layer or body by the scene's, both as they were given.
+void complete_snow(const nlohmann::json& of_scene, nlohmann::json& part) {
+  if (!part.is_object() || !part.contains("snow") || !part["snow"].is_object()) return;
+  nlohmann::json whole = of_scene;
+  whole.update(part["snow"]);
+  part["snow"] = std::move(whole);
+}
+
+void complete_snow(nlohmann::json& scene) {
+  if (!scene.is_object() || !scene.contains("snow") || !scene["snow"].is_object()) return;
+  const nlohmann::json of_scene = scene["snow"];
+  for (const char* list : {"/slab/layers", "/bodies"}) {
+    const nlohmann::json::json_pointer place(list);
+    if (!scene.contains(place) || !scene[place].is_array()) continue;
+    for (auto& part : scene[place]) complete_snow(of_scene, part);
+  }
+}
+
+InputError naming_file(const InputError& error, const std::string& file) {
+  if (error.where().rfind(file, 0) == 0) return error;
+  const std::string message = error.what();
+  return InputError(error.where(), message.substr(error.where().size() + 2) + " [in " + file + "]");
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& name) {
+  Scene scene;
+  nlohmann::json json = parse_json(text, name);
+  complete_snow(json);
+  Reader::read(json, "", scene.dimension, scene);
+  check_rules(scene);
+  return scene;
+}
+
+Scene with_absolute_files(const std::filesystem::path& folder, Scene scene) {
+  const auto absolute = std::filesystem::absolute(folder.empty() ? "." : folder);
+  for (auto& obstacle : scene.obstacles) with_absolute_files(absolute, obstacle.shape);
+  for (auto& body : scene.bodies) with_absolute_files(absolute, body.shape);
+  return scene;
+}
+
+Scene load_scene(const std::filesystem::path& file) {
+  try {
+    return with_absolute_files(file.parent_path(), parse_scene(read_text(file), file.string()));
+  } catch (const InputError& error) {
+    throw naming_file(error, file.string());
+  }
+}
+
+std::string write_scene(const Scene& scene) {
+  validate(scene);
+  Scene copy = scene;  // visitors see members they may write to
+  return pretty(Writer::write(copy, copy.dimension));
+}
+
+std::string write_snow(const Snow& snow) {
+  Snow copy = snow;
+  return pretty(Writer::write(copy, 3));
+}
+
+void validate(const Scene& scene) {
+  Scene copy = scene;
+  Checker checker("", copy.dimension);
+  describe(checker, copy);
+  check_rules(scene);
+}
+
+Scene resolve(Scene scene) {
+  if (scene.slab && scene.panel) {
+    if (scene.slab->length == 0.0) scene.slab->length = scene.panel->length;
+    // Snow must not spill over the sides: the panel is 1.5 times as wide (Table 3.2.1).
+    if (scene.slab->width == 0.0) scene.slab->width = scene.panel->width * 2.0 / 3.0;
+  }
+  if (scene.seeding.particles_per_voxel == 0.0)
+    scene.seeding.particles_per_voxel = scene.dimension == 2 ? 6.0 : 8.0;
+  return scene;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,43 @@
+// The JSON form of a scene: reading, checking, writing, and its published schema.
+// Every field is described once, in src/scene/describe.hpp.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// Reads and validates a scene. What the snow of a layer or body leaves out is taken from the
+/// scene's. Throws InputError whose `where` is the JSON pointer of the
+/// offending value ("/snow/density", "/" for the whole), or "name:line:column" when the text
+/// is not JSON. The text need not be trusted: its size, depth and number of values are limited.
+Scene parse_scene(const std::string& text, const std::string& name = "scene");
+
+/// The scene with absolute names of mesh and grid files; relative ones are taken to be in `folder`.
+Scene with_absolute_files(const std::filesystem::path& folder, Scene scene);
+
+/// `parse_scene` on a file; errors name it. Mesh and grid files given by a relative path are
+/// looked for beside the scene file, so the result does not depend on the working directory.
+Scene load_scene(const std::filesystem::path& file);
+
+/// The complete JSON of a valid scene, defaults included: parse_scene gives back the same scene.
+/// Of a shape only the fields its type uses are written, and in 2D only x and z of a vector.
+std::string write_scene(const Scene& scene);
+
+/// The complete JSON of a snow.
+std::string write_snow(const Snow& snow);
+
+/// JSON Schema (2020-12) of the form; units stand under "x-unit". Rules between several fields
+/// are beyond a schema: `validate` has them.
+std::string scene_schema();
+
+/// Throws InputError at the first field out of range or at odds with another.
+void validate(const Scene& scene);
+
+/// Replaces the zeros that stand for "follow another field": the slab's length and width (from
+/// the panel) and the particles per voxel (from the dimension).
+Scene resolve(Scene scene);
+
+}  // namespace snowshed

@@ -1,0 +1,197 @@
+// Visitor that turns the description of a scene into JSON Schema.
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "snowshed/scene/describe.hpp"
+
+namespace snowshed {
+
+class SchemaWriter {
+ public:
+  using json = nlohmann::ordered_json;
+
+  /// Shared by all visitors of one schema: what is referred to, because it contains itself.
+  explicit SchemaWriter(json& definitions) : definitions_(definitions) {}
+
+  /// The schema of T; its defaults are those of a new T.
+  template <class T>
+  static json write(json& definitions) {
+    SchemaWriter writer(definitions);
+    T defaults;
+    describe(writer, defaults);
+    return writer.finish();
+  }
+
+  void version(const char* key, int number, const char* doc) {
+    add(key, {{"const", number}}, doc, Need::required);
+  }
+
+  void number(const char* key, double& value, const char* unit, const Range& range,
+              const char* doc) {
+    const json schema = limited("number", range.in(2), unit);  // what either dimension allows
+    add(key, with_default(schema, value, range.need), doc, range.need);
+  }
+
+  template <class Int>
+  void integer(const char* key, Int& value, const Range& range, const char* doc) {
+    add(key, with_default(limited("integer", range), value, range.need), doc, range.need);
+  }
+
+  void flag(const char* key, bool& value, const char* doc) {
+    add(key, {{"type", "boolean"}, {"default", value}}, doc);
+  }
+
+  void text(const char* key, std::string& value, const char* doc) {
+    add(key, {{"type", "string"}, {"default", value}}, doc);
+  }
+
+  void file(const char* key, std::string&, const char* doc) {
+    add(key, {{"type", "string"}, {"minLength", 1}}, doc, Need::required);
+  }
+
+  template <class E>
+  void choice(const char* key, E& value, const char* doc) {
+    json names = json::array();
+    for (const auto& named : EnumNames<E>::list) names.push_back(named.name);
+    add(key, {{"enum", names}, {"default", name_of(value)}}, doc);
+  }
+
+  void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
+    add(key, with_default(array(limited("number", range), 2, unit), entries(value), range.need),
+        doc, range.need);
+  }
+
+  void direction(const char* key, Vec3& value, const char* doc) {
+    vector(key, value, "", anything, doc);
+  }
+
+  void axis(const char* key, Vec3& value, const char* doc) {
+    json schema = array(limited("number", anything), 3, "");
+    add(key, with_default(std::move(schema), entries(value), Need::optional),
+        std::string(doc) + " (3D only; +y in 2D)");
+  }
+
+  void spin(const char* key, Vec3&, const char* unit, const Range& range, const char* doc) {
+    const json component = limited("number", range);
+    json schema = {{"anyOf", json::array({component, array(component, 3, "")})}, {"x-unit", unit}};
+    add(key, schema, std::string(doc) + "; in 2D a single number, about +y");
+  }
+
+  template <class T>
+  void object(const char* key, T&, Need need, const char* doc) {
+    add(key, schema_of<T>(), doc, need);
+  }
+
+  template <class T>
+  void optional(const char* key, std::optional<T>&, const char* doc) {
+    json schema = schema_of<T>();
+    if constexpr (std::is_same_v<T, Snow>)  // of a part: there the defaults are the scene's snow
+      for (auto& [name, property] : schema["properties"].items()) property.erase("default");
+    add(key, schema, doc);
+  }
+
+  template <class T>
+  void list(const char* key, std::vector<T>&, const Range& count, const char* doc) {
+    add(key,
+        {{"type", "array"},
+         {"items", schema_of<T>()},
+         {"minItems", static_cast<int>(count.min)},
+         {"maxItems", static_cast<int>(count.max)}},
+        doc, count.need);
+  }
+
+  void variants(const char* key, std::string&, const char* doc) {
+    variant_key_ = key;
+    variant_doc_ = doc;
+  }
+
+  /// Always true: every kind is described, each in an object of its own.
+  bool variant(const char* name, const char* doc) {
+    end_variant();
+    add(variant_key_.c_str(), {{"const", name}}, variant_doc_, Need::required);
+    variant_name_ = name;
+    variant_what_ = doc;
+    return true;
+  }
+
+  void end_variants() { end_variant(); }
+
+ private:
+  json finish() {
+    if (!variants_.empty()) return {{"oneOf", std::move(variants_)}};
+    return closed_object();
+  }
+
+  json closed_object() {
+    json schema = {{"type", "object"}, {"properties", std::move(properties_)}};
+    if (!required_.empty()) schema["required"] = std::move(required_);
+    schema["additionalProperties"] = false;
+    properties_ = json::object();
+    required_ = json::array();
+    return schema;
+  }
+
+  void end_variant() {
+    if (variant_name_.empty()) return;
+    json schema = {{"title", variant_name_}, {"description", variant_what_}};
+    schema.update(closed_object());
+    variants_.push_back(std::move(schema));
+  }
+
+  void add(const char* key, const json& schema, std::string doc, Need need = Need::optional) {
+    if (need == Need::required) required_.push_back(key);
+    if (need == Need::required_in_3d) doc += " (required in 3D)";
+    json property = {{"description", doc}};
+    property.update(schema);
+    properties_[key] = std::move(property);
+  }
+
+  static json limited(const char* type, const Range& range, const std::string& unit = "") {
+    json schema = {{"type", type}};
+    if (std::isfinite(range.min))
+      schema[range.open_min ? "exclusiveMinimum" : "minimum"] = range.min;
+    if (std::isfinite(range.max))
+      schema[range.open_max ? "exclusiveMaximum" : "maximum"] = range.max;
+    if (!unit.empty()) schema["x-unit"] = unit;
+    return schema;
+  }
+
+  static json array(json items, int least, const std::string& unit) {
+    json schema = {
+        {"type", "array"}, {"items", std::move(items)}, {"minItems", least}, {"maxItems", 3}};
+    if (!unit.empty()) schema["x-unit"] = unit;
+    return schema;
+  }
+
+  static json entries(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+  static json with_default(json schema, json value, Need need) {
+    if (need == Need::optional) schema["default"] = std::move(value);
+    return schema;
+  }
+
+  template <class T>
+  json schema_of() {
+    if constexpr (!std::is_same_v<T, ShapeSpec>) {
+      return write<T>(definitions_);
+    } else {  // shapes hold shapes
+      constexpr const char* name = "shape";
+      if (!definitions_.contains(name)) {
+        definitions_[name] = json::object();  // ends the recursion
+        json schema = write<T>(definitions_);
+        definitions_[name] = std::move(schema);
+      }
+      return {{"$ref", std::string("#/$defs/") + name}};
+    }
+  }
+
+  json& definitions_;
+  json properties_ = json::object();
+  json required_ = json::array();
+  json variants_ = json::array();
+  std::string variant_key_, variant_doc_, variant_name_, variant_what_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,211 @@
+#include "snowshed/scene/validation.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/locator.hpp"
+#include "snowshed/scene/scene_json.hpp"
+#include "snowshed/scene/shape_measure.hpp"
+
+namespace snowshed {
+namespace {
+
+class Rules {
+ public:
+  explicit Rules(const Scene& scene) : scene_(scene) {}
+
+  void check() const {
+    if (scene_.domain) check_domain(*scene_.domain);
+    if (scene_.panel) check_panel(*scene_.panel);
+    if (scene_.slab) check_slab(*scene_.slab);
+    check_number_of_shapes();
+    for (const auto& obstacle : scene_.obstacles) check_obstacle(obstacle);
+    check_names();
+    for (const auto& body : scene_.bodies) check_body(body);
+    check_snows();
+    check_seeding(scene_.seeding);
+    if (scene_.events.rest_time > scene_.events.max_time)
+      fail(scene_.events.rest_time, show(scene_.events.rest_time) + " s is longer than an event (" +
+                                        named(scene_.events.max_time) + " s)");
+    if (!scene_.slab && scene_.bodies.empty())
+      fail(scene_, "nothing holds snow: give " + path_of(scene_, scene_.slab) + " or " +
+                       path_of(scene_, scene_.bodies));
+  }
+
+ private:
+  template <class T>
+  [[noreturn]] void fail(const T& member, const std::string& message) const {
+    throw InputError(path_of(scene_, member), message);
+  }
+
+  /// "/panel/length = 2".
+  std::string named(const double& member) const {
+    return path_of(scene_, member) + " = " + show(member);
+  }
+
+  bool in_3d() const { return scene_.dimension == 3; }
+
+  void check_domain(const Domain& domain) const {
+    for (const int i : {0, 1, 2}) {
+      if (i == 1 && !in_3d()) continue;
+      if (domain.max[i] <= domain.min[i])
+        fail(domain.max, std::string(1, "xyz"[i]) + " = " + show(domain.max[i]) +
+                             " must be above " + path_of(scene_, domain.min) + ", " +
+                             show(domain.min[i]));
+    }
+  }
+
+  void check_slab(const Slab& slab) const {
+    if (!scene_.panel) fail(slab, "there is no " + path_of(scene_, scene_.panel) + " to lie on");
+    check_fits(slab.length, scene_.panel->length);
+    if (in_3d()) check_fits(slab.width, scene_.panel->width);
+    check_layers(slab);
+    check_in_domain(slab, thickest_slab());
+  }
+
+  void check_layers(const Slab& slab) const {
+    if (slab.layers.empty() && slab.thickness == 0.0)
+      fail(slab.thickness,
+           "missing: a thickness, or " + path_of(scene_, slab.layers) + ", is required");
+    if (!slab.layers.empty() && slab.thickness > 0.0)
+      fail(slab.thickness, show(slab.thickness) + " m and " + path_of(scene_, slab.layers) +
+                               " are both given; the slab is as thick as its layers together");
+    for (const auto& layer : slab.layers) check_event(layer.event);
+  }
+
+  /// Of all events, as one solid.
+  ShapeSpec thickest_slab() const {
+    const auto& layers = scene_.slab->layers;
+    double always = scene_.slab->thickness;
+    std::map<int, double> of_event;
+    for (const auto& layer : layers) {
+      double& thickness = layer.event == 0 ? always : of_event[layer.event];
+      thickness += layer.thickness;
+    }
+    double most = 0.0;
+    for (const auto& [event, thickness] : of_event) most = std::max(most, thickness);
+    Scene whole = scene_;
+    whole.slab->layers.clear();
+    whole.slab->thickness = always + most;
+    return assemble_slab(whole, 1).front().shape;
+  }
+
+  void check_event(const int& event) const {
+    if (event > scene_.events.count)
+      fail(event, show(event) + " is beyond the last event (" +
+                      path_of(scene_, scene_.events.count) + " = " + show(scene_.events.count) +
+                      ")");
+  }
+
+  void check_snows() const {
+    const std::size_t snows = assemble_snows(scene_).size();
+    if (snows > max_materials)
+      fail(scene_, std::to_string(snows) + " different snows in slab and bodies; at most " +
+                       std::to_string(max_materials) + " are allowed");
+  }
+
+  void check_fits(const double& slab, const double& panel) const {
+    if (slab > panel)
+      fail(slab, show(slab) + " m is more than the panel has (" + named(panel) + " m)");
+  }
+
+  void check_panel(const Panel& panel) const {
+    const double height = height_above_ground(scene_, panel_frame(scene_).upper_edge());
+    if (height < 0.0)
+      fail(panel.tilt, show(panel.tilt) + " degrees put the upper edge " + show_rounded(-height) +
+                           " m below the ground, which is steeper");
+  }
+
+  /// Written in full, a shape takes up to 13 values, and snow fewer: a scene must not grow, by its
+  /// defaults, beyond what the JSON parser reads (max_values), or no run of it could be resumed.
+  void check_number_of_shapes() const {
+    constexpr std::size_t most = 50'000;
+    std::size_t shapes = 0;
+    for (const auto& obstacle : scene_.obstacles) shapes += count(obstacle.shape);
+    for (const auto& body : scene_.bodies) shapes += count(body.shape) + body.snow.has_value();
+    if (shapes > most)
+      fail(scene_, std::to_string(shapes) + " shapes in all; at most " + std::to_string(most) +
+                       " are allowed");
+  }
+
+  static std::size_t count(const ShapeSpec& shape) {
+    std::size_t shapes = 1;
+    for (const auto& part : shape.shapes) shapes += count(part);
+    return shapes;
+  }
+
+  void check_obstacle(const ObstacleSpec& obstacle) const {
+    check_shape(obstacle.shape, 1);
+    if (obstacle.motion && obstacle.motion->end < obstacle.motion->start)
+      fail(obstacle.motion->end, show(obstacle.motion->end) + " s is before the start (" +
+                                     named(obstacle.motion->start) + " s)");
+  }
+
+  /// Results tell obstacles apart by their names.
+  void check_names() const {
+    std::set<std::string> names;
+    for (const auto& obstacle : assemble_obstacles(scene_)) {
+      if (obstacle.name.empty() || names.insert(obstacle.name).second) continue;
+      const auto last = std::find_if(
+          scene_.obstacles.rbegin(), scene_.obstacles.rend(),
+          [&](const ObstacleSpec& candidate) { return candidate.name == obstacle.name; });
+      fail(last->name, quote(obstacle.name) + " is already the name of another obstacle");
+    }
+  }
+
+  void check_body(const BodySpec& body) const {
+    check_shape(body.shape, 1);
+    const auto bounds = shape_bounds(body.shape);
+    if (bounds && !bounds->sizes().allFinite())
+      fail(body.shape, "an unbounded shape cannot be filled with snow");
+    check_in_domain(body.shape, body.shape);
+    check_event(body.event);
+  }
+
+  template <class T>
+  void check_in_domain(const T& member, const ShapeSpec& shape) const {
+    const auto bounds = shape_bounds(shape);
+    if (!scene_.domain || !bounds) return;
+    const double rounding = 1e-6 * scene_.numerics.dx;
+    for (const int i : {0, 1, 2}) {
+      if (i == 1 && !in_3d()) continue;
+      const double low = scene_.domain->min[i], high = scene_.domain->max[i];
+      if (bounds->min()[i] < low - rounding || bounds->max()[i] > high + rounding)
+        fail(member, std::string("its snow reaches from ") + "xyz"[i] + " = " +
+                         show_rounded(bounds->min()[i]) + " to " + show_rounded(bounds->max()[i]) +
+                         " m, beyond the domain (" + show(low) + " to " + show(high) + " m)");
+    }
+  }
+
+  void check_shape(const ShapeSpec& shape, int depth) const {
+    constexpr int deepest = 16;  // well inside the JSON parser's limit and any stack
+    if (depth > deepest)
+      fail(shape, "shapes are nested more than " + std::to_string(deepest) + " deep");
+    const bool has_axis = shape.type == "cylinder" || shape.type == "capsule";
+    if (has_axis && shape.from == shape.to)
+      fail(shape.to, "must differ from " + path_of(scene_, shape.from));
+    if (shape.type == "plate" && Vec3::UnitY().cross(shape.normal).norm() == 0.0)
+      fail(shape.normal, "a plate facing along y has no slope");
+    for (const auto& part : shape.shapes) check_shape(part, depth + 1);
+  }
+
+  void check_seeding(const Seeding& seeding) const {
+    const double given = seeding.particles_per_voxel;
+    const double least = in_3d() ? 6.0 : 4.0;  // thesis A.3.2
+    if (given != 0.0 && given < least && !seeding.allow_sparse)
+      fail(seeding.particles_per_voxel, show(given) + " is too few in " + (in_3d() ? "3D" : "2D") +
+                                            ": give at least " + show(least) +
+                                            ", 0 for the default, or set " +
+                                            path_of(scene_, seeding.allow_sparse));
+  }
+
+  const Scene& scene_;
+};
+
+}  // namespace
+
+void check_rules(const Scene& scene) { Rules(scene).check(); }
+
+}  // namespace snowshed

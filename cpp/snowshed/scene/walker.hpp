@@ -1,0 +1,76 @@
+// What visitors of a scene that hold no JSON share: a path, and the walk into nested objects.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/scene/describe.hpp"
+#include "snowshed/scene/message_format.hpp"
+
+namespace snowshed {
+
+/// The whole document is "/" in messages, "" as a prefix of paths.
+inline std::string shown_path(const std::string& path) { return path.empty() ? "/" : path; }
+
+/// `Self` is the visitor; it is copied to visit what lies deeper.
+template <class Self>
+class Walker {
+ public:
+  /// `dimension` is a reference because reading a scene fills it in on the way.
+  Walker(std::string path, const int& dimension) : path_(std::move(path)), dimension_(dimension) {}
+
+  template <class T>
+  void object(const char* key, T& value, Need, const char*) {
+    visit(at(key), value);
+  }
+
+  template <class T>
+  void optional(const char* key, std::optional<T>& value, const char*) {
+    if (value) visit(at(key), *value);
+  }
+
+  template <class T>
+  void list(const char* key, std::vector<T>& items, const Range&, const char*) {
+    for (std::size_t i = 0; i < items.size(); ++i)
+      visit(pointer(at(key), std::to_string(i)), items[i]);
+  }
+
+  void variants(const char* key, std::string& type, const char*) {
+    variant_key_ = key;
+    type_ = type;
+    known_types_.clear();
+  }
+
+  bool variant(const char* name, const char*) {
+    known_types_.push_back(name);
+    return type_ == name;
+  }
+
+  void end_variants() {
+    for (const auto& known : known_types_)
+      if (known == type_) return;
+    throw InputError(at(variant_key_), quote(type_) + " is none of " + quoted_list(known_types_) +
+                                           suggestion(type_, known_types_));
+  }
+
+ protected:
+  std::string at(const std::string& key) const { return pointer(path_, key); }
+
+  template <class T>
+  void visit(const std::string& path, T& value) {
+    Self child = static_cast<Self&>(*this);
+    child.path_ = path;
+    describe(child, value);
+  }
+
+  std::string path_;
+  const int& dimension_;
+
+ private:
+  std::string variant_key_, type_;
+  std::vector<std::string> known_types_;
+};
+
+}  // namespace snowshed

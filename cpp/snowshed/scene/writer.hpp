@@ -1,0 +1,80 @@
+// Visitor that writes a scene as JSON, every field of it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "snowshed/scene/describe.hpp"
+
+namespace snowshed {
+
+class Writer {
+ public:
+  explicit Writer(int dimension) : dimension_(dimension) {}
+
+  template <class T>
+  static nlohmann::ordered_json write(T& object, int dimension) {
+    Writer writer(dimension);
+    describe(writer, object);
+    return std::move(writer.json_);
+  }
+
+  void version(const char* key, int number, const char*) { json_[key] = number; }
+  void number(const char* key, double& value, const char*, const Range&, const char*) {
+    json_[key] = value;
+  }
+  template <class Int>
+  void integer(const char* key, Int& value, const Range&, const char*) {
+    json_[key] = value;
+  }
+  void flag(const char* key, bool& value, const char*) { json_[key] = value; }
+  void text(const char* key, std::string& value, const char*) { json_[key] = value; }
+  void file(const char* key, std::string& value, const char*) { json_[key] = value; }
+  template <class E>
+  void choice(const char* key, E& value, const char*) {
+    json_[key] = name_of(value);
+  }
+
+  void vector(const char* key, Vec3& v, const char*, const Range&, const char*) { put(key, v); }
+  void direction(const char* key, Vec3& v, const char*) { put(key, v); }
+  void axis(const char* key, Vec3& v, const char*) {
+    if (dimension_ == 3) put(key, v);
+  }
+  void spin(const char* key, Vec3& v, const char*, const Range&, const char*) {
+    if (dimension_ == 3)
+      put(key, v);
+    else
+      json_[key] = v.y();
+  }
+
+  template <class T>
+  void object(const char* key, T& value, Need, const char*) {
+    json_[key] = write(value, dimension_);
+  }
+  template <class T>
+  void optional(const char* key, std::optional<T>& value, const char*) {
+    if (value) json_[key] = write(*value, dimension_);
+  }
+  template <class T>
+  void list(const char* key, std::vector<T>& items, const Range&, const char*) {
+    auto& array = json_[key] = nlohmann::ordered_json::array();
+    for (auto& item : items) array.push_back(write(item, dimension_));
+  }
+
+  void variants(const char* key, std::string& type, const char*) { json_[key] = type_ = type; }
+  bool variant(const char* name, const char*) { return type_ == name; }
+  void end_variants() {}
+
+ private:
+  void put(const char* key, const Vec3& v) {
+    if (dimension_ == 2)
+      json_[key] = {v.x(), v.z()};
+    else
+      json_[key] = {v.x(), v.y(), v.z()};
+  }
+
+  int dimension_;
+  std::string type_;
+  nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
+};
+
+}  // namespace snowshed

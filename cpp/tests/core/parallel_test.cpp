@@ -1,0 +1,40 @@
+#include "snowshed/core/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+namespace snowshed {
+namespace {
+
+TEST(Parallel, EveryIterationRunsOnce) {
+  for (const int threads : {1, 2, 5})
+    for (const std::ptrdiff_t n : {0, 1, 3, 64, 5000}) {
+      std::vector<int> runs(std::size_t(n), 0);
+      parallel_for(n, threads, 16, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
+      parallel_for_each(n, threads, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
+      EXPECT_EQ(runs, std::vector<int>(std::size_t(n), 2)) << n << " on " << threads;
+    }
+}
+
+#ifdef SNOWSHED_STD_THREADS
+/// Iteration i writes element i and, which is not its own, the one before.
+void race() {
+  std::vector<int> written(100, 0);
+  parallel_for(100, 2, 1, [&](std::ptrdiff_t i) {
+    written[std::size_t(i)] = 1;
+    written[std::size_t(i > 0 ? i - 1 : 0)] = 2;
+  });
+}
+
+/// ThreadSanitizer must see races between iterations, or its silence means nothing.
+TEST(ParallelDeathTest, ARaceBetweenIterationsIsReported) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  constexpr int reported = 66;  // ThreadSanitizer's exit code
+  EXPECT_EXIT((race(), std::exit(0)), testing::ExitedWithCode(reported), "data race");
+}
+#endif
+
+}  // namespace
+}  // namespace snowshed

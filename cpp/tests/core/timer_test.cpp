@@ -1,0 +1,26 @@
+#include "snowshed/core/timer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace snowshed {
+namespace {
+
+TEST(Stopwatch, NeverRunsFast) {
+  Stopwatch stopwatch;
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_GE(stopwatch.seconds(), 0.020);
+  EXPECT_GE(stopwatch.restart(), 0.020);
+}
+
+TEST(Stopwatch, StartsAgainFromZero) {
+  const Stopwatch whole;
+  Stopwatch part;
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  part.restart();
+  EXPECT_LE(part.seconds() + 0.020, whole.seconds());
+}
+
+}  // namespace
+}  // namespace snowshed

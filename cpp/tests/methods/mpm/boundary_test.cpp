@@ -1,0 +1,250 @@
+#include "snowshed/methods/mpm/boundary.hpp"
+
+#include <gtest/gtest.h>
+
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/geometry/bounds.hpp"
+
+namespace snowshed {
+namespace {
+
+// --- Coulomb friction -------------------------------------------------------------------------
+
+constexpr double tilt = radians(40);
+const Vec3 ramp_normal(std::sin(tilt), 0, std::cos(tilt)),
+    ramp_slope(std::cos(tilt), 0, -std::sin(tilt));
+
+struct Slide {
+  double length, friction;
+  Condition condition = Condition::slip;
+  Transfer transfer = Transfer::flip;
+};
+
+/// A slab 5 cm thick that is let go on a ramp of 40 degrees.
+std::unique_ptr<Method> slab_on_ramp(const Slide& slide) {
+  const MpmOptions o = options_for({2, Precision::float32, slide.transfer});
+  auto solver =
+      make_mpm(o, {fixed(make_plane(Vec3::Zero(), ramp_normal), slide.condition, slide.friction)});
+  ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(slide.length, 0, 0.05), 0.005);
+  for (Vec3& x : batch.positions) x = x.x() * ramp_slope + x.z() * ramp_normal;
+  solver->add(batch);
+  return solver;
+}
+
+Vec3 mean_velocity(const Method& solver) {
+  const ParticleState s = solver.state();
+  return weighted_mean(s, s.velocities);
+}
+double mean_speed(const Method& solver) { return mean_velocity(solver).dot(ramp_slope); }
+
+/// Mean acceleration down the slope between two times.
+double acceleration(const Slide& slide, double from, double to) {
+  const auto solver = slab_on_ramp(slide);
+  run_until(*solver, from);
+  const double time = solver->time(), speed = mean_speed(*solver);
+  run_until(*solver, to);
+  return (mean_speed(*solver) - speed) / (solver->time() - time);
+}
+
+double by_coulomb(double friction) { return 9.81 * (std::sin(tilt) - friction * std::cos(tilt)); }
+
+// The slab on which the usual nodal rule fails: it holds it at mu = 0.6 already (tan 40 = 0.84).
+class LongSlab : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Friction, LongSlab, testing::Values(0.0, 0.3, 0.6, 0.8));
+
+TEST_P(LongSlab, SlidesAsCoulombSays) {
+  const double friction = GetParam();
+  EXPECT_NEAR(acceleration({2.0, friction}, 0.1, 0.5), by_coulomb(friction),
+              0.01 * by_coulomb(friction));
+}
+
+TEST(Friction, ActsOnSeparatingAndApicSlabsAlike) {
+  for (const Slide& slide :
+       {Slide{0.25, 0.6, Condition::separate}, Slide{0.25, 0.3, Condition::separate},
+        Slide{0.25, 0.6, Condition::slip, Transfer::apic}})
+    EXPECT_NEAR(acceleration(slide, 0.1, 0.4), by_coulomb(slide.friction),
+                0.01 * by_coulomb(slide.friction));
+}
+
+TEST(Friction, HoldsBeyondTheAngleOfRepose) {
+  for (Condition condition : {Condition::slip, Condition::separate})
+    for (double friction : {0.9, 1.2}) {
+      const auto solver = slab_on_ramp({0.25, friction, condition});
+      const ParticleState start = solver->state();
+      run_until(*solver, 0.15);
+      EXPECT_NEAR(mean_speed(*solver), 0.0, 1e-3) << friction;
+      const ParticleState end = solver->state();
+      EXPECT_LT((weighted_mean(end, end.positions) - weighted_mean(start, start.positions)).norm(),
+                1e-3)
+          << friction;
+    }
+}
+
+TEST(Friction, StopsASlidingSlab) {
+  // On level ground; once the contact has set in it takes v/(mu g) and v^2/(2 mu g) to stop.
+  const auto solver =
+      make_mpm(options_for({2, Precision::float32}),
+               {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.5)});
+  ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.2, 0, 0.03), 0.005);
+  batch.velocity.x() = 1;
+  solver->add(batch);
+  run_until(*solver, 0.05);
+  const ParticleState start = solver->state();
+  const double speed = weighted_mean(start, start.velocities).x();
+  const double left = speed / (0.5 * 9.81), begin = solver->time();
+  run_until(*solver, begin + 0.9 * left);
+  EXPECT_GT(mean_velocity(*solver).x(), 0.05 * speed);
+  run_until(*solver, begin + 1.1 * left);
+  EXPECT_NEAR(mean_velocity(*solver).x(), 0.0, 1e-3 * speed);
+  const ParticleState end = solver->state();
+  EXPECT_NEAR(weighted_mean(end, end.positions).x() - weighted_mean(start, start.positions).x(),
+              speed * left / 2, 0.01 * speed * left / 2);
+}
+
+// --- thin obstacles ---------------------------------------------------------------------------
+
+double thickness_seen(const Shape& shape, double dx) {
+  return thick_enough({"", shape, {Condition::slip, 0.0}, std::nullopt}, dx).shape->inradius();
+}
+
+TEST(ThickEnough, LeavesThickBodiesAloneAndPadsThinOnes) {
+  const Shape thick = make_box(Vec3::Zero(), Vec3(1, 1, 0.02));
+  EXPECT_EQ(thick_enough({"", thick, {}, std::nullopt}, 0.01).shape, thick);
+  const Shape thin = make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, 1, 0.002);
+  EXPECT_NEAR(thickness_seen(thin, 0.01), 0.01, 1e-12);
+  const Obstacle padded = thick_enough({"", thin, {}, std::nullopt}, 0.01);
+  EXPECT_NEAR(padded.shape->distance(Vec3(0, 0, 0.009)), 0.0, 1e-12);
+  EXPECT_NEAR(padded.shape->distance(Vec3(0, 0, -0.011)), 0.0, 1e-12);
+}
+
+struct Throw {
+  int dimension;
+  Precision precision;
+  double turn;  // of the panel, degrees
+};
+
+TEST(ThinPanel, LetsNoSnowThrough) {
+  for (const Throw& t : {Throw{2, Precision::float32, 0}, Throw{2, Precision::float64, 30},
+                         Throw{3, Precision::float32, 20}})
+    for (Condition condition : {Condition::slip, Condition::separate, Condition::sticky}) {
+      if (t.dimension == 3 && condition != Condition::slip) continue;
+      const double a = radians(t.turn);
+      const Vec3 normal(std::sin(a), 0, std::cos(a)), along(std::cos(a), 0, -std::sin(a));
+      const auto solver = make_mpm(options_for({t.dimension, t.precision}),
+                                   {fixed(make_plate(Vec3(0.0031, 0, 0.0017), normal, 2,
+                                                     t.dimension == 2 ? infinity : 2, 0.002),
+                                          condition, 0.3)});
+      const double size = t.dimension == 2 ? 0.1 : 0.05;
+      ParticleBatch batch =
+          filled_box(t.dimension, Vec3(0, 0, 0.06), Vec3(size, size, 0.06 + size), 0.005);
+      batch.velocity.z() = -5;
+      solver->add(batch);
+      run_until(*solver, t.dimension == 2 ? 0.15 : 0.05);
+      int below = 0;
+      for (const Vec3& x : solver->state().positions)
+        below += std::abs(along.dot(x)) < 0.9 && normal.dot(x) < -0.002;
+      EXPECT_EQ(below, 0) << t.dimension << "D " << t.turn << " degrees";
+    }
+}
+
+TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
+  for (double degrees : {0.0, 40.0}) {
+    const double a = radians(degrees);
+    const Vec3 normal(std::sin(a), 0, std::cos(a));
+    const auto solver = make_mpm(
+        options_for({2, Precision::float32}),
+        {fixed(make_plate(Vec3::Zero(), normal, 2, std::numeric_limits<double>::infinity(), 0.002),
+               Condition::slip, 0.6)});
+    ParticleBatch batch = filled_box(2, Vec3(-0.05, 0, -0.15), Vec3(0.05, 0, -0.05), 0.005);
+    batch.velocity.z() = 3;
+    solver->add(batch);
+    double reached = -1;
+    while (solver->time() < 0.5) {
+      run_steps(*solver, 100);
+      for (const Vec3& x : solver->state().positions) reached = std::max(reached, normal.dot(x));
+    }
+    EXPECT_GT(reached, -0.03);  // it did hit the panel
+    for (const Vec3& x : solver->state().positions) ASSERT_LT(x.dot(normal), -0.1) << degrees;
+  }
+}
+
+// --- bodies -----------------------------------------------------------------------------------
+
+TEST(Contact, SnowSinksLessThanACellIntoBodies) {
+  const Shape shapes[] = {make_sphere(Vec3::Zero(), 0.06),
+                          make_box(Vec3::Zero(), Vec3(0.1, 0.1, 0.06)),
+                          make_capsule(Vec3(-0.05, 0, -0.02), Vec3(0.05, 0, 0.02), 0.03)};
+  for (const Shape& shape : shapes)
+    for (Condition condition : {Condition::slip, Condition::separate, Condition::sticky}) {
+      const auto solver =
+          make_mpm(options_for({2, Precision::float32}), {fixed(shape, condition, 0.2)});
+      ParticleBatch batch = filled_box(2, Vec3(-0.04, 0, 0.08), Vec3(0.06, 0, 0.14), 0.005);
+      batch.velocity.z() = -3;
+      solver->add(batch);
+      double deepest = 0;
+      while (solver->time() < 0.08) {
+        run_steps(*solver, 50);
+        for (const Vec3& x : solver->state().positions)
+          deepest = std::min(deepest, shape->distance(x));
+      }
+      EXPECT_GT(deepest, -0.01);
+    }
+}
+
+TEST(Contact, AMovingPlateCarriesSnowAlong) {
+  MotionSpec motion;
+  motion.velocity = Vec3(0.3, 0, 0.5);
+  Obstacle plate = fixed(
+      make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, std::numeric_limits<double>::infinity(), 0.05),
+      Condition::sticky);
+  plate.motion.emplace(motion);
+  const auto solver = make_mpm(options_for({2, Precision::float32}), {plate});
+  solver->add(filled_box(2, Vec3(0, 0, 0.003), Vec3(0.08, 0, 0.033), 0.005));
+  const ParticleState start = solver->state();
+  run_until(*solver, 0.2);
+  const ParticleState end = solver->state();
+  const Vec3 moved = weighted_mean(end, end.positions) - weighted_mean(start, start.positions);
+  EXPECT_LT((moved - solver->time() * motion.velocity).norm(), 0.002);  // a fifth of a cell
+  EXPECT_LT((mean_velocity(*solver) - motion.velocity).norm(), 0.05);   // it rattles over the cells
+}
+
+TEST(Contact, TheUndersideOfASlipObstacleDoesNotHold) {
+  Contacts<double, 2> contacts(
+      {fixed(make_box(Vec3(0.035, 0, 0.035), Vec3(0.04, 1e9, 0.04)), Condition::slip, 0.3)}, 0.01);
+  contacts.relocate({block_key<2>({0, 0})}, 0.0);
+  ASSERT_EQ(contacts.count(0), 16);  // nodes 2 to 5 in each direction
+  for (int i = 0; i < 16; ++i) {
+    const Contact<double>& c = contacts.of_block(0)[i];
+    EXPECT_NEAR(std::hypot(c.normal[0], c.normal[1]), 1.0, 1e-12);
+    EXPECT_EQ(c.bilateral, c.normal[1] > 0);
+  }
+}
+
+TEST(Contact, StoredImpulsesSurviveRelocation) {
+  Contacts<float, 2> contacts(
+      {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3)}, 0.01);
+  const std::vector<BlockKey> few{block_key<2>({0, -1}), block_key<2>({0, 0})};
+  contacts.relocate(few, 0.0);
+  ASSERT_EQ(contacts.count(0), 64);
+  ASSERT_EQ(contacts.count(1), 8);
+  contacts.of_block(1)[3].next_normal_impulse = 2.5f;
+  contacts.commit(1);
+  const auto stored = contacts.stored_impulses();
+  ASSERT_EQ(stored.size(), 1u);
+  EXPECT_EQ(stored[0].block, few[1]);
+  EXPECT_EQ(stored[0].amount, 2.5);
+
+  std::vector<BlockKey> more{block_key<2>({-1, 0}), few[0], few[1]};
+  contacts.relocate(more, 0.0);
+  EXPECT_EQ(contacts.of_block(2)[3].normal_impulse, 2.5f);
+
+  Contacts<float, 2> fresh({fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3)},
+                           0.01);
+  fresh.relocate(more, 0.0);
+  EXPECT_TRUE(fresh.stored_impulses().empty());
+  fresh.restore(stored);
+  EXPECT_EQ(fresh.of_block(2)[3].normal_impulse, 2.5f);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,104 @@
+#include "snowshed/methods/mpm/kernel_api.hpp"
+
+#include <gtest/gtest.h>
+
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/methods/mpm/material_constants.hpp"
+#include "snowshed/methods/mpm/particles.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Particles of one block with random state, and their scattered sums.
+template <class T, int D>
+void expect_exact_sums(const Way& way) {
+  constexpr int n = 37;  // not a multiple of any register's lanes
+  Random random(5);
+  const auto uniform = [&](double low, double high) {
+    return T(low + (high - low) * random.uniform());
+  };
+  Particles<T, D> particles;
+  particles.has_affine = way.transfer == Transfer::apic;
+  particles.has_plastic = true;
+  particles.resize(n);
+  double mass = 0, momentum[D] = {}, first_moment[D] = {};
+  for (int i = 0; i < n; ++i) {
+    particles.mass[i] = uniform(1e-3, 2e-3);
+    particles.plastic[i] = T(-0.1);
+    for (auto& c : particles.be_minus_identity) c[i] = uniform(-1e-3, 1e-3);
+    if (particles.has_affine)
+      for (auto& c : particles.affine) c[i] = uniform(-10, 10);
+    mass += particles.mass[i];
+    for (int d = 0; d < D; ++d) {
+      particles.cell[d][i] = uniform(-1, block_edge<D> + 1);  // a cell beyond the block, too
+      particles.velocity[d][i] = uniform(-1, 1);
+      momentum[d] += double(particles.mass[i]) * particles.velocity[d][i];
+      first_moment[d] +=
+          double(particles.mass[i]) * (particles.cell[d][i] + base_offset(way.basis) + 1);
+    }
+  }
+  const Kernels<T> kernels =
+      select_kernels<T>({D, way.transfer, way.basis, SnowModel::cam_clay, false});
+  const int nodes = tile_nodes<D>(way.basis), edge = tile_edge<D>(way.basis);
+  AlignedVector<T> tile(std::size_t(nodes) * node_values, T(7));  // scatter must clear it
+  const auto snow = material_constants<T>(Snow(), D);
+  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99), T(0.02), &snow};
+  BlockStats stats;
+  kernels.scatter(step, particles.view(), 0, n, tile.data(), stats);
+  ASSERT_FALSE(stats.escaped);
+
+  double sums[7] = {}, absolute[7] = {}, moment[D] = {};
+  for (int k = 0; k < nodes; ++k) {
+    const T* node = &tile[std::size_t(k) * node_values];
+    for (int c = 0; c < 7; ++c) {
+      sums[c] += node[c];
+      absolute[c] += std::abs(node[c]);
+    }
+    for (int d = D - 1, rest = k; d >= 0; --d, rest /= edge)
+      moment[d] += double(node[0]) * (rest % edge);
+  }
+  const double eps = way.epsilon();
+  EXPECT_NEAR(sums[0], mass, 16 * eps * mass);  // of some hundred nodes
+  for (int d = 0; d < D; ++d) {
+    EXPECT_NEAR(sums[1 + d], momentum[d], 8 * eps * absolute[1 + d]);
+    EXPECT_NEAR(sums[4 + d], 0.0, 8 * eps * absolute[4 + d]);  // internal forces
+    EXPECT_GT(absolute[4 + d], 1.0);
+    EXPECT_NEAR(moment[d], first_moment[d], 8 * eps * mass * edge);
+  }
+}
+
+TEST(Scatter, GivesTheGridExactlyTheParticlesMassMomentumAndCentre) {
+  for (const Way& way : all_ways()) {
+    SCOPED_TRACE(way.name());
+    const bool single = way.precision == Precision::float32;
+    if (way.dimension == 2)
+      single ? expect_exact_sums<float, 2>(way) : expect_exact_sums<double, 2>(way);
+    else
+      single ? expect_exact_sums<float, 3>(way) : expect_exact_sums<double, 3>(way);
+  }
+}
+
+TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
+  Particles<float, 2> particles;
+  particles.has_plastic = true;
+  particles.resize(3);
+  for (auto& c : particles.cell) std::fill(c.begin(), c.end(), 3.0f);
+  for (auto& v : particles.velocity) std::fill(v.begin(), v.end(), 0.0f);
+  for (auto& s : particles.be_minus_identity) std::fill(s.begin(), s.end(), 0.0f);
+  std::fill(particles.mass.begin(), particles.mass.end(), 1.0f);
+  std::fill(particles.plastic.begin(), particles.plastic.end(), 0.0f);
+  const Kernels<float> kernels =
+      select_kernels<float>({2, Transfer::flip, Basis::quadratic, SnowModel::cam_clay, false});
+  AlignedVector<float> tile(std::size_t(tile_nodes<2>(Basis::quadratic)) * node_values);
+  const auto snow = material_constants<float>(Snow(), 2);
+  const StepParameters<float> step{1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, &snow};
+  for (float cell : {-1.01f, 9.0f, std::nanf("")}) {
+    particles.cell[1][2] = cell;
+    BlockStats stats;
+    kernels.scatter(step, particles.view(), 0, 3, tile.data(), stats);
+    EXPECT_TRUE(stats.escaped) << cell;
+  }
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,104 @@
+#include "snowshed/methods/mpm/kernels/bspline.hpp"
+
+#include <gtest/gtest.h>
+
+#include "snowshed/methods/mpm/kernel_api.hpp"
+
+namespace snowshed {
+namespace {
+
+template <Basis B, class S>
+struct SplineCase {
+  static constexpr Basis basis = B;
+  using Scalar = S;
+};
+
+template <class C>
+class BSplineWeights : public testing::Test {
+ protected:
+  using T = typename C::Scalar;
+  static constexpr int n = support(C::basis);
+  T w[n], g[n];
+  void at(double f) { BSpline<C::basis>::evaluate(T(f), w, g); }
+  static constexpr double epsilon = std::numeric_limits<T>::epsilon();
+};
+
+using SplineCases =
+    testing::Types<SplineCase<Basis::quadratic, float>, SplineCase<Basis::quadratic, double>,
+                   SplineCase<Basis::cubic, float>, SplineCase<Basis::cubic, double>>;
+TYPED_TEST_SUITE(BSplineWeights, SplineCases);
+
+const double fractions[] = {0.0, 1e-9, 0.01, 0.25, 0.4999, 0.5, 0.7, 0.999};
+
+TYPED_TEST(BSplineWeights, AddUpToOne) {
+  for (double f : fractions) {
+    this->at(f);
+    double sum = 0;
+    for (auto w : this->w) {
+      EXPECT_GE(w, 0);
+      sum += w;
+    }
+    EXPECT_NEAR(sum, 1.0, 4 * this->epsilon);
+  }
+}
+
+TYPED_TEST(BSplineWeights, HaveGradientsThatAddUpToZero) {
+  for (double f : fractions) {
+    this->at(f);
+    double sum = 0;
+    for (auto g : this->g) sum += g;
+    EXPECT_NEAR(sum, 0.0, 4 * this->epsilon);
+  }
+}
+
+TYPED_TEST(BSplineWeights, ReproduceLinearFields) {
+  for (double f : fractions) {
+    this->at(f);
+    double position = 0, slope = 0;
+    for (int k = 0; k < this->n; ++k) {
+      position += k * this->w[k];
+      slope += k * this->g[k];
+    }
+    EXPECT_NEAR(position, f + base_offset(TypeParam::basis), 8 * this->epsilon);
+    EXPECT_NEAR(slope, 1.0, 8 * this->epsilon);
+  }
+}
+
+TYPED_TEST(BSplineWeights, HaveTheInertiaOfApic) {
+  // sum w (x_i - x)^2 = 1/4 (quadratic), 1/3 (cubic): the D_p that APIC relies on.
+  for (double f : fractions) {
+    this->at(f);
+    double inertia = 0;
+    for (int k = 0; k < this->n; ++k)
+      inertia += this->w[k] * std::pow(k - f - base_offset(TypeParam::basis), 2);
+    EXPECT_NEAR(inertia, TypeParam::basis == Basis::quadratic ? 1.0 / 4 : 1.0 / 3,
+                8 * this->epsilon);
+  }
+}
+
+TYPED_TEST(BSplineWeights, HaveTheirDerivativesAsGradients) {
+  constexpr int n = support(TypeParam::basis);
+  for (double f : {0.01, 0.3, 0.5, 0.99}) {
+    double above[n], below[n], unused[n];
+    constexpr double h = 1e-5;
+    BSpline<TypeParam::basis>::evaluate(f + h, above, unused);
+    BSpline<TypeParam::basis>::evaluate(f - h, below, unused);
+    this->at(f);
+    for (int k = 0; k < n; ++k)
+      EXPECT_NEAR(this->g[k], (above[k] - below[k]) / (2 * h), 1e-9 + 4 * this->epsilon);
+  }
+}
+
+TYPED_TEST(BSplineWeights, PassSmoothlyFromCellToCell) {
+  constexpr int n = support(TypeParam::basis);
+  typename TypeParam::Scalar w[n], g[n];
+  BSpline<TypeParam::basis>::evaluate(typename TypeParam::Scalar(1), w, g);
+  this->at(0);
+  for (int k = 0; k + 1 < n; ++k) {
+    EXPECT_NEAR(this->w[k], w[k + 1], this->epsilon);
+    EXPECT_NEAR(this->g[k], g[k + 1], this->epsilon);
+  }
+}
+
+}  // namespace
+}  // namespace snowshed

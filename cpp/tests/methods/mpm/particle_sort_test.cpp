@@ -1,0 +1,129 @@
+#include "snowshed/methods/mpm/particle_sort.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/core/errors.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double dx = 0.01;
+constexpr Basis basis = Basis::quadratic;
+
+TEST(Placement, FindsBlockAndCell) {
+  const auto p = Placement<2>::of(VecD<2>(0.125, -0.005), dx, basis);
+  EXPECT_EQ(p.block, (BlockCoord<2>{1, -1}));
+  EXPECT_NEAR(p.cell[0], 12 - 8, 1e-12);  // 12.5 cells, less the offset 0.5
+  EXPECT_NEAR(p.cell[1], -1 + 8, 1e-12);
+  EXPECT_THROW((Placement<2>::of(VecD<2>(1e9, 0), dx, basis)), SimulationError);
+  EXPECT_THROW((Placement<2>::of(VecD<2>(std::nan(""), 0), dx, basis)), SimulationError);
+}
+
+template <class T, int D_>
+struct SortCase {
+  using Scalar = T;
+  static constexpr int D = D_;
+};
+
+template <class C>
+class ParticleSort : public testing::Test {
+ protected:
+  static constexpr int D = C::D;
+  using T = typename C::Scalar;
+  Particles<T, D> particles;
+  std::vector<BlockKey> blocks;
+  std::map<std::uint32_t, VecD<D>> where;  // by id
+
+  void add_random(std::size_t n, double reach) {
+    Random random(9);
+    particles.has_plastic = true;
+    particles.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto at = Placement<D>::of(section<D>(random_vector(random, D, reach)), dx, basis);
+      // Up to a cell outside their block, as after some steps.
+      for (int d = 0; d < D; ++d) particles.cell[d][i] = T(at.cell[d] + 2 * random.uniform() - 1);
+      blocks.push_back(block_key<D>(at.block));
+      particles.id[i] = std::uint32_t(i);
+      particles.mass[i] = T(i);
+      particles.plastic[i] = T(-double(i));
+      where[std::uint32_t(i)] = position_of(particles, i, blocks[i], dx, basis);
+    }
+  }
+};
+using SortCases = testing::Types<SortCase<float, 2>, SortCase<float, 3>, SortCase<double, 2>,
+                                 SortCase<double, 3>>;
+TYPED_TEST_SUITE(ParticleSort, SortCases);
+
+TYPED_TEST(ParticleSort, PutsEveryParticleIntoItsBlock) {
+  constexpr int D = TypeParam::D;
+  using T = typename TypeParam::Scalar;
+  this->add_random(6000, 0.3);  // enough to sort in parallel
+  BlockLayout<D> layout;
+  EXPECT_TRUE(sort_particles(this->particles, this->blocks, layout, 2));
+  const auto& p = this->particles;
+  ASSERT_EQ(layout.first.size(), layout.particle_blocks.size() + 1);
+  EXPECT_EQ(layout.first.front(), 0);
+  EXPECT_EQ(layout.first.back(), 6000);
+  EXPECT_TRUE(std::is_sorted(layout.particle_blocks.begin(), layout.particle_blocks.end()));
+  const std::vector<BlockKey> sorted = blocks_of_particles(layout);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::uint32_t id = p.id[i];
+    EXPECT_EQ(p.mass[i], T(id));  // everything travels with it
+    EXPECT_EQ(p.plastic[i], T(-double(id)));
+    for (int d = 0; d < D; ++d) {
+      EXPECT_GE(p.cell[d][i], T(0));
+      EXPECT_LT(p.cell[d][i], T(block_edge<D>));
+    }
+    const double rounding = 16 * std::numeric_limits<T>::epsilon() * dx;
+    EXPECT_LT((position_of(p, i, sorted[i], dx, basis) - this->where[id]).norm(), rounding + 1e-15);
+  }
+}
+
+TYPED_TEST(ParticleSort, IsStableAndIdempotent) {
+  constexpr int D = TypeParam::D;
+  this->add_random(6000, 0.3);
+  BlockLayout<D> layout;
+  sort_particles(this->particles, this->blocks, layout, 2);
+  for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
+    for (int i = layout.first[b] + 1; i < layout.first[b + 1]; ++i)
+      ASSERT_LT(this->particles.id[i - 1], this->particles.id[i]);
+  const auto before = this->particles.id;
+  EXPECT_FALSE(sort_particles(this->particles, blocks_of_particles(layout), layout, 1));
+  EXPECT_EQ(this->particles.id, before);
+}
+
+TYPED_TEST(ParticleSort, RefusesParticlesThatAreNowhere) {
+  constexpr int D = TypeParam::D;
+  using T = typename TypeParam::Scalar;
+  for (T bad : {std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity(), T(1e30)}) {
+    this->blocks.clear();
+    this->add_random(10, 0.1);
+    this->particles.cell[1][7] = bad;
+    BlockLayout<D> layout;
+    try {
+      sort_particles(this->particles, this->blocks, layout, 1);
+      FAIL();
+    } catch (const SimulationError& error) {
+      EXPECT_NE(std::string(error.what()).find("particle 7 "), std::string::npos);
+    }
+  }
+}
+
+TEST(ParticleSortFloat, ACellJustBelowZeroStaysInsideItsBlock) {
+  // -1e-9 + 8 rounds up to 8.0f, which would be the next block's.
+  Particles<float, 2> p;
+  p.resize(1);
+  p.cell[0][0] = -1e-9f;
+  p.cell[1][0] = 3;
+  BlockLayout<2> layout;
+  sort_particles(p, {block_key<2>({0, 0})}, layout, 1);
+  EXPECT_EQ(layout.particle_blocks[0], block_key<2>({-1, 0}));
+  EXPECT_LT(p.cell[0][0], 8.0f);
+}
+
+}  // namespace
+}  // namespace snowshed

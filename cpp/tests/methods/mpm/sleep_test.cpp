@@ -1,0 +1,206 @@
+#include "snowshed/methods/mpm/sleep.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double sleep_speed = 0.02;
+
+const Way two_d{2, Precision::float32}, three_d{3, Precision::float32};
+
+MpmOptions sleepy(const Way& way, double speed = sleep_speed, bool energy_balance = false) {
+  MpmOptions o = options_for(way);
+  o.snows[0].model = SnowModel::cam_clay;
+  o.numerics.sleep_speed = speed;
+  o.energy = energy_balance;
+  return o;
+}
+
+Obstacle floor() { return fixed(make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1)), Condition::sticky); }
+
+/// A low wall of snow, resting on the floor.
+ParticleBatch wall(const Way& way) {
+  return filled_box(way.dimension, Vec3(0, 0, 0), Vec3(0.3, 0.06, 0.08), 0.005);
+}
+
+/// A lump in free fall above the middle of the wall, due on it after `time`.
+ParticleBatch falling_lump(const Way& way, double time) {
+  const double low = 0.085 + 3 * time;
+  ParticleBatch batch =
+      filled_box(way.dimension, Vec3(0.13, 0, low), Vec3(0.17, 0.06, low + 0.04), 0.005);
+  batch.velocity = Vec3(0, 0, -3 + 9.81 * time / 2);
+  return batch;
+}
+
+std::unique_ptr<Method> wall_under_lump(const Way& way, double speed, int threads = 1,
+                                        bool energy_balance = false) {
+  MpmOptions o = sleepy(way, speed, energy_balance);
+  o.numerics.threads = threads;
+  auto solver = make_mpm(o, {floor()});
+  solver->add(wall(way));
+  solver->add(falling_lump(way, 0.15));
+  return solver;
+}
+
+double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
+  return largest;
+}
+
+class SleepFiles : public TemporaryFolder {};
+
+TEST(Sleep, SnowAtRestCostsNothingAndStaysWhereItIs) {
+  for (const Way& way : {two_d, three_d}) {
+    const auto solver = make_mpm(sleepy(way), {floor()});
+    solver->add(wall(way));
+    run_until(*solver, 0.2);
+    const ParticleState before = solver->state();
+    const StepCounters counters = solver->counters();
+    run_steps(*solver, 500);
+    EXPECT_EQ(solver->counters().particle_updates, counters.particle_updates);
+    EXPECT_EQ(solver->counters().slept_updates - counters.slept_updates,
+              std::int64_t(500 * solver->size()));
+    EXPECT_EQ(largest_distance(solver->state().positions, before.positions), 0.0);
+    EXPECT_EQ(solver->motion(sleep_speed).rms_speed, 0.0);
+  }
+}
+
+TEST(Sleep, IsOffAtSpeedZero) {
+  const auto solver = make_mpm(sleepy(two_d, 0.0, true), {floor()});
+  solver->add(wall(two_d));
+  run_until(*solver, 0.2);
+  EXPECT_EQ(solver->counters().slept_updates, 0);
+  EXPECT_EQ(solver->energy().sleep, 0.0);
+}
+
+/// In the twentieth of a second that it takes to become faster than the limit, it must not be
+/// taken for resting: its mean velocity grows.
+TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
+  MpmOptions o = sleepy(two_d);
+  o.gravity = 0.4;
+  const auto solver = make_mpm(o, {});
+  solver->add(wall(two_d));
+  const double start = weighted_mean(solver->state(), solver->state().positions)[2];
+  run_until(*solver, 0.3);
+  const double fallen = start - weighted_mean(solver->state(), solver->state().positions)[2];
+  EXPECT_NEAR(fallen, 0.5 * o.gravity * solver->time() * solver->time(), 0.01 * fallen);
+}
+
+/// A slab on a ramp of 40 degrees whose friction nearly holds it: 0.3 and 0.07 m/s2 down the slope.
+TEST(Sleep, ASlabThatSetsOffSlowlyGoesOn) {
+  const double tilt = radians(40);
+  const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
+  for (const double friction : {0.8, 0.82, 0.83}) {
+    double speed[2];
+    for (const double limit : {0.0, sleep_speed}) {
+      const auto solver =
+          make_mpm(sleepy(two_d, limit),
+                   {fixed(make_plane(Vec3::Zero(), normal), Condition::slip, friction)});
+      ParticleBatch slab = filled_box(2, Vec3::Zero(), Vec3(1, 0, 0.05), 0.005);
+      for (Vec3& x : slab.positions) x = x.x() * slope + x.z() * normal;
+      solver->add(slab);
+      run_until(*solver, 0.5);
+      speed[limit > 0] = weighted_mean(solver->state(), solver->state().velocities).dot(slope);
+    }
+    EXPECT_GT(speed[0], 0.4 * 9.81 * (std::sin(tilt) - friction * std::cos(tilt))) << friction;
+    EXPECT_NEAR(speed[1], speed[0], 0.02 * speed[0]) << friction;
+  }
+}
+
+TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
+  // Speed is the same before and after the top of a throw, and when a blow takes one component
+  // while gravity adds another.
+  MpmOptions o = sleepy(two_d, 0.2);
+  for (const Vec3& thrown : {Vec3(0, 0, 0.05), Vec3(0.1, 0, 0.05), Vec3(-0.15, 0, 0.02)}) {
+    const auto solver = make_mpm(o, {});
+    ParticleBatch lump = filled_box(2, Vec3(0, 0, 0), Vec3(0.1, 0.1, 0.1), 0.005);
+    lump.velocity = thrown;
+    solver->add(lump);
+    run_until(*solver, 0.05);
+    EXPECT_EQ(solver->counters().slept_updates, 0);
+  }
+}
+
+TEST(Sleep, AnImpactWakes) {
+  for (const Way& way : {two_d, three_d}) {
+    const auto sleeping = wall_under_lump(way, sleep_speed), awake = wall_under_lump(way, 0.0);
+    run_until(*sleeping, 0.12);
+    EXPECT_GT(sleeping->counters().slept_updates, sleeping->counters().particle_updates / 4);
+    const ParticleState before = sleeping->state();
+    run_until(*sleeping, 0.5);
+    run_until(*awake, 0.5);
+    const auto a = sleeping->state().positions, b = awake->state().positions;
+    EXPECT_GT(largest_distance(before.positions, a), 0.01);
+    // The mean height and length hardly differ, and no particle by more than a cell or two.
+    EXPECT_NEAR(weighted_mean(sleeping->state(), a)[2], weighted_mean(awake->state(), b)[2], 5e-4);
+    EXPECT_LT(largest_distance(a, b), 0.02);
+    EXPECT_LT(sleeping->counters().particle_updates, awake->counters().particle_updates * 3 / 4);
+  }
+}
+
+TEST(Sleep, EnergyThatSleepTakesIsInTheBooks) {
+  const auto solver = wall_under_lump(two_d, sleep_speed, 1, true);
+  run_until(*solver, 0.5);
+  const EnergyBalance e = solver->energy();
+  EXPECT_GT(e.sleep, 0.0);
+  EXPECT_LT(e.sleep, 0.01 * e.added);
+  EXPECT_NEAR(e.residual(), 0.0, 0.01 * e.added);
+}
+
+TEST(Sleep, AMovingObstacleWakes) {
+  Obstacle paddle = fixed(make_box(Vec3(-0.05, 0, 0.05), Vec3(0.06, 1, 0.08)), Condition::sticky);
+  MotionSpec motion;
+  motion.start = 0.2;
+  motion.velocity = Vec3(0.5, 0, 0);
+  paddle.motion.emplace(motion);
+  const auto solver = make_mpm(sleepy(two_d), {floor(), paddle});
+  solver->add(wall(two_d));
+  run_until(*solver, 0.2);
+  EXPECT_EQ(solver->motion(sleep_speed).rms_speed, 0.0);
+  run_until(*solver, 0.35);
+  EXPECT_GT(solver->motion(sleep_speed).rms_speed, 0.05);
+}
+
+TEST(Sleep, AKickWakes) {
+  const auto solver = make_mpm(sleepy(two_d), {floor()});
+  solver->add(wall(two_d));
+  run_until(*solver, 0.2);
+  solver->add_velocity(std::vector<Vec3>(solver->size(), Vec3(0.2, 0, 0)));
+  const std::int64_t before = solver->counters().particle_updates;
+  solver->step();
+  EXPECT_EQ(solver->counters().particle_updates - before, std::int64_t(solver->size()));
+}
+
+TEST(Sleep, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const auto one = wall_under_lump(three_d, sleep_speed),
+             two = wall_under_lump(three_d, sleep_speed, 2);
+  for (const auto* solver : {&one, &two}) run_until(**solver, 0.2);
+  EXPECT_GT(one->counters().slept_updates, 0);
+  EXPECT_EQ(two->counters().slept_updates, one->counters().slept_updates);
+  expect_same_bits(two->state(), one->state());
+}
+
+TEST_F(SleepFiles, GoesOnFromACheckpointWithTheSameBits) {
+  const auto whole = wall_under_lump(two_d, sleep_speed, 1, true);
+  run_until(*whole, 0.1);
+  EXPECT_GT(whole->counters().slept_updates, 0);
+  while (!whole->at_safe_point()) whole->step();
+  BinaryWriter out;
+  whole->save(out);
+  out.save(path("checkpoint"));
+  const auto resumed = make_mpm(sleepy(two_d, sleep_speed, true), {floor()});
+  resumed->load(BinaryReader::load(path("checkpoint")));
+  for (const auto* solver : {&whole, &resumed}) run_until(**solver, 0.25);
+  expect_same_bits(resumed->state(), whole->state());
+  EXPECT_EQ(resumed->counters().slept_updates, whole->counters().slept_updates);
+  EXPECT_EQ(resumed->energy().residual(), whole->energy().residual());
+}
+
+}  // namespace
+}  // namespace snowshed

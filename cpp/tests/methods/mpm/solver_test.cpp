@@ -1,0 +1,466 @@
+#include "snowshed/methods/mpm/solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed {
+namespace {
+
+class InEveryWay : public testing::TestWithParam<Way> {};
+INSTANTIATE_TEST_SUITE_P(Method, InEveryWay, testing::ValuesIn(all_ways()),
+                         [](const auto& info) { return info.param.name(); });
+
+/// A swarm of particles with velocities of their own, a few of which share each cell.
+void add_swarm(Method& solver, const Way& way, int particles, double size, double speed) {
+  Random random(11);
+  for (int i = 0; i < particles; ++i) {
+    ParticleBatch one;
+    one.positions = {random_vector(random, way.dimension, size)};
+    one.velocity = random_vector(random, way.dimension, speed);
+    one.mass = 1e-3 * (0.5 + random.uniform());
+    solver.add(one);
+  }
+}
+
+double sum_of_speeds(const ParticleState& s) {
+  double sum = 0;
+  for (std::size_t i = 0; i < s.masses.size(); ++i) sum += s.masses[i] * s.velocities[i].norm();
+  return sum;
+}
+
+TEST_P(InEveryWay, FreeFlightKeepsMassAndMomentum) {
+  const Way way = GetParam();
+  MpmOptions o = options_for(way);
+  o.gravity = 0;
+  const auto solver = make_mpm(o, {});
+  add_swarm(*solver, way, 80, 0.025, 1.0);
+  const ParticleState before = solver->state();
+  run_steps(*solver, 70);  // past a sort
+  const ParticleState after = solver->state();
+  EXPECT_EQ(after.masses, before.masses);
+  // Every step rounds each particle's momentum a few times; the errors do not all add up.
+  const double round_off = 70 * way.epsilon() * sum_of_speeds(before);
+  EXPECT_LT((momentum(after) - momentum(before)).norm(), round_off);
+  EXPECT_GT((after.velocities[0] - before.velocities[0]).norm(), 0.01);  // they did interact
+}
+
+TEST_P(InEveryWay, FreeFallIsExact) {
+  const Way way = GetParam();
+  const auto solver = make_mpm(options_for(way), {});
+  ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 1), Vec3(0.03, 0.03, 1.03), 0.005);
+  batch.velocity = Vec3(0.5, 0, 1);
+  solver->add(batch);
+  const ParticleState before = solver->state();
+  double height = 0, speed = 1;  // symplectic Euler by hand
+  for (int i = 0; i < 300; ++i) {
+    solver->step();
+    speed -= 9.81 * solver->time_step();
+    height += speed * solver->time_step();
+  }
+  const ParticleState after = solver->state();
+  const double t = solver->time();
+  EXPECT_NEAR(speed, 1 - 9.81 * t, 1e-12);
+  // Positions are sums of 300 displacements, rounded to a block of 8 cells.
+  const double rounding = 300 * way.epsilon();
+  for (std::size_t i = 0; i < after.positions.size(); ++i) {
+    const Vec3 moved = after.positions[i] - before.positions[i];
+    ASSERT_NEAR(moved.x(), 0.5 * t, 0.08 * rounding);
+    ASSERT_NEAR(moved.z(), height, 0.08 * rounding);
+    ASSERT_NEAR(after.velocities[i].x(), 0.5, rounding);
+    ASSERT_NEAR(after.velocities[i].z(), speed, 2 * rounding);
+    ASSERT_NEAR(after.volume_ratios[i], 1.0, 10 * rounding);
+  }
+}
+
+class SolverFiles : public TemporaryFolder {
+ protected:
+  /// Sum over the particles of the antisymmetric part of APIC's affine matrix, as a vector.
+  Vec3 affine_spin(const Method& solver, int dimension) {
+    BinaryWriter out;
+    solver.save(out);
+    out.save(path("state"));
+    const BinaryReader in = BinaryReader::load(path("state"));
+    const auto masses = in.get<double>("particles/mass");
+    Mat3 sum = Mat3::Zero();
+    for (int i = 0; i < dimension; ++i)
+      for (int j = 0; j < dimension; ++j) {
+        const auto c = in.get<double>("particles/affine" + std::to_string(i * dimension + j));
+        const int row = dimension == 2 ? 2 * i : i, column = dimension == 2 ? 2 * j : j;
+        for (std::size_t k = 0; k < c.size(); ++k) sum(row, column) += masses[k] * c[k];
+      }
+    return {sum(2, 1) - sum(1, 2), sum(0, 2) - sum(2, 0), sum(1, 0) - sum(0, 1)};
+  }
+  /// About the origin; APIC's affine part carries its own (inertia dx^2/4 or dx^2/3).
+  Vec3 angular_momentum(const Method& solver, const Way& way, double dx) {
+    const ParticleState s = solver.state();
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < s.masses.size(); ++i)
+      sum += s.masses[i] * s.positions[i].cross(s.velocities[i]);
+    if (way.transfer == Transfer::apic)
+      sum += dx * dx / (way.basis == Basis::quadratic ? 4 : 3) * affine_spin(solver, way.dimension);
+    return sum;
+  }
+};
+
+TEST_F(SolverFiles, ApicKeepsAngularMomentum) {
+  for (const Way& way : all_ways()) {
+    if (way.transfer != Transfer::apic || way.precision != Precision::float64) continue;
+    MpmOptions o = options_for(way);
+    o.gravity = 0;
+    const auto solver = make_mpm(o, {});
+    add_swarm(*solver, way, 80, 0.025, 1.0);
+    const Vec3 before = angular_momentum(*solver, way, 0.01);
+    run_steps(*solver, 70);
+    const Vec3 after = angular_momentum(*solver, way, 0.01);
+    // Arms of 3 cm; as for momentum.
+    const double round_off = 70 * way.epsilon() * 0.05 * sum_of_speeds(solver->state());
+    EXPECT_LT((after - before).norm(), round_off) << way.name();
+    EXPECT_GT(before.norm(), 1e-5) << way.name();
+  }
+}
+
+TEST_F(SolverFiles, ADiscKeepsSpinning) {
+  constexpr double radius = 0.05, spin = 20, duration = 0.04;
+  for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
+    const Way way{2, Precision::float64, transfer};
+    MpmOptions o = options_for(way);
+    o.gravity = 0;
+    o.numerics.flip_ratio = 1;  // each percent of PIC damps a spin of so few cells visibly
+    o.snows[0].model = SnowModel::elastic;
+    const auto solver = make_mpm(o, {});
+    const ParticleBatch box =
+        filled_box(2, Vec3(-radius, 0, -radius), Vec3(radius, 0, radius), 0.005);
+    for (const Vec3& x : box.positions) {
+      if (x.norm() > radius) continue;
+      ParticleBatch one;
+      one.positions = {x};
+      one.velocity = spin * Vec3::UnitY().cross(x);
+      one.mass = box.mass;
+      solver->add(one);
+    }
+    const ParticleState before = solver->state();
+    double inertia = 0;
+    for (std::size_t i = 0; i < before.masses.size(); ++i)
+      inertia += before.masses[i] * before.positions[i].squaredNorm();
+    // The grid's moment of inertia is larger by M dx^2/4 in each direction.
+    const double expected = spin * inertia / (inertia + total_mass(before) * 1e-4 / 2);
+    run_until(*solver, duration);
+    const ParticleState after = solver->state();
+    const double angle = expected * solver->time();
+    const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
+    double worst = 0;
+    for (std::size_t i = 0; i < after.positions.size(); ++i)
+      worst = std::max(worst, (after.positions[i] - turn * before.positions[i]).norm());
+    // Of the way the rim has come; FLIP's rim lags a little, for it is not quite affine there.
+    EXPECT_LT(worst, (transfer == Transfer::apic ? 0.01 : 0.03) * angle * radius) << way.name();
+  }
+}
+
+TEST(Method, AnElasticBarVibratesAtItsNaturalFrequency) {
+  // Free at both ends, nu = 0: f = c/(2 L) with c = sqrt(E/rho), no lateral motion.
+  constexpr double length = 0.6, amplitude = 0.05;
+  MpmOptions o = options_for({2, Precision::float64});
+  o.gravity = 0;
+  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].poissons_ratio = 0;
+  const double c = std::sqrt(o.snows[0].youngs_modulus / o.snows[0].density);
+  const double frequency = c / (2 * length);
+  const auto solver = make_mpm(o, {});
+  const ParticleBatch bar = filled_box(2, Vec3(0, 0, 0), Vec3(length, 0, 0.03), 0.005);
+  for (double x = 0.0025; x < length; x += 0.005) {  // columns of equal velocity
+    ParticleBatch column;
+    for (const Vec3& p : bar.positions)
+      if (std::abs(p.x() - x) < 1e-6) column.positions.push_back(p);
+    column.mass = bar.mass;
+    column.velocity.x() = amplitude * std::cos(pi * x / length);
+    solver->add(column);
+  }
+  const auto mode = [&] {
+    const ParticleState s = solver->state();
+    double sum = 0;
+    for (std::size_t i = 0; i < s.masses.size(); ++i)
+      sum += s.velocities[i].x() * std::cos(pi * s.positions[i].x() / length);
+    return 2 * sum / double(s.masses.size());
+  };
+  std::vector<double> zeros;
+  double before = mode(), largest = 0;
+  while (zeros.size() < 5) {
+    solver->step();
+    const double now = mode();
+    if (before * now < 0) {
+      zeros.push_back(solver->time() - solver->time_step() * now / (now - before));
+      largest = 0;
+    }
+    largest = std::max(largest, std::abs(now));
+    before = now;
+    ASSERT_LT(solver->time(), 4 / frequency);
+  }
+  EXPECT_NEAR(2 / (zeros[4] - zeros[0]) / frequency, 1.0, 0.02);
+  RecordProperty("lost_amplitude_percent_in_2_periods", int(100 * (1 - largest / amplitude)));
+}
+
+TEST(Method, AColumnCarriesItsWeight) {
+  // Confined between frictionless walls on a sticky floor, elastic: with s = lambda + 2 mu the
+  // vertical stress is rho g (H - z), the pressure (lambda + mu)/s of it, and the settlement
+  // rho g (H z - z^2/2)/s. Set free it vibrates about this state; its average over four of the
+  // longest periods, 4 H/c, is the static state.
+  constexpr double height = 0.2, width = 0.04, spacing = 0.005;
+  MpmOptions o = options_for({2, Precision::float64});
+  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].youngs_modulus = 1e5;
+  const double nu = o.snows[0].poissons_ratio, mu = 1e5 / (2 * (1 + nu));
+  const double lambda = 1e5 * nu / ((1 + nu) * (1 - 2 * nu)), s = lambda + 2 * mu;
+  const double weight = o.snows[0].density * o.gravity;
+  const auto solver =
+      make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
+                   fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::slip),
+                   fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::slip)});
+  solver->add(filled_box(2, Vec3::Zero(), Vec3(width, 0, height), spacing));
+  const ParticleState start = solver->state();
+  const std::size_t n = start.positions.size();
+  std::vector<double> pressure(n), settlement(n);
+  const double duration = 16 * height / std::sqrt(s / o.snows[0].density);
+  average(*solver, duration, [&](double part, const ParticleState& now) {
+    for (std::size_t i = 0; i < n; ++i) {
+      pressure[i] += part * now.pressures[i];
+      settlement[i] += part * (start.positions[i].z() - now.positions[i].z());
+    }
+  });
+  const double bottom = weight * height * (lambda + mu) / s;
+  const double top = weight / s * height * height / 2;
+  for (int cell = 2; cell < 20; ++cell) {  // means over cells: within them stress scatters
+    const double z = (cell + 0.5) * 0.01;
+    double mean_pressure = 0, mean_settlement = 0, particles = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (std::abs(start.positions[i].z() - z) > 0.005) continue;
+      mean_pressure += pressure[i];
+      mean_settlement += settlement[i];
+      ++particles;
+    }
+    EXPECT_NEAR(mean_pressure / particles, bottom * (1 - z / height), 0.04 * bottom) << z;
+    EXPECT_NEAR(mean_settlement / particles, weight / s * (height * z - z * z / 2), 0.04 * top)
+        << z;
+  }
+}
+
+// --- the same bits ----------------------------------------------------------------------------
+
+/// Snow thrown onto a slippery slope: contact, plasticity, blocks that come and go.
+std::unique_ptr<Method> thrown_snow(Way way, int threads, double size, bool energy_balance) {
+  MpmOptions o = options_for(way);
+  o.numerics.threads = threads;
+  o.energy = energy_balance;
+  auto solver = make_mpm(
+      o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::slip, 0.3)});
+  ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 0.01), Vec3(size, size, size), 0.005);
+  batch.velocity = Vec3(1, 0, -3);
+  solver->add(batch);
+  return solver;
+}
+
+/// With books the kernels are others.
+class SameBits : public SolverFiles, public testing::WithParamInterface<bool> {};
+
+TEST_P(SameBits, OnAnyNumberOfThreads) {
+  const bool energy_balance = GetParam();
+  for (const Way& way : {Way{2, Precision::float32}, Way{3, Precision::float32},
+                         Way{2, Precision::float64, Transfer::apic, Basis::cubic}}) {
+    const double size = way.dimension == 2 ? 0.25 : 0.08;
+    const int steps = way.dimension == 2 ? 150 : 80;
+    const auto one = thrown_snow(way, 1, size, energy_balance);
+    run_steps(*one, steps);
+    EXPECT_GT(one->counters().sorts, 1);
+    for (int threads : {2, 4}) {
+      const auto many = thrown_snow(way, threads, size, energy_balance);
+      run_steps(*many, steps);
+      SCOPED_TRACE(way.name() + " on " + std::to_string(threads) + " threads");
+      expect_same_bits(many->state(), one->state());
+      EXPECT_EQ(many->time(), one->time());
+      EXPECT_EQ(many->energy().friction, one->energy().friction);
+      EXPECT_EQ(many->energy().residual(), one->energy().residual());
+    }
+  }
+}
+
+TEST_P(SameBits, FromACheckpoint) {
+  const bool energy_balance = GetParam();
+  for (Way way : all_ways()) {
+    if (way.dimension == 3 && way.precision == Precision::float64) continue;
+    const auto whole = thrown_snow(way, 1, 0.05, energy_balance);
+    run_steps(*whole, 40);
+    while (!whole->at_safe_point()) whole->step();
+    BinaryWriter out;
+    whole->save(out);
+    out.save(path(way.name()));
+    const auto resumed = thrown_snow(way, 1, 0.05, energy_balance);
+    resumed->load(BinaryReader::load(path(way.name())));
+    run_steps(*whole, 70);
+    run_steps(*resumed, 70);
+    SCOPED_TRACE(way.name());
+    expect_same_bits(resumed->state(), whole->state());
+    EXPECT_EQ(resumed->time(), whole->time());
+    EXPECT_EQ(resumed->counters().steps, whole->counters().steps);
+    EXPECT_EQ(resumed->energy().residual(), whole->energy().residual());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Method, SameBits, testing::Bool(), [](const auto& info) {
+  return info.param ? "with_books" : "without_books";
+});
+
+// --- steps that are too much ------------------------------------------------------------------
+
+TEST(Method, AViolentImpactStaysFinite) {
+  for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
+    MpmOptions o = options_for({2, Precision::float32, transfer});
+    o.snows[0].youngs_modulus = 1e4;
+    const auto solver =
+        make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+    ParticleBatch batch = filled_box(2, Vec3(0, 0, 0.02), Vec3(0.1, 0, 0.12), 0.005);
+    batch.velocity.z() = -100;
+    solver->add(batch);
+    try {
+      run_until(*solver, 0.01);
+      for (const Vec3& x : solver->state().positions) ASSERT_TRUE(x.allFinite());
+      EXPECT_GT(solver->counters().rejected, 0);
+    } catch (const SimulationError& error) {
+      EXPECT_NE(std::string(error.what()).find("step"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Method, RejectsStepsThatStrainTooMuch) {
+  for (double limit : {0.2, 0.002}) {
+    MpmOptions o = options_for({2, Precision::float64});
+    o.numerics.strain_limit = limit;
+    const auto solver =
+        make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+    ParticleBatch batch = filled_box(2, Vec3(0, 0, 0.005), Vec3(0.05, 0, 0.055), 0.005);
+    batch.velocity.z() = -1;
+    solver->add(batch);
+    run_until(*solver, 0.02);
+    if (limit < 0.1) {
+      EXPECT_GT(solver->counters().rejected, 10);
+    } else {
+      EXPECT_EQ(solver->counters().rejected, 0);
+    }
+  }
+}
+
+TEST(Method, GivesUpWithAClearErrorWhereNoStepIsSmallEnough) {
+  MpmOptions o = options_for({2, Precision::float64});
+  o.numerics.strain_limit = 1e-12;
+  const auto solver =
+      make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+  ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.05, 0, 0.05), 0.005);
+  batch.velocity.z() = -1;
+  solver->add(batch);
+  const ParticleState before = solver->state();
+  try {
+    run_steps(*solver, 10);
+    FAIL();
+  } catch (const SimulationError& error) {
+    EXPECT_NE(std::string(error.what()).find("time step fell"), std::string::npos);
+  }
+  expect_same_bits(solver->state(), before);
+}
+
+TEST(Method, ParticlesOnAndNextToNodesDoNoHarm) {
+  // Their farthest nodes receive next to no mass.
+  for (const Way& way : all_ways())
+    for (double dx : {1e-3, 0.01, 1.0}) {
+      SCOPED_TRACE(way.name() + ", dx " + std::to_string(dx));
+      const auto solver = make_mpm(options_for(way, dx), {});
+      const double node = base_offset(way.basis) * dx;
+      ParticleBatch batch;
+      int k = 0;
+      for (double off : {0.0, 1.2e-16, 1e-12, 1e-9, 1e-7})
+        batch.positions.push_back(Vec3(node + (k++ + off) * dx,
+                                       way.dimension == 2 ? 0 : node + off * dx, node + off * dx));
+      batch.mass = 210 * std::pow(dx, way.dimension) / 8;
+      solver->add(batch);
+      ASSERT_NO_THROW(run_steps(*solver, 20));
+      for (const Vec3& v : solver->state().velocities)
+        ASSERT_NEAR(v.z(), -9.81 * solver->time(), 1e-3 * 9.81 * solver->time());
+    }
+}
+
+TEST(Method, AKickAddsToTheVelocitiesAndTheBooks) {
+  MpmOptions options = options_for({3, Precision::float64});
+  options.energy = true;
+  options.gravity = 0;
+  const auto solver = make_mpm(options, {});
+  solver->add(filled_box(3, Vec3::Zero(), Vec3(0.04, 0.04, 0.04), 0.005));
+  std::vector<Vec3> changes(solver->size(), Vec3(1, 0, 2));
+  solver->add_velocity(changes);
+  solver->step();
+  const ParticleState s = solver->state();
+  for (const Vec3& v : s.velocities) EXPECT_LT((v - Vec3(1, 0, 2)).norm(), 1e-12);
+  EXPECT_NEAR(solver->energy().added, 2.5 * total_mass(s), 1e-12);
+  EXPECT_NEAR(solver->energy().residual(), 0, 1e-12);
+  changes.pop_back();
+  EXPECT_THROW(solver->add_velocity(changes), InputError);
+}
+
+TEST(Method, SettlingLowersAndCompacts) {
+  MpmOptions options = options_for({3, Precision::float64});
+  options.energy = true;
+  const auto solver = make_mpm(options, {});
+  solver->add(filled_box(3, Vec3(0, 0, 1), Vec3(0.1, 0.04, 1.3), 0.01));
+  run_steps(*solver, 10);
+  const ParticleState before = solver->state();
+  std::vector<double> drops, changes;
+  for (const Vec3& x : before.positions) {
+    drops.push_back(0.5 * (x.z() - 1));
+    changes.push_back(-std::log(2.0));
+  }
+  const double residual = solver->energy().residual();
+  solver->settle(drops, changes);
+  const ParticleState after = solver->state();
+  double fallen = 0;
+  for (std::size_t i = 0; i < drops.size(); ++i) {
+    ASSERT_LT((after.positions[i] - (before.positions[i] - drops[i] * Vec3::UnitZ())).norm(), 1e-9);
+    ASSERT_NEAR(after.densities[i], 2 * before.densities[i], 1e-6);
+    ASSERT_EQ(after.velocities[i], before.velocities[i]);
+    fallen += 9.81 * before.masses[i] * drops[i];
+  }
+  const EnergyBalance energy_balance = solver->energy();
+  EXPECT_NEAR(energy_balance.added, 9.81 * total_mass(before) * 1.15 - fallen, 0.01 * fallen);
+  EXPECT_NEAR(energy_balance.residual(), residual, 1e-9 * energy_balance.added);
+  ASSERT_NO_THROW(run_steps(*solver, 10));
+  drops.back() = std::nan("");
+  EXPECT_THROW(solver->settle(drops, changes), InputError);
+  drops.pop_back();
+  EXPECT_THROW(solver->settle(drops, changes), InputError);
+}
+
+TEST(Method, ReportsItsParticles) {
+  const auto solver = make_mpm(options_for({3, Precision::float64}), {});
+  ParticleBatch batch = filled_box(3, Vec3(-0.05, 0, 0), Vec3(0.05, 0.02, 0.03), 0.01);
+  batch.velocity = Vec3(1, 2, 2);
+  batch.event = 3;
+  solver->add(batch);
+  const ParticleState s = solver->state();
+  ASSERT_EQ(s.positions.size(), batch.positions.size());
+  for (std::size_t i = 0; i < s.positions.size(); ++i) {
+    EXPECT_LT((s.positions[i] - batch.positions[i]).norm(), 1e-15);
+    EXPECT_EQ(s.velocities[i], batch.velocity);
+    EXPECT_EQ(s.ids[i], i);
+    EXPECT_EQ(s.events[i], 3);
+    EXPECT_DOUBLE_EQ(s.volume_ratios[i], 1.0);
+    EXPECT_EQ(s.pressures[i], 0.0);
+  }
+  EXPECT_DOUBLE_EQ(solver->motion(2.9).rms_speed, 3.0);
+  EXPECT_DOUBLE_EQ(solver->motion(2.9).moving_mass, total_mass(s));
+  EXPECT_EQ(solver->motion(3.1).moving_mass, 0.0);
+  solver->clear();
+  EXPECT_EQ(solver->size(), 0u);
+  EXPECT_THROW(solver->step(), SimulationError);
+}
+
+}  // namespace
+}  // namespace snowshed

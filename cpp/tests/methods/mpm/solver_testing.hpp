@@ -1,0 +1,138 @@
+// What the tests of the solver share: options, blocks of particles, and sums over them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "snowshed/core/angles.hpp"
+#include "snowshed/core/random.hpp"
+#include "snowshed/geometry/primitives.hpp"
+#include "snowshed/methods/mpm/solver.hpp"
+
+namespace snowshed {
+
+/// One way of running the solver, for parameterised tests.
+struct Way {
+  int dimension;
+  Precision precision;
+  Transfer transfer = Transfer::flip;
+  Basis basis = Basis::quadratic;
+
+  double epsilon() const { return precision == Precision::float32 ? 1.2e-7 : 2.2e-16; }
+  std::string name() const {
+    return std::to_string(dimension) + "D_" +
+           (precision == Precision::float32 ? "float" : "double") +
+           (transfer == Transfer::flip ? "_flip" : "_apic") +
+           (basis == Basis::quadratic ? "_quadratic" : "_cubic");
+  }
+};
+
+/// All combinations of dimension, precision, transfer and basis.
+inline std::vector<Way> all_ways() {
+  std::vector<Way> ways;
+  for (int dimension : {2, 3})
+    for (Precision precision : {Precision::float32, Precision::float64})
+      for (Transfer transfer : {Transfer::flip, Transfer::apic})
+        for (Basis basis : {Basis::quadratic, Basis::cubic})
+          ways.push_back({dimension, precision, transfer, basis});
+  return ways;
+}
+
+inline MpmOptions options_for(const Way& way, double dx = 0.01) {
+  MpmOptions o;
+  o.dimension = way.dimension;
+  o.numerics.dx = dx;
+  o.numerics.precision = way.precision;
+  o.numerics.transfer = way.transfer;
+  o.numerics.basis = way.basis;
+  o.numerics.threads = 1;
+  o.numerics.sleep_speed = 0;  // most of these tests are about small motions
+  return o;
+}
+
+inline Obstacle fixed(Shape shape, Condition condition, double friction = 0.0) {
+  return {"obstacle", std::move(shape), {condition, friction}, std::nullopt};
+}
+
+/// Particles that fill the box between two corners on a regular lattice of about the given
+/// spacing, with the mass of snow of the given density.
+inline ParticleBatch filled_box(int dimension, const Vec3& low, const Vec3& high, double spacing,
+                                double density = 210.0) {
+  ParticleBatch batch;
+  int n[3];
+  Vec3 step;
+  for (int d = 0; d < 3; ++d) {
+    n[d] =
+        d == 1 && dimension == 2 ? 1 : std::max(1, int(std::lround((high[d] - low[d]) / spacing)));
+    step[d] = (high[d] - low[d]) / n[d];
+  }
+  for (int i = 0; i < n[0]; ++i)
+    for (int j = 0; j < n[1]; ++j)
+      for (int k = 0; k < n[2]; ++k)
+        batch.positions.push_back(low + Vec3((i + 0.5) * step[0],
+                                             dimension == 2 ? 0.0 : (j + 0.5) * step[1],
+                                             (k + 0.5) * step[2]));
+  batch.mass = density * step[0] * step[2] * (dimension == 2 ? 1.0 : step[1]);
+  return batch;
+}
+
+/// A vector of components within [-size, size], in the plane y = 0 in 2D.
+inline Vec3 random_vector(Random& random, int dimension, double size) {
+  Vec3 v;
+  for (int d = 0; d < 3; ++d) v[d] = size * (2 * random.uniform() - 1);
+  if (dimension == 2) v[1] = 0;
+  return v;
+}
+
+inline void run_until(Method& solver, double time) {
+  while (solver.time() < time) solver.step();
+}
+
+inline void run_steps(Method& solver, int steps) {
+  for (int i = 0; i < steps; ++i) solver.step();
+}
+
+/// Average over a duration for snow that vibrates about its static state: `add` gets each part of
+/// the whole with its state. The weights, 2 sin^2 of the time, filter all modes out that are
+/// several times shorter than the duration.
+template <class Add>
+void average(Method& solver, double duration, const Add& add) {
+  double covered = 0;
+  while (solver.time() < duration) {
+    run_steps(solver, 8);
+    const double middle = (covered + solver.time()) / 2;
+    const double weight = 2 * std::pow(std::sin(pi * middle / duration), 2);
+    add((solver.time() - covered) / duration * weight, solver.state());
+    covered = solver.time();
+  }
+}
+
+inline double total_mass(const ParticleState& s) {
+  double sum = 0;
+  for (double m : s.masses) sum += m;
+  return sum;
+}
+
+/// Mean of a particle quantity, weighted by mass.
+inline Vec3 weighted_mean(const ParticleState& s, const std::vector<Vec3>& of) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < of.size(); ++i) sum += s.masses[i] * of[i];
+  return sum / total_mass(s);
+}
+
+inline void expect_same_bits(const ParticleState& a, const ParticleState& b) {
+  EXPECT_TRUE(a.positions == b.positions);
+  EXPECT_TRUE(a.velocities == b.velocities);
+  EXPECT_EQ(a.pressures, b.pressures);
+  EXPECT_EQ(a.plastic_strains, b.plastic_strains);
+  EXPECT_EQ(a.ids, b.ids);
+}
+
+inline Vec3 momentum(const ParticleState& s) {
+  return total_mass(s) * weighted_mean(s, s.velocities);
+}
+
+}  // namespace snowshed

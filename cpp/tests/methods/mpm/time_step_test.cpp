@@ -1,0 +1,89 @@
+#include "snowshed/methods/mpm/time_step.hpp"
+
+#include <gtest/gtest.h>
+
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/methods/mpm/kernels/bspline.hpp"
+
+namespace snowshed {
+namespace {
+
+TEST(TimeStep, ScalesAsACourantCondition) {
+  const double limit = elastic_time_step(1e6, 0.3, 210, 3, 0.01, Basis::quadratic);
+  EXPECT_NEAR(elastic_time_step(1e6, 0.3, 210, 3, 0.02, Basis::quadratic), 2 * limit, 1e-15);
+  EXPECT_NEAR(elastic_time_step(4e6, 0.3, 210, 3, 0.01, Basis::quadratic), limit / 2, 1e-15);
+  EXPECT_NEAR(elastic_time_step(1e6, 0.3, 840, 3, 0.01, Basis::quadratic), 2 * limit, 1e-15);
+  EXPECT_GT(elastic_time_step(1e6, 0.3, 210, 2, 0.01, Basis::quadratic), limit);
+  EXPECT_GT(elastic_time_step(1e6, 0.3, 210, 3, 0.01, Basis::cubic), limit);
+}
+
+template <Basis basis>
+double largest_stability_number() {
+  double largest = 0;
+  for (double f = 1e-6; f < 1; f += 1e-4) {
+    double w[support(basis)], g[support(basis)], sum = 0;
+    BSpline<basis>::evaluate(f, w, g);
+    for (int k = 0; k < support(basis); ++k) sum += g[k] * g[k] / w[k];
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
+TEST(TimeStep, StabilityNumbersBoundTheWeights) {
+  const double quadratic = largest_stability_number<Basis::quadratic>();
+  const double cubic = largest_stability_number<Basis::cubic>();
+  EXPECT_LE(quadratic, stability_number(Basis::quadratic) + 1e-9);
+  EXPECT_LE(cubic, stability_number(Basis::cubic) + 1e-9);
+  EXPECT_GT(quadratic, 0.98 * stability_number(Basis::quadratic));
+  EXPECT_GT(cubic, 0.98 * stability_number(Basis::cubic));
+}
+
+TEST(TimeStep, FastSnowMovesLessThanHalfACell) {
+  EXPECT_DOUBLE_EQ(next_time_step(1e-4, 0.0, 0.01, 0.9), 0.9e-4);
+  for (double speed : {0.1, 10.0, 1e4}) {
+    const double dt = next_time_step(1e-4, speed, 0.01, 1.0);
+    EXPECT_LT(dt, 1e-4);
+    EXPECT_LT(dt * speed, 0.5 * 0.01);
+  }
+}
+
+/// Largest pressure of a lone elastic particle after some hundred steps from nothing but
+/// round-off. A lone particle has the highest frequency that a grid can give snow.
+double pressure_from_round_off(Transfer transfer, Basis basis, double fraction, double factor) {
+  MpmOptions o = options_for({2, Precision::float64, transfer, basis});
+  o.gravity = 0;
+  o.snows[0].model = SnowModel::elastic;
+  o.numerics.step_factor = factor;
+  o.numerics.strain_limit = 1e6;
+  const auto solver = make_mpm(o, {});
+  ParticleBatch one;
+  const double x = (3 + base_offset(basis) + fraction) * 0.01;
+  one.positions = {Vec3(x, 0, x)};
+  one.velocity = Vec3(1e-7, 0, 3e-8);
+  one.mass = 0.005;
+  solver->add(one);
+  double largest = 0;
+  for (int i = 0; i < 500 && largest < 1; ++i) {
+    solver->step();
+    largest = std::max(largest, std::abs(solver->state().pressures[0]));
+  }
+  return largest;
+}
+
+TEST(TimeStep, StepsWithinTheLimitAreStable) {
+  for (Transfer transfer : {Transfer::flip, Transfer::apic})
+    for (Basis basis : {Basis::quadratic, Basis::cubic})
+      for (double fraction : {1e-3, 0.1, 0.25, 0.5, 0.8})
+        EXPECT_LT(pressure_from_round_off(transfer, basis, fraction, 0.95), 1e-10)
+            << (transfer == Transfer::flip ? "FLIP " : "APIC ") << support(basis) << " nodes at "
+            << fraction;
+}
+
+TEST(TimeStep, TheLimitIsNotFarTooSafe) {
+  // Just past it, FLIP blows up at the worst place.
+  EXPECT_GT(pressure_from_round_off(Transfer::flip, Basis::quadratic, 1e-3, 1.1), 1.0);
+  EXPECT_GT(pressure_from_round_off(Transfer::flip, Basis::cubic, 0.5, 1.1), 1.0);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,43 @@
+#include "snowshed/particles/point_grid.hpp"
+
+#include <set>
+
+#include "geometry/geometry_testing.hpp"
+
+namespace snowshed {
+namespace {
+
+using namespace geometry_testing;
+
+void expect_all_found(const std::vector<Vec3>& points, double edge) {
+  const PointGrid grid(points, edge);
+  for (const Vec3& x : points) {
+    std::set<std::uint32_t> near;
+    grid.for_each_near(x, [&](std::uint32_t i, const Vec3& point) {
+      EXPECT_EQ(point, points[i]);
+      EXPECT_TRUE(near.insert(i).second) << "visited twice";
+    });
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+      ASSERT_TRUE(near.count(i) || (points[i] - x).norm() > edge);
+  }
+}
+
+TEST(PointGrid, FindsEveryPointWithinAnEdge) {
+  Random random(20);
+  std::vector<Vec3> points(400), flat(400);
+  for (Vec3& x : points) x = random_point(random, 1.0);
+  for (Vec3& x : flat) {
+    x = random_point(random, 1.0);
+    x.y() = 0;
+  }
+  expect_all_found(points, 0.3);
+  expect_all_found(flat, 0.1);
+}
+
+TEST(PointGrid, NoPointsNoVisits) {
+  const PointGrid grid({}, 1.0);
+  grid.for_each_near(Vec3::Zero(), [](std::uint32_t, const Vec3&) { FAIL(); });
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,180 @@
+#include "snowshed/run/cost_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "snowshed/core/angles.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/scene/presets.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double g = 9.81;
+const double sine = std::sin(radians(40)), cosine = std::cos(radians(40));
+
+TEST(CostEstimate, ParticlesOfTheLaboratorySlab) {
+  // 0.245 x 0.142 x 0.02 m of 0.01 m voxels with 8 particles each
+  const CostEstimate result = estimate_cost(preset_scene("lab-40"));
+  ASSERT_EQ(result.particles.size(), 5u);
+  EXPECT_EQ(result.particles[0], std::round(0.245 * 0.142 * 0.02 * 1e6 * 8));
+  EXPECT_EQ(result.particles[0], 5566.0);
+  EXPECT_EQ(result.total_particles, 5 * 5566.0);
+}
+
+TEST(CostEstimate, ParticlesOfThePlaneScene) {
+  // 2 x 0.05 m of 0.01 m pixels with 6 particles each
+  EXPECT_EQ(estimate_cost(preset_scene("geometry")).particles[0], 6000.0);
+}
+
+TEST(CostEstimate, ParticlesFollowTheBodiesOfEachEvent) {
+  Scene scene = preset_scene("geometry");
+  scene.events.count = 2;
+  BodySpec& body = scene.bodies.emplace_back();
+  body.event = 2;
+  body.shape.type = "box";
+  body.shape.size = {0.1, 0, 0.1};
+  EXPECT_EQ(estimate_cost(scene).particles, (std::vector<double>{6000, 6600}));
+  EXPECT_EQ(estimate_cost(scene, {1234, 12}).total_particles, 1246.0);
+}
+
+TEST(CostEstimate, TimeStepOfTheCalibratedSnow) {
+  // E 1 MPa, nu 0.3: lambda = 576923, mu = 384615 Pa
+  const Scene lab = preset_scene("lab-40");
+  const double stiffness = 3 * 576923.0769 + 2 * 384615.3846;
+  EXPECT_NEAR(stable_time_step(lab), 0.9 * 0.01 * std::sqrt(2 * 210 / (6 * stiffness)), 1e-12);
+  EXPECT_NEAR(stable_time_step(lab), 4.762e-5, 1e-8);
+  EXPECT_NEAR(stable_time_step(preset_scene("geometry")), 5.430e-5, 1e-8);
+  EXPECT_NEAR(estimate_cost(lab).wave_speed, 80.064, 1e-3);
+  Scene fine = lab;
+  fine.numerics.dx = 0.005;
+  fine.numerics.step_factor = 0.45;
+  EXPECT_NEAR(stable_time_step(fine), stable_time_step(lab) / 4, 1e-15);
+}
+
+TEST(CostEstimate, TheRearSlidesTheWholePanelAndFalls) {
+  Scene scene = preset_scene("lab-40");
+  scene.panel->friction = 0.3;
+  const double acceleration = g * (sine - 0.3 * cosine);
+  const double slide = std::sqrt(2 * 0.245 / acceleration);
+  const double down = acceleration * slide * sine;
+  const double fall = (-down + std::sqrt(down * down + 2 * g * 0.33)) / g;
+  const CostEstimate result = estimate_cost(scene);
+  EXPECT_TRUE(result.slides);
+  EXPECT_NEAR(result.slide_time, slide, 1e-12);
+  EXPECT_NEAR(result.slide_time, 0.3477, 1e-3);
+  EXPECT_NEAR(result.fall_time, fall, 1e-12);
+  const double impact = std::sqrt(std::pow(acceleration * slide, 2) + 2 * g * 0.33);
+  EXPECT_NEAR(result.event_time, slide + fall + impact / g, 1e-12);
+  EXPECT_EQ(result.steps, 5 * std::ceil(result.event_time / result.time_step));
+}
+
+TEST(CostEstimate, OlderSnowIsAwakeOnlyInPart) {
+  Scene scene = preset_scene("lab-40");
+  scene.numerics.sleep_speed = 0.0;
+  const CostEstimate awake = estimate_cost(scene);
+  const double steps = awake.steps / 5, slab = awake.particles[0];
+  EXPECT_NEAR(awake.updates, steps * slab * (1 + 2 + 3 + 4 + 5), 1.0);
+  scene.numerics.sleep_speed = 0.02;
+  const CostEstimate asleep = estimate_cost(scene);
+  EXPECT_LT(asleep.first_landing, asleep.slide_time + asleep.fall_time);
+  const double share = 0.5 * (1 - asleep.first_landing / asleep.event_time);
+  EXPECT_NEAR(asleep.updates, steps * slab * (5 + share * (1 + 2 + 3 + 4)), 1e-6 * awake.updates);
+}
+
+TEST(CostEstimate, HigherFallsTakeLongerToSettle) {
+  Scene scene = preset_scene("geometry");
+  const auto settling = [&scene] {
+    const CostEstimate f = estimate_cost(scene);
+    return f.event_time - f.slide_time - f.fall_time;
+  };
+  scene.panel->height = 2.0;
+  const double high = settling();
+  scene.panel->height = 0.5;
+  EXPECT_GT(high, settling());
+}
+
+TEST(CostEstimate, TheGroundsTiltLengthensTheFall) {
+  Scene scene = preset_scene("geometry");
+  scene.panel->friction = 0.0;
+  const double level = estimate_cost(scene).fall_time;
+  scene.ground->tilt = 30.0;
+  const CostEstimate result = estimate_cost(scene);
+  EXPECT_GT(result.fall_time, level);
+  // Where it lands, height above the tilted ground is zero.
+  const double speed = g * sine * result.slide_time, t = result.fall_time;
+  const double drop = speed * sine * t + g * t * t / 2;
+  EXPECT_NEAR(2.0 + speed * cosine * t * std::tan(radians(30)) - drop, 0.0, 1e-10);
+}
+
+TEST(CostEstimate, EnoughFrictionHoldsTheSlab) {
+  Scene scene = preset_scene("lab-40");
+  scene.panel->friction = 0.84;  // tan 40 = 0.8391
+  EXPECT_FALSE(estimate_cost(scene).slides);
+  EXPECT_EQ(estimate_cost(scene).event_time, 0.25);
+  scene.panel->friction = 0.838;
+  EXPECT_TRUE(estimate_cost(scene).slides);
+  scene.panel->friction = 0.0;
+  scene.panel->condition = Condition::sticky;
+  EXPECT_FALSE(estimate_cost(scene).slides);
+}
+
+TEST(CostEstimate, BodiesFallFromTheirCentre) {
+  Scene scene;
+  BodySpec& body = scene.bodies.emplace_back();
+  body.shape.type = "sphere";
+  body.shape.radius = 0.1;
+  body.shape.center = {0, 0, 2};
+  EXPECT_NEAR(estimate_cost(scene).fall_time, std::sqrt(2 * 2 / g), 1e-12);
+  body.velocity.z() = 3.0;  // thrown up first
+  EXPECT_NEAR(estimate_cost(scene).fall_time, (3 + std::sqrt(9 + 4 * g)) / g, 1e-12);
+}
+
+TEST(CostEstimate, NoEventOutlastsItsLimit) {
+  Scene scene = preset_scene("geometry");
+  scene.events.max_time = 0.6;
+  EXPECT_EQ(estimate_cost(scene).event_time, 0.6);
+  scene.gravity = 0.0;
+  EXPECT_EQ(estimate_cost(scene).event_time, 0.25);
+  scene.bodies.emplace_back().shape.type = "sphere";
+  scene.bodies[0].shape.center.z() = 1.0;
+  EXPECT_EQ(estimate_cost(scene).event_time, 0.6);  // it never lands
+}
+
+TEST(CostEstimate, DoublesNeedTwiceTheMemory) {
+  Scene scene = preset_scene("lab-40");
+  const double single = estimate_cost(scene).bytes;
+  EXPECT_GT(single, 150.0 * 27830);
+  EXPECT_LT(single, 300.0 * 27830);
+  scene.numerics.precision = Precision::float64;
+  EXPECT_NEAR(estimate_cost(scene).bytes, 2 * single, 1e-6 * single);
+}
+
+TEST(CostEstimate, AbsurdScenesAreForecastAndRefused) {
+  Scene scene = preset_scene("lab-40");
+  scene.numerics.dx = 1e-9;
+  EXPECT_GT(estimate_cost(scene).total_particles, 1e20);
+  EXPECT_THROW(check_memory(estimate_cost(scene).bytes), InputError);
+  scene.numerics.dx = std::numeric_limits<double>::denorm_min();
+  EXPECT_THROW(check_memory(estimate_cost(scene).bytes), InputError);
+}
+
+TEST(CostEstimate, MemoryErrorsNameBothNumbers) {
+  EXPECT_NO_THROW(check_memory(4e9, 4e9));
+  EXPECT_NO_THROW(check_memory(1e6));
+  EXPECT_THROW(check_memory(4.001e9, 4e9), InputError);
+  try {
+    check_memory(3.21e10, 1.6e10);
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("32.1 GB"), std::string::npos) << message;
+    EXPECT_NE(message.find("16 GB"), std::string::npos) << message;
+  }
+}
+
+}  // namespace
+}  // namespace snowshed

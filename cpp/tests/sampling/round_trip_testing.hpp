@@ -1,0 +1,110 @@
+// Snow of known volume that is turned into a solid and into particles again.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "geometry/geometry_testing.hpp"
+#include "snowshed/geometry/combine.hpp"
+#include "snowshed/geometry/primitives.hpp"
+#include "snowshed/sampling/particle_voxels.hpp"
+#include "snowshed/sampling/seeding.hpp"
+#include "snowshed/sampling/voxel_set.hpp"
+
+namespace snowshed::round_trip {
+
+inline constexpr double voxel = 0.01;
+
+struct Snow {
+  const char* name;
+  int dimension;
+  Shape solid;
+  double height, volume;
+};
+
+/// A dome cut from a ball (in 2D a disc), as high as a quarter of its length.
+inline Snow dome(int dimension) {
+  const double height = dimension == 2 ? 0.1 : 0.06, radius = 2.5 * height;
+  const Shape ball = make_sphere({0, 0, height - radius}, radius);
+  const double half = std::sqrt(radius * radius - (radius - height) * (radius - height));
+  const double section =
+      radius * radius * std::acos(1 - height / radius) - (radius - height) * half;
+  const double cap = pi * height * height * (radius - height / 3);
+  return {"dome", dimension, subtract(ball, {make_plane({0, 0, 0}, {0, 0, 1})}), height,
+          dimension == 2 ? section : cap};
+}
+
+/// A slab with sharp edges.
+inline Snow slab(int dimension) {
+  const double height = 0.05, length = dimension == 2 ? 0.3 : 0.15, width = 0.1;
+  return {"slab", dimension,
+          make_box({0, 0, height / 2}, {length, dimension == 2 ? 1e9 : width, height}), height,
+          height * length * (dimension == 2 ? 1 : width)};
+}
+
+inline double per_voxel(int dimension) { return dimension == 2 ? 6 : 8; }
+
+inline std::vector<Vec3> particles_of(const LevelSet& solid, int dimension, int number) {
+  return seed(solid, dimension, voxel, per_voxel(dimension), SeedPattern::poisson, number);
+}
+
+inline double extent(const std::vector<Vec3>& cloud, int axis) {
+  double low = 1e9, high = -1e9;
+  for (const Vec3& x : cloud) {
+    low = std::min(low, x[axis]);
+    high = std::max(high, x[axis]);
+  }
+  return high - low;
+}
+
+inline double top(const std::vector<Vec3>& cloud) {
+  double high = -1e9;
+  for (const Vec3& x : cloud) high = std::max(high, x.z());
+  return high;
+}
+
+/// The highest particle in each column two voxels wide, seen from the side.
+inline std::map<int, double> outline(const std::vector<Vec3>& cloud) {
+  std::map<int, double> heights;
+  for (const Vec3& x : cloud) {
+    double& height = heights.try_emplace(int(std::floor(x.x() / (2 * voxel))), 0.0).first->second;
+    height = std::max(height, x.z());
+  }
+  return heights;
+}
+
+/// Root mean square of the difference of two outlines where both have snow.
+inline double outline_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  const auto one = outline(a), other = outline(b);
+  double sum = 0, count = 0;
+  for (const auto& [column, height] : one) {
+    const auto there = other.find(column);
+    if (there == other.end()) continue;
+    sum += std::pow(height - there->second, 2);
+    ++count;
+  }
+  EXPECT_GT(count, 5);
+  return std::sqrt(sum / count);
+}
+
+/// Particles as a solid. The test's own way, through a file or not.
+using Solidify = std::function<Shape(const std::vector<Vec3>& particles, const Snow&)>;
+
+inline void expect_kept(const Snow& snow, const Solidify& solidify) {
+  SCOPED_TRACE(std::string(snow.name) + " in " + std::to_string(snow.dimension) + "D");
+  const std::vector<Vec3> before = particles_of(*snow.solid, snow.dimension, 3);
+  const Shape solid = solidify(before, snow);
+  // Of the small snow in 3D, a tenth of a voxel all around is more.
+  const double slack = snow.dimension == 2 ? 0.02 : 0.05;
+  EXPECT_NEAR(measure(*solid, snow.dimension, voxel) / snow.volume, 1, slack);
+  const std::vector<Vec3> after = particles_of(*solid, snow.dimension, 4);
+  EXPECT_NEAR(double(after.size()) / double(before.size()), 1, slack);
+  EXPECT_NEAR(top(after), top(before), voxel / 2);
+  EXPECT_NEAR(top(after), snow.height, voxel / 2);
+  EXPECT_NEAR(extent(after, 0), extent(before, 0), voxel / 2);
+  EXPECT_LT(outline_difference(before, after), voxel / 2);
+}
+
+}  // namespace snowshed::round_trip

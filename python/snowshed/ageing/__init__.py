@@ -1,5 +1,0 @@
-"""What time does to a stack between two slide-offs: it settles, and its bonds sinter."""
-
-from snowshed.ageing.ageing import AGEING_COLUMNS, Ageing, Interval
-
-__all__ = ["AGEING_COLUMNS", "Ageing", "Interval"]

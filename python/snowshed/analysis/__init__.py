@@ -1,0 +1,1 @@
+"""Questions to many runs: sensitivity, calibration, regression, errors."""

@@ -1,0 +1,299 @@
+"""Measured stacks: the CSV file, read and checked, and its empty template."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+from snowshed._core import InputError
+from snowshed.io.input_file import read_input
+from snowshed.io.messages import quoted
+from snowshed.scene.scene import PathLike
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: What can be measured of a stack, m.
+QUANTITIES = ("height", "length", "head", "tail")
+POSITIVE = ("height", "length")
+KEYS = ("tilt_deg", "event")
+ROUND = "round"
+COMMENT = "#"
+STEEPEST = 90.0  # degrees, not allowed itself
+FAR = 3.0  # standard deviations by which length and tail - head may differ
+
+TEMPLATE_TILTS = (40, 50)
+TEMPLATE_EVENTS = 5
+TEMPLATE_HEADER = """\
+# Measured stacks, one row per panel tilt and event, for `snowshed calibrate`. SI units, degrees.
+#
+# tilt_deg       panel from the horizontal
+# event          slide-offs so far: 1 is the first
+# round          repetition of the experiment (the column may be left out)
+# height_m       highest point of the stack above the ground
+# length_m       tail - head, along the slide-off
+# head_m         end of the stack nearest to the panel, from the panel's centre
+# tail_m         the other end, from the panel's centre
+# ..._std_m      uncertainty of each: one standard deviation, greater than 0
+#
+# Leave empty what was not measured. Lines that begin with # and rows without a measurement are
+# ignored.
+"""
+
+
+def measured_column(quantity: str) -> str:
+    """Return the column of a measured quantity.
+
+    Examples
+    --------
+    >>> measured_column("height"), uncertainty_column("height")
+    ('height_m', 'height_std_m')
+    """
+    return f"{quantity}_m"
+
+
+def uncertainty_column(quantity: str) -> str:
+    """Return the column of a quantity's standard deviation."""
+    return f"{quantity}_std_m"
+
+
+LARGEST_NUMBER = 1000  # of an event or a round; a scene has no more events
+
+COLUMNS = (
+    *KEYS,
+    ROUND,
+    *(name(q) for q in QUANTITIES for name in (measured_column, uncertainty_column)),
+)
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One measured length of one stack.
+
+    Attributes
+    ----------
+    tilt
+        Of the panel, degrees.
+    event
+        Slide-offs so far.
+    round
+        Repetition of the experiment.
+    quantity
+        One of `QUANTITIES`.
+    value, uncertainty
+        And its standard deviation, m.
+    line
+        Where it stands in its file.
+    """
+
+    tilt: float
+    event: int
+    round: int
+    quantity: str
+    value: float
+    uncertainty: float
+    line: int = 0
+
+
+def template() -> str:
+    """Return an empty file to fill in, for the tilts and events of the thesis's calibration.
+
+    Examples
+    --------
+    >>> template().splitlines()[-1]
+    '50,5,1,,,,,,,,'
+    """
+    rows = [
+        ",".join([str(tilt), str(event), "1", *[""] * (len(COLUMNS) - 3)])
+        for tilt in TEMPLATE_TILTS
+        for event in range(1, TEMPLATE_EVENTS + 1)
+    ]
+    return "\n".join([TEMPLATE_HEADER + ",".join(COLUMNS), *rows, ""])
+
+
+def read_measurements(file: PathLike) -> list[Measurement]:
+    r"""Read measured stacks from a CSV file; `template` says what is in it.
+
+    Raises
+    ------
+    InputError
+        Naming the file, the line, the column, what is wrong and what is allowed.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "stacks.csv"
+    ...     _ = file.write_text("tilt_deg,event,height_m,height_std_m\n40,1,0.05,0.005\n")
+    ...     [(one.quantity, one.value, one.line) for one in read_measurements(file)]
+    [('height', 0.05, 2)]
+    """
+    path = Path(file)
+    try:
+        text = read_input(path).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a text in UTF-8: {error}") from None
+    try:
+        return measurements_in(text)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def measurements_in(text: str) -> list[Measurement]:
+    """Return the measurements in the text of a file; see `read_measurements`."""
+    lines = _lines(text)
+    header = next(lines, None)
+    if header is None:
+        raise InputError("is empty; `snowshed calibrate --template FILE` writes one to fill in")
+    names = [cell.strip() for cell in header[1]]
+    _check_header(names, header[0])
+    found: list[Measurement] = []
+    seen: dict[tuple[float, int, int], int] = {}
+    for number, cells in lines:
+        if len(cells) != len(names):
+            raise InputError(
+                f"line {number}: has {len(cells)} cells, but the header has {len(names)} columns"
+            )
+        row = _Row(number, dict(zip(names, (cell.strip() for cell in cells))))
+        found += row.measurements(seen)
+    if not found:
+        raise InputError("no measurement in it: all cells for measured values are empty")
+    return found
+
+
+def to_table(measurements: Sequence[Measurement]) -> pd.DataFrame:
+    """Return measurements as a table, one row each: the fields of `Measurement`."""
+    import pandas as pd
+
+    return pd.DataFrame([vars(one) for one in measurements])
+
+
+def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number and the cells of every line that is neither empty nor a comment."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith(COMMENT):
+            continue
+        try:
+            (cells,) = csv.reader([line], strict=True)
+        except csv.Error as error:
+            raise InputError(f"line {number}: not CSV: {error}") from None
+        if any(cell.strip() for cell in cells):
+            yield number, cells
+
+
+def _check_header(names: Sequence[str], number: int) -> None:
+    where = f"line {number}"
+    for name in names:
+        if name not in COLUMNS:
+            raise InputError(
+                f"{where}: {quoted(name)} is no column; allowed: {', '.join(COLUMNS)} "
+                "(separated by commas)"
+            )
+        if names.count(name) > 1:
+            raise InputError(f"{where}: column {name} occurs twice")
+    for name in KEYS:
+        if name not in names:
+            raise InputError(f"{where}: no column {name}")
+    measured = [q for q in QUANTITIES if measured_column(q) in names]
+    if not measured:
+        wanted = ", ".join(measured_column(quantity) for quantity in QUANTITIES)
+        raise InputError(f"{where}: no column of a measured value; there may be: {wanted}")
+    for quantity in measured:
+        if uncertainty_column(quantity) not in names:
+            raise InputError(
+                f"{where}: no column {uncertainty_column(quantity)}, the uncertainty of "
+                f"{measured_column(quantity)} (one standard deviation)"
+            )
+
+
+@dataclass(frozen=True)
+class _Row:
+    """One line of the file."""
+
+    number: int
+    cells: Mapping[str, str]
+
+    def measurements(self, seen: dict[tuple[float, int, int], int]) -> list[Measurement]:
+        """Return what was measured; `seen` tells the line of every stack so far."""
+        key = self._tilt(), self._whole("event"), self._whole(ROUND, 1)
+        values = {quantity: self._value(quantity) for quantity in QUANTITIES}
+        found = [
+            Measurement(*key, quantity, *value, self.number)
+            for quantity, value in values.items()
+            if value is not None
+        ]
+        if found:
+            earlier = seen.setdefault(key, self.number)
+            if earlier != self.number:
+                raise self._error(
+                    f"tilt {key[0]:g}, event {key[1]}, round {key[2]} is in line {earlier} "
+                    "already; give repetitions another round"
+                )
+            self._check_ends(values)
+        return found
+
+    def _value(self, quantity: str) -> Optional[tuple[float, float]]:
+        """Return the measured value and its uncertainty, or None if it was not measured."""
+        column, uncertain = measured_column(quantity), uncertainty_column(quantity)
+        if not self.cells.get(column):
+            if self.cells.get(uncertain):
+                raise self._error(f"{uncertain}: an uncertainty, but {column} is empty")
+            return None
+        value = self._number(column)
+        if quantity in POSITIVE and value <= 0:
+            raise self._error(f"{column}: {value:g} is not positive")
+        if not self.cells.get(uncertain):
+            raise self._error(f"{uncertain}: missing; give one standard deviation of {column}")
+        uncertainty = self._number(uncertain)
+        if uncertainty <= 0:
+            raise self._error(f"{uncertain}: {uncertainty:g} is not positive")
+        return value, uncertainty
+
+    def _check_ends(self, values: Mapping[str, Optional[tuple[float, float]]]) -> None:
+        head, tail, length = values["head"], values["tail"], values["length"]
+        if head is None or tail is None:
+            return
+        if tail[0] <= head[0]:
+            raise self._error(f"tail_m: {tail[0]:g} is not beyond head_m, {head[0]:g}")
+        if length is not None:
+            between = tail[0] - head[0]
+            if abs(between - length[0]) > FAR * math.hypot(head[1], tail[1], length[1]):
+                raise self._error(
+                    f"length_m: {length[0]:g} is not tail_m - head_m = {between:.4g}, even within "
+                    f"{FAR:g} standard deviations"
+                )
+
+    def _tilt(self) -> float:
+        tilt = self._number("tilt_deg")
+        if not 0 <= tilt < STEEPEST:
+            raise self._error(f"tilt_deg: {tilt:g} is outside the allowed range (0 to 90 degrees)")
+        return tilt
+
+    def _whole(self, column: str, default: int = 0) -> int:
+        if default and not self.cells.get(column):
+            return default
+        number = self._number(column)
+        if not 1 <= number <= LARGEST_NUMBER or number % 1:
+            raise self._error(
+                f"{column}: {number:g} is not a whole number from 1 to {LARGEST_NUMBER}"
+            )
+        return int(number)
+
+    def _number(self, column: str) -> float:
+        cell = self.cells[column]
+        try:
+            number = float(cell)
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            raise self._error(f"{column}: {quoted(cell)} is not a number")
+        return number
+
+    def _error(self, message: str) -> InputError:
+        return InputError(f"line {self.number}: {message}")

@@ -1,0 +1,277 @@
+"""Which snow the measurements allow: the posterior of the parameters, by MCMC on the surrogate.
+
+The mean of what several rounds measured of a stack is normally distributed around the surrogate's
+mean, with the variances of
+
+- the rounds: of each its measurement (its uncertainty), and the seeding noise of a single run,
+  since an experiment is one fall of snow too. Weights are the inverse of these variances,
+- the surrogate,
+- the model itself, which is wrong by an unknown part of the measured quantity's mean (one for
+  heights, one for lengths, ...), a nuisance parameter with a half-normal prior of scale 0.1.
+
+The last two are the same for all rounds.
+
+The prior is uniform in the box of the parameters that were run (Kennedy and O'Hagan, Bayesian
+calibration of computer models, J. R. Statist. Soc. B 63, 2001, with an independent discrepancy).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.analysis.calibration.measurements import Measurement
+from snowshed.analysis.calibration.surrogate import EXTRA, Output, Surrogate
+from snowshed.io.arrays import Floats, Integers
+from snowshed.io.extras import require
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+WALKERS_PER_DIMENSION = 8
+STEPS = 2000
+FEWEST_STEPS = 100  # shorter chains do not even show how correlated they are
+BURN_IN = 0.33  # part of the steps that is thrown away
+KEPT = 4000  # samples, at most
+STARTS = 4096  # points of the prior among which the walkers start
+DISCREPANCY = 0.1  # scale of its prior
+LARGEST_DISCREPANCY = 1.0
+EDGE = 0.05  # part of a range that counts as its end
+DENSE = 0.5  # part of the prior's density there that leaves the range open
+LEVELS = {
+    "lower_95": 0.025,
+    "lower_68": 0.16,
+    "median": 0.5,
+    "upper_68": 0.84,
+    "upper_95": 0.975,
+}
+ENOUGH = 400  # independent samples, for quantiles of 95 %
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """Samples of the posterior.
+
+    Attributes
+    ----------
+    surrogate
+        What they rest on.
+    samples
+        Shape (n, k): parameters in their units.
+    discrepancy
+        Shape (n, q): the model's error for each quantity, relative to its measured mean.
+    quantities
+        The q measured quantities.
+    effective
+        How many independent samples they are worth.
+    """
+
+    surrogate: Surrogate
+    samples: Floats
+    discrepancy: Floats
+    quantities: Sequence[str]
+    effective: float
+
+    def ranges(self) -> pd.DataFrame:
+        """Return the range of each parameter that the measurements allow.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``parameter``; ``low`` and ``high``: the box that was searched; the quantiles
+            ``lower_95``, ``lower_68``, ``median``, ``upper_68``, ``upper_95``; ``open``: "below",
+            "above" or "both" where the density at an end of the box is more than half of the
+            prior's, so that the range would go on beyond it; else empty.
+        """
+        import pandas as pd
+
+        rows = []
+        for number, path in enumerate(self.surrogate.parameters):
+            values = self.samples[:, number]
+            low, high = self.surrogate.low[number], self.surrogate.high[number]
+            row: dict[str, Any] = {"parameter": path, "low": low, "high": high}
+            row.update({name: np.quantile(values, level) for name, level in LEVELS.items()})
+            row["open"] = _open_ends((values - low) / (high - low))
+            rows.append(row)
+        return pd.DataFrame(rows)
+
+    def table(self) -> pd.DataFrame:
+        """Return the samples: the parameters, and ``discrepancy_height``, ... as parts."""
+        import pandas as pd
+
+        columns = [*self.surrogate.parameters, *(f"discrepancy_{q}" for q in self.quantities)]
+        return pd.DataFrame(np.hstack([self.samples, self.discrepancy]), columns=columns)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the samples are enough for the quantiles of 95 %."""
+        return self.effective >= ENOUGH
+
+
+def outputs_of(measurements: Sequence[Measurement]) -> list[Output]:
+    """Return what a surrogate must predict for some measurements.
+
+    Examples
+    --------
+    >>> outputs_of([Measurement(40, 1, round, "height", 0.05, 0.01) for round in (1, 2)])
+    [('height', 40, 1)]
+    """
+    return list(dict.fromkeys((one.quantity, one.tilt, one.event) for one in measurements))
+
+
+def sample_posterior(
+    surrogate: Surrogate,
+    measurements: Sequence[Measurement],
+    *,
+    steps: int = STEPS,
+    seed: int = 1,
+) -> Posterior:
+    """Sample the posterior with emcee's affine-invariant ensemble.
+
+    Parameters
+    ----------
+    surrogate
+        Predicts at least the outputs of the measurements.
+    measurements
+        Measured stacks.
+    steps
+        Of every walker, the first third of which is thrown away.
+    seed
+        Of the random numbers; the same seed gives the same samples.
+
+    Raises
+    ------
+    InputError
+        If there are too few steps, or emcee (extra ``calibration``) is not installed.
+    """
+    if steps < FEWEST_STEPS:
+        raise InputError(f"steps: {steps} are too few; at least {FEWEST_STEPS} are needed")
+    emcee = require("emcee", EXTRA, "sampling the posterior")
+    density = _Density.of(surrogate, measurements)
+    dimensions = len(surrogate.parameters) + len(density.quantities)
+    random = np.random.RandomState(seed)
+    walkers = WALKERS_PER_DIMENSION * dimensions
+    start = emcee.State(density.starts(walkers, random), random_state=random.get_state())
+    sampler = emcee.EnsembleSampler(walkers, dimensions, density, vectorize=True)
+    sampler.run_mcmc(start, steps)
+    burnt = int(BURN_IN * steps)
+    times = sampler.get_autocorr_time(discard=burnt, tol=0)
+    effective = walkers * (steps - burnt) / float(np.nanmax(times))
+    chain = sampler.get_chain(discard=burnt, flat=True)
+    kept = chain[:: max(1, len(chain) // KEPT)]
+    count = len(surrogate.parameters)
+    return Posterior(
+        surrogate,
+        surrogate.physical(kept[:, :count]),
+        kept[:, count:],
+        density.quantities,
+        effective,
+    )
+
+
+@dataclass(frozen=True)
+class _Density:
+    """Logarithm of the posterior density, up to a constant, at points (parameters, discrepancy).
+
+    Attributes
+    ----------
+    surrogate
+        Predicts the outputs.
+    quantities
+        The measured ones; each has a discrepancy.
+    output, quantity
+        Shape (m,): which output and which quantity each mean of rounds is of.
+    values, variances
+        Shape (m,): the means, m, and their variances by measuring and seeding, m².
+    seedings
+        Shape (m,): variance by the seeding of a single run, which the surrogate's contain, m².
+    scales
+        Shape (m,): mean of the quantity over the measurements, m.
+    """
+
+    surrogate: Surrogate
+    quantities: Sequence[str]
+    output: Integers
+    quantity: Integers
+    values: Floats
+    variances: Floats
+    seedings: Floats
+    scales: Floats
+
+    @classmethod
+    def of(cls, surrogate: Surrogate, measurements: Sequence[Measurement]) -> _Density:
+        outputs = list(surrogate.outputs)
+        quantities = list(dict.fromkeys(one.quantity for one in measurements))
+        rounds: dict[Output, list[Measurement]] = {}
+        for one in measurements:
+            rounds.setdefault((one.quantity, one.tilt, one.event), []).append(one)
+        output = np.array([outputs.index(key) for key in rounds])
+        seedings = surrogate.noises()[output]
+        means = [_weighted(of_one, noise) for of_one, noise in zip(rounds.values(), seedings)]
+        values, variances = np.array(means).T
+        scales = {
+            name: np.mean([abs(one.value) for one in measurements if one.quantity == name])
+            for name in quantities
+        }
+        return cls(
+            surrogate,
+            quantities,
+            output,
+            np.array([quantities.index(name) for name, _, _ in rounds]),
+            values,
+            variances,
+            seedings,
+            np.array([scales[name] for name, _, _ in rounds]),
+        )
+
+    def __call__(self, points: Floats) -> Floats:
+        count = len(self.surrogate.parameters)
+        unit, discrepancy = points[:, :count], points[:, count:]
+        inside = ((unit >= 0) & (unit <= 1)).all(axis=1)
+        inside &= ((discrepancy >= 0) & (discrepancy <= LARGEST_DISCREPANCY)).all(axis=1)
+        found = np.full(len(points), -np.inf)
+        if inside.any():
+            found[inside] = self._log_density(unit[inside], discrepancy[inside])
+        return found
+
+    def _log_density(self, unit: Floats, discrepancy: Floats) -> Floats:
+        means, variances = self.surrogate.predict(unit)
+        model = discrepancy[:, self.quantity].T * self.scales[:, None]
+        shared = variances[self.output] - self.seedings[:, None] + model**2
+        variance = shared + self.variances[:, None]
+        residuals = self.values[:, None] - means[self.output]
+        likelihood = -0.5 * (residuals**2 / variance + np.log(variance)).sum(axis=0)
+        prior = -0.5 * ((discrepancy / DISCREPANCY) ** 2).sum(axis=1)
+        return np.asarray(likelihood + prior)
+
+    def starts(self, count: int, random: np.random.RandomState) -> Floats:
+        """Return points for the walkers: drawn from the prior, weighted by the likelihood."""
+        parameters = len(self.surrogate.parameters)
+        unit = random.uniform(size=(STARTS, parameters))
+        size = (STARTS, len(self.quantities))
+        discrepancy = np.minimum(np.abs(random.normal(0, DISCREPANCY, size)), LARGEST_DISCREPANCY)
+        points = np.hstack([unit, discrepancy])
+        likelihood = self._log_density(unit, discrepancy)
+        likelihood += 0.5 * ((discrepancy / DISCREPANCY) ** 2).sum(axis=1)
+        best = np.argsort(likelihood + random.gumbel(size=STARTS))[-count:]
+        return np.asarray(points[best])
+
+
+def _weighted(rounds: Sequence[Measurement], seeding: float) -> tuple[float, float]:
+    """Return mean and variance of rounds, weighted by the inverse of their variances."""
+    weights = 1 / (np.array([one.uncertainty for one in rounds]) ** 2 + seeding)
+    mean = weights @ np.array([one.value for one in rounds]) / weights.sum()
+    return float(mean), float(1 / weights.sum())
+
+
+def _open_ends(fractions: Floats) -> str:
+    """Return toward which ends of 0 to 1 the samples do not thin out."""
+    below = bool(np.mean(fractions < EDGE) >= DENSE * EDGE)
+    above = bool(np.mean(fractions > 1 - EDGE) >= DENSE * EDGE)
+    return {(True, True): "both", (True, False): "below", (False, True): "above"}.get(
+        (below, above), ""
+    )

@@ -1,0 +1,165 @@
+"""From measurements and a stored study to ranking, parameter ranges and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+from snowshed._core import InputError
+from snowshed.analysis.calibration.comparison import Simulated, compare, read_simulated
+from snowshed.analysis.calibration.measurements import QUANTITIES, Measurement
+from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
+from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
+from snowshed.analysis.calibration.surrogate import Surrogate
+from snowshed.io.atomic import write_text
+from snowshed.scene.scene import PathLike
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What measurements say of the snow.
+
+    Attributes
+    ----------
+    stacks
+        The simulated stacks.
+    comparison
+        Simulated beside measured values; see `compare`.
+    ranked
+        The parameter sets, the best first; see `rank`.
+    posterior
+        The parameters that the measurements allow.
+    """
+
+    stacks: Simulated
+    comparison: pd.DataFrame
+    ranked: pd.DataFrame
+    posterior: Posterior
+
+    @property
+    def best(self) -> pd.Series[float]:
+        """The row of `ranked` with the lowest mean rescaled RMSE."""
+        return self.ranked.iloc[0]
+
+    @property
+    def ranges(self) -> pd.DataFrame:
+        """The ranges of the parameters, with the best set beside them; see `Posterior.ranges`."""
+        ranges = self.posterior.ranges()
+        ranges["best_set"] = [float(self.best[path]) for path in ranges["parameter"]]
+        return ranges
+
+
+def calibrate(
+    measurements: Sequence[Measurement],
+    stacks: Simulated,
+    *,
+    quantities: Sequence[str] = RANKED,
+    steps: int = STEPS,
+    seed: int = 1,
+) -> Calibration:
+    """Rank parameter sets as chapter 4 does, and sample the posterior of the parameters.
+
+    Parameters
+    ----------
+    measurements
+        From `read_measurements`.
+    stacks
+        From `read_simulated`.
+    quantities
+        What the posterior rests on, as far as it was measured. Length is tail - head: with both of
+        these it says nothing new and must not be counted twice.
+    steps
+        Of the Markov chains.
+    seed
+        Of their random numbers.
+
+    Raises
+    ------
+    InputError
+        If measurements and simulations do not fit together, or a library is missing.
+    """
+    used = _used(measurements, quantities)
+    comparison = compare(stacks, measurements)
+    ranked = rank(stacks, comparison)
+    surrogate = Surrogate.fitted(stacks, outputs_of(used))
+    return Calibration(
+        stacks, comparison, ranked, sample_posterior(surrogate, used, steps=steps, seed=seed)
+    )
+
+
+def _used(measurements: Sequence[Measurement], quantities: Sequence[str]) -> list[Measurement]:
+    for quantity in quantities:
+        if quantity not in QUANTITIES:
+            allowed = ", ".join(QUANTITIES)
+            raise InputError(f"quantity: {quantity!r} is unknown; allowed: {allowed}")
+    if {"length", "head", "tail"} <= set(quantities):
+        raise InputError("quantity: length is tail - head; give two of length, head and tail")
+    used = [one for one in measurements if one.quantity in quantities]
+    if not used:
+        raise InputError(f"none of {', '.join(quantities)} was measured")
+    return used
+
+
+def evaluate(
+    measurements: Sequence[Measurement],
+    stored: PathLike,
+    folder: PathLike,
+    *,
+    study: Optional[str] = None,
+    measure: str = "stack",
+    quantities: Sequence[str] = RANKED,
+) -> Calibration:
+    """Calibrate with a stored study, as far as it is computed, and write tables and figures.
+
+    Parameters
+    ----------
+    measurements, quantities
+        As for `calibrate`.
+    stored
+        Folder of the store.
+    folder
+        Where to write; the docs list the files.
+    study
+        Name of the study; not needed if the store holds but one.
+    measure
+        "stack" or "body"; see `read_simulated`.
+
+    Raises
+    ------
+    InputError
+        As for `read_simulated` and `calibrate`.
+    """
+    found = calibrate(measurements, read_simulated(stored, study, measure), quantities=quantities)
+    write(found, Path(folder))
+    return found
+
+
+def write(found: Calibration, folder: Path) -> None:
+    """Write the tables and figures of a calibration into a folder."""
+    from snowshed.analysis.calibration import figures
+    from snowshed.plot.figure_style import save
+
+    folder.mkdir(parents=True, exist_ok=True)
+    posterior, parameters = found.posterior, found.stacks.parameters
+    bands = figures.predicted_bands(posterior)
+    for name, table in {
+        "ranking": found.ranked,
+        "rmse-statistics": statistics(found.ranked).reset_index(),
+        "comparison": found.comparison,
+        "ranges": found.ranges,
+        "posterior": posterior.table(),
+        "surrogate": posterior.surrogate.accuracy(),
+    }.items():
+        write_text(folder / f"{name}.csv", table.to_csv(index=False))
+    for name, figure in {
+        "relative-error": figures.relative_error_figure(found.ranked, parameters),
+        "rmse": figures.rmse_figure(found.ranked, parameters),
+        "fit": figures.fit_figure(found.comparison, int(found.best["set"]), posterior, bands),
+        "posterior": figures.posterior_figure(posterior, found.best),
+    }.items():
+        save(figure, folder / f"{name}.png")

@@ -1,0 +1,142 @@
+"""Where a model may be asked: inside the data it was made from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from snowshed.analysis.regression.rows import INPUT_UNITS, INPUT_WORDS
+from snowshed.analysis.regression.scaling import Scaling
+from snowshed.io.arrays import Floats
+from snowshed.io.extras import require
+
+TOLERANCE = 1e-6  # of standardised inputs
+#: Part of the panels whose nearest neighbours are not farther than what counts as spacing: a few
+#: lonely panels do not make the data dense about them.
+SPACED = 0.9
+NO_PANELS = np.empty((0, 3))
+
+
+@dataclass(frozen=True)
+class Domain:
+    """The applicability domain: ranges of the inputs, convex hull and spacing of the panels.
+
+    Attributes
+    ----------
+    inputs
+        All rows, shape (n, 4), the columns of `INPUTS`.
+    """
+
+    inputs: Floats
+
+    def objections(self, questions: Floats) -> list[str]:
+        """Say in words why questions lie outside the data; an empty list: all lie inside.
+
+        Parameters
+        ----------
+        questions
+            Shape (4,) or (m, 4): event, panel height in m, panel length in m, panel tilt in
+            degrees.
+
+        Examples
+        --------
+        >>> corners = np.array([[1, h, l, 40] for h in (1, 2) for l in (1, 2)], float)
+        >>> Domain(corners).objections(np.array([1, 1.5, 1.5, 40]))
+        []
+        >>> Domain(corners).objections(np.array([1, 3, 1.5, 40]))
+        ['panel height 3 m is outside the data, which reach from 1 to 2 m']
+        """
+        questions = np.atleast_2d(questions)
+        found = [text for question in questions for text in self._ranges(question)]
+        if not found:
+            # Most events have the same panels, which are looked at once.
+            asked: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
+            for question in questions:
+                panels = self._by_event.get(question[0], NO_PANELS)
+                asked.setdefault((question[1:].tobytes(), panels.tobytes()), (question, panels))
+            found = [text for one in asked.values() for text in self._misplaced(*one)]
+        return list(dict.fromkeys(found))
+
+    def _ranges(self, question: Floats) -> list[str]:
+        found = []
+        low, high = self.inputs.min(axis=0), self.inputs.max(axis=0)
+        for value, least, most, word, unit in zip(question, low, high, INPUT_WORDS, INPUT_UNITS):
+            margin = TOLERANCE * max(1.0, abs(most))
+            if not least - margin <= value <= most + margin:
+                reach = f"which reach from {least:g} to {most:g} {unit}"
+                reach = f"which have {least:g} {unit} only" if least == most else reach
+                text = f"{word} {value:g} {unit}".strip() + f" is outside the data, {reach}"
+                found.append(text.strip())
+        return found
+
+    def _misplaced(self, question: Floats, panels: Floats) -> list[str]:
+        """Say where a question within all ranges lies among the panels that have its event."""
+        event, panel = question[0], question[1:]
+        if not len(panels):
+            return [f"event {event:g} is not in the data"]
+        scaling = Scaling.of(panels)
+        points, place = scaling.scaled(panels), scaling.scaled(panel)
+        distances = np.linalg.norm(points - place, axis=1)
+        where = f"the nearest panel in the data has {panel_in_words(panels[distances.argmin()])}"
+        if len(panels) < self._known:
+            where = f"only {len(panels)} of {self._known} panels have event {event:g}; {where}"
+        if not _in_hull(points, place):
+            return [
+                f"each input is within its range, but not together: {panel_in_words(panel)} is "
+                f"outside the convex hull of the data; {where}"
+            ]
+        if distances.min() > _widest_gap(points) + TOLERANCE:
+            return [f"{panel_in_words(panel)} is in a gap of the data; {where}"]
+        return []
+
+    @cached_property
+    def _by_event(self) -> dict[float, Floats]:
+        """The panels that have each event, shape (m, 3)."""
+        events = self.inputs[:, 0]
+        return {
+            float(event): np.unique(self.inputs[events == event, 1:], axis=0)
+            for event in np.unique(events)
+        }
+
+    @cached_property
+    def _known(self) -> int:
+        """How many panels have any event."""
+        return len(np.unique(self.inputs[:, 1:], axis=0))
+
+
+def _in_hull(points: Floats, place: Floats) -> bool:
+    """Whether a place is a weighted mean of points: weights, none negative, that sum to one."""
+    optimize = require("scipy.optimize", "regression", "the domain of a model")
+    equal = np.vstack([points.T, np.ones(len(points))])
+    _, miss = optimize.nnls(equal, np.append(place, 1.0))
+    return bool(miss <= TOLERANCE)
+
+
+def _widest_gap(points: Floats) -> float:
+    """Return how far from the nearest point a place between the points may be.
+
+    In the middle of a cube the nearest corner is less than sqrt(dimension) of its edge away.
+    """
+    if len(points) < 2:
+        return 0.0
+    spatial = require("scipy.spatial", "regression", "the domain of a model")
+    to_nearest = spatial.cKDTree(points).query(points, k=2)[0][:, 1]
+    spacing = float(np.quantile(to_nearest, SPACED, method="lower"))
+    dimension = int((np.ptp(points, axis=0) > 0).sum())
+    return spacing * float(np.sqrt(dimension))
+
+
+def panel_in_words(panel: Floats) -> str:
+    """Return height, length and tilt as text.
+
+    Examples
+    --------
+    >>> panel_in_words(np.array([2, 4, 60]))
+    'panel height 2 m, panel length 4 m, panel tilt 60 degrees'
+    """
+    return ", ".join(
+        f"{word} {value:g} {unit}"
+        for word, value, unit in zip(INPUT_WORDS[1:], panel, INPUT_UNITS[1:])
+    )

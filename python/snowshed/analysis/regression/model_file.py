@@ -1,0 +1,279 @@
+"""Models as files: NumPy arrays and JSON in a zip archive, which cannot hold code."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from snowshed import _core
+from snowshed._core import InputError
+from snowshed.analysis.regression.damage import DAMAGED
+from snowshed.analysis.regression.domain import Domain
+from snowshed.analysis.regression.ensemble import Ensemble
+from snowshed.analysis.regression.rows import INPUTS, MEASURES, TARGETS
+from snowshed.analysis.regression.scaling import Scaling
+from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
+from snowshed.io.arrays import Floats
+from snowshed.io.atomic import replacing
+from snowshed.scene.scene import PathLike
+
+FORMAT = "snowshed stack model"
+VERSION = 1
+LARGEST = 2**28  # bytes, unpacked
+LARGEST_VALUE = 1e50  # of anything in an array; its square is a number too
+LARGEST_FACTS = 2**20  # characters
+#: Kinds of model that a file may hold: all are sums of kernels. The first there is answers.
+STORED_KINDS = ("rbf", "gaussian-process", "linear")
+ENSEMBLE_ARRAYS = ("coefficients", "intercepts", "rates")
+
+
+@dataclass(frozen=True)
+class Member:
+    """An ensemble that predicts one target.
+
+    Attributes
+    ----------
+    ensemble
+        In standardised inputs and targets.
+    mean, deviation
+        Of the target, in its unit: what standardised it, (5.2.12).
+    spread
+        Of its predictions.
+    """
+
+    ensemble: Ensemble
+    mean: float
+    deviation: float
+    spread: Spread
+
+
+@dataclass(frozen=True)
+class StackModel:
+    """What predicts stacks: for each target and kind of model an ensemble.
+
+    Attributes
+    ----------
+    inputs
+        All rows the models come from, shape (n, 4), the columns of `INPUTS`.
+    members
+        By target and kind.
+    title
+        What the data are, for people.
+    measure
+        "stack" or "body", as for `read_rows`.
+    settings
+        What all rows have in common, as in `StackRows`.
+    """
+
+    inputs: Floats
+    members: Mapping[tuple[str, str], Member]
+    title: str
+    measure: str
+    settings: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def domain(self) -> Domain:
+        """Where the model may be asked."""
+        return Domain(self.inputs)
+
+    @property
+    def targets(self) -> list[str]:
+        """What can be predicted."""
+        return [name for name in TARGETS if any(name == target for target, _ in self.members)]
+
+    @property
+    def kinds(self) -> list[str]:
+        """The kinds of model there are, the one that answers first."""
+        return [name for name in STORED_KINDS if any(name == kind for _, kind in self.members)]
+
+
+def save_model(model: StackModel, file: PathLike) -> None:
+    """Write a model; the file appears whole or not at all."""
+    arrays: dict[str, Any] = {"inputs": model.inputs}
+    members: dict[str, Any] = {}
+    for (target, kind), member in model.members.items():
+        name = f"{target}/{kind}"
+        for part in ENSEMBLE_ARRAYS:
+            arrays[f"{name}/{part}"] = getattr(member.ensemble, part)
+        members[name] = {
+            "mean": member.mean,
+            "deviation": member.deviation,
+            "spread": {
+                "floor": member.spread.floor,
+                "slope": member.spread.slope,
+                "factors": [[part, factor] for part, factor in member.spread.factors.items()],
+            },
+        }
+    facts = {
+        "format": FORMAT,
+        "format_version": VERSION,
+        "snowshed": _core.version,
+        "title": model.title,
+        "measure": model.measure,
+        "settings": dict(model.settings),
+        "inputs": list(INPUTS),
+        "members": members,
+    }
+    with replacing(file) as beside, beside.open("wb") as stream:
+        np.savez_compressed(stream, facts=np.array(json.dumps(facts)), **arrays)
+
+
+def load_model(file: PathLike) -> StackModel:
+    """Read a model. Nothing in the file is executed, whoever made it.
+
+    Raises
+    ------
+    InputError
+        If it is no model, is damaged, or holds values that no model has; it names file and key.
+    """
+    path = Path(file)
+    try:
+        _check_size(path)
+        with np.load(path, allow_pickle=False) as archive:
+            return _Reader(archive).model()
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}") from None
+    except DAMAGED as error:
+        raise InputError(f"{path}: damaged, or not a model ({error})") from None
+
+
+def _check_size(path: Path) -> None:
+    with zipfile.ZipFile(path) as archive:
+        size = sum(entry.file_size for entry in archive.infolist())
+    if size > LARGEST:
+        raise InputError(f"unpacks to {size} bytes; at most {LARGEST} are allowed")
+
+
+class _Reader:
+    """Takes a model out of an archive, checking everything."""
+
+    def __init__(self, archive: Any) -> None:
+        self._archive = archive
+
+    def model(self) -> StackModel:
+        facts = self._facts()
+        inputs = self._array("inputs", ("n", len(INPUTS)))
+        described = _entry(facts, "members", dict)
+        members = {}
+        for name, facts_of in described.items():
+            target, _, kind = name.partition("/")
+            if target not in TARGETS or kind not in STORED_KINDS:
+                raise InputError(f"members.{name}: unknown target or kind of model")
+            members[target, kind] = self._member(name, facts_of, inputs)
+        if not members:
+            raise InputError("members: none")
+        measure = _entry(facts, "measure", str)
+        if measure not in MEASURES:
+            raise InputError(f"measure: {measure!r} is unknown; allowed: {', '.join(MEASURES)}")
+        settings = _entry(facts, "settings", dict)
+        if not all(isinstance(value, str) for value in settings.values()):
+            raise InputError("settings: not texts")
+        return StackModel(inputs, members, _entry(facts, "title", str), measure, settings)
+
+    def _facts(self) -> dict[str, Any]:
+        text = self._raw("facts")
+        if text.dtype.kind != "U" or text.ndim != 0 or text.dtype.itemsize > 4 * LARGEST_FACTS:
+            raise InputError("facts: not a text")
+        try:
+            facts = json.loads(str(text))
+        except (ValueError, RecursionError) as error:
+            raise InputError(f"facts: not JSON: {error}") from None
+        if not isinstance(facts, dict) or facts.get("format") != FORMAT:
+            raise InputError(f"facts: not a {FORMAT}")
+        if facts.get("format_version") != VERSION:
+            raise InputError(
+                f"format_version: {facts.get('format_version')!r}; this snowshed reads {VERSION}"
+            )
+        if facts.get("inputs") != list(INPUTS):
+            raise InputError(f"inputs: {facts.get('inputs')!r}; must be {', '.join(INPUTS)}")
+        return facts
+
+    def _member(self, name: str, facts: Any, inputs: Floats) -> Member:
+        where = f"members.{name}"
+        if not isinstance(facts, dict):
+            raise InputError(f"{where}: not an object")
+        count, dimension = inputs.shape
+        coefficients = self._array(f"{name}/coefficients", ("m", count))
+        models = len(coefficients)
+        intercepts = self._array(f"{name}/intercepts", (models,))
+        rates = self._array(f"{name}/rates", (models, 0 if name.endswith("/linear") else dimension))
+        if (rates < 0).any():
+            raise InputError(f"{name}/rates: negative values")
+        return Member(
+            Ensemble(Scaling.of(inputs).scaled(inputs), coefficients, intercepts, rates),
+            _number(facts, "mean", where),
+            _number(facts, "deviation", where, positive=True),
+            _spread(_entry(facts, "spread", dict, where), f"{where}.spread"),
+        )
+
+    def _array(self, key: str, shape: tuple[object, ...]) -> Floats:
+        """Return an array of finite numbers; a word in `shape` stands for any length from 1."""
+        array = self._raw(key)
+        fits = array.dtype == np.float64 and array.ndim == len(shape)
+        fits = fits and all(
+            length == size if isinstance(size, int) else length >= 1
+            for length, size in zip(array.shape, shape)
+        )
+        if not fits:
+            wanted = " x ".join(map(str, shape))
+            raise InputError(
+                f"{key}: {array.dtype} numbers of shape {array.shape}; must be float64, {wanted}"
+            )
+        if not (np.abs(array) <= LARGEST_VALUE).all():
+            raise InputError(
+                f"{key}: holds values that are not finite, or beyond {LARGEST_VALUE:g}"
+            )
+        return np.asarray(array)
+
+    def _raw(self, key: str) -> Any:
+        if key not in self._archive:
+            raise InputError(f"{key}: missing")
+        try:
+            array = self._archive[key]
+        except DAMAGED as error:
+            raise InputError(f"{key}: {error}") from None
+        if not isinstance(array, np.ndarray):
+            raise InputError(f"{key}: not an array")
+        return array
+
+
+def _spread(facts: dict[str, Any], where: str) -> Spread:
+    listed = _entry(facts, "factors", list, where)
+    try:
+        factors = {float(part): float(factor) for part, factor in listed}
+    except (TypeError, ValueError):
+        raise InputError(f"{where}.factors: not pairs of numbers") from None
+    if set(factors) != {SPREAD, INTERVAL} or not all(0 <= x < 1e12 for x in factors.values()):
+        raise InputError(
+            f"{where}.factors: must be given, and not negative, for the parts {SPREAD}, {INTERVAL}"
+        )
+    slope = _number(facts, "slope", where)
+    if slope < 0:
+        raise InputError(f"{where}.slope: {slope} is negative")
+    return Spread(_number(facts, "floor", where, positive=True), slope, factors)
+
+
+def _entry(facts: dict[str, Any], key: str, kind: type, where: str = "") -> Any:
+    value = facts.get(key)
+    if not isinstance(value, kind):
+        place = f"{where}.{key}" if where else key
+        raise InputError(f"{place}: missing, or not {kind.__name__}")
+    return value
+
+
+def _number(facts: dict[str, Any], key: str, where: str, *, positive: bool = False) -> float:
+    value: Any = facts.get(key)
+    good = isinstance(value, (int, float)) and not isinstance(value, bool) and np.isfinite(value)
+    if not good or (positive and value <= 0):
+        wanted = "a positive number" if positive else "a number"
+        raise InputError(f"{where}.{key}: {value!r} is not {wanted}")
+    return float(value)

@@ -1,0 +1,255 @@
+"""The nested cross-validation, fold by fold: in parallel, kept on disk, resumable."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.analysis.regression.fold_result import FoldResult
+from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.analysis.regression.kinds import Kind
+from snowshed.analysis.regression.rows import StackRows
+from snowshed.analysis.regression.scaling import Scaling
+from snowshed.analysis.regression.task import Task, compute
+from snowshed.analysis.regression.threads import one_thread
+from snowshed.io.atomic import write_text
+from snowshed.io.json_file import read_object
+from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
+
+IDENTITY = "regression.json"
+FORMAT = 1  # of the results of folds; another one is computed anew
+POLL_S = 0.25  # s between looks at interrupts
+
+
+@dataclass(frozen=True)
+class FoldProgress:
+    """How far a nested cross-validation has come.
+
+    Attributes
+    ----------
+    done, count
+        Outer folds, those of earlier runs included.
+    fraction
+        Part of the work that was left at the start, 0 to 1.
+    doing
+        What is being computed.
+    """
+
+    done: int
+    count: int
+    fraction: float
+    doing: str
+
+
+Reporter = Callable[[FoldProgress], None]
+Results = dict[Task, FoldResult]
+
+
+class RegressionInterrupted(KeyboardInterrupt):
+    """A regression was interrupted; the folds that were done are kept in its folder."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(f"interrupted; the same command goes on with what {folder} holds")
+
+
+def cross_validate(
+    rows: StackRows,
+    folder: Path,
+    *,
+    targets: Sequence[str],
+    kinds: dict[str, Kind],
+    scheme: CrossValidation,
+    jobs: int = 1,
+    progress: Optional[Reporter] = None,
+) -> Results:
+    """Compute the outer folds that the folder does not hold, and return all of them.
+
+    Parameters
+    ----------
+    rows
+        The data set.
+    folder
+        Where each fold's result is kept as soon as it is done.
+    targets, kinds
+        What to predict, with which kinds of model.
+    scheme
+        Rounds and folds.
+    jobs
+        Processes; each uses one thread.
+    progress
+        Called after each fold.
+
+    Raises
+    ------
+    InputError
+        If the folder holds results of other rows or other folds.
+    RegressionInterrupted
+        On Ctrl-C or SIGTERM; results of finished folds are kept.
+    """
+    scheme.check(rows)
+    _claim(folder, rows, scheme)
+    points = Scaling.of(rows.inputs).scaled(rows.inputs)
+    tasks = [
+        Task(target, kind, round_, fold)
+        for target in targets
+        for kind in kinds
+        for round_ in range(scheme.rounds)
+        for fold in range(scheme.folds)
+    ]
+    results = {task: FoldResult.load(folder / task.file, points) for task in tasks}
+    missing = [task for task, result in results.items() if result is None]
+    tracker = _Tracker(missing, len(tasks), kinds, progress)
+    with deferred_interrupts() as request:
+        for task in _computed(missing, rows, scheme, folder, jobs, request):
+            results[task] = FoldResult.load(folder / task.file, points)
+            tracker.advance(task)
+        if request.requested:
+            raise RegressionInterrupted(folder)
+    return {task: result for task, result in results.items() if result is not None}
+
+
+class _Tracker:
+    """Turns finished tasks into progress; kinds of model take different times."""
+
+    def __init__(
+        self,
+        missing: Sequence[Task],
+        count: int,
+        kinds: dict[str, Kind],
+        report: Optional[Reporter],
+    ) -> None:
+        self._cost = {name: kind.cost_s for name, kind in kinds.items()}
+        self._title = {name: kind.title for name, kind in kinds.items()}
+        self._work = sum(self._cost[task.kind] for task in missing)
+        self._count, self._done = count, count - len(missing)
+        self._finished = 0.0
+        self._report = report
+        if missing:
+            self._tell(missing[0])
+
+    def advance(self, task: Task) -> None:
+        self._done += 1
+        self._finished += self._cost[task.kind]
+        self._tell(task)
+
+    def _tell(self, task: Task) -> None:
+        if self._report is not None:
+            doing = f"{task.target}, {self._title[task.kind]}"
+            fraction = self._finished / self._work
+            self._report(FoldProgress(self._done, self._count, fraction, doing))
+
+
+def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
+    """Note what the folder's results belong to, or refuse a folder of others.
+
+    Each round splits the rows by itself, so that their number may grow.
+    """
+    folds = asdict(scheme)
+    del folds["rounds"]
+    identity = {"format": FORMAT, "rows": rows.digest, "folds": folds}
+    path = folder / IDENTITY
+    if path.is_file():
+        if read_object(path) != identity:
+            raise InputError(
+                f"{folder}: holds a regression of another table, or with other folds; take a new "
+                "folder"
+            )
+        return
+    if folder.exists() and any(folder.iterdir()):
+        raise InputError(f"{folder}: not empty, and holds no regression")
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(path, json.dumps(identity, indent=1) + "\n")
+
+
+def _computed(
+    tasks: Sequence[Task],
+    rows: StackRows,
+    scheme: CrossValidation,
+    folder: Path,
+    jobs: int,
+    request: InterruptRequest,
+) -> Iterator[Task]:
+    """Compute tasks and store their results; yield each when it is stored."""
+    if jobs == 1 or len(tasks) < 2:
+        with one_thread():
+            for task in tasks:
+                if request.requested:
+                    return
+                compute(task, rows, scheme).save(folder / task.file)
+                yield task
+        return
+    with _pool(jobs, rows, scheme, folder) as pool:
+        open_: set[Future[Task]] = {pool.submit(_work, task) for task in tasks}
+        while open_ and not request.requested:
+            done, open_ = wait(open_, timeout=POLL_S, return_when=FIRST_COMPLETED)
+            yield from (_outcome(future) for future in done)
+
+
+def _outcome(future: Future[Task]) -> Task:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        raise OSError(None, "a process was killed, perhaps for lack of memory") from None
+
+
+@contextmanager
+def _pool(
+    jobs: int, rows: StackRows, scheme: CrossValidation, folder: Path
+) -> Iterator[ProcessPoolExecutor]:
+    """Yield worker processes, which are ended at once, whatever they do, when no longer needed."""
+    pool = ProcessPoolExecutor(
+        jobs,
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_Worker.start,
+        initargs=(rows, scheme, folder),
+    )
+    try:
+        yield pool
+    finally:
+        workers = list((getattr(pool, "_processes", None) or {}).values())
+        pool.shutdown(wait=False, cancel_futures=True)
+        for worker in workers:
+            worker.terminate()
+        for worker in workers:
+            worker.join()
+            for unfinished in folder.rglob(f".*.{worker.pid}.npz"):
+                unfinished.unlink(missing_ok=True)
+
+
+class _Worker:
+    """What a worker process keeps between tasks."""
+
+    rows: StackRows
+    scheme: CrossValidation
+    folder: Path
+
+    @classmethod
+    def start(cls, rows: StackRows, scheme: CrossValidation, folder: Path) -> None:
+        """Prepare a worker process; interrupts are its parent's business."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        cls.rows, cls.scheme, cls.folder = rows, scheme, folder
+
+
+def _work(task: Task) -> Task:
+    with one_thread():
+        result = compute(task, _Worker.rows, _Worker.scheme)
+    result.save(_Worker.folder / task.file)
+    return task
+
+
+def available_jobs() -> int:
+    """Return the number of cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,210 @@
+"""From a table of stacks to models, tables and figures: what ``snowshed regress`` does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+from snowshed._core import InputError
+from snowshed.analysis.regression import figures, summary
+from snowshed.analysis.regression.ensemble import Ensemble
+from snowshed.analysis.regression.fold_result import FoldResult
+from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.analysis.regression.kinds import Kind, kinds_named
+from snowshed.analysis.regression.model_file import STORED_KINDS, Member, StackModel, save_model
+from snowshed.analysis.regression.nested import Reporter, Results, available_jobs, cross_validate
+from snowshed.analysis.regression.rows import TARGETS, StackRows
+from snowshed.analysis.regression.spread import stack_spread, unseen_panels
+from snowshed.analysis.regression.threads import one_thread
+from snowshed.io.arrays import Floats
+from snowshed.io.atomic import replacing, write_text
+from snowshed.plot.figure_style import save
+from snowshed.scene.scene import PathLike
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+MODEL = "model.npz"
+
+
+@dataclass(frozen=True)
+class TargetReport:
+    """What came out for one target.
+
+    Attributes
+    ----------
+    target
+        Its name.
+    quartiles, errors
+        Tables 5.3.1 and 5.3.2; see `snowshed.analysis.regression.summary`.
+    expression
+        The linear model as a formula; empty if there is none.
+    checks
+        For the ratio, in words, whether the thesis's claims hold.
+    """
+
+    target: str
+    quartiles: pd.DataFrame
+    errors: pd.DataFrame
+    expression: str
+    checks: tuple[str, ...] = ()
+
+
+def regress(
+    rows: StackRows,
+    folder: PathLike,
+    *,
+    targets: Sequence[str] = (),
+    models: Sequence[str] = (),
+    scheme: Optional[CrossValidation] = None,
+    jobs: Optional[int] = None,
+    title: str = "",
+    measure: str = "stack",
+    progress: Optional[Reporter] = None,
+) -> list[TargetReport]:
+    """Regress stacks on panels, and write models, tables and figures.
+
+    Parameters
+    ----------
+    rows
+        The data set.
+    folder
+        Results folder: new, empty, or one whose regression was interrupted.
+    targets
+        Of "ratio", "height", "length"; none: all.
+    models
+        Of "linear", "rbf", "gaussian-process", "gradient-boosting"; none: all.
+    scheme
+        Rounds and folds; None: those of section 5.2.3.
+    jobs
+        Processes; None: as many as there are cores.
+    title, measure
+        What the data are, and what of the stack was measured; kept in the model file.
+    progress
+        Called after each outer fold.
+
+    Returns
+    -------
+    list of TargetReport
+        One for each target.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, there are too few rows, or the folder holds something else.
+    RegressionInterrupted
+        On Ctrl-C; the same call goes on.
+    """
+    if jobs is not None and jobs < 1:
+        raise InputError(f"jobs: {jobs} is not positive")
+    for name in targets:
+        if name not in TARGETS:
+            raise InputError(f"target: {name!r} is unknown; allowed: {', '.join(TARGETS)}")
+    chosen = [name for name in TARGETS if not targets or name in targets]
+    kinds = kinds_named(models)
+    results = cross_validate(
+        rows,
+        Path(folder),
+        targets=chosen,
+        kinds=kinds,
+        scheme=scheme or CrossValidation(),
+        jobs=jobs or available_jobs(),
+        progress=progress,
+    )
+    with one_thread():
+        return _Output(rows, Path(folder), kinds, results).write(chosen, title, measure)
+
+
+class _Output:
+    """Turns the folds' results into files."""
+
+    def __init__(
+        self, rows: StackRows, folder: Path, kinds: Mapping[str, Kind], results: Results
+    ) -> None:
+        self._rows, self._folder, self._kinds, self._results = rows, folder, kinds, results
+        self._titles = {name: kind.title for name, kind in kinds.items()}
+
+    def write(self, targets: Sequence[str], title: str, measure: str) -> list[TargetReport]:
+        _write_table(summary.score_table(self._results), self._folder / "scores.csv")
+        members: dict[tuple[str, str], Member] = {}
+        reports = []
+        for target in targets:
+            elected = summary.elected_models(self._results, target)
+            unseen = {}
+            for kind in (name for name in STORED_KINDS if name in elected):
+                members[target, kind], unseen[kind] = self._member(target, kind, elected[kind])
+            reports.append(self._report(target, elected, unseen, members))
+        if members:
+            rows = self._rows
+            model = StackModel(rows.inputs, members, title, measure, rows.settings)
+            save_model(model, self._folder / MODEL)
+        else:
+            (self._folder / MODEL).unlink(missing_ok=True)  # an earlier call's
+        return reports
+
+    def _member(
+        self, target: str, kind: str, results: Sequence[FoldResult]
+    ) -> tuple[Member, Floats]:
+        """Return the ensemble with its spread, and its errors on unseen panels."""
+        rounds: dict[int, list[Mapping[str, float]]] = {}
+        for task, result in self._results.items():
+            if (task.target, task.kind) == (target, kind):
+                rounds.setdefault(task.round, []).append(result.parameters)
+        found = unseen_panels(self._kinds[kind], list(rounds.values()), self._rows, target)
+        ensemble = Ensemble.of(results)
+        values = self._rows.targets[target]
+        unit = float(values.std()) or 1.0
+        deviation = ensemble.predict(ensemble.points).std(axis=0) * unit
+        spread = stack_spread(self._rows, target, found, deviation)
+        return Member(ensemble, float(values.mean()), unit, spread), found - values
+
+    def _report(
+        self,
+        target: str,
+        elected: Mapping[str, Sequence[FoldResult]],
+        unseen: Mapping[str, Floats],
+        members: Mapping[tuple[str, str], Member],
+    ) -> TargetReport:
+        folder = self._folder / target
+        folder.mkdir(exist_ok=True)
+        values = self._rows.targets[target]
+        linear = elected.get("linear")
+        quartiles = summary.quartile_table(elected, values, target)
+        comparable = target == "ratio" and len(values) == summary.THESIS_ROWS
+        errors = summary.error_table(elected, self._rows, target, unseen)
+        report = TargetReport(
+            target,
+            quartiles,
+            errors,
+            summary.linear_expression(linear, self._rows, target) if linear else "",
+            tuple(summary.thesis_checks(quartiles, errors)) if comparable else (),
+        )
+        _write_table(report.quartiles.reset_index(), folder / "quartiles.csv")
+        _write_table(report.errors.reset_index(), folder / "errors.csv")
+        if report.checks:
+            write_text(folder / "thesis.txt", "\n".join(report.checks) + "\n")
+        if report.expression:
+            write_text(folder / "linear.txt", report.expression + "\n")
+        of_target = {kind: member for (name, kind), member in members.items() if name == target}
+        drawings: dict[str, Callable[[], Optional[Figure]]] = {
+            "selection.png": lambda: figures.selection(elected, self._titles, target),
+            "hyperparameters.png": lambda: figures.hyperparameters(elected, self._titles, target),
+            "qq.png": lambda: figures.quantiles(elected, self._titles, values, target),
+            "predictions.png": lambda: figures.predictions(
+                of_target, self._titles, self._rows, target
+            ),
+            "cost.png": lambda: figures.cost(report.errors, self._titles, target),
+        }
+        for name, draw in drawings.items():
+            figure = draw()
+            if figure is not None:
+                save(figure, folder / name)
+        return report
+
+
+def _write_table(table: pd.DataFrame, path: Path) -> None:
+    with replacing(path) as beside:
+        table.to_csv(beside, index=False, float_format="%.6g")

@@ -1,0 +1,136 @@
+"""How far a stack may lie from its prediction.
+
+The 100 models differ, and the data scatter about any model. Both are measured on panels that a
+model has never seen: rows of the same panel are alike, and leaving out single rows would flatter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed.analysis.regression.folds import shuffled_parts
+from snowshed.analysis.regression.kinds import Kind, Parameters
+from snowshed.analysis.regression.rows import StackRows
+from snowshed.analysis.regression.scaling import Scaling
+from snowshed.io.arrays import Floats
+from snowshed.io.extras import require
+
+#: Part of the cases that lie within the spread, and within the interval.
+SPREAD, INTERVAL = 0.68, 0.90
+SMALLEST = 1e-9  # of a scale, as a part of the target's deviation
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Half widths of intervals about a prediction.
+
+    The scale of an error is sqrt(s^2 + (a + b |prediction|)^2), with s the standard deviation of
+    the models; how many scales hold which part of the errors is counted on unseen panels
+    (normalised conformal prediction), so that no distribution is assumed.
+
+    Attributes
+    ----------
+    floor, slope
+        a, in the target's unit, and b.
+    factors
+        For each part of the cases how many scales they lie within.
+    """
+
+    floor: float
+    slope: float
+    factors: Mapping[float, float]
+
+    @classmethod
+    def of(cls, errors: Floats, predictions: Floats, deviations: Floats) -> Spread:
+        """Measure the spread.
+
+        Parameters
+        ----------
+        errors, predictions, deviations
+            On rows of unseen panels, shape (n,): error, prediction, and standard deviation of the
+            models.
+        """
+        optimize = require("scipy.optimize", "regression", "the spread of predictions")
+        noise = np.sqrt(np.maximum(errors**2 - deviations**2, 0.0))
+        design = np.column_stack([np.ones_like(predictions), np.abs(predictions)])
+        floor, slope = optimize.nnls(design, noise)[0]
+        floor = max(float(floor), SMALLEST * float(np.std(predictions)), 1e-12)
+        scales = _scales(floor, float(slope), predictions, deviations)
+        ratios = np.sort(np.abs(errors) / scales)
+        factors = {part: _quantile(ratios, part) for part in (SPREAD, INTERVAL)}
+        return cls(floor, float(slope), factors)
+
+    def half_width(self, predictions: Floats, deviations: Floats, part: float = SPREAD) -> Floats:
+        """Return within how much of the predictions that part of the stacks lies."""
+        return self.factors[part] * _scales(self.floor, self.slope, predictions, deviations)
+
+
+def _scales(floor: float, slope: float, predictions: Floats, deviations: Floats) -> Floats:
+    return np.asarray(np.hypot(deviations, floor + slope * np.abs(predictions)))
+
+
+def _quantile(ratios: Floats, part: float) -> float:
+    """Return the quantile of sorted ratios that holds for a new case, not only for these."""
+    place = int(np.ceil(part * (len(ratios) + 1))) - 1
+    return float(ratios[min(place, len(ratios) - 1)])
+
+
+def unseen_panels(
+    kind: Kind,
+    elected: Sequence[Sequence[Parameters]],
+    rows: StackRows,
+    target: str,
+    seed: int = 1,
+) -> Floats:
+    """Predict every row by models that have not seen its panel.
+
+    Parameters
+    ----------
+    kind
+        Of the models.
+    elected
+        For each round, the hyper-parameters that its outer folds elected.
+    rows, target
+        The data.
+    seed
+        Of the splits into groups of panels.
+
+    Returns
+    -------
+    numpy.ndarray
+        Mean of the rounds' predictions in the target's unit, shape (n,).
+    """
+    inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
+    values = rows.targets[target]
+    scaling = Scaling.of(values[:, None])
+    scaled = scaling.scaled(values[:, None])[:, 0]
+    panels = rows.panels
+    found = np.empty((len(elected), len(rows)))
+    for number, choices in enumerate(elected):
+        folds = min(len(choices), rows.panel_count)
+        parts = shuffled_parts(np.unique(panels), folds, [seed, number, 1])
+        for part, parameters in zip(parts, choices):
+            held_out = np.isin(panels, part)
+            model = kind.fit(parameters, inputs[~held_out], scaled[~held_out])
+            found[number, held_out] = model.predict(inputs[held_out])
+    return np.asarray(found.mean(axis=0) * scaling.deviation[0] + scaling.mean[0])
+
+
+def stack_spread(rows: StackRows, target: str, predictions: Floats, deviations: Floats) -> Spread:
+    """Return the spread of single stacks, each of one seed, about predictions of `unseen_panels`.
+
+    Parameters
+    ----------
+    rows, target
+        The data.
+    predictions, deviations
+        For each row, shape (n,): what models say that have not seen its panel, and how much the
+        models that answer differ.
+    """
+    stacks = rows.stacks[target]
+    row, repetition = np.nonzero(np.isfinite(stacks))
+    errors = predictions[row] - stacks[row, repetition]
+    return Spread.of(errors, predictions[row], deviations[row])

@@ -1,0 +1,91 @@
+"""epsilon-SVR for many parameters on one training set, as a grid search needs it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Sequence
+from typing import Any, Optional
+
+import numpy as np
+
+from snowshed.analysis.regression.interior_point import SupportVectors, solve
+from snowshed.io.arrays import Floats
+from snowshed.io.extras import require
+
+#: Changes of multipliers that libsvm is allowed; beyond, the interior point method is faster.
+LIBSVM_ITERATIONS = 2500
+LIBSVM_TOLERANCE = 1e-4  # of the targets' standard deviation; scikit-learn's default is 1e-3
+#: A multiplier closer than this part to its bound counts as at the bound.
+AT_BOUND = 1e-3
+
+
+def fit_along_c(
+    kernel: Floats, y: Floats, epsilon: float, bounds: Sequence[float]
+) -> Iterator[SupportVectors]:
+    """Fit an epsilon-SVR for each of several C, cheaper than one by one.
+
+    scikit-learn's SVR (libsvm) solves what it can solve quickly, an interior point method the rest.
+    Where no multiplier reaches its bound, a larger bound changes nothing, and the fit is reused;
+    where the tube holds all targets, the flattest function is a constant.
+
+    Parameters
+    ----------
+    kernel
+        Kernel matrix of the training set, shape (n, n).
+    y
+        Targets, shape (n,).
+    epsilon
+        Half width of the tube.
+    bounds
+        Values of C, ascending.
+
+    Yields
+    ------
+    SupportVectors
+        One for each C; one that did not converge has NaN for its numbers.
+    """
+    if np.ptp(y) <= 2 * epsilon:
+        middle = SupportVectors(np.zeros(len(y)), float(y.min() + y.max()) / 2)
+        yield from [middle] * len(bounds)
+        return
+    quick, fit, earlier = True, None, 0.0
+    for c in bounds:
+        if fit is None or not np.abs(fit.coefficients).max() <= (1 - AT_BOUND) * earlier:
+            found = _libsvm(kernel, y, c, epsilon) if quick else None
+            quick = found is not None
+            fit = found or _exact(kernel, y, c, epsilon)
+        earlier = c
+        yield fit
+
+
+def fit_one(kernel: Floats, y: Floats, epsilon: float, c: float) -> SupportVectors:
+    """Fit an epsilon-SVR for one C; see `fit_along_c`."""
+    return next(fit_along_c(kernel, y, epsilon, [c]))
+
+
+def _exact(kernel: Floats, y: Floats, c: float, epsilon: float) -> SupportVectors:
+    try:
+        return solve(kernel, y, c, epsilon)
+    except FloatingPointError:  # one point of many: the search goes on without it
+        return SupportVectors(np.full(len(y), np.nan), float("nan"))
+
+
+def _libsvm(kernel: Floats, y: Floats, c: float, epsilon: float) -> Optional[SupportVectors]:
+    """Return scikit-learn's fit, or None if it would take long."""
+    svm = require("sklearn.svm", "regression", "support vector regression")
+    model: Any = svm.SVR(
+        kernel="precomputed",
+        C=c,
+        epsilon=epsilon,
+        max_iter=LIBSVM_ITERATIONS,
+        tol=LIBSVM_TOLERANCE,
+        cache_size=50,
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that it did not converge: asked for below
+        model.fit(kernel, y)
+    if model.fit_status_ != 0:
+        return None
+    coefficients = np.zeros(len(y))
+    coefficients[model.support_] = model.dual_coef_[0]
+    return SupportVectors(coefficients, float(model.intercept_[0]))

@@ -1,0 +1,259 @@
+"""Global sensitivity indices from designed samples, by SALib (extra ``snowshed[sensitivity]``).
+
+The design is read off the points themselves, so that a store is all that is needed: Saltelli's
+blocks of k + 2 points for Sobol indices, Morris's trajectories of k + 1 points for elementary
+effects. A block with runs that failed or are not yet computed is left out as a whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.analysis.sensitivity.sampling import EXTRA, LEVELS, problem
+from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
+from snowshed.io.arrays import Booleans, Floats
+from snowshed.io.extras import require
+from snowshed.study.definition import SEED
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+RESAMPLES = 500  # of the bootstrap
+CONFIDENCE = 0.95
+RANDOM = 1
+FEWEST = 2  # blocks
+SAME_STEP = 1e-3  # part by which steps may differ: files hold rounded numbers
+
+
+def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
+    """Return first-order and total Sobol indices per parameter and event.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``parameter`` (the seed is one, ``seeding.seed``), ``event``, ``target``, ``first`` and
+        ``total`` index, each with the half width of its 95 % bootstrap interval
+        (``first_interval``, ``total_interval``), and ``blocks``: how many were complete.
+
+    Raises
+    ------
+    InputError
+        If the points are no such design, or fewer than two blocks are complete.
+    """
+    analyzer = require("SALib.analyze.sobol", EXTRA, "Sobol indices")
+    design = _Design.of(stored, 2, _is_saltelli, "a sample after Saltelli")
+
+    def analyze(chosen: Booleans, values: Floats) -> dict[str, Floats]:
+        if np.ptp(values[chosen]) == 0:  # no variance to share out
+            columns = ("first", "first_interval", "total", "total_interval")
+            return dict.fromkeys(columns, np.full(len(design.names), np.nan))
+        found = analyzer.analyze(
+            problem(design.names),
+            values[chosen],
+            calc_second_order=False,
+            num_resamples=RESAMPLES,
+            conf_level=CONFIDENCE,
+            seed=RANDOM,
+        )
+        return {
+            "first": found["S1"],
+            "first_interval": found["S1_conf"],
+            "total": found["ST"],
+            "total_interval": found["ST_conf"],
+        }
+
+    return _analyzed(stored, design, analyze)
+
+
+def morris_effects(stored: StoredRuns) -> pd.DataFrame:
+    """Return elementary effects after Morris per parameter and event.
+
+    An effect is the change of the stack, relative to its mean over the sample, per sampled range of
+    the parameter, or of its logarithm where that has the steps. A seed has no range: its effects
+    are taken as if its steps had the mean size of the others, so that its strength is what noise
+    adds to theirs.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``parameter`` (the seed is one, ``seeding.seed``), ``event``, ``target``; ``effect``, the
+        mean (mu); ``strength``, the mean of the absolute values (mu star), with the half width of
+        its 95 % bootstrap interval (``strength_interval``); ``spread``, the standard deviation
+        (sigma); ``blocks``: how many trajectories were complete.
+
+    Raises
+    ------
+    InputError
+        If the points are no such design, a parameter has steps of different size, or fewer than
+        two trajectories are complete.
+    """
+    analyzer = require("SALib.analyze.morris", EXTRA, "elementary effects")
+    design = _Design.of(stored, 1, _is_trajectory, "trajectories after Morris")
+    unit, steps = _even_steps(design.names, design.points)
+    scale = LEVELS / (2 * (LEVELS - 1)) / steps  # SALib takes steps to be those of its levels
+
+    def analyze(chosen: Booleans, values: Floats) -> dict[str, Floats]:
+        found = analyzer.analyze(
+            problem(design.names),
+            unit[chosen],
+            values[chosen] / values[chosen].mean(),
+            num_levels=LEVELS,
+            num_resamples=RESAMPLES,
+            conf_level=CONFIDENCE,
+            seed=RANDOM,
+        )
+        return {
+            "effect": found["mu"] * scale,
+            "strength": found["mu_star"] * scale,
+            "strength_interval": found["mu_star_conf"] * scale,
+            "spread": found["sigma"] * scale,
+        }
+
+    return _analyzed(stored, design, analyze)
+
+
+@dataclass(frozen=True)
+class _Design:
+    """The points of a designed sample, which come in blocks.
+
+    Attributes
+    ----------
+    names
+        Of the inputs.
+    points
+        Shape (blocks * size, inputs), in the inputs' units.
+    size
+        Points of a block.
+    """
+
+    names: list[str]
+    points: Floats
+    size: int
+
+    @classmethod
+    def of(
+        cls, stored: StoredRuns, more: int, is_block: Callable[[Booleans], bool], words: str
+    ) -> _Design:
+        """Read the design off a study's points.
+
+        Parameters
+        ----------
+        stored
+            The study.
+        more
+            How many points a block has more than inputs.
+        is_block
+            Whether the changes from each point to the next make a block.
+        words
+            What the points should be, for messages.
+        """
+        names = list(stored.axes)
+        points = stored.points[names].to_numpy(float)
+        _check_blocks(points, len(names) + more, is_block, words)
+        return cls(names, points, len(names) + more)
+
+
+def _analyzed(
+    stored: StoredRuns,
+    design: _Design,
+    analyze: Callable[[Booleans, Floats], dict[str, Floats]],
+) -> pd.DataFrame:
+    """Return indices of all events and targets.
+
+    Parameters
+    ----------
+    stored, design
+        The study, and its design.
+    analyze
+        Returns columns for which of the points count, and the values at all of them.
+    """
+    import pandas as pd
+
+    found: list[dict[str, Any]] = []
+    for event, target, values in _values(stored):
+        complete = np.isfinite(values.reshape(-1, design.size)).all(axis=1)
+        if complete.sum() < FEWEST:
+            raise InputError(
+                f"event {event}: {complete.sum()} of {complete.size} blocks of {design.size} runs "
+                f"are complete; at least {FEWEST} are needed"
+            )
+        columns = analyze(np.repeat(complete, design.size), values)
+        for number, name in enumerate(design.names):
+            row = {"parameter": name, "event": event, "target": target}
+            row.update({column: float(of[number]) for column, of in columns.items()})
+            found.append({**row, "blocks": int(complete.sum())})
+    return pd.DataFrame(found)
+
+
+def _values(stored: StoredRuns) -> Iterator[tuple[int, str, Floats]]:
+    """Yield each event's measures in the order of the points, NaN where there is none."""
+    for event in stored.events:
+        rows = stored.rows[stored.rows["event"] == event].set_index("hash")
+        for target in TARGETS:
+            yield event, target, rows[target].reindex(stored.points["hash"]).to_numpy(float)
+
+
+def _check_blocks(
+    points: Floats, size: int, is_block: Callable[[Booleans], bool], design: str
+) -> None:
+    """Raise an InputError unless the points come in such blocks."""
+    if len(points) % size or len(points) == 0:
+        raise InputError(
+            f"its {len(points)} points are not {design}: for {size - 1} or fewer inputs these come "
+            f"in blocks of {size}; see `snowshed sensitivity --method`"
+        )
+    for start in range(0, len(points), size):
+        if not is_block(np.diff(points[start : start + size], axis=0) != 0):
+            raise InputError(f"points {start + 1} to {start + size} are not {design}")
+
+
+def _is_trajectory(changes: Booleans) -> bool:
+    """Whether every step changes one input, and every input is changed once."""
+    return bool((changes.sum(axis=0) == 1).all() and (changes.sum(axis=1) == 1).all())
+
+
+def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
+    """Return the points in the unit cube, and the size of each input's step there.
+
+    Inputs are taken linearly or by their logarithms, whichever makes all their steps equal. Of
+    seeds nothing counts but that they differ.
+    """
+    unit, steps = np.empty_like(points), np.full(len(names), np.nan)
+    for number, name in enumerate(names):
+        values = points[:, number].reshape(-1, len(names) + 1)
+        if name == SEED:
+            unit[:, number] = (values != values[:, :1]).ravel()
+            continue
+        for scaled in [values, np.log(values)] if (values > 0).all() else [values]:
+            scaled = _in_unit_cube(scaled)
+            sizes = np.abs(np.diff(scaled, axis=1)).max(axis=1)
+            if np.ptp(sizes) <= SAME_STEP * sizes.max():
+                break
+        else:
+            raise InputError(f"{name}: its steps differ; in trajectories after Morris they do not")
+        unit[:, number], steps[number] = scaled.ravel(), sizes.mean()
+    seeds = np.isnan(steps)
+    steps[seeds] = 1.0 if seeds.all() else steps[~seeds].mean()
+    return unit, steps
+
+
+def _is_saltelli(changes: Booleans) -> bool:
+    """Whether A is followed by A with each input of B in turn, and by B.
+
+    From A to the first of them the first input changes, from one to the next two neighbours, and
+    from the last one to B all but the last.
+    """
+    count = changes.shape[1]
+    one = np.eye(count, dtype=bool)
+    expected = np.vstack([one[:1], one[:-1] | one[1:], ~one[-1:]])
+    return bool((changes == expected).all())
+
+
+def _in_unit_cube(values: Floats) -> Floats:
+    low, high = values.min(), values.max()
+    return np.asarray((values - low) / (high - low if high > low else 1.0))

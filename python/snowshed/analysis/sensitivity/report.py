@@ -1,0 +1,103 @@
+"""From a stored study to the tables and figures of a method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+from snowshed._core import InputError
+from snowshed.analysis.sensitivity.fixed_parameter import fixation
+from snowshed.analysis.sensitivity.global_indices import morris_effects, sobol_indices
+from snowshed.analysis.sensitivity.noise import seeding_noise
+from snowshed.analysis.sensitivity.single_parameter import local_index
+from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
+from snowshed.io.atomic import write_text
+from snowshed.scene.scene import PathLike
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+EVALUATIONS: Mapping[str, Callable[[StoredRuns], pd.DataFrame]] = {
+    "s": local_index,
+    "fixation": fixation,
+    "sobol": sobol_indices,
+    "morris": morris_effects,
+}
+NOISE = "noise"
+
+
+def evaluate(
+    stored: PathLike,
+    folder: PathLike,
+    method: str = "s",
+    *,
+    study: Optional[str] = None,
+    measure: str = "stack",
+    note: Optional[Callable[[str], None]] = None,
+) -> pd.DataFrame:
+    """Evaluate a stored study, as far as it is computed, and write tables and figures.
+
+    Parameters
+    ----------
+    stored
+        Folder of the store.
+    folder
+        Where to write: ``METHOD.csv``, ``METHOD.png`` (for fixation one figure per group of
+        parameters), and ``noise.csv``.
+    method
+        "s", "fixation", "sobol" or "morris".
+    study
+        Name of the study; not needed if the store holds but one.
+    measure
+        "stack": height and length of 97 % of the snow; "body": of the largest connected body.
+    note
+        Called with what readers should know before they trust the table.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The method's table; see `local_index`, `fixation`, `sobol_indices`, `morris_effects`.
+
+    Raises
+    ------
+    InputError
+        If there is no such study, or its runs do not serve for the method.
+    """
+    from snowshed.plot.figure_style import save
+
+    if method not in EVALUATIONS:
+        raise InputError(f"method: {method!r} is unknown; allowed: {', '.join(EVALUATIONS)}")
+    runs = read_stored(stored, study, measure)
+    if note and runs.incomplete:
+        note(
+            f"{runs.incomplete} of {len(runs.points)} runs are not computed, have failed or left "
+            "events without a stack: means and differences are of the others"
+        )
+    try:
+        table = EVALUATIONS[method](runs)
+    except InputError as error:
+        raise InputError(f"{stored}: {runs.name}: {error}") from None
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / f"{method}.csv", table.to_csv(index=False))
+    write_text(folder / f"{NOISE}.csv", seeding_noise(runs).reset_index().to_csv(index=False))
+    for name, figure in figures(method, table).items():
+        save(figure, folder / f"{name}.png")
+    return table
+
+
+def figures(method: str, table: pd.DataFrame) -> dict[str, Figure]:
+    """Return the figures of a method's table, by name."""
+    from snowshed.analysis.sensitivity import figures as drawing
+
+    if method == "fixation":
+        groups = list(dict.fromkeys(table["group"]))
+        return {f"fixation-{name}": drawing.fixation_figure(table, name) for name in groups}
+    draw = {
+        "s": drawing.local_index_figure,
+        "sobol": drawing.sobol_figure,
+        "morris": drawing.morris_figure,
+    }
+    return {method: draw[method](table)}

@@ -1,0 +1,114 @@
+"""Samples for global sensitivity indices, by SALib (extra ``snowshed[sensitivity]``).
+
+The seed of the particles' placement is one of the inputs. Snow is chaotic: another seed gives
+another stack. What changing the seed alone does is the noise that every effect has to exceed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.arrays import Floats
+from snowshed.io.extras import require
+from snowshed.study.definition import SEED
+from snowshed.study.factors import Span
+
+EXTRA = "sensitivity"
+LEVELS = 4  # of Morris's grid
+RANDOM = 1  # seed of the samples: the same sample whenever it is asked for
+#: Ranges of Table 3.2.1; the hardening factor spans a decade, and so is sampled by its logarithm.
+SPANS: Mapping[str, Span] = {
+    "snow.critical_state_slope": Span(0.3, 0.7),
+    "snow.preconsolidation_pressure": Span(2e3, 8e3),
+    "snow.cohesion": Span(0.1, 0.3),
+    "snow.hardening_factor": Span(0.1, 1.0, "log"),
+    "snow.youngs_modulus": Span(1e6, 3e6),
+}
+
+Columns = dict[str, list[float]]
+
+
+def problem(names: list[str]) -> dict[str, Any]:
+    """Return what SALib calls a problem: inputs in the unit cube."""
+    return {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
+
+
+def sobol_points(count: int) -> Columns:
+    """Return points for first-order and total Sobol indices, after Saltelli.
+
+    Blocks of k + 2 points for k inputs (seed included): a point A, then A with one input after
+    another taken from a second point B, then B.
+
+    Parameters
+    ----------
+    count
+        Blocks; a power of two, at which Sobol's sequence is balanced.
+
+    Examples
+    --------
+    >>> points = sobol_points(2)
+    >>> {path: len(values) for path, values in points.items()}["snow.cohesion"]
+    16
+    >>> points["seeding.seed"]
+    [1, 1, 1, 1, 1, 1, 2, 2, 3, 3, 3, 3, 3, 3, 4, 4]
+    """
+    if count < 1 or count & (count - 1):
+        raise InputError(f"samples: {count} is not a power of two, which Sobol's sequence needs")
+    sampler = require("SALib.sample.sobol", EXTRA, "sampling for Sobol indices")
+    names = [*SPANS, SEED]
+    cube = sampler.sample(problem(names), count, calc_second_order=False, seed=RANDOM)
+    return _columns(cube, len(names) + 2)
+
+
+def morris_points(count: int) -> Columns:
+    """Return trajectories for elementary effects, after Morris.
+
+    Each has k + 1 points for k inputs (seed included), and from one point to the next one input
+    changes by two thirds of its range.
+
+    Parameters
+    ----------
+    count
+        Trajectories.
+
+    Examples
+    --------
+    >>> points = morris_points(3)
+    >>> len(points["seeding.seed"]), sorted(set(points["seeding.seed"]))
+    (21, [1, 2, 3, 4, 5, 6])
+    """
+    sampler = require("SALib.sample.morris", EXTRA, "sampling for elementary effects")
+    names = [*SPANS, SEED]
+    cube = sampler.sample(problem(names), count, num_levels=LEVELS, seed=RANDOM)
+    return _columns(cube, len(names) + 1)
+
+
+SAMPLERS: Mapping[str, Callable[[int], Columns]] = {
+    "sobol": sobol_points,
+    "morris": morris_points,
+}
+
+
+def _columns(cube: Floats, block: int) -> Columns:
+    """Return points of the unit cube as values of the inputs."""
+    columns: Columns = {
+        path: [span.at(float(fraction)) for fraction in cube[:, number]]
+        for number, (path, span) in enumerate(SPANS.items())
+    }
+    columns[SEED] = _seeds(cube[:, -1], block)
+    return columns
+
+
+def _seeds(fractions: Floats, block: int) -> list[float]:
+    """Return two seeds for each block, of which the first is where it starts.
+
+    No two blocks have a seed in common, so that no point of the design occurs twice.
+    """
+    blocks = fractions.reshape(-1, block)
+    first = 2 * np.arange(len(blocks))[:, None] + 1
+    seeds = first + (blocks != blocks[:, :1])
+    return [int(seed) for seed in seeds.ravel()]

@@ -1,0 +1,1 @@
+"""Errors of measurements against known answers."""

@@ -1,0 +1,106 @@
+"""What a verification case is: a problem with a known answer, and how it was solved.
+
+A case's module in `validation.cases` makes one `Case`. The runner takes every entry of its
+matrix of settings through `Case.measure`, in a process of its own, and the report compares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Optional, Union
+
+Value = Union[str, int, float, bool]
+
+#: One way of solving a case: names of scene parameters without their section ("dx", "transfer",
+#: "flip_ratio", "basis", "precision", "particles_per_voxel", "step_factor", "between",
+#: "dimension", "seed", ...) or of the case's own parameters ("friction", "law"), and their values.
+Settings = Mapping[str, Value]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Something measured, with what is demanded of it.
+
+    Parameters
+    ----------
+    name:
+        Key, such as ``"acceleration"``.
+    title:
+        What it is, with its unit if it has one.
+    bar:
+        Largest error allowed; `None` where nothing is demanded.
+    bar_for:
+        The settings that the bar is for: every name given here must have this value.
+    order_in:
+        The setting whose power law the error follows (``"dx"``, ``"step_factor"``), if any.
+    least_order:
+        The smallest order of convergence allowed.
+    relative:
+        Whether the error is relative to the exact value (shown in %) or in the quantity's unit.
+    """
+
+    name: str
+    title: str
+    bar: Optional[float] = None
+    bar_for: Settings = field(default_factory=dict)
+    order_in: Optional[str] = None
+    least_order: Optional[float] = None
+    relative: bool = True
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One quantity of one solution: its value, the value it should have, and the error."""
+
+    quantity: str
+    value: float
+    exact: float
+    error: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one entry of the matrix gave.
+
+    ``wall_s`` is the time of the solution alone (without seeding, imports or evaluation);
+    ``updates`` counts particles times steps (for a material path: its increments).
+    """
+
+    measured: Sequence[Measured]
+    wall_s: float
+    updates: int
+    steps: int = 0
+    particles: int = 0
+
+
+@dataclass(frozen=True)
+class Case:
+    """A problem with a known answer.
+
+    Parameters
+    ----------
+    name, title:
+        Key and heading.
+    source:
+        Where the answer comes from: closed form, equation, paper.
+    description:
+        A paragraph for the report: the problem, the answer, what the error is.
+    quantities:
+        All that `measure` returns.
+    matrix:
+        ``matrix(full)`` lists the settings to solve with; the quick list takes seconds in all.
+    measure:
+        Solves once. Must not depend on anything but its settings.
+    remarks:
+        Where the method is poor here, and why; the report prints it with the numbers.
+    """
+
+    name: str
+    title: str
+    source: str
+    description: str
+    quantities: Sequence[Quantity]
+    matrix: Callable[[bool], list[Settings]]
+    measure: Callable[[Settings], Outcome]
+    remarks: str = ""

@@ -1,0 +1,81 @@
+"""Numbers and settings as people read them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Optional
+
+from snowshed.analysis.verification.case import Settings, Value
+from snowshed.io.formatting import NOTHING, SMALL, TIMES, count, duration, number, percent
+from snowshed.scene.accuracy_settings import ACCURACY
+
+__all__ = [
+    "NOTHING",
+    "SMALL",
+    "TIMES",
+    "count",
+    "duration",
+    "error",
+    "number",
+    "paragraphs",
+    "percent",
+    "setting",
+    "settings",
+    "unset",
+]
+
+
+def error(value: Optional[float], *, relative: bool) -> str:
+    """Return an error: in percent, or in the quantity's unit."""
+    return percent(value) if relative else number(value)
+
+
+def setting(name: str, value: Optional[Value]) -> str:
+    """Return one setting; a word needs no name beside it. None: it is not given.
+
+    Examples
+    --------
+    >>> [setting("dx", 0.01), setting("transfer", "apic"), setting("sleeping", False)]
+    ['dx 0.01', 'apic', 'no sleeping']
+    >>> setting("dimension", 2)
+    '2D'
+    >>> setting("flip_ratio", None)
+    'flip ratio default'
+    """
+    if value is None:
+        return f"{name.replace('_', ' ')} {unset(name)}"
+    if name == "dimension":
+        return f"{value}D"
+    name = name.replace("_", " ")
+    if isinstance(value, bool):
+        return name if value else f"no {name}"
+    return value.replace("_", " ") if isinstance(value, str) else f"{name} {number(value, 4)}"
+
+
+def unset(name: str) -> str:
+    """Return what stands for a setting that is not given: a scene's settings have defaults.
+
+    Examples
+    --------
+    >>> unset("flip_ratio"), unset("aspect") == NOTHING
+    ('default', True)
+    """
+    return "default" if name in ACCURACY else NOTHING
+
+
+def settings(chosen: Settings, names: Optional[Iterable[str]] = None) -> str:
+    """Return settings in a line: all, or those with the given names.
+
+    Examples
+    --------
+    >>> settings({"dx": 0.01, "transfer": "apic", "seed": 2}, ["transfer", "dx"])
+    'apic, dx 0.01'
+    """
+    kept = chosen if names is None else [name for name in names if name in chosen]
+    return ", ".join(setting(name, chosen[name]) for name in kept)
+
+
+def paragraphs(text: str) -> list[str]:
+    """Return the paragraphs of a text, each in one line."""
+    return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text) if part.strip()]

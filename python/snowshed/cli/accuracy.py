@@ -1,0 +1,256 @@
+"""``--accuracy``: grid and scheme by the accuracy that is wanted, from recorded measurements.
+
+What users care about are height and length of the stack. How far they were off in runs of the
+laboratory experiment, on which grid and with which scheme, is recorded. The size of cells is taken
+relative to the thickness of the slab: cells across the slab decide how well it bends and breaks,
+and every layer adds a gap of about a cell to the height.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import nan
+from typing import TYPE_CHECKING, Any, Optional
+
+import click
+
+from snowshed._core import InputError
+from snowshed.cli.scene_options import option_name
+from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from snowshed.analysis.verification.case import Settings, Value
+    from snowshed.analysis.verification.measurements import Measurement
+
+CASE = "stack_convergence"
+QUANTITIES = ("height", "length")
+PRESET = "lab-50"  # whose slab the case's stacks are made of
+
+
+def part(text: str) -> float:
+    """Parse a part of one, given as ``5%`` or ``0.05``.
+
+    Examples
+    --------
+    >>> [part(text) for text in ("5%", "0.05", "2.5 %")]
+    [0.05, 0.05, 0.025]
+    """
+    text = text.strip()
+    try:
+        value = float(text[:-1]) / 100 if text.endswith("%") else float(text)
+    except ValueError:
+        value = nan
+    if not 0 < value < 1:
+        raise click.BadParameter(f"{text!r} is no accuracy; give a percentage such as 5%")
+    return value
+
+
+accuracy_option = click.option(
+    "--accuracy",
+    type=part,
+    metavar="PERCENT",
+    help="Choose dx and scheme by how far the height and length of stacks may be off, such as 5%, "
+    "from recorded runs.",
+)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Settings chosen for a wanted accuracy.
+
+    Attributes
+    ----------
+    reached
+        Whether the recorded runs with these settings were accurate enough.
+    values
+        What is chosen, by its path in a scene; None for what keeps its default.
+    reason
+        What was chosen and why, in sentences.
+    """
+
+    reached: bool
+    values: Mapping[str, Optional[Value]]
+    reason: str
+
+
+def choose(
+    wanted: float, scene: Scene, measurements: Optional[Iterable[Measurement]] = None
+) -> Choice:
+    """Choose the quickest settings whose stacks were as accurate as wanted in recorded runs.
+
+    Where none were, the most accurate are chosen, and the reason says so.
+
+    Parameters
+    ----------
+    wanted
+        Largest relative error of the stack's height and length.
+    scene
+        What the settings are for. It needs a slab.
+    measurements
+        Of the case `CASE`; those that come with the package unless given.
+
+    Raises
+    ------
+    InputError
+        If the scene has no slab, or there are no measurements.
+
+    Examples
+    --------
+    >>> choice = choose(0.2, Scene.preset("geometry"))
+    >>> choice.values["numerics.dx"] > 0
+    True
+    """
+    from snowshed.analysis.verification.analysis import quickest
+    from snowshed.analysis.verification.recorded import load_recorded
+    from snowshed.analysis.verification.wording import percent
+
+    data = scene.resolve().data
+    thickness = _slab_thickness(data)
+    listed = load_recorded() if measurements is None else measurements
+    stacks = _nearest(recorded_stacks(listed), data)
+    if not stacks:
+        raise InputError(
+            f"--accuracy: nothing is recorded to choose from; make it with snowshed verify --full "
+            f"--case {CASE} --record FILE"
+        )
+    costs, errors = [stack.wall_s for stack in stacks], [stack.error for stack in stacks]
+    stack = stacks[quickest(costs, errors, wanted)]
+    share = float(stack.settings["dx"]) / _slab_thickness(Scene.preset(PRESET).resolve().data)
+    # What a recorded run does not name had its default, and so must have it here.
+    values = {path: stack.settings.get(name) for name, path in ACCURACY.items()}
+    values["numerics.dx"] = float(f"{share * thickness:.3g}")
+    what = f"dx {values['numerics.dx']:g} m ({share:.3g} of the slab's thickness)"
+    reason = " ".join([f"--accuracy {percent(wanted)}: {what}", *_reasons(stack, wanted, data)])
+    return Choice(stack.error <= wanted, values, reason)
+
+
+def check_alone(options: Mapping[str, Any]) -> None:
+    """Raise InputError if an option is given that ``--accuracy`` would override.
+
+    Parameters
+    ----------
+    options
+        Values by the names that `snowshed.cli.scene_options` gives them; None where not given.
+
+    Examples
+    --------
+    >>> check_alone({"panel__tilt": 50.0, "numerics__basis": None})
+    """
+    for path in ACCURACY.values():
+        if options.get(path.replace(".", "__")) is not None:
+            raise InputError(
+                f"{option_name(path)}: --accuracy chooses grid and scheme; give one of the two"
+            )
+
+
+@dataclass(frozen=True)
+class RecordedStack:
+    """What is recorded of stacks made with the same settings.
+
+    Attributes
+    ----------
+    errors
+        Of each of `QUANTITIES`, relative; assured by all finer runs.
+    spreads
+        Standard deviation of each over random seedings, relative to the mean; empty if unknown.
+    wall_s
+        Time of the solution, s.
+    """
+
+    settings: Settings
+    errors: Sequence[float]
+    spreads: Sequence[float]
+    wall_s: float
+
+    @property
+    def error(self) -> float:
+        """The largest."""
+        return max(self.errors)
+
+
+def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
+    """Return what is recorded of stacks."""
+    from snowshed.analysis.verification.analysis import assured_errors, key_of, rows_of, solutions
+    from snowshed.analysis.verification.measurements import to_table
+
+    table = to_table(one for one in measurements if one.case == CASE and not one.failure)
+
+    def by_settings(quantity: str, order_in: Optional[str]) -> dict[Hashable, float]:
+        found = solutions(rows_of(table, CASE, quantity))
+        return {key_of(o.settings): e for o, e in zip(found, assured_errors(found, order_in))}
+
+    errors = [by_settings(name, "dx") for name in QUANTITIES]
+    spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
+    return [
+        RecordedStack(
+            settings=one.settings,
+            errors=[of_each[key] for of_each in errors],
+            spreads=[of_each[key] for of_each in spreads if key in of_each],
+            wall_s=one.wall_s,
+        )
+        for one in solutions(rows_of(table, CASE, QUANTITIES[0]))
+        if all((key := key_of(one.settings)) in of_each for of_each in errors)
+    ]
+
+
+def _slab_thickness(data: Mapping[str, Any]) -> float:
+    if data.get("slab") is None:
+        raise InputError(
+            "--accuracy: the scene has no slab, and dx is chosen by its thickness; give --dx"
+        )
+    slab = data["slab"]
+    events = {layer["event"] for layer in slab["layers"]}
+    of_each = [
+        sum(layer["thickness"] for layer in slab["layers"] if layer["event"] in (0, event))
+        for event in (events - {0} or {1})
+    ]
+    return float(slab["thickness"] or min(of_each))
+
+
+def _nearest(stacks: list[RecordedStack], data: Mapping[str, Any]) -> list[RecordedStack]:
+    """Return the stacks that were made in the circumstances nearest to the scene's."""
+    for name, mine in _circumstances(data).items():
+        held = {stack.settings[name] for stack in stacks if name in stack.settings}
+        if held:
+            nearest = min(held, key=lambda value: (_distance(value, mine), value))
+            stacks = [stack for stack in stacks if stack.settings.get(name) == nearest]
+    return stacks
+
+
+def _circumstances(data: Mapping[str, Any]) -> dict[str, Value]:
+    events = data["events"]
+    return {
+        "dimension": data["dimension"],
+        "between": events["between"],
+        "events": events["count"],
+    }
+
+
+def _distance(value: Value, mine: Value) -> float:
+    if isinstance(value, str) or isinstance(mine, str):
+        return float(value != mine)
+    return abs(value - mine)
+
+
+def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any]) -> list[str]:
+    """Return the rest of the first sentence and all that follow it."""
+    from snowshed.analysis.verification.wording import percent, settings
+
+    scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != "dx"}
+    height, length = (percent(error, 2) for error in stack.errors)
+    off = f"the height of the stack was off by {height} and its length by {length}"
+    if stack.error <= wanted:
+        why = f"These were the quickest in the recorded runs of {PRESET} to stay within it: {off}."
+    else:
+        why = f"No recorded run of {PRESET} was that accurate. In the best, which this is, {off}."
+    reasons = [f"with {settings(scheme) or 'the default scheme'}.", why]
+    if len(stack.spreads) == len(QUANTITIES):
+        height, length = (percent(spread, 2) for spread in stack.spreads)
+        reasons.append(f"Random seedings alone made them differ by {height} and {length}.")
+    mine = _circumstances(data)
+    other = {k: v for k, v in stack.settings.items() if k in mine and v != mine[k]}
+    if other:
+        reasons.append(f"Unlike this scene, those runs were made with {settings(other)}.")
+    return reasons

@@ -1,0 +1,93 @@
+"""The command ``snowshed calibrate``; it imports what takes long when it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Optional
+
+import click
+
+from snowshed.cli.designed_study import (
+    PATH,
+    check_options,
+    compute,
+    design_options,
+    plan,
+    write_study,
+)
+
+
+@click.command()
+@click.argument("measurements", type=PATH, required=False)
+@click.option("--template", type=PATH, help="Write an empty measurements file to fill in.")
+@click.option(
+    "--quantity",
+    "quantities",
+    multiple=True,
+    metavar="NAME",
+    help="What the ranges rest on: height, length, head or tail; may be repeated.  "
+    "[default: height, length]",
+)
+@design_options
+@click.pass_context
+def calibrate(
+    context: click.Context,
+    measurements: Optional[Path],
+    template: Optional[Path],
+    quantities: Sequence[str],
+    folder: Optional[Path],
+    quick: bool,
+    seeds: Optional[int],
+    plan_only: bool,
+    file: Optional[Path],
+    stored: Optional[Path],
+    name: Optional[str],
+    measure: str,
+    jobs: Optional[int],
+    quiet: bool,
+) -> None:
+    """Find the snow whose simulated stacks are those that were measured.
+
+    Computes the runs that are missing, into DIR/runs, ranks the parameter sets and gives the
+    ranges that the measurements allow. After an interruption the same command goes on; with
+    --stored it evaluates what another study has stored.
+
+    \b
+    Example:
+      snowshed calibrate --template stacks.csv
+      snowshed calibrate stacks.csv --quick -o calibration
+    """  # noqa: D301 - click wants the control character
+    from snowshed.analysis.calibration import measurements as reading
+    from snowshed.analysis.calibration.design import calibration_study
+    from snowshed.analysis.calibration.misfit import RANKED
+    from snowshed.analysis.calibration.report import evaluate
+    from snowshed.io.atomic import write_text
+
+    if template is not None:
+        write_text(template, reading.template())
+        return
+    if measurements is None:
+        raise click.UsageError("give a MEASUREMENTS file, or --template FILE to write an empty one")
+    folder = check_options(context)
+    measured = reading.read_measurements(measurements)
+    if stored is None:
+        if file is None:
+            file = write_study(calibration_study(measured, quick=quick, seeds=seeds), folder)
+        if plan_only:
+            plan(context, file, jobs)
+            return
+        stored, name = compute(context, file, folder, jobs, quiet)
+    found = evaluate(
+        measured,
+        stored,
+        folder,
+        study=name,
+        measure=measure,
+        quantities=quantities or RANKED,
+    )
+    if not quiet:
+        from snowshed.cli.display.calibration import print_calibration
+
+        print_calibration(found)
+        click.echo(f"tables and figures in {folder}")

@@ -1,0 +1,180 @@
+"""The command ``snowshed season``; all that takes long to import is imported when it runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+import click
+
+from snowshed._core import InputError
+from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.scene_options import (
+    in_terms_of_options,
+    path_of,
+    scene_from_options,
+    scene_options,
+)
+from snowshed.run.interrupt import Interrupted
+from snowshed.run.season.settings import SeasonSettings
+from snowshed.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from snowshed.run.events import Reporter
+    from snowshed.run.season.driver import SeasonResult
+    from snowshed.scene.scene import ResolvedScene
+
+PATH = click.Path(path_type=Path)
+DEFAULTS = SeasonSettings()
+
+# What the season file decides, so that a bare panel need not be given it.
+DECIDED = {"slab.thickness": 0.1}
+
+
+@click.command()
+@click.argument("season_file", metavar="FILE", type=PATH)
+@click.option(
+    "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
+)
+@click.option("--scene", "scene_file", type=PATH, help="Scene file to start from.")
+@click.option(
+    "--release-friction",
+    type=float,
+    default=DEFAULTS.friction,
+    show_default=True,
+    help="Static Coulomb coefficient that the snow must overcome to let go.",
+)
+@click.option(
+    "--adhesion",
+    type=float,
+    default=DEFAULTS.adhesion,
+    show_default=True,
+    help="What else holds the snow, Pa.",
+)
+@click.option(
+    "--catch",
+    type=float,
+    default=DEFAULTS.catch,
+    show_default=True,
+    help="Part of the snowfall that stays on the panel.",
+)
+@click.option(
+    "--new-snow",
+    default=DEFAULTS.density,
+    show_default=True,
+    metavar="NAME",
+    help="Relation for rows without a density: hedstrom-pomeroy-1998, jordan-1999, vionnet-2012.",
+)
+@click.option(
+    "--settling",
+    metavar="NAME",
+    help="Law by which snow settles between events: vionnet-2012, essery-2013.  [default: none]",
+)
+@click.option(
+    "--sintering",
+    metavar="NAME",
+    help="Law by which broken snow in the stack regains strength between events: "
+    "van-herwijnen-2013, podolskiy-2014.  [default: none]",
+)
+@click.option(
+    "--strength-age",
+    type=float,
+    metavar="HOURS",
+    default=DEFAULTS.strength_age,
+    show_default=True,
+    help="Age of bonds that have the strength of the snow that slides.",
+)
+@click.option("--resume", is_flag=True, help="Go on with an interrupted season.")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@scene_options
+def season(
+    season_file: Path,
+    folder: Path,
+    scene_file: Optional[Path],
+    release_friction: float,
+    adhesion: float,
+    catch: float,
+    new_snow: str,
+    settling: Optional[str],
+    sintering: Optional[str],
+    strength_age: float,
+    resume: bool,
+    quiet: bool,
+    preset: Optional[str],
+    snow_preset: Optional[str],
+    **options: Any,
+) -> None:
+    """Let the snow of a season gather on a panel, let go and pile up, row by row of a file.
+
+    FILE is a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
+    friction and adhesion_pa. The panel, the ground and the method are described by the same
+    options as in ``snowshed panel``; --friction is that of snow that slides.
+
+    \b
+    Example:
+      snowshed season winter.csv --dim 2 --height 0.8 --length 2 --tilt 40 --dx 0.03 -o results
+    """  # noqa: D301 - click wants the control character
+    settings = SeasonSettings(
+        release_friction, adhesion, catch, new_snow, settling, sintering, strength_age
+    )
+    scene = _scene(scene_file, preset, snow_preset, options)
+    result = _run(season_file, scene, folder, settings, resume=resume, quiet=quiet)
+    if not quiet:
+        from snowshed.cli.display.season import print_season
+
+        print_season(result, folder)
+
+
+def _scene(
+    file: Optional[Path], preset: Optional[str], snow_preset: Optional[str], options: dict[str, Any]
+) -> ResolvedScene:
+    if file is not None and (preset or snow_preset):
+        raise click.UsageError("--scene does not go with --preset or --snow")
+    given = _given(options)
+    scene = Scene.load(file) if file else scene_from_options(preset, snow_preset, {})
+    if scene.slab is not None:
+        scene.slab.layers = None
+    try:
+        for path, value in {**DECIDED, **given}.items():
+            scene.set(path, value)
+        return scene.resolve()
+    except InputError as error:
+        if file is not None and path_of(error) not in given:
+            raise InputError(f"{file}: {error}") from None
+        raise in_terms_of_options(error) from None
+
+
+def _given(options: dict[str, Any]) -> dict[str, Any]:
+    """Return the options that were given, by their paths in a scene."""
+    return {
+        name.replace("__", "."): value
+        for name, value in options.items()
+        if value is not None and value != ()
+    }
+
+
+def _run(
+    season_file: Path,
+    scene: ResolvedScene,
+    folder: Path,
+    settings: SeasonSettings,
+    *,
+    resume: bool,
+    quiet: bool,
+) -> SeasonResult:
+    from snowshed.run.season.driver import run_season
+
+    def run(progress: Optional[Reporter]) -> SeasonResult:
+        return run_season(
+            season_file, scene, folder, settings=settings, resume=resume, progress=progress
+        )
+
+    try:
+        if quiet:
+            return run(None)
+        from snowshed.cli.console import progress_bar
+
+        with progress_bar() as progress:
+            return run(progress)
+    except Interrupted:
+        raise Stopped("interrupted; go on with the same command and --resume") from None

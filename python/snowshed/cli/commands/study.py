@@ -1,0 +1,208 @@
+"""The commands ``snowshed study ...``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import Any, Optional, TypeVar
+
+import click
+
+from snowshed._core import InputError
+from snowshed.cli.exit_codes import Failed, Stopped
+from snowshed.io.atomic import write_text
+from snowshed.study.definition import Study
+from snowshed.study.errors import StudyInterrupted
+from snowshed.study.store import NO_STUDY, Store
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+PATH = click.Path(path_type=Path)
+LISTED = 5  # failed runs that an error names; the output has them all
+
+
+def _computing_options(command: Command) -> Command:
+    """Add the options of the commands that compute."""
+    for option in (
+        click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
+        click.option("--retry-failed", is_flag=True, help="Compute failed runs again."),
+        click.option(
+            "--scheduler",
+            metavar="ADDRESS",
+            help="Dask scheduler whose workers compute, such as tcp://host:8786, or its .json file."
+            " Needs the extra snowshed[cluster].",
+        ),
+        click.option("--threads", type=int, help="Threads of each run.  [default: fill the cores]"),
+        click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]"),
+    ):
+        command = option(command)
+    return command
+
+
+@click.group()
+def study() -> None:
+    """Compute many runs: one scene, and parameters that vary.
+
+    \b
+    Example:
+      snowshed study template -o study.toml
+      snowshed study run study.toml -o results
+      snowshed study export results -o table.csv
+    """  # noqa: D301 - click wants the control character
+
+
+@study.command()
+@click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+def template(file: Optional[Path]) -> None:
+    """Write a study file with comments, to start from."""
+    from snowshed.study.study_file import TEMPLATE
+
+    if file is None:
+        click.echo(TEMPLATE, nl=False)
+    else:
+        write_text(file, TEMPLATE)
+
+
+@study.command()
+@click.argument("file", type=PATH)
+@click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]")
+def plan(file: Path, jobs: Optional[int]) -> None:
+    """Say how many runs a file makes, and how long they take."""
+    from snowshed.cli.display.study import in_words
+    from snowshed.study.session import expected_duration
+
+    loaded = Study.load(file)
+    seconds, at_once = expected_duration(loaded, jobs=jobs)
+    count = len(loaded.runs())
+    click.echo(f"{loaded.name}: {count} runs, {at_once} at once, {in_words(seconds)}")
+    click.echo(f"varying: {', '.join(loaded.axes) or 'nothing'}")
+
+
+@study.command()
+@click.argument("file", type=PATH)
+@click.option(
+    "-o", "--output", "folder", type=PATH, required=True, help="Folder of the store, old or new."
+)
+@_computing_options
+def run(file: Path, folder: Path, quiet: bool, **options: Any) -> None:
+    """Compute what is missing of a study.
+
+    After an interruption the same command goes on.
+    """
+    from snowshed.study.session import run_study
+
+    loaded = Study.load(file)
+    with _outcome_as_exit_code(), _progress(quiet) as progress:
+        run_study(loaded, folder, progress=progress, **options)
+    _finish(folder, [loaded.name], quiet)
+
+
+@study.command()
+@click.argument("folder", type=PATH)
+@click.option("--study", "name", help="Name of the study.  [default: all in the folder]")
+@_computing_options
+def resume(folder: Path, name: Optional[str], quiet: bool, **options: Any) -> None:
+    """Compute what is missing of the studies in a folder."""
+    from snowshed.study import session
+
+    with _outcome_as_exit_code(), _progress(quiet) as progress:
+        session.resume(folder, name, progress=progress, **options)
+    with Store.open(folder) as store:
+        names = [name] if name else store.studies()
+    _finish(folder, names, quiet)
+
+
+@study.command()
+@click.argument("folder", type=PATH)
+def status(folder: Path) -> None:
+    """Say what is done, also while a study is being computed."""
+    from snowshed.cli.display.study import print_status
+
+    with _outcome_as_exit_code(), Store.open(folder) as store:
+        if not store.studies():
+            raise InputError(f"{folder}: {NO_STUDY}")
+        print_status(store)
+
+
+@study.command()
+@click.argument("folder", type=PATH)
+@click.option("-o", "--output", "file", type=PATH, required=True, help="File to write.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["csv", "parquet", "netcdf"]),
+    help="[default: by the file's ending .csv, .parquet or .nc]",
+)
+@click.option("--study", "name", help="Name of the study, if the folder holds several.")
+@click.option("--timing", is_flag=True, help="Add wall times and what computed the runs.")
+def export(
+    folder: Path, file: Path, form: Optional[str], name: Optional[str], timing: bool
+) -> None:
+    """Write a study's table to a file, as far as it is computed."""
+    from snowshed.study.formats import export as write
+
+    with _outcome_as_exit_code():
+        write(folder, file, study=name, form=form, timing=timing)
+        _warn_of_missing(folder, name)
+
+
+@study.command()
+@click.argument("folder", type=PATH)
+@click.argument("hash_", metavar="HASH")
+@click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
+    """Write the scene of one run, to run it alone.
+
+    HASH is the beginning of its hash.
+    """
+    with _outcome_as_exit_code(), Store.open(folder) as store:
+        text = store.find(hash_).scene
+    if file is None:
+        click.echo(text)
+    else:
+        write_text(file, text + "\n")
+
+
+@contextmanager
+def _outcome_as_exit_code() -> Iterator[None]:
+    try:
+        yield
+    except StudyInterrupted as interrupted:
+        raise Stopped(str(interrupted)) from None
+
+
+def _progress(quiet: bool) -> Any:
+    if quiet:
+        return nullcontext()
+    from snowshed.cli.display.study import progress_bar
+
+    return progress_bar()
+
+
+def _finish(folder: Path, names: list[str], quiet: bool) -> None:
+    """Say where the results are; fail if runs have failed."""
+    from rich.console import Console
+
+    from snowshed.cli.display.study import print_failures
+
+    with _outcome_as_exit_code(), Store.open(folder) as store:
+        runs = {run.hash: run for name in names for run in store.runs(name)}
+    failed = [run for run in runs.values() if run.status == "failed"]
+    if not quiet:
+        print_failures(failed, Console(highlight=False, soft_wrap=True))
+        done = len(runs) - len(failed)
+        click.echo(f"{done} of {len(runs)} runs done")
+        click.echo(f"their table: snowshed study export {folder} -o table.csv")
+    if failed:
+        listed = ", ".join(run.hash[:12] for run in failed[:LISTED])
+        listed += ", ..." if len(failed) > LISTED else ""
+        raise Failed(f"{len(failed)} of {len(runs)} runs failed: {listed}")
+
+
+def _warn_of_missing(folder: Path, name: Optional[str]) -> None:
+    with Store.open(folder) as store:
+        runs = store.runs(store.named(name))
+    missing = sum(run.status == "pending" for run in runs)
+    if missing:
+        click.echo(f"note: {missing} of {len(runs)} runs are not computed yet", err=True)

@@ -1,0 +1,40 @@
+"""The command ``snowshed vdb``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Optional
+
+import click
+
+
+@click.command()
+@click.argument("results", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Folder for the files; default: vdb in the results folder.",
+)
+@click.option("--snapshots", is_flag=True, help="The snapshots instead of the stack after events.")
+@click.option("--width", type=float, help="Of 2D results: width of the strip, m.")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+def vdb(
+    results: Path, output: Optional[Path], snapshots: bool, width: Optional[float], quiet: bool
+) -> None:
+    """Write the snow of a results folder as OpenVDB files.
+
+    Each holds the stack as a level set, its density as a fog volume, and the particles as points.
+    """
+    from snowshed.run.vdb_export import Exported, export_folder
+
+    def show(exported: Exported) -> None:
+        content = exported.content
+        click.echo(
+            f"{exported.file}: {content.mass:.4g} kg in {content.volume:.4g} m3, "
+            f"{content.density:.0f} kg/m3, {content.surface_voxels:,} + "
+            f"{content.density_voxels:,} voxels"
+        )
+
+    report = None if quiet else show
+    export_folder(results, output, snapshots=snapshots, width=width, report=report)

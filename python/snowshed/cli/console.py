@@ -1,0 +1,98 @@
+"""What the command line shows: the progress bar and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.progress import TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from snowshed.analysis.dimension_ratio import RULE_OF_THUMB
+from snowshed.cli.terminal import one_bar, plain_table, wide_console
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from snowshed.run.events import Progress, Reporter
+
+EVENT_TABLE = {
+    "event": ("event", "{:.0f}"),
+    "height\nm": ("height_m", "{:.3f}"),
+    "length\nm": ("length_m", "{:.3f}"),
+    "head\nm": ("head_m", "{:.3f}"),
+    "tail\nm": ("tail_m", "{:.3f}"),
+    "body\nheight": ("body_height_m", "{:.3f}"),
+    "body\nlength": ("body_length_m", "{:.3f}"),
+    "density\nkg/m3": ("density_kg_m3", "{:.0f}"),
+    "loose\nkg": ("detached_kg", "{:.2g}"),
+    "panel\nkg": ("on_panel_kg", "{:.2g}"),
+    "ended": ("ended", "{}"),
+}
+
+
+@contextmanager
+def progress_bar() -> Iterator[Reporter]:
+    """Show one bar over all events, with the time that is left, on stderr."""
+    columns = (TimeRemainingColumn(), TextColumn("{task.fields[speed]}"))
+    with one_bar(*columns, speed="") as bar:
+
+        def report(progress: Progress) -> None:
+            speed = progress.updates_per_s / 1e6
+            bar.show(
+                (progress.event - 1 + progress.fraction) / progress.count,
+                f"event {progress.event}/{progress.count}, {progress.time:.2f} s",
+                speed=f"{speed:.1f} M updates/s" if speed else "",
+            )
+
+        yield report
+
+
+def print_events(table: pd.DataFrame, folder: Path) -> None:
+    """Print the measures of the stack after each event."""
+    shown = plain_table("Stack after each event", EVENT_TABLE, padding=0)
+    for row in table.to_dict("records"):
+        shown.add_row(*(form.format(row[name]) for name, form in EVENT_TABLE.values()))
+    wide_console(120).print(shown)
+    Console().print(f"results, stack.png and growth.png in {folder}", highlight=False)
+
+
+def print_plan(plan: dict[str, Any]) -> None:
+    """Print what a scene would use, leave out and cost."""
+    shown = Table(show_header=False, box=None)
+    shown.add_column(style="bold")
+    for name, value in plan_rows(plan).items():
+        shown.add_row(name, value)
+    Console().print(shown, highlight=False)
+
+
+def plan_rows(plan: dict[str, Any]) -> dict[str, str]:
+    """Return the lines of a plan, with units."""
+    return {
+        "used": ", ".join(plan["used"]),
+        "left out": ", ".join(plan["left_out"]) or "nothing",
+        "particles": f"{plan['particles_per_event']:,} per event",
+        "particles in all": f"{plan['particles_total']:,}",
+        "memory": f"{plan['memory_bytes'] / 1e6:,.1f} MB for particles and grid",
+        "time step": f"{plan['time_step_s']:.3g} s",
+        "steps": f"{plan['steps_per_event']:,} per event",
+        "run time": f"about {plan['expected_wall_s']:,.2g} s"
+        if plan["expected_wall_s"] < 10
+        else f"about {plan['expected_wall_s']:,.0f} s",
+        "speed": f"{plan['updates_per_s'] / 1e6:.1f} M particle updates/s, measured now",
+        "threads": f"{plan['threads']} at most",
+        "scalar": f"{plan['scalar']}, {plan['kernels']}",
+    }
+
+
+def print_ratios(ratios: pd.DataFrame) -> None:
+    """Print 3D over 2D heights beside the thesis's rule of thumb."""
+    headings = ("event", "3D, m", "2D, m", "3D/2D", "rule of thumb")
+    shown = plain_table("Stack height in 3D and in 2D", headings, padding=0)
+    for event, three, two, ratio in ratios.itertuples(index=False):
+        cells = (f"{three:.3f}", f"{two:.3f}", f"{ratio:.2f}", f"{RULE_OF_THUMB:.2f}")
+        shown.add_row(str(event), *cells)
+    wide_console(120).print(shown)

@@ -1,0 +1,127 @@
+"""Studies that a command designs: written as a study file, computed, and evaluated apart from that.
+
+The runs go through ``snowshed study run``, so that they are resumed and stored as those of any
+study. The evaluation takes nothing but the store.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Optional, TypeVar
+
+import click
+
+from snowshed.io.atomic import write_text
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+PATH = click.Path(path_type=Path)
+STUDY = "study.toml"
+RUNS = "runs"
+#: Options that do nothing beside another one, by their parameters' names.
+USELESS: Mapping[str, Sequence[str]] = {
+    "stored": ["file", "plan_only", "quick", "seeds", "samples", "jobs"],
+    "file": ["quick", "seeds", "samples"],
+}
+MEASURES = click.Choice(["stack", "body"])
+
+
+def design_options(command: Command) -> Command:
+    """Add the options of commands that design a study and evaluate it."""
+    for option in (
+        click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
+        click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]"),
+        click.option(
+            "--measure",
+            type=MEASURES,
+            default="stack",
+            help="stack (97 % of the snow) or body (the largest connected one).  [default: stack]",
+        ),
+        click.option("--name", help="Name of the stored study, if its folder holds several."),
+        click.option(
+            "--stored", type=PATH, help="Folder of a stored study: evaluate it, compute nothing."
+        ),
+        click.option("--study", "file", type=PATH, help="Study file to compute instead."),
+        click.option(
+            "--plan",
+            "plan_only",
+            is_flag=True,
+            help="Only say how many runs there are, and how long they take.",
+        ),
+        click.option("--seeds", type=int, help="Seedings of each point.  [default: see the docs]"),
+        click.option(
+            "--quick", is_flag=True, help="A small study on a coarse 2D grid: minutes, not days."
+        ),
+        click.option("-o", "--output", "folder", type=PATH, help="Results folder, old or new."),
+    ):
+        command = option(command)
+    return command
+
+
+def check_options(context: click.Context) -> Path:
+    """Return the results folder; refuse a command without it, or with options that do nothing.
+
+    Raises
+    ------
+    click.UsageError
+        Naming the option.
+    """
+    folder: Optional[Path] = context.params["folder"]
+    if folder is None:
+        raise click.UsageError("give -o DIR, the folder of the results")
+    for option, useless in USELESS.items():
+        if context.params[option] is not None:
+            _refuse(context, useless, f"does nothing with {_flag(context, option)}")
+    if context.params["stored"] is None:
+        _refuse(context, ["name"], "is of a study given with --stored")
+    return folder
+
+
+def _refuse(context: click.Context, names: Sequence[str], reason: str) -> None:
+    for name in names:
+        if context.params.get(name):
+            raise click.UsageError(f"{_flag(context, name)} {reason}")
+
+
+def _flag(context: click.Context, name: str) -> str:
+    return next(one.opts[-1] for one in context.command.params if one.name == name)
+
+
+def write_study(text: str, folder: Path) -> Path:
+    """Write a study file into the results folder and return its path."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / STUDY, text)
+    return folder / STUDY
+
+
+def plan(context: click.Context, file: Path, jobs: Optional[int]) -> None:
+    """Say how many runs a study file makes, and how long they take."""
+    from snowshed.cli.main.commands import study as command
+
+    context.invoke(command.plan, file=file, jobs=jobs)
+
+
+def compute(
+    context: click.Context, file: Path, folder: Path, jobs: Optional[int], quiet: bool
+) -> tuple[Path, str]:
+    """Compute what is missing of a study file; return the folder of the store, and its name there.
+
+    Ends the command, with the exit codes of ``snowshed study run``, if runs fail or are
+    interrupted; the same command goes on then.
+    """
+    from snowshed.cli.main.commands import study as command
+    from snowshed.study import Study
+
+    store = folder / RUNS
+    context.invoke(
+        command.run,
+        file=file,
+        folder=store,
+        quiet=quiet,
+        jobs=jobs,
+        threads=None,
+        scheduler=None,
+        retry_failed=False,
+    )
+    return store, Study.load(file).name

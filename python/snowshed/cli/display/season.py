@@ -1,0 +1,69 @@
+"""What the command ``snowshed season`` shows."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.run.season.driver import SeasonResult
+
+SEASON_TABLE = {
+    "date": ("date", "{}"),
+    "event": ("event", "{}"),
+    "released": ("released", "{}"),
+    "snowfall\nm": ("snowfall_m", "{:.2f}"),
+    "density\nkg/m3": ("density_kg_m3", "{:.0f}"),
+    "on panel\nm": ("panel_snow_m", "{:.3f}"),
+    "pull\nPa": ("driving_pa", "{:.0f}"),
+    "hold\nPa": ("resisting_pa", "{:.0f}"),
+    "stack\nheight, m": ("stack_height_m", "{:.2f}"),
+    "stack\nlength, m": ("stack_length_m", "{:.2f}"),
+    "clearance\nm": ("clearance_m", "{:.2f}"),
+}
+SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
+
+
+def print_season(result: SeasonResult, folder: Path) -> None:
+    """Print the table, the event that buries the panel, and what to know of them."""
+    console = wide_console(120)
+    columns = dict(SEASON_TABLE)
+    if (result.table["settled_height_m"] < result.table["stack_height_m"]).any():
+        columns.update(SETTLED)
+    shown = plain_table("Season", columns, padding=0)
+    for row in result.table.to_dict("records"):
+        shown.add_row(*(_cell(row[name], form) for name, form in columns.values()))
+    console.print(shown)
+    for line in (*verdict(result), *(f"note: {note}" for note in result.notes)):
+        console.print(line)
+    console.print(f"season.csv and season.png in {folder}")
+
+
+def verdict(result: SeasonResult) -> list[str]:
+    """Say when the stack reaches the panel's lower edge."""
+    if not result.simulated:
+        return []
+    return [
+        _reached("the snow below the panel's lower edge reaches it", result.burial_event, result),
+        _reached("the stack is as high as the lower edge", result.crest_event, result),
+    ]
+
+
+def _reached(what: str, event: int | None, result: SeasonResult) -> str:
+    if event is None:
+        return f"{what}: not within {result.simulated} slide-offs"
+    rows = result.table[result.table["event"] == event]
+    return f"{what}: with event {event}, {rows['date'].iloc[0]}"
+
+
+def _cell(value: Any, form: str) -> str:
+    missing = not isinstance(value, str) and (value is None or not math.isfinite(_number(value)))
+    return "" if missing else form.format(value)
+
+
+def _number(value: Any) -> float:
+    try:
+        return float(value)
+    except TypeError:  # pandas' mark for a missing integer
+        return math.nan

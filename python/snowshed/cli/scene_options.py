@@ -1,0 +1,141 @@
+"""Every parameter of a scene as a command-line option, generated from the core's schema.
+
+The option for a parameter is the last part of its path in kebab case (``--youngs-modulus`` for
+``snow.youngs_modulus``). Parameters of the panel, slab, ground and domain carry the section's name
+in front (``--slab-width``), and the names in `SHORT_NAMES` are exceptions to both.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Optional, TypeVar
+
+import click
+
+from snowshed._core import InputError
+from snowshed.io.input_file import read_input
+from snowshed.scene.components import Ground, Panel, Slab, Snow
+from snowshed.scene.scene import Scene
+from snowshed.scene.schema import Parameter, scene_parameters
+
+SHORT_NAMES = {
+    "dimension": "dim",
+    "panel.height": "height",
+    "panel.length": "length",
+    "panel.width": "width",
+    "panel.tilt": "tilt",
+    "panel.friction": "friction",
+    "slab.thickness": "thickness",
+    "slab.layers": "layer",
+    "events.count": "events",
+    "snow.model": "snow-model",
+    "obstacles": "obstacle",
+    "bodies": "body",
+}
+PREFIXED = ("panel", "slab", "ground", "domain")
+TYPES: Mapping[str, Any] = {"number": float, "integer": int, "string": str}
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def option_name(path: str) -> str:
+    """Return the option for a parameter's dotted path.
+
+    Examples
+    --------
+    >>> [option_name(p) for p in ("panel.tilt", "panel.thickness", "snow.density")]
+    ['--tilt', '--panel-thickness', '--density']
+    """
+    section, _, leaf = path.rpartition(".")
+    name = f"{section}-{leaf}" if section in PREFIXED else leaf
+    return "--" + SHORT_NAMES.get(path, name).replace("_", "-").replace(".", "-")
+
+
+def scene_options(command: Command) -> Command:
+    """Add all options that describe a scene to a click command."""
+    for parameter in reversed(scene_parameters()):
+        command = _option(parameter)(command)
+    command = click.option(
+        "--snow", "snow_preset", metavar="NAME", help="Snow of the thesis: calibrated, reference."
+    )(command)
+    return click.option(
+        "--preset",
+        metavar="NAME",
+        help="Scene to start from: lab-40, lab-50, sensitivity, geometry.",
+    )(command)
+
+
+def scene_from_options(
+    preset: Optional[str], snow_preset: Optional[str], options: Mapping[str, Any]
+) -> Scene:
+    """Build a scene: the preset (or a bare panel), then the snow, then single options."""
+    scene = Scene.preset(preset) if preset else Scene(panel=Panel(), slab=Slab(), ground=Ground())
+    if snow_preset:
+        scene.update({"snow": Snow.preset(snow_preset).to_data()})
+    for name, value in options.items():
+        if value is not None and value != ():
+            scene.set(name.replace("__", "."), value)
+    return scene
+
+
+def in_terms_of_options(error: InputError) -> InputError:
+    """Return the error with the option in front, if it is about a parameter that has one."""
+    path = path_of(error)
+    if path in {parameter.path for parameter in scene_parameters()}:
+        where, colon, rest = str(error).partition(":")
+        return InputError(f"{option_name(path)} ({where}){colon}{rest}")
+    return error
+
+
+def path_of(error: InputError) -> str:
+    """Return the parameter that an error is about, as ``panel.tilt``; empty if it names none."""
+    where = str(error).partition(":")[0]
+    return where[1:].replace("/", ".") if where.startswith("/") else ""
+
+
+def numbers(text: str) -> list[float]:
+    """Parse numbers with commas between them."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise click.BadParameter(f"{text!r} is not a list of numbers such as 0.5,0,1") from None
+
+
+def json_object(text: str) -> Any:
+    """Parse a JSON object, given as text or as the name of a file that holds it."""
+    try:
+        if not text.lstrip().startswith("{"):
+            text = read_input(Path(text)).decode("utf-8")
+        return json.loads(text)
+    except (OSError, ValueError, RecursionError) as error:
+        raise click.BadParameter(f"{error}; give a JSON object, or its file") from None
+
+
+def _option(parameter: Parameter) -> Callable[[Command], Command]:
+    name = option_name(parameter.path)
+    target = parameter.path.replace(".", "__")
+    text = _help(parameter)
+    if parameter.kind == "boolean":
+        return click.option(f"{name}/--no-{name[2:]}", target, default=None, help=text)
+    if parameter.kind == "list":
+        return click.option(
+            name, target, type=json_object, multiple=True, metavar="JSON", help=text
+        )
+    if parameter.kind == "vector":
+        return click.option(name, target, type=numbers, metavar="X,Y,Z", help=text)
+    kind = click.Choice(parameter.choices) if parameter.choices else TYPES[parameter.kind]
+    return click.option(name, target, type=kind, help=text)
+
+
+def _help(parameter: Parameter) -> str:
+    notes = [parameter.unit] if parameter.unit else []
+    if parameter.kind == "list":
+        notes.append("may be repeated")
+    elif parameter.default not in (None, ""):
+        default = parameter.default
+        notes.append(f"default {default if isinstance(default, str) else json.dumps(default)}")
+    section = parameter.path.partition(".")[0]
+    subject = f"{section.capitalize()}: " if section in PREFIXED else ""
+    return subject + parameter.description + (f" [{'; '.join(notes)}]" if notes else "")

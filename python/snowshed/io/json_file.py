@@ -1,0 +1,81 @@
+"""JSON objects in files that somebody may have damaged."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from snowshed._core import InputError
+from snowshed.io.input_file import read_input
+from snowshed.io.messages import shortened
+
+#: What the values of a JSON object may have to be, in words.
+KINDS = {dict: "an object", list: "a list", str: "a text", float: "a finite number"}
+
+
+def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
+    """Return the JSON object in a text.
+
+    Raises
+    ------
+    InputError
+        If it holds anything else, naming `where` it is.
+
+    Examples
+    --------
+    >>> parse_object('{"wall_s": 2.5}', "run.json")
+    {'wall_s': 2.5}
+    """
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{where}: damaged: {shortened(str(error), 200)}") from None
+    if not isinstance(found, dict):
+        raise InputError(f"{where}: damaged: not a JSON object")
+    return found
+
+
+def read_object(path: Path) -> dict[str, Any]:
+    """Return the JSON object in a file; see `parse_object`."""
+    return parse_object(read_input(path), str(path))
+
+
+def check_values(found: Any, kinds: Mapping[str, type], where: str) -> None:
+    """Raise InputError unless JSON data is an object with these keys and kinds of values.
+
+    Parameters
+    ----------
+    found
+        The data.
+    kinds
+        For every key one of `KINDS`.
+    where
+        Where the data is, for the message.
+
+    Examples
+    --------
+    >>> check_values({"wall_s": 2.5, "machine": "a"}, {"wall_s": float}, "run.json")
+    """
+    if not isinstance(found, dict):
+        raise InputError(f"{where}: damaged: not a JSON object")
+    for key, kind in kinds.items():
+        if key not in found:
+            raise InputError(f"{where}: damaged: /{key} is missing")
+        if not (is_number(found[key]) if kind is float else isinstance(found[key], kind)):
+            shown = shortened(json.dumps(found[key]))
+            raise InputError(f"{where}: damaged: /{key}: {shown} is not {KINDS[kind]}")
+
+
+def is_number(value: Any) -> bool:
+    """Return whether JSON data is a number that a float can hold.
+
+    Examples
+    --------
+    >>> [is_number(value) for value in (1, 2.5, True, "1", float("nan"), 10**400)]
+    [True, True, False, False, False, False]
+    """
+    numeric = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return numeric and abs(value) <= sys.float_info.max

@@ -1,0 +1,1 @@
+"""Settings and Python faces of the methods."""

@@ -1,0 +1,1 @@
+"""Figures, their labels and style, HTML pages."""

@@ -1,0 +1,76 @@
+"""The key numbers of a scene in a line or two, for pictures."""
+
+from __future__ import annotations
+
+from typing import Any
+
+MOST_LAYERS = 4  # whose thicknesses are named one by one
+
+
+def scene_caption(scene: dict[str, Any]) -> str:
+    """Return what tells one scene from another.
+
+    Parameters
+    ----------
+    scene
+        Complete scene data, as in scene.json.
+
+    Examples
+    --------
+    >>> from snowshed.scene.scene import Scene
+    >>> print(scene_caption(Scene.preset("lab-50").resolve().data))
+    3D · panel 0.245 m, tilt 50°, 0.33 m above ground, friction 0.3 · slab 0.02 m thick · dx 0.01 m
+    snow 210 kg/m³, E 1 MPa, nu 0.3, M 0.5, p₀ 7 kPa, β 0.2, ξ 0.1 · events carry
+    """
+    parts = [f"{scene['dimension']}D"]
+    if panel := scene.get("panel"):
+        parts.append(
+            f"panel {panel['length']:g} m, tilt {panel['tilt']:g}°, "
+            f"{panel['height']:g} m above ground, {_contact(panel)}"
+        )
+    if slab := scene.get("slab"):
+        parts.append(_slab(slab))
+    if tilt := (scene.get("ground") or {}).get("tilt"):
+        parts.append(f"ground tilt {tilt:g}°")
+    parts.append(f"dx {scene['numerics']['dx']:g} m")
+    return " · ".join(parts) + "\n" + _snow(scene) + f" · events {_between(scene)}"
+
+
+def _slab(slab: dict[str, Any]) -> str:
+    layers = slab["layers"]
+    if not layers:
+        return f"slab {slab['thickness']:g} m thick"
+    thicknesses = [f"{layer['thickness']:.3g}" for layer in layers]
+    if len(layers) > MOST_LAYERS:
+        low, high = min(thicknesses, key=float), max(thicknesses, key=float)
+        return f"{len(layers)} layers of {low} to {high} m"
+    return f"layers {', '.join(thicknesses)} m"
+
+
+def _contact(panel: dict[str, Any]) -> str:
+    return "sticky" if panel["condition"] == "sticky" else f"friction {panel['friction']:g}"
+
+
+def _densities(scene: dict[str, Any]) -> str:
+    layers = (scene.get("slab") or {}).get("layers") or [{}]
+    found = [layer.get("snow", scene["snow"])["density"] for layer in layers]
+    return " to ".join(f"{density:g}" for density in sorted({min(found), max(found)}))
+
+
+def _snow(scene: dict[str, Any]) -> str:
+    snow = scene["snow"]
+    text = (
+        f"snow {_densities(scene)} kg/m³, E {snow['youngs_modulus'] / 1e6:g} MPa, "
+        f"nu {snow['poissons_ratio']:g}"
+    )
+    if snow["model"] == "elastic":
+        return text + ", elastic"
+    return text + (
+        f", M {snow['critical_state_slope']:g}, "
+        f"p₀ {snow['preconsolidation_pressure'] / 1e3:g} kPa, "
+        f"β {snow['cohesion']:g}, ξ {snow['hardening_factor']:g}"
+    )
+
+
+def _between(scene: dict[str, Any]) -> str:
+    return str(scene["events"]["between"])

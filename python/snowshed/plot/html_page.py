@@ -1,0 +1,132 @@
+"""Pages that need no other file: tables of texts, embedded figures, one look for all reports."""
+
+from __future__ import annotations
+
+import base64
+import io
+import struct
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from snowshed._core import InputError
+from snowshed.io.atomic import replacing
+
+if TYPE_CHECKING:
+    import jinja2
+    from matplotlib.figure import Figure
+
+#: Tables with more rows than this are folded.
+LONG = 12
+DPI = 130
+CSS_PIXELS = 96  # per inch
+PNG, HEADER = b"\x89PNG", 24  # how a PNG file begins; bytes up to the end of its size
+#: Cells with these words stand out, in the colour of a class of the page's style.
+STATES: Mapping[str, str] = {
+    "holds": "good",
+    "does not hold": "bad-state",
+    "not measured": "open",
+    "confirmed": "good",
+    "contradicted": "bad-state",
+    "undecided": "open",
+}
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table of texts.
+
+    Attributes
+    ----------
+    head, rows
+        Texts; every row as long as the head.
+    align
+        A letter for each column: "l" for words, at the left, "r" for numbers.
+    groups
+        Headings over several columns, with the number of columns; none if empty.
+    """
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    align: str
+    groups: Sequence[tuple[str, int]] = ()
+
+    @property
+    def long(self) -> bool:
+        """Whether it should be folded."""
+        return len(self.rows) > LONG
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure.
+
+    Attributes
+    ----------
+    name, title, caption
+        Of the file without its ending; what it shows, in a few words and in a sentence.
+    png, width
+        The picture, and how wide it should be, in CSS pixels.
+    """
+
+    name: str
+    title: str
+    caption: str
+    png: bytes
+    width: int
+
+    @classmethod
+    def drawn(cls, figure: Figure, name: str, title: str, caption: str) -> Picture:
+        """Return a figure as a picture."""
+        file = io.BytesIO()
+        figure.savefig(file, format="png", dpi=DPI)
+        width = round(CSS_PIXELS * figure.get_figwidth())
+        return cls(name, title, caption, file.getvalue(), width)
+
+    @classmethod
+    def read(cls, file: Path, title: str, caption: str, *, dpi: float) -> Picture:
+        """Return a PNG file, drawn with so many dots per inch, as a picture.
+
+        Raises
+        ------
+        InputError
+            If it is no PNG file.
+        """
+        png = file.read_bytes()
+        if not png.startswith(PNG) or len(png) < HEADER:
+            raise InputError(f"{file}: damaged: not a PNG file")
+        (pixels,) = struct.unpack(">I", png[16:20])  # the header's first field
+        return cls(file.stem, title, caption, png, round(CSS_PIXELS * pixels / dpi))
+
+    @property
+    def base64(self) -> str:
+        """The PNG as a page can hold it."""
+        return base64.b64encode(self.png).decode()
+
+
+def write_pictures(pictures: Iterable[Picture], folder: Path) -> None:
+    """Write pictures into a folder, as PNG files."""
+    folder.mkdir(exist_ok=True)
+    for picture in pictures:
+        with replacing(folder / f"{picture.name}.png") as beside:
+            beside.write_bytes(picture.png)
+
+
+def template(package: str, name: str) -> jinja2.Template:
+    """Return a page's template out of a package's folder ``templates``.
+
+    It may extend ``page.html.j2`` and import the macros of ``parts.html.j2``.
+    """
+    import jinja2
+
+    loaders = [jinja2.PackageLoader(one) for one in dict.fromkeys((package, "snowshed.plot"))]
+    environment = jinja2.Environment(
+        loader=jinja2.ChoiceLoader(loaders),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.globals["states"] = STATES
+    return environment.get_template(name)

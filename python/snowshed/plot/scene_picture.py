@@ -1,0 +1,126 @@
+"""A picture of a scene before it is run: its structures and its snow, from the side."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from snowshed import _core
+from snowshed.io.arrays import Floats
+from snowshed.plot.caption import scene_caption
+from snowshed.plot.figure_style import FAINT, INK, STACK, blank, describe, quiet
+from snowshed.scene.builders.slope import BOARD_CELLS
+from snowshed.scene.scene import ResolvedScene, Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Limits = tuple[float, float, float, float]  # left, right, bottom, top
+
+WIDTH = 9.0  # inches
+SAMPLES = (900, 500)  # of the obstacles, along x and z
+
+
+def scene_figure(scene: Union[Scene, ResolvedScene]) -> Figure:
+    """Draw a scene in the plane y = 0, with the snow of its first event in place.
+
+    Parameters
+    ----------
+    scene
+        Anything that can be run.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong.
+    """
+    ready = scene.resolve() if isinstance(scene, Scene) else scene
+    simulation = _core.Simulation(ready.json, ready.base_dir)
+    simulation.begin_event()
+    data = ready.data
+    left, right, bottom, top = _limits(simulation, data)
+    figure = blank(WIDTH, min(1.2 + (WIDTH - 1) * (top - bottom) / (right - left), 9.0))
+    axes = figure.subplots()
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    _draw_obstacles(axes, simulation)
+    _draw_ground(axes, data, simulation.ground_tilt_deg)
+    x, _, z = _near_section(simulation.positions(), data).T
+    axes.scatter(
+        x,
+        z,
+        s=_dot(data, right - left),
+        color=STACK,
+        linewidths=0,
+        rasterized=True,
+        zorder=3,
+        label="snow",
+    )
+    _draw_panel(axes, simulation, data)
+    axes.legend(frameon=False, fontsize=9, loc="upper right", markerscale=3)
+    quiet(axes)
+    axes.set_xlabel("x, m", color=INK, fontsize=9)
+    axes.set_ylabel("z, m", color=INK, fontsize=9)
+    describe(figure, scene_caption(data))
+    return figure
+
+
+def _limits(simulation: _core.Simulation, scene: dict[str, Any]) -> Limits:
+    """Return a view of the snow, of what holds it, and of as much ground to either side."""
+    snow = simulation.positions()[:, [0, 2]]
+    low, high = snow.min(axis=0), snow.max(axis=0)
+    floor = min(float(low[1]), 0.0)
+    room = 0.5 * max(float(high[0] - low[0]), float(high[1]) - floor)
+    fall = np.tan(np.radians(simulation.ground_tilt_deg)) * (float(high[0]) + room)
+    return (
+        float(low[0]) - room,
+        float(high[0]) + room,
+        min(floor, -fall) - 0.2 * room - scene["numerics"]["dx"],
+        float(high[1]) + 0.5 * room,
+    )
+
+
+def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
+    x = np.linspace(*axes.get_xlim(), SAMPLES[0])
+    z = np.linspace(*axes.get_ylim(), SAMPLES[1])
+    points = np.stack(np.meshgrid(x, 0.0, z, indexing="ij"), axis=-1).reshape(-1, 3)
+    distance = simulation.obstacle_distance(points).reshape(len(x), len(z)).T
+    if distance.min() < 0 < distance.max() < np.inf:
+        axes.contourf(x, z, distance, [-np.inf, 0.0], colors=["#c9d1d8"], zorder=1)
+        axes.contour(x, z, distance, [0.0], colors=[FAINT], linewidths=1.2, zorder=2)
+
+
+def _draw_panel(axes: Axes, simulation: _core.Simulation, scene: dict[str, Any]) -> None:
+    """Draw the panel's face, and the board below it as thick as the core makes it."""
+    frame = simulation.panel_frame()
+    if frame is None:
+        return
+    half = 0.5 * frame["length"] * np.asarray(frame["slope"])
+    face = np.array([frame["center"] - half, frame["center"] + half])
+    thickness = max(scene["panel"]["thickness"], BOARD_CELLS * scene["numerics"]["dx"])
+    back = face[::-1] - thickness * np.asarray(frame["normal"])
+    axes.fill(*np.concatenate([face, back])[:, [0, 2]].T, color="#c9d1d8", linewidth=0, zorder=1)
+    axes.plot(*face[:, [0, 2]].T, color=INK, linewidth=3.5, zorder=4, label="panel")
+
+
+def _draw_ground(axes: Axes, scene: dict[str, Any], tilt: float) -> None:
+    if not scene.get("ground"):
+        return
+    x = np.array(axes.get_xlim())
+    z = -x * np.tan(np.radians(tilt))
+    axes.fill_between(x, z, axes.get_ylim()[0], color="#eef1f4", linewidth=0, zorder=0)
+    axes.plot(x, z, color=FAINT, linewidth=1.2, zorder=1)
+
+
+def _near_section(positions: Floats, scene: dict[str, Any]) -> Floats:
+    """Return the particles that lie within a cell of y = 0; in 2D all of them."""
+    near: Floats = positions[np.abs(positions[:, 1]) <= scene["numerics"]["dx"]]
+    return near
+
+
+def _dot(scene: dict[str, Any], width: float) -> float:
+    """Return the area of a particle's dot, points squared, so that dots nearly touch."""
+    count = scene["seeding"]["particles_per_voxel"]
+    spacing = scene["numerics"]["dx"] / count ** (1.0 / scene["dimension"])
+    return float(np.clip((0.9 * spacing * 72.0 * (WIDTH - 1.0) / width) ** 2, 1.0, 60.0))

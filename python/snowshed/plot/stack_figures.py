@@ -1,0 +1,322 @@
+"""Pictures of a run: the stack from the side, and its growth from event to event."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from snowshed import _core
+from snowshed.io.arrays import Floats
+from snowshed.plot.caption import scene_caption
+from snowshed.plot.figure_style import (
+    BODY,
+    FAINT,
+    FIRST,
+    GRID,
+    INK,
+    LAST,
+    STACK,
+    blank,
+    describe,
+    quiet,
+)
+from snowshed.snow.stack.measure import Extent, StackMeasure, level
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+PICTURED_PARTICLES = 100_000  # at most; a regular choice of them beyond
+MEASURES = ("height", "length", "head", "tail")
+WIDTH, VIEW_WIDTH = 9.0, 8.1  # inches, of the figure and of the views in it
+LOWEST, HIGHEST = 1.6, 5.0  # inches, of a view
+
+Limits = tuple[float, float, float, float]  # left, right, bottom, top
+
+
+def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
+    """Draw the stack from the side: above with the panel it came from, below enlarged.
+
+    Particles are coloured by the event that brought them; the outline, the panel and the ground
+    are lines. In either view both axes are to the same scale, in metres. Where chunks have rolled
+    so far that the stack could not be seen, the largest connected body is shown and measured.
+
+    Parameters
+    ----------
+    simulation
+        Gives the particles, the panel, the tilt of the ground, and the scene.
+    stack
+        The measure of the same particles.
+    """
+    tilt, frame = simulation.ground_tilt_deg, simulation.panel_frame()
+    views = [_filling(x) for x in (_scene_limits(stack, tilt, frame), _stack_limits(stack, tilt))]
+    heights = [VIEW_WIDTH * _steepness(view) for view in views]
+    figure = blank(WIDTH, sum(heights) + 1.9)
+    overview, enlarged = figure.subplots(2, 1, height_ratios=heights)
+    for axes, view in zip((overview, enlarged), views):
+        axes.set(xlim=view[:2], ylim=view[2:], aspect="equal", ylabel="z, m")
+        quiet(axes)
+        _draw_ground(axes, tilt)
+        _draw_obstacles(axes, simulation)
+        _draw_particles(axes, simulation)
+        _draw_scale(axes)
+    if frame is not None:
+        _draw_panel(overview, frame, tilt)
+    _draw_measures(enlarged, stack, tilt)
+    _name_events(overview, simulation)
+    enlarged.set_xlabel("x from the panel's centre, m" if frame is not None else "x, m")
+    title = f"Stack after event {simulation.event}, from the side"
+    if _pictured(stack) is stack.body:
+        title += f": its largest body; 97 % of the snow lies within {stack.length:.2f} m"
+    _caption(figure, simulation.scene, title)
+    return figure
+
+
+def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
+    """Draw height, length, head and tail against the event; dashed: the largest connected body.
+
+    Parameters
+    ----------
+    table
+        The table of events, as in ``events.csv``.
+    scene
+        The scene as JSON text, for the caption.
+    """
+    figure = blank(WIDTH, 6.6)
+    for axes, name in zip(np.ravel(figure.subplots(2, 2, sharex=True)), MEASURES):
+        stack, body = table[f"{name}_m"], table[f"body_{name}_m"]
+        axes.plot(table["event"], stack, "o-", color=STACK, linewidth=2, label="stack (97 %)")
+        axes.plot(table["event"], body, "s--", color=BODY, markersize=4, label="largest body")
+        where = ", from the panel's centre" if name in ("head", "tail") else ""
+        axes.set_title(f"{name}, m{where}", loc="left", color=INK, fontsize=11)
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.margins(y=0.12)
+        if name in ("height", "length"):
+            axes.set_ylim(0.0, 1.15 * max(stack.max(), body.max()) or 1.0)
+        else:
+            axes.set_xlabel("event")
+        axes.grid(color=GRID, linewidth=0.8)
+        quiet(axes)
+    figure.axes[0].legend(frameon=False, fontsize=9, loc="lower right")
+    _caption(figure, scene, "Growth of the stack")
+    return figure
+
+
+def _caption(figure: Figure, scene: str, title: str) -> None:
+    describe(figure, f"{title}\n{scene_caption(json.loads(scene))}")
+
+
+def _shades(count: int) -> list[Any]:
+    return list(colormaps["viridis"](np.linspace(FIRST, LAST, count)))
+
+
+def _draw_particles(axes: Axes, simulation: _core.Simulation) -> None:
+    """Draw particles in the size they have, those that lie nearest in front."""
+    positions, events = simulation.positions(), simulation.events()
+    if len(positions) == 0:
+        return
+    every = 1 + len(positions) // PICTURED_PARTICLES
+    shown = np.arange(0, len(positions), every)
+    shown = shown[np.argsort(-positions[shown, 1], kind="stable")]
+    count = int(events.max())
+    colours = np.array(_shades(count))[np.clip(events[shown], 1, count) - 1]
+    diameter = _points_per_metre(axes) * _spacing(json.loads(simulation.scene))
+    size = float(np.clip(every * (0.8 * diameter) ** 2, 0.6, 60.0))
+    x, _, z = positions[shown].T
+    axes.scatter(x, z, s=size, c=colours, linewidths=0, rasterized=True, zorder=3)
+
+
+def _spacing(scene: dict[str, Any]) -> float:
+    """Return the mean distance of particles as they are seeded, m."""
+    count: float = scene["seeding"]["particles_per_voxel"]
+    return float(scene["numerics"]["dx"] / count ** (1 / scene["dimension"]))
+
+
+def _points_per_metre(axes: Axes) -> float:
+    """Return the scale of a view, about."""
+    left, right = axes.get_xlim()
+    return VIEW_WIDTH * 72 / (right - left)
+
+
+def _name_events(axes: Axes, simulation: _core.Simulation) -> None:
+    """Say which colour is which event, where there is air: at the upper right."""
+    count = max(simulation.event, 1)
+    shades = _shades(count)
+    every = range(1, count + 1, 1 + (count - 1) // 8)
+    axes.legend(
+        handles=[
+            Line2D([], [], marker="o", linestyle="", color=shades[i - 1], label=f"event {i}")
+            for i in every
+        ],
+        frameon=False,
+        fontsize=9,
+        loc="upper right",
+    )
+
+
+def _draw_ground(axes: Axes, tilt: float) -> None:
+    left, right = axes.get_xlim()
+    span = right - left
+    x = np.array([left - span, right + span])
+    z = -x * np.tan(np.radians(tilt))
+    view = axes.axis()
+    axes.plot(x, z, color=FAINT, linewidth=1.2, zorder=1)
+    axes.fill_between(x, z, z.min() - span, color="#eef1f4", linewidth=0, zorder=0)
+    axes.axis(view)
+
+
+def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
+    """Draw what the scene's obstacles are in the plane y = 0."""
+    x = np.linspace(*axes.get_xlim(), 600)
+    z = np.linspace(*axes.get_ylim(), 400)
+    points = np.stack(np.meshgrid(x, 0.0, z, indexing="ij"), axis=-1).reshape(-1, 3)
+    distance = simulation.obstacle_distance(points).reshape(len(x), len(z)).T
+    if distance.min() < 0 < distance.max() < np.inf:
+        axes.contourf(x, z, distance, [-np.inf, 0.0], colors=["#c9d1d8"], zorder=1)
+        axes.contour(x, z, distance, [0.0], colors=[FAINT], linewidths=1.2, zorder=2)
+
+
+def _draw_panel(axes: Axes, frame: dict[str, Any], tilt: float) -> None:
+    """Draw the panel's face, and the height of its lower edge above the ground."""
+    upper, lower = _panel_ends(frame)
+    axes.plot(*zip(upper, lower), color=INK, linewidth=3.5, solid_capstyle="round", zorder=4)
+    foot = np.array([lower[0], -lower[0] * np.tan(np.radians(tilt))])
+    axes.plot(*zip(lower, foot), color=FAINT, linewidth=1.0, linestyle=(0, (4, 3)), zorder=2)
+    axes.annotate(
+        f"{lower[1] - foot[1]:g} m",
+        (lower + foot) / 2,
+        (-5, 0),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+        color=INK,
+        fontsize=9,
+    )
+
+
+def _draw_measures(axes: Axes, stack: StackMeasure, tilt: float) -> None:
+    """Draw the outline, and height and length as dimension lines along the ground."""
+    if len(stack.outline) == 0:
+        return
+    shown = _pictured(stack)
+    axes.plot(*_tilted(shown.outline, tilt).T, color=INK, linewidth=1.3, zorder=5)
+    _dimension_line(axes, _length_ends(shown), tilt, f"length {shown.length:.3f} m", above=False)
+    crest = np.array([[shown.crest, 0.0], [shown.crest, shown.height]])
+    _dimension_line(axes, crest, tilt, f"height {shown.height:.3f} m", above=True)
+
+
+def _pictured(stack: StackMeasure) -> Extent:
+    """Return the stack, or its largest body if that would be too small to see."""
+    return stack.body if stack.length > 2 * stack.body.length > 0 else stack
+
+
+def _length_ends(shown: Extent) -> Floats:
+    """Return where the dimension line of the length goes, on levelled ground."""
+    below = -0.03 * max(shown.length, 4 * shown.height)
+    return np.array([[shown.head, below], [shown.tail, below]])
+
+
+def _frame(shown: Extent) -> Floats:
+    """Return the lower ends and the top of what is shown, on levelled ground."""
+    return np.vstack([_length_ends(shown), [[shown.crest, shown.height]]])
+
+
+def _dimension_line(axes: Axes, ends: Floats, tilt: float, label: str, *, above: bool) -> None:
+    start, end = _tilted(ends, tilt)
+    arrow = {"arrowstyle": "<->", "color": BODY, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.3}
+    axes.annotate("", end, start, arrowprops=arrow, zorder=6)
+    anchor = end if above else (start + end) / 2
+    axes.annotate(
+        label,
+        anchor,
+        (0, 6 if above else -6),
+        textcoords="offset points",
+        ha="center",
+        va="bottom" if above else "top",
+        color=BODY,
+        fontsize=10,
+        zorder=7,
+    )
+
+
+def _draw_scale(axes: Axes) -> None:
+    """Draw a bar of a round length, about an eighth of the width, at the lower left."""
+    left, right = axes.get_xlim()
+    length = _round_down((right - left) / 8)
+    across = axes.get_xaxis_transform()  # x in metres, z as a part of the height
+    start, level = left + 0.02 * (right - left), 0.05
+    bar: dict[str, Any] = {"color": INK, "linewidth": 3, "solid_capstyle": "butt", "zorder": 6}
+    axes.plot([start, start + length], [level] * 2, transform=across, scalex=False, **bar)
+    label = f"{length:g} m" if length >= 1 else f"{100 * length:g} cm"
+    axes.annotate(
+        label,
+        (start + length, level),
+        (5, 0),
+        xycoords=across,
+        textcoords="offset points",
+        va="center",
+        fontsize=9,
+        color=INK,
+    )
+
+
+def _round_down(value: float) -> float:
+    """Return the largest of 1, 2 or 5 times a power of ten that is not above `value`."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(max(m * power for m in (1, 2, 5) if m * power <= value * (1 + 1e-9)))
+
+
+def _tilted(points: Floats, tilt: float) -> Floats:
+    """Turn (x, z) from levelled ground back to where it is."""
+    x, z = points.T
+    return level(np.column_stack([x, 0 * x, z]), -tilt)[:, [0, 2]]
+
+
+def _panel_ends(frame: dict[str, Any]) -> tuple[Floats, Floats]:
+    center, slope = np.asarray(frame["center"]), np.asarray(frame["slope"])
+    half = 0.5 * frame["length"] * slope
+    return (center - half)[[0, 2]], (center + half)[[0, 2]]
+
+
+def _steepness(limits: Limits) -> float:
+    left, right, bottom, top = limits
+    return (top - bottom) / (right - left)
+
+
+def _filling(limits: Limits) -> Limits:
+    """Widen limits to the right and upward until they fill a view."""
+    left, right, bottom, top = limits
+    right = left + max(right - left, (top - bottom) * VIEW_WIDTH / HIGHEST)
+    top = bottom + max(top - bottom, (right - left) * LOWEST / VIEW_WIDTH)
+    return left, right, bottom, top
+
+
+def _stack_limits(stack: StackMeasure, tilt: float) -> Limits:
+    """Return a close view of the stack and its dimension lines."""
+    if len(stack.outline) == 0:
+        return 0.0, 1.0, -0.1, 0.3
+    return _around(_tilted(_frame(_pictured(stack)), tilt), 0.1)
+
+
+def _scene_limits(stack: StackMeasure, tilt: float, frame: dict[str, Any] | None) -> Limits:
+    """Return a view of the panel, the ground below it and the stack."""
+    points = [np.zeros((1, 2))]
+    if len(stack.outline):
+        points.append(_tilted(_frame(_pictured(stack)), tilt))
+    if frame is not None:
+        ends = np.array(_panel_ends(frame))
+        points += [ends, ends * [1, 0] - ends[:, :1] * [0, np.tan(np.radians(tilt))]]
+    return _around(np.concatenate(points), 0.1)
+
+
+def _around(points: Floats, margin: float) -> Limits:
+    """Return limits around points, with a part of their larger extent as margin."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    gap = margin * float(max(high - low)) or margin
+    return low[0] - gap, high[0] + gap, low[1] - gap, high[1] + gap

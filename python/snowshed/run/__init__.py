@@ -1,0 +1,1 @@
+"""Running scenes: events, results, what happens between events, seasons."""

@@ -1,0 +1,19 @@
+"""A season of snowfalls on a panel: gathering, letting go, piling up, and burying the panel."""
+
+from snowshed.run.season.accumulation import Day, accumulate
+from snowshed.run.season.driver import SeasonResult, run_season
+from snowshed.run.season.release import Balance, balance
+from snowshed.run.season.settings import SeasonSettings
+from snowshed.run.season.weather import Weather, read_season
+
+__all__ = [
+    "Balance",
+    "Day",
+    "SeasonResult",
+    "SeasonSettings",
+    "Weather",
+    "accumulate",
+    "balance",
+    "read_season",
+    "run_season",
+]

@@ -1,0 +1,124 @@
+"""Snow gathering on the panel, row after row of the season file, until it lets go."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Optional
+
+from snowshed.run.ageing import Interval
+from snowshed.run.season.column import SnowColumn
+from snowshed.run.season.release import Balance, balance
+from snowshed.run.season.settings import SeasonSettings
+from snowshed.run.season.weather import Weather
+from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
+
+
+@dataclass(frozen=True)
+class Day:
+    """What a row of the season file did to the snow on the panel.
+
+    Attributes
+    ----------
+    weather
+        The row.
+    density
+        Of the row's snowfall, kg/m3, measured or estimated; None without snowfall.
+    load, thickness
+        Of the snow on the panel once it had fallen, kg per m2 of the panel, and m normal to it.
+    balance
+        What pulled at it and what held it.
+    event
+        Number of the release, from 1; None: it stayed.
+    """
+
+    weather: Weather
+    density: Optional[float]
+    load: float
+    thickness: float
+    balance: Balance
+    event: Optional[int]
+
+
+def accumulate(
+    season: Sequence[Weather], settings: SeasonSettings, tilt: float, gravity: float = 9.81
+) -> list[Day]:
+    """Return what every row of a season does to the snow on a panel.
+
+    Snow of a depth h on level ground lies h cos(Phi) thick on the panel, measured normal to it:
+    its mass per area of the ground is the same. Snow lets go as a whole (`balance`). It neither
+    melts nor is blown away.
+
+    Parameters
+    ----------
+    season
+        The rows, in order.
+    settings
+        Friction, adhesion and the rest.
+    tilt
+        Phi, the panel's, degrees.
+    gravity
+        m/s2.
+
+    Examples
+    --------
+    >>> from datetime import datetime
+    >>> row = Weather(2, datetime(2024, 12, 1), 0.2, 100.0, -4.0)
+    >>> day, = accumulate([row], SeasonSettings(adhesion=50.0), tilt=60.0)
+    >>> round(day.load), round(day.balance.driving), round(day.balance.resisting), day.event
+    (10, 85, 84, 1)
+    """
+    slope = math.cos(math.radians(tilt))
+    snow = SnowColumn(load_factor=gravity * slope)
+    days: list[Day] = []
+    event = 0
+    for row, earlier in zip(season, [None, *season]):
+        if earlier is not None:
+            elapsed = (row.date - earlier.date).total_seconds()
+            snow.settle(settings.settling_law, elapsed, earlier.temperature)
+        density = _density(row, settings)
+        if density is not None:
+            snow.add(settings.catch * density * row.snowfall * slope, density)
+        held = _balance(row, settings, snow.mass, tilt, gravity)
+        released = held.releases
+        event += released
+        days.append(Day(row, density, snow.mass, snow.thickness, held, event if released else None))
+        if released:
+            snow.clear()
+    return days
+
+
+def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
+    """Return for every event but the first what time passes between it and the one before.
+
+    From a row of the season file to the next the temperature is that of the earlier one.
+    """
+    found: dict[int, list[Interval]] = {}
+    waiting: Optional[list[Interval]] = None
+    for day, earlier in zip(days, [None, *days]):
+        if earlier is not None and waiting is not None:
+            elapsed = (day.weather.date - earlier.weather.date).total_seconds()
+            waiting.append(Interval(elapsed, earlier.weather.temperature))
+        if day.event is not None:
+            if waiting is not None:
+                found[day.event] = waiting
+            waiting = []
+    return found
+
+
+def _density(row: Weather, settings: SeasonSettings) -> Optional[float]:
+    if not row.snowfall:
+        return None
+    if row.density is not None:
+        return row.density
+    relation = NEW_SNOW_DENSITY[settings.density]
+    return relation(row.temperature)
+
+
+def _balance(
+    row: Weather, settings: SeasonSettings, load: float, tilt: float, gravity: float
+) -> Balance:
+    friction = settings.friction if row.friction is None else row.friction
+    adhesion = settings.adhesion if row.adhesion is None else row.adhesion
+    return balance(load, tilt, friction, adhesion, gravity)

@@ -1,0 +1,104 @@
+"""How far the stack below a panel is from its lower edge, and when it gets there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from snowshed.io.arrays import Floats
+from snowshed.scene.builders.panel_edge import panel_edge
+from snowshed.snow.stack.measure import level
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """What is left between a panel's lower edge and the stack, m, normal to the ground.
+
+    Attributes
+    ----------
+    below
+        Between the edge and the snow right below it: all of its height where there is none, and 0
+        once the snow covers the edge.
+    crest
+        Between the edge's height and that of the highest snow, wherever it lies.
+    """
+
+    below: float
+    crest: float
+
+
+def clearance(scene: Mapping[str, Any], outline: Floats, height: float) -> Clearance:
+    """Measure the clearance over a stack.
+
+    Parameters
+    ----------
+    scene
+        The complete scene, with a panel.
+    outline : (k, 2)
+        Profile of the stack on levelled ground, m, as in outline.csv.
+    height
+        Of the stack, m.
+
+    Examples
+    --------
+    >>> from snowshed.scene.scene import Scene
+    >>> data = Scene.preset("lab-50").resolve().data
+    >>> heap = np.array([[0.0, 0.0], [0.2, 0.2], [0.4, 0.0]])
+    >>> left = clearance(data, heap, 0.2)
+    >>> round(left.below, 3), round(left.crest, 3)
+    (0.251, 0.13)
+    """
+    _, (x, z) = panel_ends(scene)
+    return Clearance(max(z - _surface(outline, x), 0.0), z - height)
+
+
+def below_panel(scene: Mapping[str, Any], outline: Floats) -> Floats:
+    """Return the points of an outline (k, 2) that do not lie over the panel's face.
+
+    Snow that rests against the panel's lower end may lie on it higher than what a measure of the
+    stack takes for snow on the panel.
+    """
+    if len(outline) == 0:
+        return outline
+    (upper_x, upper_z), (x, z) = panel_ends(scene)
+    face = np.interp(outline[:, 0], [upper_x, x], [upper_z, z])
+    over = (outline[:, 0] < x) & (outline[:, 1] > face)
+    below: Floats = outline[~over]
+    return below
+
+
+def panel_ends(scene: Mapping[str, Any]) -> list[list[float]]:
+    """Return the panel's upper and lower edge, [x, z], on levelled ground."""
+    edge = panel_edge(scene)
+    ends = np.array([[edge.upper[0], 0.0, edge.upper[1]], [edge.x, 0.0, edge.z]])
+    found: list[list[float]] = level(ends, _tilt(scene))[:, [0, 2]].tolist()
+    return found
+
+
+def _tilt(scene: Mapping[str, Any]) -> float:
+    return float((scene.get("ground") or {}).get("tilt") or 0.0)
+
+
+def _surface(outline: Floats, x: float) -> float:
+    """Return how high the snow lies at a place, m; none lies beyond the ends of the stack."""
+    if len(outline) == 0:
+        return 0.0
+    places, heights = outline[:, 0], outline[:, 1]
+    return float(np.interp(x, places, heights, left=0.0, right=0.0))
+
+
+def first_reached(clearances: Sequence[float], dx: float) -> Optional[int]:
+    """Return the first event after which a clearance is gone, from 1; None: it never is.
+
+    The grid sees no gap below one cell, and the particles' centres are half a spacing below the
+    surface: a clearance of `dx`, m, counts as none.
+
+    Examples
+    --------
+    >>> first_reached([0.3, 0.1, 0.02, -0.1], 0.02), first_reached([0.3], 0.02)
+    (3, None)
+    """
+    return next((event for event, left in enumerate(clearances, 1) if left <= dx), None)

@@ -1,0 +1,47 @@
+"""The results folder of a season: what is in it.
+
+================== ==========================================================================
+season.csv         one row per row of the season file: `SEASON_COLUMNS`
+season.png         the season: load on the panel, stack and clearance, outlines
+season.json        settings, and the events at which the stack reached the panel
+run/               the slide-offs: a results folder as of ``snowshed run`` (without release: none)
+================== ==========================================================================
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from snowshed.run.results import Results
+from snowshed.scene.scene import PathLike
+
+SEASON_COLUMNS = (
+    "event",
+    "date",
+    "released",
+    "snowfall_m",
+    "density_kg_m3",
+    "temperature_c",
+    "panel_snow_m",
+    "panel_load_kg_m2",
+    "driving_pa",
+    "resisting_pa",
+    "stack_height_m",
+    "stack_length_m",
+    "clearance_m",
+    "crest_clearance_m",
+    "settled_height_m",
+    "settled_clearance_m",
+    "left_on_panel_kg",
+)
+
+
+class SeasonFolder:
+    """Where the files of a season are."""
+
+    def __init__(self, folder: PathLike) -> None:
+        self.folder = Path(folder)
+        self.table = self.folder / "season.csv"
+        self.figure = self.folder / "season.png"
+        self.summary = self.folder / "season.json"
+        self.run = Results(self.folder / "run")

@@ -1,0 +1,80 @@
+"""What decides, besides the weather, about accumulation and release."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.run.ageing import Ageing, Interval
+from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
+from snowshed.snow.relations.relation import choose
+from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw
+
+
+@dataclass(frozen=True)
+class SeasonSettings:
+    """How snow gathers on the panel, lets go, and settles.
+
+    Attributes
+    ----------
+    friction
+        Static Coulomb coefficient that the snow must overcome to let go. The laboratory measured
+        0.6 to 0.8 on Plexiglas (thesis 2.1). Once it slides, the panel's own friction holds.
+    adhesion
+        What else holds the snow, Pa.
+    catch
+        Part of the snowfall that stays on the panel and is not blown past it.
+    density
+        Name of the relation (`NEW_SNOW_DENSITY`) for rows without a density.
+    settling
+        Name of a law in `SETTLING_LAWS`, by which the snow on the panel and in the stack settles
+        between events; None: it does not.
+    sintering
+        Name of a law in `SINTERING_LAWS`, by which broken snow in the stack regains strength
+        between events; None: it does not.
+    strength_age
+        Age of bonds, hours, that have the strength of the snow that slides.
+
+    Raises
+    ------
+    InputError
+        If a value is not allowed.
+    """
+
+    friction: float = 0.7
+    adhesion: float = 0.0
+    catch: float = 1.0
+    density: str = "hedstrom-pomeroy-1998"
+    settling: Optional[str] = None
+    sintering: Optional[str] = None
+    strength_age: float = 24.0
+
+    def __post_init__(self) -> None:
+        _check("release friction", self.friction, 0.0, 10.0, "")
+        _check("adhesion", self.adhesion, 0.0, 1e6, "Pa")
+        _check("catch", self.catch, 0.0, 1.0, "")
+        choose(self.density, NEW_SNOW_DENSITY, "density of new snow")
+        self.ageing({})
+
+    def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:
+        """Return what happens to the stack in the pauses before the events."""
+        return Ageing(pauses, self.settling, self.sintering, self.strength_age)
+
+    @property
+    def ages(self) -> bool:
+        """Whether time does anything to the stack."""
+        return bool(self.settling or self.sintering)
+
+    @property
+    def settling_law(self) -> Optional[SettlingLaw]:
+        """The law of settling, if there is one."""
+        return None if self.settling is None else SETTLING_LAWS[self.settling]
+
+
+def _check(name: str, value: float, low: float, high: float, unit: str) -> None:
+    if not (math.isfinite(value) and low <= value <= high):
+        allowed = f"{low:g} <= value <= {high:g} {unit}".rstrip()
+        raise InputError(f"{name}: {value:g} is outside the allowed range ({allowed})")

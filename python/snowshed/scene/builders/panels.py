@@ -1,0 +1,256 @@
+"""Panels: several in a row, and tables of modules with gaps on posts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.scene.builders.panel_edge import panel_edge
+from snowshed.scene.builders.slope import (
+    BOARD_CELLS,
+    Slope,
+    check_positive,
+    check_seen,
+    upright_box,
+)
+from snowshed.scene.components import Body, Ground, Numerics, Obstacle, Panel, Slab
+from snowshed.scene.scene import Scene
+from snowshed.scene.shape import Shape
+
+SNOW_OF_PANEL = 2.0 / 3.0  # width of the slab over that of the panel, as in a scene
+
+
+def single_panel(
+    *,
+    height: float,
+    length: float,
+    tilt: float,
+    snow: float,
+    width: Optional[float] = None,
+    friction: float = 0.3,
+    ground_tilt: float = 0.0,
+    dx: float = 0.02,
+) -> Scene:
+    """Return the scene of one panel, the start of all others.
+
+    Parameters
+    ----------
+    height
+        Of the lower edge above the ground, m.
+    length, width
+        Of the panel, m; without a width the scene is 2D.
+    tilt, ground_tilt
+        Degrees.
+    snow
+        Thickness of the slab, m, normal to the panel.
+    friction
+        Coulomb coefficient of the panel.
+    dx
+        Grid cell, m.
+
+    Examples
+    --------
+    >>> single_panel(height=0.5, length=2.0, tilt=40.0, snow=0.1).dimension
+    2
+    """
+    return Scene(
+        dimension=2 if width is None else 3,
+        panel=Panel(height=height, length=length, width=width, tilt=tilt, friction=friction),
+        slab=Slab(thickness=snow),
+        ground=Ground(tilt=ground_tilt),
+        numerics=Numerics(dx=dx),
+    )
+
+
+def panel_rows(
+    count: int,
+    pitch: float,
+    *,
+    height: float,
+    length: float,
+    tilt: float,
+    snow: float,
+    width: Optional[float] = None,
+    friction: float = 0.3,
+    ground_tilt: float = 0.0,
+    dx: float = 0.02,
+) -> Scene:
+    """Return several panels one behind the other, all with snow, on level or tilted ground.
+
+    The first is the scene's panel, about which the stack is measured; the others stand down the
+    slide direction. What lies on them counts as part of the stack, which is why the columns of the
+    largest connected body are the ones to read. On the first panel a slab is laid on snow that
+    stayed; on the others it is not.
+
+    Parameters
+    ----------
+    count
+        Number of panels, at least 2.
+    pitch
+        Horizontal distance from one to the next, m.
+    height, length, tilt, snow, width, friction, ground_tilt, dx
+        As of `single_panel`.
+
+    Raises
+    ------
+    InputError
+        If the panels overlap.
+
+    Examples
+    --------
+    >>> rows = panel_rows(3, 4.0, height=0.6, length=2.0, tilt=35.0, snow=0.1)
+    >>> [obstacle.name for obstacle in rows.obstacles]
+    ['panel-2', 'panel-3']
+    """
+    check_positive(pitch=pitch, length=length, snow=snow)
+    if count < 2:
+        raise InputError(f"count: {count} is not allowed; give 2 panels or more")
+    least = length * math.cos(math.radians(tilt))
+    if pitch < least + 2 * dx:
+        raise InputError(
+            f"pitch: {pitch:g} m is not allowed; the panels overlap below {least + 2 * dx:.3g} m"
+        )
+    scene = single_panel(
+        height=height, length=length, tilt=tilt, snow=snow, width=width, friction=friction,
+        ground_tilt=ground_tilt, dx=dx,
+    )  # fmt: skip
+    edge = panel_edge(scene.to_data())
+    fall = math.tan(math.radians(ground_tilt))
+    for number in range(1, count):
+        away = number * pitch
+        slope = Slope((edge.x + away, edge.z - away * fall), tilt, width)
+        scene.append("obstacles", _board(f"panel-{number + 1}", slope, 0.0, length, friction, dx))
+        scene.append("bodies", snow_layer(slope, 0.0, length, snow))
+    return scene
+
+
+def panel_table(
+    modules: int,
+    gap: float,
+    *,
+    module_length: float,
+    height: float,
+    tilt: float,
+    snow: float,
+    width: Optional[float] = None,
+    friction: float = 0.3,
+    ground_tilt: float = 0.0,
+    lip: float = 0.0,
+    posts: Sequence[float] = (0.2, 0.8),
+    post_size: float = 0.1,
+    dx: float = 0.02,
+) -> Scene:
+    """Return a table on posts: modules up the slope with gaps between them, under one slab.
+
+    The lowest module is the scene's panel: x is 0 at its centre, and the height of the table is
+    that of its lower edge.
+
+    Parameters
+    ----------
+    modules
+        Number of modules up the slope.
+    gap
+        Between modules, m; 0 or at least two grid cells.
+    module_length
+        Along the slope, m.
+    height, tilt, snow, width, friction, ground_tilt, dx
+        As of `single_panel`.
+    lip
+        Height of the frame above the face at each module's lower end, m; 0, or at least two grid
+        cells and no more than the gap it stands in.
+    posts
+        Where posts stand, as parts of the table's length from its lower end.
+    post_size
+        Thickness of the posts, m.
+
+    Raises
+    ------
+    InputError
+        If a part is too small for the grid, or a post does not fit below the table.
+
+    Examples
+    --------
+    >>> table = panel_table(2, 0.06, module_length=1.0, height=0.6, tilt=35.0, snow=0.1)
+    >>> [obstacle.name for obstacle in table.obstacles]
+    ['module-2', 'post-1', 'post-2']
+    """
+    check_positive(module_length=module_length, snow=snow, post_size=post_size)
+    if modules < 1:
+        raise InputError(f"modules: {modules} is not allowed; give 1 or more")
+    for name, size in (("gap", gap), ("lip", lip)):
+        if size:
+            check_seen(name, size, dx)
+    scene = single_panel(
+        height=height, length=module_length, tilt=tilt, snow=snow, width=width,
+        friction=friction, ground_tilt=ground_tilt, dx=dx,
+    )  # fmt: skip
+    edge = panel_edge(scene.to_data())
+    slope = Slope((edge.x, edge.z), tilt, width)
+    starts = [number * (module_length + gap) for number in range(modules)]
+    for number, start in enumerate(starts[1:], 2):
+        end = start + module_length
+        scene.append("obstacles", _board(f"module-{number}", slope, start, end, friction, dx))
+    if lip and modules > 1 and gap < lip:
+        raise InputError(f"lip: {lip:g} m does not fit into the gap of {gap:g} m")
+    lips = [slope.layer(start - lip, start, -lip, lip) for start in starts] if lip else []
+    for number, rail in enumerate(lips, 1):
+        scene.append("obstacles", separate_part(f"lip-{number}", rail))
+    if modules > 1:
+        snow_end = starts[-1] + module_length
+        scene.append("bodies", snow_layer(slope, module_length, snow_end, snow, lips[1:]))
+    _add_posts(scene, slope, starts[-1] + module_length, posts, post_size, ground_tilt, dx)
+    return scene
+
+
+def _board(
+    name: str, slope: Slope, start: float, end: float, friction: float, dx: float
+) -> Obstacle:
+    board = slope.board(start, end, BOARD_CELLS * dx)
+    return Obstacle(name=name, shape=board, condition="slip", friction=friction)
+
+
+def snow_layer(
+    slope: Slope, start: float, end: float, thickness: float, rails: Sequence[Shape] = ()
+) -> Body:
+    """Return snow all over a slope but where rails are, laid in every event."""
+    across = None if slope.width is None else SNOW_OF_PANEL * slope.width
+    lying = slope.narrowed(across).layer(start, end, 0.0, thickness)
+    return Body(shape=Shape.difference(lying, *rails) if rails else lying, event=0)
+
+
+def separate_part(name: str, shape: Shape) -> Obstacle:
+    """Return an obstacle that snow may leave, such as a post, a rail or a wall."""
+    return Obstacle(name=name, shape=shape, condition="separate", friction=0.3)
+
+
+def _add_posts(
+    scene: Scene,
+    slope: Slope,
+    length: float,
+    posts: Sequence[float],
+    size: float,
+    ground_tilt: float,
+    dx: float,
+) -> None:
+    if posts:
+        check_seen("post_size", size, dx)
+    fall = math.tan(math.radians(ground_tilt))
+    steep = math.tan(math.radians(slope.tilt))
+    below = BOARD_CELLS * dx * math.hypot(1.0, steep) + 0.5 * size * steep
+    # In 3D one post on either side, a third of the width from the middle.
+    sides = (0.0,) if slope.width is None else (-slope.width / 3.0, slope.width / 3.0)
+    for number, part in enumerate(posts, 1):
+        if not 0.0 <= part <= 1.0:
+            raise InputError(f"posts: {part:g} is outside the allowed range (0 <= value <= 1)")
+        x, z = slope.point(part * length)
+        x_span = (x - 0.5 * size, x + 0.5 * size)
+        z_span = (-x_span[1] * fall, z - below)
+        if z_span[0] >= z_span[1]:
+            raise InputError(f"posts: at {part:g} of its length the table is too low for a post")
+        for side, y in enumerate(sides, 1):
+            y_span = (y - 0.5 * size, y + 0.5 * size)
+            post = upright_box(x_span, z_span, 2 if slope.width is None else 3, y_span)
+            name = f"post-{number}" if slope.width is None else f"post-{number}-{side}"
+            scene.append("obstacles", separate_part(name, post))

@@ -1,0 +1,198 @@
+"""Roofs with one slope (shed) or two (gable), with and without snow guards."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.scene.builders.panel_edge import panel_edge
+from snowshed.scene.builders.panels import separate_part, single_panel, snow_layer
+from snowshed.scene.builders.slope import (
+    BOARD_CELLS,
+    Slope,
+    check_positive,
+    check_seen,
+    upright_box,
+)
+from snowshed.scene.components import Obstacle
+from snowshed.scene.scene import Scene
+from snowshed.scene.shape import Shape
+
+
+def shed_roof(
+    *,
+    eaves: float,
+    length: float,
+    tilt: float,
+    snow: float,
+    width: Optional[float] = None,
+    friction: float = 0.3,
+    overhang: float = 0.3,
+    guards: Sequence[float] = (),
+    guard_height: float = 0.15,
+    guard_thickness: float = 0.1,
+    dx: float = 0.02,
+) -> Scene:
+    """Return a house under a roof of one slope, which is the scene's panel.
+
+    Parameters
+    ----------
+    eaves
+        Height of the eaves above the ground, m.
+    length
+        Of the slope, from the eaves to the ridge, m.
+    tilt
+        Degrees from the horizontal.
+    snow
+        Thickness of the snow, m, normal to the roof.
+    width
+        Of the house, m; without it the scene is 2D.
+    friction
+        Coulomb coefficient of the roof.
+    overhang
+        Of the roof beyond the walls, m, along the slope.
+    guards
+        Where snow guards stand, m up the slope from the eaves: rails across the whole roof.
+    guard_height, guard_thickness
+        Of the rails, m, above the roof and along it.
+    dx
+        Grid cell, m.
+
+    Raises
+    ------
+    InputError
+        If a part is too small for the grid or lies off the roof.
+
+    Examples
+    --------
+    >>> roof = shed_roof(eaves=2.5, length=4.0, tilt=30.0, snow=0.3, guards=[0.5], dx=0.05)
+    >>> [obstacle.name for obstacle in roof.obstacles]
+    ['house', 'guard-1']
+    """
+    scene, slope = _first_slope(eaves, length, tilt, snow, width, friction, dx)
+    upper = slope.point(length - overhang)[0]
+    scene.append("obstacles", _house([slope], upper, length, overhang, dx))
+    rails = _rails(slope, guards, length, (guard_height, guard_thickness), dx)
+    _add_rails(scene, "guard", rails)
+    if rails:  # the scene's own slab would lie in them
+        scene.slab = None
+        scene.append("bodies", snow_layer(slope, 0.0, length, snow, rails))
+    return scene
+
+
+def gable_roof(
+    *,
+    eaves: float,
+    length: float,
+    tilt: float,
+    snow: float,
+    width: Optional[float] = None,
+    friction: float = 0.3,
+    overhang: float = 0.3,
+    guards: Sequence[float] = (),
+    guard_height: float = 0.15,
+    guard_thickness: float = 0.1,
+    dx: float = 0.02,
+) -> Scene:
+    """Return a house under a roof of two equal slopes, both with snow.
+
+    The slope that falls toward +x is the scene's panel; what slides off the other piles up on the
+    far side of the house and belongs to the stack too: read the columns of the largest connected
+    body. Parameters and errors are those of `shed_roof`; `length` is that of one slope.
+
+    Examples
+    --------
+    >>> roof = gable_roof(eaves=2.5, length=3.0, tilt=40.0, snow=0.2, dx=0.05)
+    >>> [obstacle.name for obstacle in roof.obstacles]
+    ['house', 'far-slope']
+    """
+    scene, slope = _first_slope(eaves, length, tilt, snow, width, friction, dx)
+    far = Slope((2.0 * slope.point(length)[0] - slope.foot[0], eaves), tilt, width, toward=-1)
+    upper = far.point(overhang)[0]
+    scene.append("obstacles", _house([slope, far], upper, length, overhang, dx))
+    board = far.board(0.0, length, BOARD_CELLS * dx)
+    scene.append(
+        "obstacles", Obstacle(name="far-slope", shape=board, condition="slip", friction=friction)
+    )
+    size = (guard_height, guard_thickness)
+    rails, far_rails = (_rails(side, guards, length, size, dx) for side in (slope, far))
+    _add_rails(scene, "guard", rails)
+    _add_rails(scene, "far-guard", far_rails)
+    if rails:  # the scene's own slab would lie in them
+        scene.slab = None
+        scene.append("bodies", snow_layer(slope, 0.0, length, snow, rails))
+    scene.append("bodies", snow_layer(far, 0.0, length, snow, far_rails))
+    return scene
+
+
+def _first_slope(
+    eaves: float,
+    length: float,
+    tilt: float,
+    snow: float,
+    width: Optional[float],
+    friction: float,
+    dx: float,
+) -> tuple[Scene, Slope]:
+    check_positive(eaves=eaves, length=length, snow=snow)
+    scene = single_panel(
+        height=eaves, length=length, tilt=tilt, snow=snow, width=width, friction=friction, dx=dx
+    )
+    edge = panel_edge(scene.to_data())
+    return scene, Slope((edge.x, edge.z), tilt, width)
+
+
+def _house(
+    slopes: Sequence[Slope], upper: float, length: float, overhang: float, dx: float
+) -> Obstacle:
+    """Return the walls: a box from `upper` to the wall below the eaves, cut off under the roof."""
+    first = slopes[0]
+    if not 0.0 <= overhang < 0.5 * length:
+        raise InputError(
+            f"overhang: {overhang:g} m is outside the allowed range (0 <= value < {0.5 * length:g})"
+        )
+    under = 0.5 * BOARD_CELLS * dx  # inside the boards: walls and roof touch
+    dimension = 2 if first.width is None else 3
+    half = 0.5 * (first.width or 1.0)
+    box = upright_box(
+        (upper, first.point(overhang)[0]),
+        (0.0, first.point(length)[1]),
+        dimension,
+        (-half, half),
+    )
+    above = [_everything_above(slope, under) for slope in slopes]
+    return separate_part("house", Shape.difference(box, *above))
+
+
+def _everything_above(slope: Slope, under: float) -> Shape:
+    """Return all space above the plane that lies `under` a slope, m."""
+    (x, z), (across, up) = slope.point(0.0, -under), slope.normal
+    if slope.width is None:
+        return Shape.plane((x, z), (-across, -up))
+    return Shape.plane((x, 0.0, z), (-across, 0.0, -up))
+
+
+def _rails(
+    slope: Slope,
+    guards: Sequence[float],
+    length: float,
+    size: tuple[float, float],
+    dx: float,
+) -> list[Shape]:
+    """Return snow guards, of a height and a thickness, at some distances up the slope."""
+    height, thickness = size
+    for start in guards:
+        check_seen("guard_height", height, dx)
+        check_seen("guard_thickness", thickness, dx)
+        if not 0.0 <= start <= length - thickness:
+            raise InputError(
+                f"guards: {start:g} m is outside the allowed range "
+                f"(0 <= value <= {length - thickness:g} m)"
+            )
+    return [slope.layer(start, start + thickness, -dx, height) for start in guards]
+
+
+def _add_rails(scene: Scene, name: str, rails: Sequence[Shape]) -> None:
+    for number, rail in enumerate(rails, 1):
+        scene.append("obstacles", separate_part(f"{name}-{number}", rail))

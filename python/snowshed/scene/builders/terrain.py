@@ -1,0 +1,210 @@
+"""Terrain as ground: a raster's heights turned into a grid of signed distances.
+
+The heights become a closed body of triangles, whose exact distances the core gives; sampled on a
+regular grid they make a shape that costs the same at every step however rough the terrain is.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Union
+
+import numpy as np
+
+from snowshed import _core
+from snowshed._core import InputError
+from snowshed.io.arrays import Floats, Integers
+from snowshed.io.atomic import replacing
+from snowshed.io.raster import Raster, read_raster
+from snowshed.scene.builders.panel_edge import panel_edge
+from snowshed.scene.builders.slope import check_positive
+from snowshed.scene.components import Body, Numerics, Obstacle
+from snowshed.scene.scene import PathLike, Scene
+from snowshed.scene.shape import Shape
+
+DEEP, HIGH = 6, 3  # cells of the grid below the lowest and above the highest ground
+MOST_SAMPLES = 20_000_000
+
+Span = tuple[float, float]
+
+
+def on_terrain(
+    scene: Scene,
+    raster: Union[Raster, PathLike],
+    file: PathLike,
+    *,
+    origin: Span,
+    azimuth: float,
+    x: Span,
+    y: Span = (0.0, 0.0),
+    spacing: float = 0.1,
+    condition: str = "sticky",
+    friction: float = 0.3,
+) -> Scene:
+    """Return a scene whose ground is terrain.
+
+    The plane ground is taken away, and an obstacle "terrain" takes its place. It is shifted so that
+    the terrain right below the lower edge of the panel (or at x = 0, without one) is at z = 0:
+    the panel's height is that above the terrain there. The stack's height is measured from z = 0,
+    not from the terrain: look at the pictures too.
+
+    Parameters
+    ----------
+    scene
+        Anything; it stays as it is.
+    raster
+        Terrain, or its file (`read_raster`).
+    file
+        Where to write the grid of distances (.npy); the scene names it by its absolute path.
+    origin
+        East and north, m, of the scene's x = y = 0 on the map.
+    azimuth
+        Where +x, the slide direction, points: degrees from north, clockwise.
+    x, y
+        What part of the scene gets terrain, m; y in 3D only. Beyond it there is no ground.
+    spacing
+        Between samples of the grid, m; two grid cells of the scene are a good start, unless the
+        raster is coarser.
+    condition, friction
+        Of the terrain.
+
+    Raises
+    ------
+    InputError
+        If the raster does not cover the part asked for, or the grid would be too large.
+
+    Examples
+    --------
+    >>> from snowshed.scene.builders.panels import single_panel
+    >>> hill = Raster(np.arange(12.0)[:, None] * np.ones(12), 0.0, 0.0, 1.0)
+    >>> panel = single_panel(height=1.0, length=1.0, tilt=40.0, snow=0.1, dx=0.1)
+    >>> with TemporaryDirectory() as folder:
+    ...     scene = on_terrain(
+    ...         panel, hill, Path(folder) / "hill.npy", origin=(5, 8), azimuth=180, x=(-1, 3)
+    ...     )
+    >>> scene.obstacles[0].shape.type, scene.ground
+    ('grid', None)
+    """
+    check_positive(spacing=spacing)
+    terrain = raster if isinstance(raster, Raster) else read_raster(raster)
+    flat = scene.dimension == 2
+    xs, ys = _axis("x", x, spacing), np.zeros(1) if flat else _axis("y", y, spacing)
+    place = panel_edge(scene.to_data()).x if scene.panel is not None else 0.0
+    level = float(_heights(terrain, origin, azimuth, np.array([place]), np.zeros(1))[0, 0])
+    heights = _heights(terrain, origin, azimuth, xs, ys) - level
+    samples, bottom = signed_distances(heights, xs, ys, spacing)
+    with replacing(file) as beside, beside.open("wb") as stream:
+        np.save(stream, samples.astype(np.float32))
+    corner = (xs[0], bottom) if flat else (xs[0], ys[0], bottom)
+    shape = Shape.grid(str(Path(file).absolute()), origin=corner, spacing=spacing)
+    made = copy.deepcopy(scene)
+    made.ground = None
+    return made.append(
+        "obstacles",
+        Obstacle(name="terrain", shape=shape, condition=condition, friction=friction),
+    )
+
+
+def signed_distances(
+    heights: Floats, xs: Floats, ys: Floats, spacing: float
+) -> tuple[Floats, float]:
+    """Return distances from terrain, negative inside, and the z of the lowest samples, m.
+
+    Parameters
+    ----------
+    heights : (nx, ny)
+        Of the terrain, m, at `xs` and `ys`; one y means terrain that is the same all along y.
+    xs, ys
+        m, evenly `spacing` apart.
+    spacing
+        Between samples, along z too, m.
+
+    Returns
+    -------
+    (nx, ny, nz), float
+        Distances, m, as a shape of the type "grid" takes them.
+    """
+    bottom = float(heights.min()) - DEEP * spacing
+    count = math.ceil((float(heights.max()) - bottom) / spacing) + HIGH + 1
+    if len(xs) * len(ys) * count > MOST_SAMPLES:
+        raise InputError(
+            f"spacing: {spacing:g} m makes a grid of {len(xs)} x {len(ys)} x {count} samples; at "
+            f"most {MOST_SAMPLES} are allowed in all"
+        )
+    zs = bottom + spacing * np.arange(count)
+    points = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)
+    reach = spacing * (count + DEEP)  # nothing at the sides is nearer than what is below
+    distances = _distances(_solid(heights, xs, ys, bottom - reach, reach), points, spacing)
+    return distances.reshape(len(xs), len(ys), count), bottom
+
+
+def _axis(name: str, span: Sequence[float], spacing: float) -> Floats:
+    low, high = span
+    if not (math.isfinite(low) and math.isfinite(high) and high - low >= 2 * spacing):
+        raise InputError(
+            f"{name}: {low:g} to {high:g} m is not allowed; give at least two spacings of "
+            f"{spacing:g} m"
+        )
+    steps: Floats = np.arange(round((high - low) / spacing) + 1, dtype=np.float64)
+    return low + spacing * steps
+
+
+def _heights(terrain: Raster, origin: Span, azimuth: float, xs: Floats, ys: Floats) -> Floats:
+    """Return the raster's heights (nx, ny) at places of the scene."""
+    sin, cos = math.sin(math.radians(azimuth)), math.cos(math.radians(azimuth))
+    x, y = np.meshgrid(xs, ys, indexing="ij")
+    return terrain.height_at(origin[0] + x * sin - y * cos, origin[1] + x * cos + y * sin)
+
+
+Mesh = tuple[Floats, Integers]  # corners (n, 3) and triangles (m, 3)
+
+
+def _solid(heights: Floats, xs: Floats, ys: Floats, bottom: float, reach: float) -> Mesh:
+    """Return terrain as a closed body, continued level by `reach` beyond its edges."""
+    top = np.pad(heights, 1 if len(ys) > 1 else ((1, 1), (0, 0)), mode="edge")
+    x = np.concatenate([[xs[0] - reach], xs, [xs[-1] + reach]])
+    y = np.concatenate([[ys[0] - reach], ys, [ys[-1] + reach]])
+    if len(ys) == 1:
+        top, y = np.repeat(top, 2, axis=1), np.array([-reach, reach]) * len(xs)
+    rows, columns = top.shape
+    grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+    upper = np.concatenate([grid, top[..., None]], axis=-1).reshape(-1, 3)
+    lower = upper * [1.0, 1.0, 0.0] + [0.0, 0.0, bottom]
+    index = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]
+    face = np.concatenate([_triangles(a, b, c), _triangles(a, c, d)])
+    below = face[:, ::-1] + rows * columns
+    rim = np.concatenate([index[:, 0], index[-1, 1:], index[-2::-1, -1], index[0, -2::-1]])
+    start, end = rim[:-1], rim[1:]
+    under = rows * columns
+    walls = np.concatenate(
+        [_triangles(start, start + under, end), _triangles(end, start + under, end + under)]
+    )
+    return np.concatenate([upper, lower]), np.concatenate([face, below, walls])
+
+
+def _triangles(a: Integers, b: Integers, c: Integers) -> Integers:
+    return np.stack([a.ravel(), b.ravel(), c.ravel()], axis=1)
+
+
+def _distances(mesh: Mesh, points: Floats, spacing: float) -> Floats:
+    """Return the signed distances of points (n, 3) from a closed mesh, from the core."""
+    corners, triangles = mesh
+    above = (0.0, 0.0, float(corners[:, 2].max()) + 10.0 * spacing)
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "terrain.obj"
+        with file.open("w", encoding="ascii") as out:
+            np.savetxt(out, corners, fmt="v %.9g %.9g %.9g")
+            np.savetxt(out, triangles + 1, fmt="f %d %d %d")
+        scene = Scene(
+            dimension=3,
+            obstacles=[Obstacle(name="terrain", shape=Shape.mesh(str(file)))],
+            bodies=[Body(shape=Shape.sphere(above, 2.0 * spacing))],  # a scene needs some snow
+            numerics=Numerics(dx=spacing, threads=1),
+        )
+        ready = scene.resolve()
+        return _core.Simulation(ready.json, ready.base_dir).obstacle_distance(points)

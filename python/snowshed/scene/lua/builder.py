@@ -1,0 +1,139 @@
+"""A scene in the making that knows which line of which script set what."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from snowshed._core import InputError
+from snowshed.scene.lua.origins import Origins
+from snowshed.scene.lua.sandbox import Place
+from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+
+
+@dataclass(frozen=True)
+class LuaRun:
+    """A scene that scripts ask to be run.
+
+    Attributes
+    ----------
+    name
+        What the word ``run`` called it; empty if the scripts do not use that word.
+    scene
+        The scene, validated and completed by the core.
+    """
+
+    name: str
+    scene: ResolvedScene
+
+
+class Builder:
+    """Applies settings to a scene, and hands out the scene as it stands.
+
+    Parameters
+    ----------
+    folder
+        The folder of the scripts, in which the files are that they name.
+    """
+
+    def __init__(self, folder: PathLike) -> None:
+        self.runs: list[LuaRun] = []
+        self._folder = Path(folder).resolve()
+        self._scene = Scene()
+        self._origins = Origins()
+        self._names: dict[str, list[str]] = {}  # of list items, by list
+
+    def replace(self, scene: Scene) -> None:
+        """Start again from another scene."""
+        self._scene = scene
+        self._origins = Origins()
+        self._names = {}
+
+    def set(self, path: str, value: Any, place: Place) -> None:
+        """Set the value at a dotted path."""
+        self._scene.set(path, value)
+        if isinstance(value, list):
+            self._names[path] = [_name_of(item) for item in value]
+        else:
+            self._names.pop(path, None)
+        self._origins.note(_pointer(path), value, place)
+
+    def update(self, section: str, values: Mapping[str, Any], place: Place) -> None:
+        """Set values of a section of the scene, such as the panel; the others stay."""
+        if getattr(self._scene, section) is None:
+            self.set(section, {}, place)
+        for key, value in values.items():
+            self.set(f"{section}.{key}", value, place)
+
+    def append(self, path: str, value: Any, place: Place) -> None:
+        """Append to the list at a dotted path."""
+        self._scene.append(path, value)
+        names = self._names.setdefault(path, [])
+        self._origins.note(f"{_pointer(path)}/{len(names)}", value, place)
+        names.append(_name_of(value))
+
+    def put(self, path: str, name: str, values: Mapping[str, Any], place: Place) -> None:
+        """Append an item to a list, or change the item that was put there under the same name."""
+        names = self._names.setdefault(path, [])
+        if name and name in names:
+            for key, value in values.items():
+                self.set(f"{path}.{names.index(name)}.{key}", value, place)
+        else:
+            self.append(path, values, place)
+            names[-1] = name
+
+    def ask(self, name: str, place: Place) -> None:
+        """Add the scene as it stands to what is to be run.
+
+        Parameters
+        ----------
+        name
+            What the run is called.
+        place
+            The line that asked, for errors that no other line can be blamed for.
+
+        Raises
+        ------
+        InputError
+            If the scene is wrong, with the line that set what is wrong in it.
+        """
+        try:
+            data = self._scene.to_data()
+            for where, file in _files(data, ""):
+                self._check_file(where, file)
+            scene = ResolvedScene.parse(json.dumps(data), self._folder)
+        except InputError as error:
+            where = str(error).partition(":")[0]
+            raise InputError(f"{self._origins.of(where) or place}: {error}") from None
+        self.runs.append(LuaRun(name, scene))
+
+    def _check_file(self, where: str, file: Any) -> None:
+        """Refuse files that scripts have no business with."""
+        path = (self._folder / str(file)).resolve()
+        if self._folder not in path.parents:
+            raise InputError(f"{where}: {file!r} is not in the scripts' folder {self._folder}")
+        if not path.is_file():
+            raise InputError(f"{where}: there is no file {file!r} in {self._folder}")
+
+
+def _name_of(item: Any) -> str:
+    return str(item.get("name", "")) if isinstance(item, Mapping) else ""
+
+
+def _pointer(path: str) -> str:
+    return "/" + path.replace(".", "/")
+
+
+def _files(data: Any, path: str) -> Iterator[tuple[str, Any]]:
+    """Find what is called a file, anywhere in JSON data, with its JSON path."""
+    if isinstance(data, Mapping):
+        for key, value in data.items():
+            if key == "file":
+                yield f"{path}/{key}", value
+            yield from _files(value, f"{path}/{key}")
+    elif isinstance(data, list):
+        for i, value in enumerate(data):
+            yield from _files(value, f"{path}/{i}")

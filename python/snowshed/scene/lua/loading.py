@@ -1,0 +1,77 @@
+"""From Lua scripts to scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.io.input_file import read_input
+from snowshed.scene.lua.builder import Builder, LuaRun
+from snowshed.scene.lua.limits import Limits
+from snowshed.scene.lua.sandbox import Place, Script, run_sandboxed
+from snowshed.scene.lua.vocabulary import SHAPES, WORDS, apply
+from snowshed.scene.scene import PathLike
+
+
+def load_lua(
+    init: PathLike,
+    update: Optional[PathLike] = None,
+    *,
+    echo: Optional[Callable[[str], None]] = None,
+    limits: Optional[Limits] = None,
+) -> list[LuaRun]:
+    """Run an initialisation script, then an update script, and return the scenes they describe.
+
+    Parameters
+    ----------
+    init
+        The initialisation script. Files that scripts name are found in its folder.
+    update
+        A script that runs after it, in the same state; its values override earlier ones.
+    echo
+        Called with every line that the scripts print, also if they fail after that.
+    limits
+        What the scripts may use; the defaults of `Limits` unless given.
+
+    Returns
+    -------
+    list of LuaRun
+        One scene for every call of ``run``; without any, the scene as it stands at the end.
+
+    Raises
+    ------
+    InputError
+        If Lua is not installed, or with script and line, if a script fails, exceeds a limit or
+        describes no valid scene.
+    OSError
+        If a script cannot be read.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     init = Path(folder) / "init.lua"
+    ...     _ = init.write_text('preset "lab-50" for M = 3, 4 do material{M = M} run("M" .. M) end')
+    ...     runs = load_lua(init)
+    >>> [(run.name, run.scene.data["snow"]["critical_state_slope"]) for run in runs]
+    [('M3', 3.0), ('M4', 4.0)]
+    """
+    limits = limits or Limits()
+    scripts = [_read(Path(file), limits) for file in (init, update) if file is not None]
+    calls = run_sandboxed(scripts, WORDS, SHAPES, limits, echo)
+    builder = Builder(Path(init).parent)
+    for call in calls:
+        apply(call, builder)
+    if not builder.runs:
+        builder.ask("", Place(scripts[-1].name, 0))
+    return builder.runs
+
+
+def _read(file: Path, limits: Limits) -> Script:
+    content = read_input(file, limits.script_bytes)
+    try:
+        return Script(str(file), content.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: not a UTF-8 text: {error}") from None

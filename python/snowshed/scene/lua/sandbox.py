@@ -1,0 +1,155 @@
+"""Runs scripts in a process of their own and takes in what they said."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Optional, Union
+
+from snowshed._core import InputError
+from snowshed.io.extras import require
+from snowshed.scene.lua.limits import Limits
+
+PROGRAM = Path(__file__).with_name("child.py")
+START_SECONDS = 60.0  # for the process to start and answer, on a machine that is very busy
+LONGEST_MESSAGE = 500
+OUR_OWN_PLACE = re.compile(r"^(?:host|plain_data):\d+: ")
+SCRIPT_PLACE = re.compile(r"^script(\d+):(\d+): ")
+
+
+@dataclass(frozen=True)
+class Script:
+    """A script to run: the name it has in errors, and its text."""
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Place:
+    """A line of a script; 0 if it is not known."""
+
+    script: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.script}:{self.line}" if self.line else self.script
+
+
+@dataclass(frozen=True)
+class Call:
+    """One call of the vocabulary."""
+
+    word: str
+    arguments: list[Any]
+    place: Place
+
+
+def run_sandboxed(
+    scripts: Sequence[Script],
+    words: Sequence[str],
+    shapes: Mapping[str, str],
+    limits: Optional[Limits] = None,
+    echo: Optional[Callable[[str], None]] = None,
+) -> list[Call]:
+    """Run scripts one after the other in one Lua state.
+
+    Parameters
+    ----------
+    scripts
+        What to run; a later script sees the globals of those before it.
+    words
+        Names of the functions whose calls are recorded.
+    shapes
+        Functions that make shapes from tables, and the types of these shapes.
+    limits
+        What the scripts may use; the defaults of `Limits` unless given.
+    echo
+        Called with every line that the scripts print, also if they fail after that.
+
+    Returns
+    -------
+    list of Call
+        The calls of `words`, in their order.
+
+    Raises
+    ------
+    InputError
+        If Lua is not installed, or with script and line, if a script fails or exceeds a limit.
+
+    Examples
+    --------
+    >>> run_sandboxed([Script("a.lua", "x = 2 gravity(9.81 * x)")], ["gravity"], {})
+    [Call(word='gravity', arguments=[19.62], place=Place(script='a.lua', line=1))]
+    """
+    lupa = require("lupa.lua54", "lua", "running Lua scripts")
+    limits = limits or Limits()
+    request = {
+        "lupa_in": str(Path(lupa.__file__).parents[1]),
+        "texts": [script.text for script in scripts],
+        "words": list(words),
+        "shapes": dict(shapes),
+        "limits": asdict(limits),
+    }
+    names = [script.name for script in scripts]
+    answer = _ask(json.dumps(request), names, limits)
+    if echo is not None:
+        for line in answer["printed"]:
+            echo(_printable(line))
+    if "error" in answer:
+        raise _failure(answer["error"], names, limits)
+    return [
+        Call(word, arguments, Place(names[script - 1], line))
+        for word, script, line, arguments in answer["calls"]
+    ]
+
+
+def _ask(request: str, names: list[str], limits: Limits) -> dict[str, Any]:
+    """Return the answer of the process that runs Lua."""
+    # -I and -S: nothing but the standard library; the request says where lupa is.
+    command: list[Union[str, Path]] = [sys.executable, "-I", "-S", PROGRAM]
+    both = " with ".join(names)
+    try:
+        done = subprocess.run(
+            command, input=request.encode("ascii"), capture_output=True, timeout=START_SECONDS
+        )
+    except subprocess.TimeoutExpired:
+        raise InputError(f"{both}: stopped: no answer within {START_SECONDS:g} s") from None
+    if -done.returncode == signal.SIGPROF:
+        raise InputError(
+            f"{both}: stopped in one operation that takes more than the {limits.hard_seconds:g} s "
+            "of processor time scripts have"
+        )
+    if -done.returncode == signal.SIGALRM:
+        raise InputError(f"{both}: stopped after {limits.wall_seconds:g} s by the clock")
+    if done.returncode != 0:
+        reason = done.stderr.decode("utf-8", "replace").strip().rpartition("\n")[2]
+        raise InputError(f"{both}: Lua ended unexpectedly: {_printable(reason or 'no reason')}")
+    answer: dict[str, Any] = json.loads(done.stdout)
+    return answer
+
+
+def _failure(error: dict[str, Any], names: list[str], limits: Limits) -> InputError:
+    """Return the error with its place in front, once."""
+    message = OUR_OWN_PLACE.sub("", error["message"])
+    script, line = error["script"], error["line"]
+    own_place = SCRIPT_PLACE.match(message)
+    if own_place and int(own_place[1]) in range(1, len(names) + 1):
+        script, line = int(own_place[1]), int(own_place[2])
+        message = message[own_place.end() :]
+    if message == "not enough memory":
+        message = f"stopped: more than {limits.memory_bytes / 2**20:g} MB of memory"
+    return InputError(f"{Place(names[script - 1], line)}: {_printable(message)}")
+
+
+def _printable(text: str) -> str:
+    """Return text that does nothing to a terminal, nor floods it."""
+    if len(text) > LONGEST_MESSAGE:
+        text = text[:LONGEST_MESSAGE] + "..."
+    return "".join(c if c.isprintable() else " " for c in text)

@@ -1,0 +1,63 @@
+"""How fast bonds between grains regain strength: powers of their age.
+
+Both publications measured the growth from some minutes after contact to days, at one temperature.
+How the factor before the power depends on temperature is not known well enough to be here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed.io.arrays import Floats
+
+
+@dataclass(frozen=True)
+class SinteringLaw:
+    """Strength in proportion to a power of the age of the bonds.
+
+    Attributes
+    ----------
+    exponent
+        Of the age.
+    source
+        Where it was measured, and what.
+    """
+
+    exponent: float
+    source: str
+
+    def strengthen(self, strength: Floats, age: float) -> Floats:
+        """Return the strengths that bonds have after some more time.
+
+        Parameters
+        ----------
+        strength : (n,)
+            In units of that which the law gives to bonds of age 1; those of 1 or more stay.
+        age
+            The time that passes, in the same unit.
+
+        Examples
+        --------
+        >>> law = SINTERING_LAWS["van-herwijnen-2013"]
+        >>> law.strengthen(np.array([0.0, 0.5, 2.0]), 0.1).round(2)
+        array([0.66, 0.68, 2.  ])
+        """
+        equivalent = np.clip(strength, 0.0, 1.0) ** (1.0 / self.exponent)
+        grown = np.minimum((equivalent + age) ** self.exponent, 1.0)
+        result: Floats = np.maximum(strength, grown)
+        return result
+
+
+SINTERING_LAWS: dict[str, SinteringLaw] = {
+    "van-herwijnen-2013": SinteringLaw(
+        0.18,
+        "penetration resistance of homogeneous samples: van Herwijnen and Miller 2013, J. Glaciol. "
+        "59 (214), 269-274",
+    ),
+    "podolskiy-2014": SinteringLaw(
+        0.21,
+        "shear strength of faces put together: Podolskiy et al. 2014, The Cryosphere 8, 1651-1659",
+    ),
+}

@@ -1,0 +1,1 @@
+"""Measuring a stack of snow (thesis A.4)."""

@@ -1,0 +1,79 @@
+"""Connected bodies of snow: the lab measured "a continuous body" (thesis 2.3)."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from snowshed.io.arrays import Booleans, Floats, Integers
+
+
+def largest_body(positions: Floats, masses: Floats, dx: float) -> Booleans:
+    """Return which particles make up the connected body with the most mass.
+
+    Parameters
+    ----------
+    positions : (n, 3)
+        Positions, m.
+    masses : (n,)
+        Masses, kg.
+    dx
+        Voxel size, m; the size of the simulation's grid cells.
+
+    Examples
+    --------
+    >>> x = np.array([[0.0, 0, 0], [0.01, 0, 0], [0.5, 0, 0]])
+    >>> largest_body(x, np.ones(3), 0.01).tolist()
+    [True, True, False]
+    """
+    if len(positions) == 0:
+        return np.zeros(0, dtype=bool)
+    labels = connected_bodies(positions, dx)
+    member: Booleans = labels == np.argmax(np.bincount(labels, weights=masses))
+    return member
+
+
+def connected_bodies(positions: Floats, dx: float) -> Integers:
+    """Label the connected bodies; particles of one body share a number.
+
+    Space is cut into voxels of edge `dx`. Particles belong together if their voxels are the same
+    or touch by a face, an edge or a corner. Particles closer than `dx` are therefore always
+    linked, and gaps wider than 2 `dx` along an axis always part.
+
+    Returns
+    -------
+    (n,)
+        Body of each particle, numbered from 0.
+    """
+    voxel = np.floor((positions - positions.min(axis=0)) / dx).astype(np.int64)
+    extent = voxel.max(axis=0) + 2  # an empty layer, so that rows do not touch each other's ends
+    stride = np.array([extent[1] * extent[2], extent[2], 1])
+    keys, voxel_of = np.unique(voxel @ stride, return_inverse=True)
+    first, second = _touching(keys, stride)
+    roots = _join(len(keys), first, second)
+    _, labels = np.unique(roots[voxel_of.reshape(-1)], return_inverse=True)
+    return labels.reshape(-1)
+
+
+def _touching(keys: Integers, stride: Integers) -> tuple[Integers, Integers]:
+    """Return the pairs of occupied voxels that touch, as indices into the sorted `keys`."""
+    pairs = []
+    for offset in list(product((-1, 0, 1), repeat=3))[14:]:  # half of the 26: pairs once
+        other = keys + np.dot(offset, stride)
+        found = np.minimum(np.searchsorted(keys, other), len(keys) - 1)
+        hit = np.flatnonzero(keys[found] == other)
+        pairs.append((hit, found[hit]))
+    return np.concatenate([a for a, _ in pairs]), np.concatenate([b for _, b in pairs])
+
+
+def _join(count: int, first: Integers, second: Integers) -> Integers:
+    """Return the lowest member of each item's set, given the pairs that belong together."""
+    root = np.arange(count)
+    while True:
+        a, b = root[first], root[second]
+        if np.array_equal(a, b):
+            return root
+        np.minimum.at(root, np.maximum(a, b), np.minimum(a, b))
+        while not np.array_equal(root, root[root]):
+            root = root[root]

@@ -1,0 +1,176 @@
+"""Measuring a stack: levelling, outlier removal, shell, extents (thesis A.4, Figure 2.2.1).
+
+The steps, in this order:
+
+1. Snow still on the panel is set aside and reported.
+2. The ground is turned level (A.4.4).
+3. The outermost 3 % are dropped (A.4.1, A.4.2; ``snowshed.snow.stack.trimming``).
+4. The shell is extracted (A.4.3; ``snowshed.snow.stack.surface``); height, length, head, tail and width are
+   those of the shell, as in the thesis.
+
+Steps 3 and 4 are repeated on the largest connected body alone (``snowshed.snow.stack.connected_components``), because the
+lab measured a continuous body and left out what had rolled away. Mass and volume are those of all
+snow off the panel, outliers included; a particle that has flown apart counts with no more than a
+voxel, whatever its deformation says. In 2D the snow is a strip one metre wide.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Optional
+
+import numpy as np
+
+from snowshed.io.arrays import Booleans, Floats
+from snowshed.snow.stack.connected_components import largest_body
+from snowshed.snow.stack.surface import outline, shell
+from snowshed.snow.stack.trimming import inliers
+
+
+@dataclass(frozen=True)
+class Extent:
+    """Where snow lies, in metres; x from the panel's centre, z from the ground. NaN: no snow."""
+
+    height: float = 0.0
+    length: float = 0.0
+    head: float = np.nan  # min x
+    tail: float = np.nan  # max x
+    width: float = 0.0  # 1 in 2D
+    crest: float = np.nan  # x of the highest point
+    # (k, 2): x and z of the highest particle in each of at most 30 columns
+    outline: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+
+
+@dataclass(frozen=True)
+class StackMeasure(Extent):
+    """A measured stack; its own extent is that of all snow off the panel, less outliers.
+
+    Attributes
+    ----------
+    body
+        Extent of the largest connected body.
+    mass, volume
+        Of all snow off the panel, kg and m3 (per metre of width in 2D).
+    detached_mass
+        Part of the mass outside the largest connected body, kg.
+    on_panel_mass
+        Snow that was excluded because it lies on the panel, kg.
+    """
+
+    body: Extent = field(default_factory=Extent)
+    mass: float = 0.0
+    volume: float = 0.0
+    detached_mass: float = 0.0
+    on_panel_mass: float = 0.0
+
+    @property
+    def density(self) -> float:
+        """Mean density, kg/m3: mass over volume; NaN without snow."""
+        return self.mass / self.volume if self.volume else np.nan
+
+
+def level(positions: Floats, ground_tilt_deg: float) -> Floats:
+    """Turn positions about y so that tilted ground becomes z = 0 (A.4.4).
+
+    The ground passes through the origin and falls in the direction of +x for positive tilt Psi;
+    its normal is (sin Psi, 0, cos Psi). The rotation that turns it upright is R_y(-Psi) of
+    (A.4.1): in the thesis's figure the angle counts the other way.
+
+    Parameters
+    ----------
+    positions : (n, 3)
+        Positions, m.
+    ground_tilt_deg
+        Psi, degrees.
+
+    Examples
+    --------
+    >>> down_the_slope = np.array([[np.cos(0.5), 0.0, -np.sin(0.5)]])
+    >>> np.allclose(level(down_the_slope, np.degrees(0.5)), [[1, 0, 0]])
+    True
+    """
+    psi = -np.radians(ground_tilt_deg)
+    cos, sin = np.cos(psi), np.sin(psi)
+    rotation = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+    levelled: Floats = positions @ rotation.T
+    return levelled
+
+
+def measure_stack(
+    positions: Floats,
+    masses: Floats,
+    densities: Floats,
+    *,
+    dimension: int,
+    dx: float,
+    ground_tilt_deg: float = 0.0,
+    exclude: Optional[Booleans] = None,
+) -> StackMeasure:
+    """Measure the stack that particles form.
+
+    Parameters
+    ----------
+    positions : (n, 3)
+        Positions, m; y is ignored in 2D.
+    masses : (n,)
+        Masses, kg (per metre of width in 2D).
+    densities : (n,)
+        Current densities, kg/m3.
+    dimension
+        2 or 3.
+    dx
+        Size of the grid cells, m; decides what is connected.
+    ground_tilt_deg
+        Psi, degrees; positive falls in the slide direction.
+    exclude : (n,), optional
+        Particles that are not part of the stack, because they lie on the panel.
+
+    Returns
+    -------
+    StackMeasure
+        All zero, with NaN positions, if no snow is off the panel.
+
+    Examples
+    --------
+    >>> x, z = np.meshgrid(np.linspace(0, 1, 101), np.linspace(0, 0.2, 21))
+    >>> heap = np.column_stack([x.ravel(), 0 * x.ravel(), z.ravel()])
+    >>> mass, density = np.full(len(heap), 0.02), np.full(len(heap), 200.0)
+    >>> stack = measure_stack(heap, mass, density, dimension=2, dx=0.02)
+    >>> round(stack.height, 3), round(stack.density)
+    (0.2, 200)
+    """
+    off = np.ones(len(masses), dtype=bool) if exclude is None else ~exclude
+    snow, mass = level(positions[off], ground_tilt_deg), masses[off]
+    if dimension == 2:
+        snow[:, 1] = 0.0
+    body = largest_body(snow, mass, dx)
+    kept = inliers(snow, mass, dimension)
+    return StackMeasure(
+        **vars(_extent(snow[kept], dimension)),
+        body=_extent(snow[body][inliers(snow[body], mass[body], dimension)], dimension),
+        mass=float(mass.sum()),
+        volume=_volume(mass, densities[off], dx**dimension),
+        detached_mass=float(mass[~body].sum()),
+        on_panel_mass=float(masses[~off].sum()),
+    )
+
+
+def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
+    with np.errstate(divide="ignore"):
+        return float(np.minimum(masses / densities, voxel).sum())
+
+
+def _extent(snow: Floats, dimension: int) -> Extent:
+    """Measure the shell of levelled snow without outliers (Table 2.3.2)."""
+    if len(snow) == 0:
+        return Extent()
+    x, y, z = snow[shell(snow)].T
+    return Extent(
+        height=float(z.max()),
+        length=float(np.ptp(x)),
+        head=float(x.min()),
+        tail=float(x.max()),
+        width=float(np.ptp(y)) if dimension == 3 else 1.0,
+        crest=float(x[np.argmax(z)]),
+        outline=outline(snow),
+    )

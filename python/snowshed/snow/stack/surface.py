@@ -1,0 +1,56 @@
+"""The shell of a stack: the highest particle of every cell of a 30 x 30 grid (thesis A.4.3)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from snowshed.io.arrays import Floats, Integers
+
+CELLS = 30  # across the range of x, and of y
+
+
+def shell(positions: Floats) -> Integers:
+    """Return the indices of the particles that form the shell, ordered by x cell, then y cell.
+
+    Parameters
+    ----------
+    positions : (n, 3)
+        Levelled positions of the particles that are left after the outlier removal, m. In 2D,
+        where y is zero throughout, 30 columns remain of the 900 cells.
+
+    Examples
+    --------
+    >>> shell(np.array([[0.0, 0, 1], [0.001, 0, 2], [1, 0, 1]])).tolist()
+    [1, 2]
+    """
+    x, y, z = positions.T
+    return _highest(_cells(x) * CELLS + _cells(y), z)
+
+
+def outline(positions: Floats) -> Floats:
+    """Return the profile of the stack from the side: the highest particle of each x column.
+
+    Returns
+    -------
+    (k, 2), k <= 30
+        x and z of these particles, m, in the order of x.
+    """
+    x, _, z = positions.T
+    profile: Floats = positions[_highest(_cells(x), z)][:, [0, 2]]
+    return profile
+
+
+def _cells(coordinate: Floats) -> Integers:
+    if len(coordinate) == 0:
+        return np.zeros(0, dtype=np.int64)
+    low, span = coordinate.min(), np.ptp(coordinate)
+    cells = np.floor((coordinate - low) * (CELLS / (span or 1.0))).astype(np.int64)
+    clipped: Integers = np.minimum(cells, CELLS - 1)
+    return clipped
+
+
+def _highest(cells: Integers, z: Floats) -> Integers:
+    order = np.lexsort((z, cells))
+    last = np.flatnonzero(np.diff(cells[order], append=-1))
+    highest: Integers = order[last]
+    return highest

@@ -1,0 +1,102 @@
+"""What makes two runs the same run: the content hash of their scene.
+
+The hash covers everything that decides a result: the complete scene as the core normalises it, with
+the contents of the meshes and grids it names instead of their paths, and the version of snowshed.
+It leaves out what does not change a result: the title, what is written besides the tables, and the
+number of threads. The instruction set is left out too, so that a study may be resumed on another
+machine; where it matters, ``SNOWSHED_KERNELS`` makes all machines round alike.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from snowshed import _core
+from snowshed.scene.scene import ResolvedScene
+
+HASH_DIGITS = 32  # hexadecimal: 128 bits
+WITHOUT_EFFECT = ("title", "output")
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of a study.
+
+    Attributes
+    ----------
+    hash
+        Its identity, 32 hexadecimal digits.
+    scene
+        The complete scene as JSON; files it names have absolute paths.
+    """
+
+    hash: str
+    scene: str
+
+    @classmethod
+    def of(cls, scene: ResolvedScene) -> Run:
+        """Return the run of a scene, without outputs that a study would throw away.
+
+        Examples
+        --------
+        >>> from snowshed import Scene
+        >>> lab = Scene.preset("lab-50")
+        >>> one = Run.of(lab.resolve())
+        >>> one == Run.of(lab.set("numerics.threads", 3).resolve())
+        True
+        >>> one.hash == Run.of(lab.set("panel.tilt", 51).resolve()).hash
+        False
+        """
+        data = scene.data
+        data["numerics"]["threads"] = 0
+        data["output"].update(snapshot_interval=0.0, energy=False)
+        return cls(content_hash(data), json.dumps(data))
+
+
+def content_hash(scene: Mapping[str, Any]) -> str:
+    """Return the hash of a complete scene.
+
+    Parameters
+    ----------
+    scene
+        JSON data as the core normalises it.
+
+    Raises
+    ------
+    OSError
+        If a file that the scene names cannot be read.
+    """
+    content = {key: value for key, value in scene.items() if key not in WITHOUT_EFFECT}
+    content["numerics"] = {k: v for k, v in scene["numerics"].items() if k != "threads"}
+    whole = {"snowshed": _core.version, "scene": _with_file_contents(content)}
+    text = json.dumps(whole, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
+
+
+def _with_file_contents(value: Any) -> Any:
+    """Replace the path under every key "file" by a digest of the file."""
+    if isinstance(value, list):
+        return [_with_file_contents(item) for item in value]
+    if not isinstance(value, dict):
+        return value
+    return {
+        key: _digest_of(inner) if key == "file" and inner else _with_file_contents(inner)
+        for key, inner in value.items()
+    }
+
+
+def _digest_of(path: str) -> str:
+    facts = Path(path).stat()
+    return _digest(path, facts.st_mtime_ns, facts.st_size)
+
+
+@functools.lru_cache(maxsize=64)
+def _digest(path: str, modified: int, size: int) -> str:
+    """Return the digest of a file's content; the runs of a study mostly share their files."""
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()

@@ -1,0 +1,153 @@
+"""The command, from measurements to tables and figures; and recovery of real, coarse snow."""
+
+import itertools
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from stand_in import COHESION, PARAMETERS, fill, measured, write_measurements
+
+from snowshed import Scene
+from snowshed.analysis.calibration import (
+    Measurement,
+    calibrate,
+    calibration_study,
+    read_measurements,
+    read_simulated,
+)
+from snowshed.cli.main import main
+from snowshed.study import Factor, Span, Study, axis, latin_hypercube
+
+TRUTH = (0.5, 6.5e3, 0.15)
+
+
+def run(*arguments):
+    return main([str(argument) for argument in arguments])
+
+
+@pytest.fixture(scope="module")
+def evaluated(tmp_path_factory):
+    """The folder of a calibration on the thesis's grid, whose runs are made up."""
+    folder = tmp_path_factory.mktemp("calibration")
+    write_measurements(measured(TRUTH), folder / "stacks.csv")
+    text = calibration_study(read_measurements(folder / "stacks.csv"))
+    (folder / "grid.toml").write_text(text, encoding="utf-8")
+    fill(folder / "store", Study.load(folder / "grid.toml"))
+    options = ("--stored", folder / "store", "-o", folder / "out")
+    assert run("calibrate", folder / "stacks.csv", *options, "-q") == 0
+    return folder
+
+
+def test_tables_and_figures(evaluated):
+    out = evaluated / "out"
+    ranking = pd.read_csv(out / "ranking.csv")
+    assert len(ranking) == 48 and ranking["rank"].tolist() == list(range(1, 49))
+    ranges = pd.read_csv(out / "ranges.csv").set_index("parameter")
+    assert list(ranges.index) == list(PARAMETERS)
+    for path, true in zip(PARAMETERS, TRUTH):
+        assert ranges.loc[path, "lower_95"] < true < ranges.loc[path, "upper_95"]
+        assert ranges.loc[path, "best_set"] == ranking.loc[0, path]
+    assert len(pd.read_csv(out / "comparison.csv")) == 48 * 12
+    assert len(pd.read_csv(out / "surrogate.csv")) == 12
+    assert set(pd.read_csv(out / "posterior.csv")) >= {COHESION, "discrepancy_height"}
+    assert set(pd.read_csv(out / "rmse-statistics.csv")["score"]) == {
+        "height_rmse_m",
+        "length_rmse_m",
+    }
+    for name in ("relative-error", "rmse", "fit", "posterior"):
+        assert (out / f"{name}.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("library", ["emcee", "sklearn"])
+def test_without_a_library_the_error_says_what_to_install(
+    evaluated, tmp_path, capsys, hide, library
+):
+    hide(library)
+    options = ("--stored", evaluated / "store", "-o", tmp_path / "out", "-q")
+    assert run("calibrate", evaluated / "stacks.csv", *options) == 2
+    said = capsys.readouterr().err
+    assert f"needs {library}" in said and 'pip install "snowshed[calibration]"' in said
+    assert said.count("\n") == 1
+
+
+def test_what_it_prints(evaluated, capsys):
+    from snowshed.cli.display.calibration import print_calibration
+
+    stacks = read_simulated(evaluated / "store")
+    measurements = read_measurements(evaluated / "stacks.csv")
+    print_calibration(calibrate(measurements, stacks, steps=100))
+    shown = capsys.readouterr().out
+    assert "Parameter sets by mean rescaled RMSE" in shown and "p₀, kPa" in shown
+    assert "the chains are worth" in shown  # 100 steps are too few
+    assert "error of the model in height" in shown
+
+
+def test_runs_that_are_not_computed_are_told(evaluated, tmp_path, capsys):
+    from snowshed.cli.display.calibration import print_calibration
+
+    fill(tmp_path / "store", Study.load(evaluated / "grid.toml"), pending=40)
+    stacks = read_simulated(tmp_path / "store")
+    assert stacks.pending == 40
+    print_calibration(calibrate(read_measurements(evaluated / "stacks.csv"), stacks, steps=100))
+    assert "40 runs of the study are not computed yet" in " ".join(capsys.readouterr().out.split())
+
+
+def test_the_template_is_written(tmp_path, capsys):
+    assert run("calibrate", "--template", tmp_path / "stacks.csv") == 0
+    assert run("calibrate", tmp_path / "stacks.csv", "-o", tmp_path / "out") == 2
+    assert "stacks.csv: no measurement in it" in capsys.readouterr().err
+
+
+def test_plan_and_errors(tmp_path, capsys):
+    write_measurements(measured(TRUTH), tmp_path / "stacks.csv")
+    options = (tmp_path / "stacks.csv", "-o", tmp_path / "out")
+    assert run("calibrate", *options, "--quick", "--plan") == 0
+    assert "calibration-quick: 48 runs" in capsys.readouterr().out
+    bad = tmp_path / "bad.csv"
+    bad.write_text("tilt_deg,event,height_m,height_std_m\n40,one,0.1,0.01\n")
+    for arguments, message in (
+        ((), "give a MEASUREMENTS file"),
+        ((tmp_path / "stacks.csv",), "give -o DIR"),
+        ((tmp_path / "none.csv", "-o", tmp_path), "none.csv: No such file"),
+        ((bad, "-o", tmp_path), "bad.csv: line 2: event: 'one' is not a number"),
+        ((*options, "--stored", tmp_path / "nowhere"), "nowhere"),
+        ((*options, "--stored", tmp_path, "--plan"), "--plan does nothing with --stored"),
+        ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds does nothing with --study"),
+        ((*options, "--name", "grid"), "--name is of a study given with --stored"),
+        ((*options, "--quantity", "width", "--study", tmp_path / "no.toml"), "no.toml"),
+    ):
+        assert run("calibrate", *arguments) == 2
+        assert message in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_real_snow_is_recovered_from_its_own_coarse_stacks(tmp_path):
+    """Measure a simulated snow with an error of 3 %, and find it from other runs and seedings."""
+    scene = Scene.preset("lab-40").update({"dimension": 2, "numerics.dx": 0.03})
+    scene.update({"events.count": 3, "snow.hardening_factor": 0.1, "snow.youngs_modulus": 1e6})
+    spans = {
+        PARAMETERS[0]: Span(0.3, 0.8),
+        PARAMETERS[1]: Span(2e3, 8e3),
+        COHESION: Span(0.05, 0.4),
+    }
+    tilts = axis("panel.tilt", [40, 50])
+    truth = {PARAMETERS[0]: 0.5, PARAMETERS[1]: 5e3, COHESION: 0.25}
+    known = Study(scene, [[tilts, Factor({p: [v] for p, v in truth.items()})]], "known", [901])
+    study = Study(scene, [[tilts, latin_hypercube(spans, 40)]], "sample", [1])
+    table = known.run(tmp_path, jobs=1, threads=1)
+    random = np.random.default_rng(7)
+    measurements = []
+    for row, quantity in itertools.product(table.to_dict("records"), ("height", "length")):
+        value = row[f"{quantity}_m"]
+        noisy = value * (1 + 0.03 * random.normal())
+        at = (float(row["panel.tilt"]), int(row["event"]), 1)
+        measurements.append(Measurement(*at, quantity, noisy, 0.03 * value))
+    study.run(tmp_path, jobs=1, threads=1)
+    found = calibrate(measurements, read_simulated(tmp_path, "sample"))
+    ranges = found.ranges.set_index("parameter")
+    print(json.dumps(ranges.reset_index().to_dict("records"), indent=1))
+    for path, true in truth.items():
+        assert ranges.loc[path, "lower_95"] < true < ranges.loc[path, "upper_95"]
+    width = (ranges["upper_95"] - ranges["lower_95"]) / (ranges["high"] - ranges["low"])
+    assert width.min() < 0.75  # and something was learnt

@@ -1,0 +1,136 @@
+"""The grid of triplets: its study, its misfits by hand, its ranking."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from stand_in import COHESION, PRESSURE, SLOPE, measured, stack, table_of, thesis_triplets
+
+from snowshed import InputError
+from snowshed.analysis.calibration import Measurement, calibration_study, compare, rank
+from snowshed.analysis.calibration.comparison import simulated
+from snowshed.analysis.calibration.misfit import statistics
+from snowshed.study import Study
+
+TRUTH = (0.5, 7e3, 0.2)
+
+
+def test_the_study_is_table_4_1_1(tmp_path):
+    file = tmp_path / "grid.toml"
+    file.write_text(calibration_study(measured(TRUTH), seeds=1), encoding="utf-8")
+    scenes = [json.loads(run.scene) for run in Study.load(file).runs()]
+    snow = [scene["snow"] for scene in scenes]
+    names = ("critical_state_slope", "preconsolidation_pressure", "cohesion")
+    assert {tuple(one[name] for name in names) for one in snow} == set(thesis_triplets())
+    assert len(scenes) == 96 and {scene["panel"]["tilt"] for scene in scenes} == {40, 50}
+    for scene in scenes:
+        assert (scene["dimension"], scene["numerics"]["dx"], scene["events"]["count"]) == (
+            3,
+            0.01,
+            5,
+        )
+        assert (scene["panel"]["height"], scene["panel"]["length"]) == (0.33, 0.245)
+        assert (scene["snow"]["youngs_modulus"], scene["snow"]["hardening_factor"]) == (1e6, 0.1)
+    with pytest.raises(InputError, match="seeds: 0 is not positive"):
+        calibration_study(measured(TRUTH), seeds=0)
+
+
+def test_scores_by_hand():
+    """Two sets, one event: set 1 is 1 cm too low and right in length, set 2 the other way round."""
+    rows = [
+        {"hash": "a", "panel.tilt": 40.0, COHESION: beta, "seed": seed, "event": 1,
+         "height_m": height + 0.001 * (seed - 1.5), "length_m": length, "head_m": 0.1,
+         "tail_m": 0.3}
+        for beta, height, length in ((0.1, 0.09, 0.2), (0.2, 0.1, 0.25))
+        for seed in (1, 2)
+    ]  # fmt: skip
+    measurements = [
+        Measurement(40.0, 1, 1, "height", 0.1, 0.01),
+        Measurement(40.0, 1, 1, "length", 0.2, 0.02),
+    ]
+    stacks = simulated(pd.DataFrame(rows))
+    ranked = rank(stacks, compare(stacks, measurements)).set_index(COHESION)
+    assert ranked.loc[0.1, "height_rmse_m"] == pytest.approx(0.01)
+    assert ranked.loc[0.1, "height_relative_error"] == pytest.approx(0.1)
+    assert ranked.loc[0.2, "length_relative_error"] == pytest.approx(-0.25)
+    assert ranked.loc[0.2, "length_mean_error_m"] == pytest.approx(0.05)
+    assert ranked.loc[0.1, "chi_square"] == pytest.approx(0.5)
+    assert ranked["height_rescaled"].tolist() == [1, 0]
+    assert ranked["rescaled_rmse"].tolist() == [0.5, 0.5]
+    table = statistics(ranked)
+    assert table.loc["length_rmse_m"].tolist() == pytest.approx([0, 0.05, 0.025, 0.025])
+
+
+def test_exact_measurements_find_their_triplet():
+    stacks = simulated(table_of(thesis_triplets(), noise=0, seeds=(1,)))
+    ranked = rank(stacks, compare(stacks, measured(TRUTH, uncertainty=1e-9, noise=0)))
+    assert tuple(ranked.iloc[0][[SLOPE, PRESSURE, COHESION]]) == TRUTH
+    assert ranked.iloc[0]["rescaled_rmse"] == pytest.approx(0, abs=1e-6)
+    assert ranked["rank"].tolist() == list(range(1, 49))
+    assert (np.diff(ranked["rescaled_rmse"]) >= 0).all()
+
+
+def test_sets_with_failed_runs_are_not_ranked():
+    table = table_of(thesis_triplets(), noise=0, seeds=(1,))
+    at = (table[SLOPE] == 0.5) & (table[PRESSURE] == 7e3) & (table[COHESION] == 0.2)
+    table.loc[at & (table["panel.tilt"] == 50) & (table["event"] > 3), "height_m"] = np.nan
+    stacks = simulated(table)
+    ranked = rank(stacks, compare(stacks, measured(TRUTH)))
+    assert len(stacks.sets) == 48 and len(ranked) == 47
+    assert not (ranked[[SLOPE, PRESSURE, COHESION]].to_numpy() == TRUTH).all(axis=1).any()
+
+
+def test_sets_of_failed_runs_are_counted():
+    """They keep their place in the box that is searched."""
+    table = table_of(thesis_triplets(), noise=0, seeds=(1,))
+    table.loc[table[COHESION] == 0.2, ["height_m", "length_m", "head_m", "tail_m"]] = np.nan
+    stacks = simulated(table)
+    assert len(stacks.sets) == 48 and stacks.sets[COHESION].max() == 0.2
+    assert len(rank(stacks, compare(stacks, measured(TRUTH)))) == 32
+
+
+def test_head_and_tail_are_scored_and_not_ranked_by():
+    stacks = simulated(table_of(thesis_triplets(), noise=0, seeds=(1,)))
+    measurements = measured(TRUTH, noise=0)
+    alone = rank(stacks, compare(stacks, measurements))
+    head = Measurement(40.0, 1, 1, "head", 0.1, 0.01, 9)
+    both = rank(stacks, compare(stacks, [*measurements, head]))
+    assert both["head_rmse_m"].tolist() == pytest.approx([0.01] * 48)
+    assert both["rescaled_rmse"].tolist() == alone["rescaled_rmse"].tolist()
+    with pytest.raises(InputError, match="neither height_m nor length_m was measured"):
+        rank(stacks, compare(stacks, [head]))
+
+
+def test_what_does_not_fit_together_is_named():
+    table = table_of(thesis_triplets()[:8], seeds=(1,))
+    stacks = simulated(table)
+    value = stack(TRUTH, 40, 1)[0]
+    for one, message in (
+        (Measurement(30.0, 1, 1, "height", value, 0.01, 7), "tilt 30, measured in line 7"),
+        (Measurement(40.0, 6, 1, "height", value, 0.01, 8), "event 6, measured in line 8"),
+    ):
+        with pytest.raises(InputError, match=message):
+            compare(stacks, [one])
+    for wrong, message in (
+        (table.drop(columns="panel.tilt"), "no axis panel.tilt"),
+        (table.assign(**{COHESION: 0.1, SLOPE: 0.5, PRESSURE: 1e3}), "nothing varies in it"),
+        (table.assign(height_m=np.nan), "nothing of it is computed yet"),
+        (
+            table.assign(**{COHESION: ["soft", "hard"] * (len(table) // 2)}),
+            "cohesion: holds 'soft'",
+        ),
+    ):
+        with pytest.raises(InputError, match=message):
+            simulated(wrong)
+
+
+def test_words_that_are_the_same_everywhere_are_no_parameters():
+    table = table_of(thesis_triplets()[:8], seeds=(1,))
+    named = simulated(table.assign(**{"events.between": "carry"}))
+    assert named.parameters == simulated(table).parameters
+
+
+def test_tilts_are_written_as_they_were_measured():
+    measured = [Measurement(tilt, 3, 1, "height", 0.1, 0.01) for tilt in (38.65980825, 40.0)]
+    assert "panel.tilt = [38.65980825, 40]" in calibration_study(measured)

@@ -1,0 +1,82 @@
+"""Measurement files: what is read, and what is refused with line and column."""
+
+import pytest
+
+from snowshed import InputError
+from snowshed.analysis.calibration import read_measurements, template
+from snowshed.analysis.calibration.measurements import COLUMNS
+
+HEADER = "tilt_deg,event,height_m,height_std_m,length_m,length_std_m"
+ENDS = "tilt_deg,event,length_m,length_std_m,head_m,head_std_m,tail_m,tail_std_m"
+
+
+def read(tmp_path, text):
+    (tmp_path / "stacks.csv").write_bytes(text.encode() if isinstance(text, str) else text)
+    return read_measurements(tmp_path / "stacks.csv")
+
+
+def test_values_uncertainties_and_lines(tmp_path):
+    found = read(tmp_path, f"# a comment\n{HEADER}\n\n40,1,0.05,0.005,,\n50, 2 ,,,0.3,0.02\n")
+    assert [(one.tilt, one.event, one.quantity, one.value, one.uncertainty, one.line)
+            for one in found] == [
+        (40, 1, "height", 0.05, 0.005, 4),
+        (50, 2, "length", 0.3, 0.02, 5),
+    ]  # fmt: skip
+
+
+def test_the_template_holds_no_number_that_nobody_measured(tmp_path):
+    lines = [line for line in template().splitlines() if not line.startswith("#")]
+    assert lines[0] == ",".join(COLUMNS) and len(lines) == 1 + 2 * 5
+    assert all(line.split(",")[3:] == [""] * 8 for line in lines[1:])
+    with pytest.raises(InputError, match="no measurement in it"):
+        read(tmp_path, template())
+    filled = template().replace(
+        "\n40,1,1,,,,,,,,", "\n40,1,1,0.05,0.005,0.2,0.02,0.1,0.01,0.3,0.01"
+    )
+    assert [one.quantity for one in read(tmp_path, filled)] == ["height", "length", "head", "tail"]
+
+
+def test_rounds_repeat_an_experiment(tmp_path):
+    header = "tilt_deg,event,round,height_m,height_std_m"
+    found = read(tmp_path, f"{header}\n40,1,1,0.05,0.005\n40,1,2,0.06,0.005\n")
+    assert [one.round for one in found] == [1, 2]
+    with pytest.raises(InputError, match="line 3: tilt 40, event 1, round 1 is in line 2 already"):
+        read(tmp_path, f"{header}\n40,1,1,0.05,0.005\n40,1,,0.06,0.005\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "is empty; `snowshed calibrate --template FILE`"),
+        (b"\xff\xfe\x00", "not a text in UTF-8"),
+        ("tilt_deg;event\n", "line 1: 'tilt_deg;event' is no column; allowed: tilt_deg, event"),
+        ("[" * 20_000, f"line 1: {'[' * 60!r}... is no column; allowed: tilt_deg"),
+        ("tilt_deg,event,height_cm\n", "line 1: 'height_cm' is no column"),
+        ("event,height_m,height_std_m\n", "line 1: no column tilt_deg"),
+        ("tilt_deg,event\n", "line 1: no column of a measured value"),
+        ("tilt_deg,event,head_m\n", "line 1: no column head_std_m, the uncertainty of head_m"),
+        ("tilt_deg,event,event\n", "line 1: column event occurs twice"),
+        (f"{HEADER}\n40,1,0.05\n", "line 2: has 3 cells, but the header has 6 columns"),
+        (f"{HEADER}\n40,1,0.05,,,\n", "line 2: height_std_m: missing"),
+        (f"{HEADER}\n40,1,,0.1,,\n", "line 2: height_std_m: an uncertainty, but height_m is empty"),
+        (f"{HEADER}\n40,1,0.05,0,,\n", "line 2: height_std_m: 0 is not positive"),
+        (f"{HEADER}\n40,1,-0.05,0.01,,\n", "line 2: height_m: -0.05 is not positive"),
+        (f"{HEADER}\n40,1,5 cm,0.01,,\n", "line 2: height_m: '5 cm' is not a number"),
+        (f"{HEADER}\n40,1,nan,0.01,,\n", "line 2: height_m: 'nan' is not a number"),
+        (f"{HEADER}\n,1,0.05,0.01,,\n", "line 2: tilt_deg: '' is not a number"),
+        (f"{HEADER}\n90,1,0.05,0.01,,\n", "line 2: tilt_deg: 90 is outside the allowed range"),
+        (f"{HEADER}\n40,0,0.05,0.01,,\n", "line 2: event: 0 is not a whole number from 1 to 1000"),
+        (f"{HEADER}\n40,1.5,0.05,0.01,,\n", "line 2: event: 1.5 is not a whole number"),
+        (f"{HEADER}\n40,1e300,0.05,0.01,,\n", "line 2: event: 1e+300 is not a whole number from"),
+        (f'{HEADER}\n40,1,"0.05,0.01,,\n', "line 2: not CSV"),
+        (f"{ENDS}\n40,1,,,0.3,0.01,0.1,0.01\n", "line 2: tail_m: 0.1 is not beyond head_m, 0.3"),
+        (
+            f"{ENDS}\n40,1,0.5,0.01,0.1,0.01,0.3,0.01\n",
+            "line 2: length_m: 0.5 is not tail_m - head_m = 0.2",
+        ),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path, text, message):
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text)
+    assert f"stacks.csv: {message}" in str(caught.value)

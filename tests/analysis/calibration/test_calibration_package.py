@@ -1,0 +1,47 @@
+"""Examples in docstrings run, the interface is whole, and the docs name every option."""
+
+import doctest
+import importlib
+import pkgutil
+import re
+import subprocess
+import sys
+
+import pytest
+from paths import ROOT
+
+import snowshed.analysis.calibration
+
+DOCS = ROOT / "docs" / "calibration.md"
+MODULES = [module.name for module in pkgutil.iter_modules(snowshed.analysis.calibration.__path__)]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_in_docstrings(name):
+    module = importlib.import_module(f"snowshed.analysis.calibration.{name}")
+    assert doctest.testmod(module).failed == 0
+
+
+def test_every_public_name_is_there():
+    for name in snowshed.analysis.calibration.__all__:
+        assert getattr(snowshed.analysis.calibration, name).__doc__
+    with pytest.raises(AttributeError, match="no attribute 'x'"):
+        _ = snowshed.analysis.calibration.x
+
+
+def test_the_command_line_starts_without_what_calibration_needs():
+    script = "import sys, snowshed.cli.main; print([m for m in ('emcee', 'sklearn') if m in sys.modules])"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_option_is_in_the_docs():
+    from snowshed.cli.commands.calibration import calibrate
+
+    text = DOCS.read_text(encoding="utf-8")
+    for option in calibrate.params:
+        if option.param_type_name == "argument":
+            continue
+        assert re.search(rf"`{option.opts[-1]}[ `]", text), option.opts

@@ -1,0 +1,160 @@
+"""Folds, the nested cross-validation over them, and what is kept of it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_up_rows import few_inputs, made_up_rows
+
+from snowshed import InputError
+from snowshed.analysis.regression import CrossValidation, RegressionInterrupted, nested, regress
+from snowshed.analysis.regression.fold_result import FoldResult
+from snowshed.analysis.regression.kinds import kinds, kinds_named
+from snowshed.analysis.regression.nested import cross_validate
+from snowshed.analysis.regression.scaling import Scaling
+from snowshed.analysis.regression.task import Task, compute
+
+ROWS = made_up_rows(few_inputs())
+SMALL = CrossValidation(rounds=2, folds=3, inner_folds=2)
+LINEAR = kinds_named(["linear"])
+
+
+@pytest.mark.parametrize("by", ["rows", "panels"])
+def test_every_row_is_validated_once_a_round_and_tested_once_a_fold(by):
+    scheme = CrossValidation(rounds=1, folds=4, inner_folds=3, by=by)
+    outer = scheme.outer(ROWS, 0)
+    np.testing.assert_array_equal(
+        np.sort(np.concatenate([validation for _, validation in outer])), np.arange(len(ROWS))
+    )
+    for fold, (development, validation) in enumerate(outer):
+        assert not set(development) & set(validation)
+        assert len(development) + len(validation) == len(ROWS)
+        inner = scheme.inner(ROWS, development, 0, fold)
+        tested = np.sort(np.concatenate([test for _, test in inner]))
+        np.testing.assert_array_equal(tested, np.sort(development))
+        for train, test in inner:
+            assert not set(train) & set(test) and set(train) | set(test) == set(development)
+            if by == "panels":
+                assert not set(ROWS.panels[train]) & set(ROWS.panels[test])
+
+
+def test_rounds_differ_and_repeat():
+    first, second = (SMALL.outer(ROWS, round_)[0][1] for round_ in (0, 1))
+    assert set(first) != set(second)
+    np.testing.assert_array_equal(first, SMALL.outer(ROWS, 0)[0][1])
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"rounds": 0}, "rounds: 0 is below 1"),
+        ({"folds": 1}, "folds: 1 is below 2"),
+        ({"by": "events"}, "by: 'events' is unknown; allowed: rows, panels"),
+    ],
+)
+def test_impossible_folds_are_refused(values, message):
+    with pytest.raises(InputError, match=message):
+        CrossValidation(**values)
+
+
+def test_too_few_rows_are_refused(tmp_path):
+    with pytest.raises(InputError, match="32 panels are too few for 10 x 5 folds; at least 50"):
+        regress(ROWS, tmp_path / "out", scheme=CrossValidation(by="panels"))
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", list(kinds()))
+def test_each_kind_predicts_what_it_has_not_seen(name):
+    """Scores are those of the predictions, and far better than the mean as a predictor."""
+    rows = made_up_rows(few_inputs(), noise=0.001)
+    values = rows.targets["ratio"]
+    result = compute(Task("ratio", name, 0, 0), rows, CrossValidation(folds=3, inner_folds=2))
+    errors = np.abs(result.held_out - values[result.validation])
+    assert result.validation_score == pytest.approx(np.median(errors))
+    plain = np.median(np.abs(values - np.median(values)))
+    assert result.validation_score < plain * (0.6 if name == "linear" else 0.35)
+    inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
+    final = kinds()[name].fit(result.parameters, inputs, (values - values.mean()) / values.std())
+    expected = final.predict(inputs) * values.std() + values.mean()
+    np.testing.assert_allclose(result.predictions, expected)
+    if result.expansion is not None:
+        scaled = result.expansion.predict(inputs)
+        np.testing.assert_allclose(scaled * values.std() + values.mean(), expected)
+
+
+def test_a_result_survives_its_file(tmp_path):
+    result = compute(Task("height", "linear", 0, 1), ROWS, SMALL)
+    result.save(tmp_path / "a" / "b.npz")
+    back = FoldResult.load(tmp_path / "a" / "b.npz", result.expansion.points)
+    assert back.parameters == result.parameters and back.fits == result.fits
+    np.testing.assert_array_equal(back.predictions, result.predictions)
+    np.testing.assert_array_equal(back.held_out, result.held_out)
+    np.testing.assert_array_equal(back.expansion.coefficients, result.expansion.coefficients)
+    assert FoldResult.load(tmp_path / "none.npz", result.expansion.points) is None
+    (tmp_path / "cut.npz").write_bytes((tmp_path / "a" / "b.npz").read_bytes()[:500])
+    assert FoldResult.load(tmp_path / "cut.npz", result.expansion.points) is None
+
+
+def run(folder, scheme=SMALL, **options):
+    return cross_validate(ROWS, folder, targets=["ratio"], kinds=LINEAR, scheme=scheme, **options)
+
+
+def predictions(results):
+    return {task: result.predictions.tolist() for task, result in results.items()}
+
+
+def test_an_interrupted_regression_goes_on_where_it_was(tmp_path, monkeypatch):
+    whole = run(tmp_path / "whole")
+    done = []
+
+    def compute_then_interrupt(task, rows, scheme):
+        done.append(task)
+        if len(done) == 3:
+            nested.signal.raise_signal(nested.signal.SIGINT)
+        return compute(task, rows, scheme)
+
+    monkeypatch.setattr(nested, "compute", compute_then_interrupt)
+    with pytest.raises(RegressionInterrupted, match="the same command goes on"):
+        run(tmp_path / "parts")
+    assert len(done) == 3 and len(list((tmp_path / "parts").rglob("*.npz"))) == 3
+    seen = []
+    resumed = run(tmp_path / "parts", progress=seen.append)
+    assert len(done) == 6
+    assert predictions(resumed) == predictions(whole)
+    assert (seen[0].done, seen[-1].done, seen[-1].count) == (3, 6, 6)
+    assert seen[-1].fraction == pytest.approx(1)
+
+
+def test_rounds_may_be_added(tmp_path):
+    run(tmp_path / "out", scheme=replace(SMALL, rounds=1))
+    seen = []
+    more = run(tmp_path / "out", progress=seen.append)
+    assert (seen[0].done, seen[-1].count) == (3, 6)
+    assert predictions(more) == predictions(run(tmp_path / "whole"))
+    with pytest.raises(InputError, match="or with other"):
+        run(tmp_path / "out", scheme=replace(SMALL, folds=4))
+
+
+def test_processes_give_the_same_results(tmp_path):
+    alone, shared = run(tmp_path / "one"), run(tmp_path / "two", jobs=2)
+    assert predictions(alone) == predictions(shared)
+
+
+def test_a_folder_of_something_else_is_refused(tmp_path):
+    run(tmp_path / "out")
+    (tmp_path / "damaged").mkdir()
+    (tmp_path / "damaged" / "regression.json").write_bytes(b"\xff\x00")
+    with pytest.raises(InputError, match=r"regression\.json: damaged: "):
+        run(tmp_path / "damaged")
+    with pytest.raises(InputError, match="holds a regression of another table, or with other"):
+        cross_validate(
+            made_up_rows(few_inputs(), seed=2),
+            tmp_path / "out",
+            targets=["ratio"],
+            kinds=LINEAR,
+            scheme=SMALL,
+        )
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "thesis.txt").touch()
+    with pytest.raises(InputError, match="not empty, and holds no regression"):
+        run(tmp_path / "full")

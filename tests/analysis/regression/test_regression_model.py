@@ -1,0 +1,300 @@
+"""Models: their file, their predictions, and how far those may be trusted."""
+
+import contextlib
+import json
+import pickle
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from made_up_rows import few_inputs, made_up_rows, smooth_ratio, thesis_inputs
+
+from snowshed import InputError
+from snowshed.analysis.regression import (
+    OutsideDataError,
+    load_model,
+    predict,
+    save_model,
+)
+from snowshed.analysis.regression.ensemble import Ensemble
+from snowshed.analysis.regression.kinds import kinds
+from snowshed.analysis.regression.model_file import Member, StackModel
+from snowshed.analysis.regression.rows import rows_of
+from snowshed.analysis.regression.scaling import Scaling
+from snowshed.analysis.regression.spread import (
+    INTERVAL,
+    SPREAD,
+    Spread,
+    stack_spread,
+    unseen_panels,
+)
+from snowshed.analysis.regression.threads import one_thread
+
+NOISE = 0.003
+PARAMETERS = {"epsilon": 0.01, "C": 100.0, "gamma": 0.1}
+
+
+def ensemble_model(rows, target="ratio", rounds=2, folds=5):
+    """An RBF model as `regress` makes one, with parameters given instead of searched."""
+    kind = kinds()["rbf"]
+    inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
+    values = rows.targets[target]
+    scaled = (values - values.mean()) / values.std()
+    choices = [{**PARAMETERS, "epsilon": epsilon} for epsilon in np.linspace(0.005, 0.05, folds)]
+    models = [kind.fit(parameters, inputs, scaled) for parameters in choices]
+    ensemble = Ensemble(
+        inputs,
+        np.array([model.coefficients for model in models]),
+        np.array([model.intercept for model in models]),
+        np.full((folds, 4), PARAMETERS["gamma"]),
+    )
+    found = unseen_panels(kind, [choices] * rounds, rows, target)
+    deviation = ensemble.predict(inputs).std(axis=0) * values.std()
+    spread = stack_spread(rows, target, found, deviation)
+    return Member(ensemble, float(values.mean()), float(values.std()), spread)
+
+
+def model_of(rows):
+    with one_thread():
+        members = {("ratio", "rbf"): ensemble_model(rows)}
+    return StackModel(rows.inputs, members, "made up", "stack")
+
+
+@pytest.fixture(scope="module")
+def model():
+    return model_of(made_up_rows(noise=NOISE))
+
+
+@pytest.fixture(scope="module")
+def model_of_means():
+    """Of rows that are means of four stacks each."""
+    return model_of(made_up_rows(np.tile(thesis_inputs(), (4, 1)), noise=NOISE))
+
+
+@pytest.fixture
+def file(model, tmp_path):
+    save_model(model, tmp_path / "model.npz")
+    return tmp_path / "model.npz"
+
+
+def test_a_model_survives_its_file(model, file):
+    back = load_model(file)
+    assert (back.title, back.measure, back.targets, back.kinds) == (
+        "made up",
+        "stack",
+        ["ratio"],
+        ["rbf"],
+    )
+    ours, theirs = model.members["ratio", "rbf"], back.members["ratio", "rbf"]
+    assert theirs.spread == ours.spread
+    question = Scaling.of(model.inputs).scaled(np.array([[2.0, 2.5, 3.0, 50.0]]))
+    np.testing.assert_array_equal(
+        theirs.ensemble.predict(question), ours.ensemble.predict(question)
+    )
+
+
+def test_a_prediction_is_near_the_formula(file):
+    found = predict(height=2.5, length=5, tilt=55, events=5, model=file)
+    assert not found.extrapolated and found.kind == "rbf"
+    truth = smooth_ratio(np.array([[event, 2.5, 5, 55] for event in range(1, 6)]))
+    off = np.abs(found.table["value"] - truth)
+    assert (off < 2.5 * NOISE).all()
+    assert (found.table["spread"] < 2.5 * NOISE).all() and (
+        found.table["spread"] > 0.5 * NOISE
+    ).all()
+    assert (found.table["low"] < found.table["value"]).all()
+
+
+def test_a_model_that_is_read_once_answers_alike(model, file):
+    questions = {"height": 2.5, "length": 5, "tilt": 55, "events": 3}
+    pd.testing.assert_frame_equal(
+        predict(model=model, **questions).table, predict(model=file, **questions).table
+    )
+
+
+def test_what_the_data_have_in_common_is_kept(model, tmp_path):
+    told = replace(model, settings={"panel.friction": "0.8", "dx": "0.025"}, measure="body")
+    save_model(told, tmp_path / "told.npz")
+    found = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "told.npz")
+    assert (found.settings, found.measure) == (told.settings, "body")
+
+
+def test_no_answer_is_negative(model):
+    """Nor is its interval turned about, where a model falls below zero."""
+    ((key, member),) = model.members.items()
+    below = replace(model, members={key: replace(member, mean=-10.0)})
+    table = predict(height=2, length=2, tilt=40, events=2, model=below).table
+    assert (table[["value", "low", "high"]] == 0).all(axis=None)
+
+
+@pytest.mark.parametrize("which", ["model", "model_of_means"])
+def test_spread_and_interval_hold_as_many_stacks_as_they_say(which, request):
+    """New panels inside the data, with new noise, that no model has seen."""
+    model = request.getfixturevalue(which)
+    rng = np.random.default_rng(5)
+    inside = rng.uniform((2, 0.5, 40), (4, 8, 70), (300, 3))
+    questions = np.column_stack([rng.integers(1, 6, 300), inside])
+    stacks = smooth_ratio(questions) + rng.normal(0, NOISE, 300)
+    member = model.members["ratio", "rbf"]
+    scaled = Scaling.of(model.inputs).scaled(questions)
+    found = member.ensemble.predict(scaled) * member.deviation + member.mean
+    mean, deviation = found.mean(axis=0), found.std(axis=0)
+    for part in (SPREAD, INTERVAL):
+        width = member.spread.half_width(mean, deviation, part)
+        held = np.mean(np.abs(stacks - mean) <= width)
+        assert part - 0.07 < held < part + 0.09
+
+
+def test_spread_grows_where_noise_grows():
+    rng = np.random.default_rng(1)
+    predictions = rng.uniform(1, 10, 4000)
+    errors = rng.normal(0, 0.1 * predictions)
+    spread = Spread.of(errors, predictions, np.zeros(4000))
+    width = spread.half_width(np.array([1.0, 10.0]), np.zeros(2))
+    np.testing.assert_allclose(width, (0.1, 1.0), rtol=0.1)  # 68 % of normal errors: a deviation
+
+
+def test_rows_of_a_panel_are_left_out_together():
+    """Panels with an offset of their own: the spread knows it, although rows of a panel agree."""
+    rows = made_up_rows(few_inputs(), noise=0.0)
+    rng = np.random.default_rng(2)
+    offset = rng.normal(0, 0.01, rows.panels.max() + 1)[rows.panels]
+    length = rows.targets["length"]
+    shifted = rows_of(rows.inputs, (rows.targets["ratio"] + offset) * length, length)
+    found = unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
+    assert np.abs(found - shifted.targets["ratio"]).mean() > 0.006
+
+
+@pytest.mark.parametrize(
+    ("question", "message"),
+    [
+        ({"height": 5.0}, "panel height 5 m is outside the data, which reach from 1 to 4 m"),
+        ({"events": 6}, "event 6 is outside the data"),
+        ({"height": 1.0, "tilt": 65}, "not together"),
+    ],
+)
+def test_outside_the_data_nothing_is_answered_unless_forced(file, question, message):
+    asked = {"height": 2.0, "length": 9.0, "tilt": 40, "events": 5, "model": file, **question}
+    with pytest.raises(OutsideDataError, match=message):
+        predict(**asked)
+    forced = predict(**asked, extrapolate=True)
+    assert forced.extrapolated and message in forced.objections[0]
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"height": -1}, "height: -1 is not a positive length"),
+        ({"length": float("nan")}, "length: nan is not"),
+        ({"tilt": 90}, "tilt: 90 is outside the allowed range"),
+        ({"events": 0}, "events: 0 is outside the allowed range"),
+        ({"kind": "linear"}, "the model holds no 'linear'; it has: rbf"),
+    ],
+)
+def test_impossible_questions_are_refused(file, values, message):
+    with pytest.raises(InputError, match=message):
+        predict(**{"height": 2, "length": 2, "tilt": 40, "events": 1, "model": file, **values})
+
+
+def altered(file, change, tmp_path):
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    facts = json.loads(str(arrays["facts"]))
+    change(arrays, facts)
+    arrays["facts"] = np.array(json.dumps(facts))
+    np.savez(tmp_path / "bad.npz", **arrays)
+    return tmp_path / "bad.npz"
+
+
+ENSEMBLE = "ratio/rbf"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda a, f: a.pop("inputs"), "inputs: missing"),
+        (lambda a, f: a.pop(f"{ENSEMBLE}/rates"), f"{ENSEMBLE}/rates: missing"),
+        (
+            lambda a, f: a.update({f"{ENSEMBLE}/coefficients": np.zeros((10, 3))}),
+            rf"{ENSEMBLE}/coefficients: float64 numbers of shape \(10, 3\); must be float64",
+        ),
+        (
+            lambda a, f: a.update({f"{ENSEMBLE}/intercepts": np.full(5, np.nan)}),
+            f"{ENSEMBLE}/intercepts: holds values that are not finite",
+        ),
+        (lambda a, f: a.update({f"{ENSEMBLE}/rates": -np.ones((5, 4))}), "rates: negative"),
+        (lambda a, f: a.update(inputs=a["inputs"].astype("U8")), "inputs: <U8 numbers"),
+        (lambda a, f: f.update(format="cake"), "facts: not a snowshed stack model"),
+        (lambda a, f: f.update(format_version=99), "format_version: 99; this snowshed reads 1"),
+        (lambda a, f: f.update(inputs=["event"]), "inputs: .*must be event, panel.height"),
+        (lambda a, f: f.update(measure="guess"), "measure: 'guess' is unknown"),
+        (lambda a, f: f.update(title=3), "title: missing, or not str"),
+        (lambda a, f: f.update(members={}), "members: none"),
+        (lambda a, f: f["members"].update({"speed/rbf": {}}), "members.speed/rbf: unknown target"),
+        (
+            lambda a, f: f["members"][ENSEMBLE].update(deviation=0),
+            f"members.{ENSEMBLE}.deviation: 0 is not a positive number",
+        ),
+        (
+            lambda a, f: f["members"][ENSEMBLE]["spread"].update(factors=[[0.5, 1]]),
+            f"members.{ENSEMBLE}.spread.factors: must be given, and not negative",
+        ),
+    ],
+)
+def test_bad_models_are_refused_by_key(file, tmp_path, change, message):
+    bad = altered(file, change, tmp_path)
+    with pytest.raises(InputError, match="bad.npz: .*" + message):
+        load_model(bad)
+
+
+def test_files_that_are_no_models_are_refused(file, tmp_path):
+    (tmp_path / "cut.npz").write_bytes(file.read_bytes()[:2000])
+    (tmp_path / "text.npz").write_text("model")
+    (tmp_path / "pickle.npz").write_bytes(pickle.dumps({"coefficients": [1]}))
+    for name in ("cut", "text", "pickle"):
+        with pytest.raises(InputError, match=f"{name}.npz: damaged, or not a model"):
+            load_model(tmp_path / f"{name}.npz")
+    with pytest.raises(InputError, match="No such file"):
+        load_model(tmp_path / "none.npz")
+
+
+class Trap:
+    def __reduce__(self):
+        return (pytest.fail, ("code of a model file was executed",))
+
+
+def test_nothing_in_a_file_is_executed(file, tmp_path):
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    arrays["inputs"] = np.array([Trap()], dtype=object)
+    np.savez(tmp_path / "trap.npz", **arrays)
+    with pytest.raises(InputError, match=r"trap.npz: inputs: .*allow_pickle=False"):
+        load_model(tmp_path / "trap.npz")
+
+
+def test_a_file_that_unpacks_to_too_much_is_refused(file, monkeypatch):
+    monkeypatch.setattr("snowshed.analysis.regression.model_file.LARGEST", 1000)
+    with pytest.raises(InputError, match="at most 1000 are allowed"):
+        load_model(file)
+
+
+def test_damaged_files_are_refused_or_still_a_model(file, tmp_path):
+    """Random bytes anywhere in the archive, or inside one of its arrays, raise no other error."""
+    whole, rng = file.read_bytes(), np.random.default_rng(0)
+    for attempt in range(60):
+        with zipfile.ZipFile(file) as archive:
+            parts = {name: bytearray(archive.read(name)) for name in archive.namelist()}
+        damaged = bytearray(whole)
+        part = parts[str(rng.choice(sorted(parts)))] if attempt % 2 else damaged
+        for place in rng.integers(0, min(len(part), 400), 3):
+            part[place] = rng.integers(256)
+        if attempt % 2:
+            with zipfile.ZipFile(tmp_path / "bad.npz", "w") as archive:
+                for name, content in parts.items():
+                    archive.writestr(name, bytes(content))
+        else:
+            (tmp_path / "bad.npz").write_bytes(bytes(damaged))
+        with contextlib.suppress(InputError):
+            assert load_model(tmp_path / "bad.npz").targets == ["ratio"]

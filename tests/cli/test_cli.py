@@ -1,0 +1,223 @@
+import json
+import signal
+import subprocess
+import sys
+
+import pytest
+from bad_scenes import bad_scene  # noqa: F401
+
+from snowshed import _core, read_events
+from snowshed.cli import main as cli
+from snowshed.cli.main import main
+from snowshed.cli.scene_options import PREFIXED, SHORT_NAMES, option_name
+from snowshed.scene.schema import scene_parameters
+
+TINY = [
+    *("--preset", "lab-50", "--dim", "2", "--dx", "0.02", "--particles-per-voxel", "8"),
+    *("--events", "1", "--max-time", "0.2", "--threads", "1"),
+]
+
+
+def scene_of(capsys, *options):
+    assert main(["scene", *options]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_the_command_of_the_lab_experiment(capsys):
+    data = scene_of(
+        capsys,
+        *("--height", "0.33", "--length", "0.245", "--width", "0.213", "--tilt", "50"),
+        *("--thickness", "0.02", "--events", "5", "--dim", "3", "--friction", "0.3"),
+    )
+    assert data["panel"]["height"] == 0.33
+    assert data["panel"]["friction"] == 0.3
+    assert data["slab"]["thickness"] == 0.02
+    assert data["slab"]["width"] in (0.0, pytest.approx(0.142))  # 0: two thirds of the panel's
+    assert (data["events"]["count"], data["dimension"]) == (5, 3)
+
+
+def test_every_parameter_has_an_option_of_its_own():
+    names = [option_name(parameter.path) for parameter in scene_parameters()]
+    assert len(set(names)) == len(names)
+    paths = {parameter.path for parameter in scene_parameters()}
+    assert set(SHORT_NAMES) <= paths
+    assert set(PREFIXED) <= {path.partition(".")[0] for path in paths}
+    own = {name for o in cli.panel.params for name in o.opts}
+    assert len(own) == sum(len(o.opts) for o in cli.panel.params)
+    assert set(names) <= own
+
+
+def test_options_override_the_snow_and_the_snow_overrides_the_preset(capsys):
+    data = scene_of(capsys, "--preset", "lab-50", "--snow", "reference", "--density", "300")
+    assert data["snow"]["cohesion"] == 0.1
+    assert data["snow"]["density"] == 300
+    assert data["panel"]["tilt"] == 50
+
+
+def test_options_of_every_kind(capsys):
+    data = scene_of(
+        capsys,
+        *("--preset", "geometry", "--panel-thickness", "0.05", "--ground-tilt", "-3"),
+        *("--energy", "--domain-min", "-9,-9", "--domain-max", "9,9", "--between", "reseed"),
+        *("--obstacle", '{"name": "post", "shape": {"type": "sphere", "radius": 0.2}}'),
+    )
+    assert data["panel"]["thickness"] == 0.05
+    assert data["ground"]["tilt"] == -3
+    assert data["output"]["energy"] is True
+    assert data["domain"] == {"min": [-9, -9], "max": [9, 9]}
+    assert data["obstacles"][0]["name"] == "post"
+    assert data["events"]["between"] == "reseed"
+
+
+def test_help_names_unit_and_default(capsys):
+    assert main(["panel", "--help"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "--density FLOAT Initial bulk density [kg/m3; default 210.0]" in text
+
+
+def test_panel_runs_quietly(tmp_path, capsys):
+    assert main(["panel", *TINY, "-q", "-o", str(tmp_path / "out")]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert list(read_events(tmp_path / "out").event) == [1]
+
+
+def test_scene_run_and_table(tmp_path, capsys):
+    scene, out = tmp_path / "scene.json", tmp_path / "out"
+    assert main(["scene", *TINY, "-o", str(scene)]) == 0
+    assert main(["run", str(scene), "-o", str(out)]) == 0
+    shown = capsys.readouterr()
+    assert "Stack after each event" in shown.out and str(out) in shown.out
+    assert json.loads((out / "scene.json").read_text()) == json.loads(scene.read_text())
+
+
+def test_plan(tmp_path, capsys):
+    scene = tmp_path / "scene.json"
+    main(["scene", *TINY, "-o", str(scene)])
+    assert main(["plan", str(scene)]) == 0
+    shown = capsys.readouterr().out
+    for line in ("used", "left out", "particles", "memory", "time step", "steps", "run time"):
+        assert line in shown
+    assert list(tmp_path.iterdir()) == [scene]
+
+
+def test_schema(capsys):
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out) == json.loads(_core.scene_schema())
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--density", "-1"], "--density (/snow/density): -1"),
+        (["--density", "nan"], "--density (/snow/density): nan"),
+        (["--poissons-ratio", "0.5"], "--poissons-ratio (/snow/poissons_ratio): 0.5"),
+        (["--tilt", "90"], "--tilt (/panel/tilt): 90"),
+        (["--dim", "4"], "--dim (/dimension): 4"),
+        (["--height", "tall"], "'--height': 'tall'"),
+        (["--between", "melt"], "'--between': 'melt' is not one of 'carry', 'reseed'"),
+        (["--preset", "lab-60"], "lab-50"),
+        (["--snow", "wet"], "calibrated"),
+        (["--particles-per-voxel", "2"], "/seeding/particles_per_voxel"),
+        (["--domain-min", "1,b"], "'1,b' is not a list of numbers"),
+        (["--domain-min", "5,5", "--domain-max", "6,6"], "domain"),
+        (["--obstacle", "{"], "give a JSON object"),
+        (["--obstacle", '{"shape": {"type": "egg"}}'], "/obstacles/0/shape/type"),
+        (["--wind", "3"], "--wind"),
+        (["--dx", "1e-7"], "memory"),
+    ],
+)
+def test_bad_options_are_one_line_code_2_and_nothing_behind(tmp_path, capsys, options, message):
+    out = tmp_path / "out"
+    assert main(["panel", *TINY, *options, "-o", str(out)]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.startswith("error: ") and shown.err.count("\n") == 1
+    assert message in shown.err
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("command", ["run", "plan"])
+def test_bad_scenes_are_refused(bad_scene, tmp_path, capsys, command):  # noqa: F811
+    file, message = bad_scene
+    before = sorted(tmp_path.rglob("*"))
+    output = ["-o", str(tmp_path / "out")] if command == "run" else []
+    assert main([command, str(file), *output]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("error: ") and said.err.count("\n") == 1, said.err
+    assert message in said.err
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_files_and_folders_that_do_not_serve(tmp_path, capsys, finished):
+    scene = str(finished / "scene.json")
+    assert main(["run", str(tmp_path / "none.json"), "-o", str(tmp_path / "out")]) == 2
+    assert "none.json: no such file" in capsys.readouterr().err
+    assert main(["run", scene, "-o", str(finished)]) == 2
+    assert "not empty" in capsys.readouterr().err
+    assert main(["run", scene, "-o", str(tmp_path / "out"), "--resume"]) == 2
+    assert "nothing to resume" in capsys.readouterr().err
+    assert main(["panel", "--preset", "lab-40", "-o", str(finished), "--resume"]) == 2
+    assert "another scene" in capsys.readouterr().err
+    assert main(["run", scene]) == 2
+    assert "--output" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_no_command_is_a_failure_and_help_is_not(capsys):
+    assert main(["--help"]) == 0
+    assert "panel" in capsys.readouterr().out
+    assert main(["fly"]) == 2
+
+
+def test_ctrl_c_says_how_to_go_on(tmp_path, capsys, monkeypatch):
+    def pressed(*_):
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr("snowshed.run.events._EventLoop._begin", pressed)
+    monkeypatch.setattr("snowshed.run.events._EventLoop._advance", lambda loop: loop._stop())
+    out = tmp_path / "out"
+    assert main(["panel", *TINY, "-q", "-o", str(out)]) == 130
+    message = capsys.readouterr().err
+    assert f"snowshed run {out / 'scene.json'} -o {out} --resume" in message
+    monkeypatch.undo()
+    assert main(["run", str(out / "scene.json"), "-o", str(out), "--resume", "-q"]) == 0
+    assert len(read_events(out)) == 1
+
+
+def test_a_failed_simulation_is_code_3(tmp_path, capsys, monkeypatch):
+    class Failing(_core.Simulation):
+        def run(self, callback, interval_s=0.5):
+            raise _core.SimulationError("time step underflow")
+
+    monkeypatch.setattr(_core, "Simulation", Failing)
+    assert main(["panel", *TINY, "-q", "-o", str(tmp_path / "out")]) == 3
+    assert capsys.readouterr().err == "error: time step underflow\n"
+
+
+def test_python_m(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "snowshed", "--version"], capture_output=True, text=True
+    )
+    assert done.returncode == 0
+    assert _core.version in done.stdout
+
+
+def test_commands_of_packages_are_imported_when_they_run():
+    packages = tuple(
+        {f"snowshed.{package}" for _, package, _ in cli.DEFERRED if package != "verify"}
+    )
+    code = (
+        "import sys; from snowshed.cli.main import main; main(['--help']); "
+        f"print([name for name in sys.modules if name.startswith({packages})])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.endswith("[]\n")
+
+
+@pytest.mark.parametrize("name", [name for name, _, _ in cli.DEFERRED])
+def test_deferred_commands_show_their_own_help(capsys, name):
+    assert main([name, "--help"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith(f"Usage: snowshed {name} ")
+    assert cli.cli.commands[name].load().name == name

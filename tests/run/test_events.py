@@ -1,0 +1,202 @@
+import json
+import signal
+
+import pandas as pd
+import pytest
+
+from snowshed import InputError, Interrupted, SimulationError, _core, run_events
+from snowshed.run import events
+from snowshed.run.results import read_events
+
+
+def compare_tables(one, other):
+    for name in ("events.csv", "outline.csv"):
+        a, b = (pd.read_csv(folder / name) for folder in (one, other))
+        pd.testing.assert_frame_equal(
+            a.drop(columns="wall_s", errors="ignore"),
+            b.drop(columns="wall_s", errors="ignore"),
+            check_exact=True,
+        )
+
+
+def interrupt_at(event, moment):
+    """A progress reporter that presses Ctrl-C once in the given event, after some time."""
+    pressed = []
+
+    def report(progress):
+        if progress.event == event and progress.time >= moment and not pressed:
+            pressed.append(progress)
+            signal.raise_signal(signal.SIGINT)
+
+    return report
+
+
+def test_the_results_folder_is_complete(finished):
+    names = {path.name for path in finished.iterdir()}
+    assert names == {
+        "scene.json", "events.csv", "outline.csv", "energy.csv", "run.json", "checkpoint.bin",
+        "particles", "particles.pvd", "stack.png", "growth.png",
+    }  # fmt: skip
+    assert {path.name for path in (finished / "particles").iterdir()} == {
+        "event_001.vtp",
+        "event_002.vtp",
+    }
+
+
+def test_mass_is_conserved(finished):
+    table = read_events(finished)
+    slab = 210 * 0.245 * 0.02
+    assert list(table.event) == [1, 2]
+    assert list(table.mass_kg + table.on_panel_kg) == pytest.approx([slab, 2 * slab], rel=1e-6)
+
+
+def test_measures_belong_together(finished):
+    table = read_events(finished)
+    assert (table.tail_m - table.head_m).to_numpy() == pytest.approx(table.length_m.to_numpy())
+    assert (table.density_kg_m3 * table.volume_m3).to_numpy() == pytest.approx(
+        table.mass_kg.to_numpy()
+    )
+    assert (table.body_height_m <= table.height_m + 1e-9).all()
+    assert (table.steps > 0).all() and (table.sim_time_s > 0).all()
+    assert set(table.ended) <= {"rest", "time_limit"}
+    outline = pd.read_csv(finished / "outline.csv")
+    tops = outline.groupby("event").z.max().to_numpy()
+    assert tops == pytest.approx(table.height_m.to_numpy())
+
+
+def test_run_json(finished):
+    facts = json.loads((finished / "run.json").read_text())
+    table = read_events(finished)
+    assert facts["status"] == "finished"
+    assert facts["version"] == _core.version
+    assert facts["steps"] == table.steps.sum()
+    assert facts["scalar"] == "float"
+    assert facts["wall_s"] >= table.wall_s.sum() * 0.99
+    assert facts["updates_per_s"] > 0 and facts["peak_memory_mb"] > 10 and facts["threads"] >= 1
+
+
+def test_energy_is_written_on_request(finished):
+    assert list(pd.read_csv(finished / "energy.csv").event) == [1, 2]
+
+
+def test_the_run_repeats_from_its_own_scene(finished, tmp_path):
+    from snowshed import ResolvedScene
+
+    run_events(ResolvedScene.load(finished / "scene.json"), tmp_path / "again", pictures=False)
+    compare_tables(finished, tmp_path / "again")
+
+
+@pytest.mark.parametrize(("event", "moment"), [(1, 0.1), (2, 0.0), (2, 0.2)])
+def test_interrupted_and_resumed_equals_uninterrupted(
+    finished, tmp_path, tiny, monkeypatch, event, moment
+):
+    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.0)
+    tiny.set("output.energy", True)
+    with pytest.raises(Interrupted, match="--resume"):
+        run_events(tiny, tmp_path, progress=interrupt_at(event, moment), pictures=False)
+    facts = json.loads((tmp_path / "run.json").read_text())
+    assert facts["status"] == "interrupted"
+    assert facts["events"] == event - 1
+    assert (tmp_path / "checkpoint.bin").exists()
+    run_events(tiny, tmp_path, resume=True, pictures=False)
+    compare_tables(finished, tmp_path)
+
+
+def test_the_handler_of_interrupts_is_put_back(tmp_path, tiny):
+    before = signal.getsignal(signal.SIGINT)
+    run_events(tiny.set("events.count", 1), tmp_path, pictures=False)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_checkpoints_on_the_way_change_nothing(finished, tmp_path, tiny, monkeypatch):
+    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.02)
+    saved = []
+
+    class Counting(_core.Simulation):
+        def save(self, path):
+            saved.append(self.time_s)
+            super().save(path)
+
+    monkeypatch.setattr(_core, "Simulation", Counting)
+    tiny.update({"output": {"energy": True, "checkpoint_interval": 1e-6}})
+    run_events(tiny, tmp_path, pictures=False)
+    assert len(saved) > 3
+    compare_tables(finished, tmp_path)
+
+
+def test_a_killed_run_resumes_from_its_last_checkpoint(finished, tmp_path, tiny):
+    """Rows that are newer than the checkpoint are written again."""
+    tiny.set("output.energy", True)
+    halted = []
+
+    def halt(progress):
+        if progress.event == 2 and not halted:
+            halted.append((tmp_path / "checkpoint.bin").read_bytes())
+
+    run_events(tiny, tmp_path, progress=halt, pictures=False)
+    (tmp_path / "checkpoint.bin").write_bytes(halted[0])
+    table = run_events(tiny, tmp_path, resume=True, pictures=False)
+    assert list(table.event) == [1, 2]
+    compare_tables(finished, tmp_path)
+
+
+def test_resume_without_a_checkpoint_starts_over(finished, tmp_path, tiny):
+    tiny.set("output.energy", True).resolve().save(tmp_path / "scene.json")
+    run_events(tiny, tmp_path, resume=True, pictures=False)
+    compare_tables(finished, tmp_path)
+
+
+def test_resuming_a_finished_run_changes_nothing(finished, tiny):
+    before = (finished / "events.csv").read_bytes()
+    run_events(tiny.set("output.energy", True), finished, resume=True, pictures=False)
+    assert (finished / "events.csv").read_bytes() == before
+
+
+def test_a_truncated_checkpoint_is_refused(tmp_path, tiny):
+    run_events(tiny.set("events.count", 1), tmp_path, pictures=False)
+    checkpoint = tmp_path / "checkpoint.bin"
+    checkpoint.write_bytes(checkpoint.read_bytes()[:-100])
+    with pytest.raises(InputError, match="checkpoint"):
+        run_events(tiny, tmp_path, resume=True, pictures=False)
+
+
+def test_a_run_that_cannot_go_on_leaves_a_checkpoint(tmp_path, tiny, monkeypatch):
+    class Failing(_core.Simulation):
+        def run(self, callback, interval_s=0.5):
+            if self.event == 2:
+                raise SimulationError("time step below 1e-12 s at particle 7")
+            return super().run(callback, interval_s)
+
+    monkeypatch.setattr(_core, "Simulation", Failing)
+    with pytest.raises(SimulationError, match="particle 7"):
+        run_events(tiny, tmp_path, pictures=False)
+    facts = json.loads((tmp_path / "run.json").read_text())
+    assert facts["status"] == "failed"
+    assert "particle 7" in facts["error"]
+    assert (tmp_path / "checkpoint.bin").stat().st_size > 0
+    assert list(read_events(tmp_path).event) == [1]
+
+
+def test_nothing_is_left_when_seeding_fails(tmp_path, tiny, monkeypatch):
+    class Barren(_core.Simulation):
+        def begin_event(self):
+            raise InputError("/seeding: no room")
+
+    monkeypatch.setattr(_core, "Simulation", Barren)
+    with pytest.raises(InputError):
+        run_events(tiny, tmp_path / "new")
+    assert not (tmp_path / "new").exists()
+
+
+def test_snapshots_on_request(tmp_path, tiny):
+    tiny.update({"events.count": 1, "output.snapshot_interval": 0.1})
+    run_events(tiny, tmp_path, pictures=False)
+    assert len(list((tmp_path / "snapshots").glob("*.vtp"))) > 1
+
+
+def test_progress_goes_from_nothing_to_done(tmp_path, tiny):
+    seen = []
+    run_events(tiny, tmp_path, progress=seen.append, pictures=False)
+    assert [p.event for p in seen] == sorted(p.event for p in seen)
+    assert seen[0].fraction == 0 and seen[-1].fraction == 1
+    assert all(0 <= p.fraction <= 1 for p in seen)

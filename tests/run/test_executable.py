@@ -1,0 +1,230 @@
+"""The standalone executable, which needs no Python, and its agreement with the package."""
+
+import json
+import signal
+import subprocess
+import sysconfig
+import time
+from pathlib import Path
+
+import pytest
+from bad_scenes import bad_scene  # noqa: F401
+from conftest import tiny_scene
+
+from snowshed import ResolvedScene, _core, run_events
+from snowshed.cli.main import main
+
+EXECUTABLE = Path(sysconfig.get_path("scripts")) / "snowshed-run"
+
+
+def snowshed_run(*arguments, **options):
+    command = [EXECUTABLE, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, **options)
+
+
+def assert_refused(done, message):
+    assert done.returncode == 2, done
+    assert done.stdout == ""
+    assert done.stderr.startswith("error: ") and done.stderr.count("\n") == 1, done.stderr
+    assert message in done.stderr
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory) -> Path:
+    file = tmp_path_factory.mktemp("scene") / "scene.json"
+    tiny_scene(**{"output.snapshot_interval": 0.2}).resolve().save(file)
+    return file
+
+
+@pytest.fixture(scope="module")
+def results(scene, tmp_path_factory) -> Path:
+    """The folder of an uninterrupted run."""
+    folder = tmp_path_factory.mktemp("results") / "new" / "folder"
+    done = snowshed_run(scene, "-o", folder, "--quiet")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    return folder
+
+
+def test_the_results_folder_is_complete(results, scene):
+    names = {path.relative_to(results).as_posix() for path in results.rglob("*")}
+    assert names >= {
+        "scene.json", "run.json", "checkpoint.bin", "particles.pvd", "particles", "snapshots",
+        "particles/event_001.vtp", "particles/event_002.vtp", "snapshots/snapshots.pvd",
+    }  # fmt: skip
+    assert len(list((results / "snapshots").glob("*.vtp"))) > 3
+    assert not [name for name in names if "partial" in name]
+    assert json.loads((results / "scene.json").read_text()) == ResolvedScene.load(scene).data
+    facts = json.loads((results / "run.json").read_text())
+    assert (facts["status"], facts["events"]) == ("finished", 2)
+    assert facts["version"] == _core.version
+    assert facts["steps"] > 1000 and facts["particles"] > 100 and facts["peak_memory_mb"] > 1
+
+
+def particle_files(folder):
+    return {path.name: path.read_bytes() for path in (folder / "particles").iterdir()}
+
+
+def test_gives_the_same_particles_as_python(results, scene, tmp_path):
+    run_events(ResolvedScene.load(scene), tmp_path, pictures=False)
+    assert particle_files(tmp_path) == particle_files(results)
+    snapshots = sorted(path.name for path in (results / "snapshots").glob("*.vtp"))
+    for name in snapshots:
+        one, other = (folder / "snapshots" / name for folder in (tmp_path, results))
+        assert one.read_bytes() == other.read_bytes()
+    assert [path.name for path in sorted((tmp_path / "snapshots").glob("*.vtp"))] == snapshots
+
+
+@pytest.mark.parametrize("threads", [2, 3])
+def test_threads_change_nothing(results, tmp_path, threads):
+    tiny_scene(**{"numerics.threads": threads}).resolve().save(tmp_path / "scene.json")
+    done = snowshed_run(tmp_path / "scene.json", "-o", tmp_path / "out", "-q")
+    assert done.returncode == 0
+    assert particle_files(tmp_path / "out") == particle_files(results)
+
+
+def interrupt(scene, folder, ready):
+    """Start a run and press Ctrl-C as soon as `ready` says so."""
+    run = subprocess.Popen([EXECUTABLE, scene, "-o", folder, "-q"], stderr=subprocess.PIPE)
+    while run.poll() is None and not ready(folder):
+        time.sleep(0.002)
+    run.send_signal(signal.SIGINT)
+    _, said = run.communicate(timeout=120)
+    return run.returncode, said.decode()
+
+
+@pytest.fixture(scope="module")
+def longer(tmp_path_factory) -> tuple[Path, Path]:
+    """A scene that runs for about a second, and its results."""
+    folder = tmp_path_factory.mktemp("longer")
+    finer = tiny_scene(**{"numerics.dx": 0.008, "output.snapshot_interval": 0.1})
+    finer.set("events.max_time", 0.4).resolve().save(folder / "scene.json")
+    assert snowshed_run(folder / "scene.json", "-o", folder / "out", "-q").returncode == 0
+    return folder / "scene.json", folder / "out"
+
+
+@pytest.mark.parametrize("file", ["scene.json", "particles/event_001.vtp"])
+def test_interrupted_and_resumed_equals_uninterrupted(longer, tmp_path, file):
+    scene, results = longer
+    out = tmp_path / "out"
+    code, said = interrupt(scene, out, lambda folder: (folder / file).exists())
+    assert code == 130
+    assert said == f"error: interrupted; go on with: snowshed-run {scene} -o {out} --resume\n"
+    assert json.loads((out / "run.json").read_text())["status"] == "interrupted"
+    assert snowshed_run(scene, "-o", out, "--resume", "-q").returncode == 0
+    assert particle_files(out) == particle_files(results)
+    for name in ("particles.pvd", "snapshots/snapshots.pvd"):
+        assert (out / name).read_bytes() == (results / name).read_bytes()
+    assert json.loads((out / "run.json").read_text())["status"] == "finished"
+
+
+def test_resuming_a_finished_run_changes_nothing(results, scene):
+    before = particle_files(results)
+    assert snowshed_run(scene, "-o", results, "--resume", "-q").returncode == 0
+    assert particle_files(results) == before
+
+
+def test_a_scene_runs_from_the_results_of_another_folder(tmp_path):
+    """Meshes are found beside the scene file, from wherever the results are."""
+    from bad_scenes import CLOSED_MESH
+
+    (tmp_path / "post.obj").write_text(CLOSED_MESH)
+    post = {"shape": {"type": "mesh", "file": "post.obj", "scale": 0.05}}
+    short = {"events.count": 1, "events.max_time": 0.1, "events.rest_time": 0.1}
+    scene = tiny_scene(**short).append("obstacles", post)
+    (tmp_path / "scene.json").write_text(json.dumps(scene.to_data()))
+    first, second, third = (tmp_path / name for name in ("first", "second", "third"))
+    assert snowshed_run("scene.json", "-o", first, "-q", cwd=tmp_path).returncode == 0
+    assert snowshed_run(first / "scene.json", "-o", second, "-q").returncode == 0
+    assert main(["run", str(second / "scene.json"), "-o", str(third), "-q"]) == 0
+    assert particle_files(first) == particle_files(second) == particle_files(third)
+
+
+def test_bad_scenes_are_refused(bad_scene, tmp_path):  # noqa: F811
+    file, message = bad_scene
+    before = sorted(tmp_path.rglob("*"))
+    assert_refused(snowshed_run(file, "-o", tmp_path / "out"), message)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "s.json:1:1: not valid JSON"),
+        (b"{", "s.json:1:2: not valid JSON"),
+        (b"\xff\xfe\x00{}", "s.json:1:1: not valid JSON"),
+        (b"[]", "/: an array is not an object"),
+        (b'{"snowshed": 1}', "nothing holds snow"),
+    ],
+)
+def test_files_that_are_no_scenes_are_refused(tmp_path, capsys, content, message):
+    file, out = tmp_path / "s.json", tmp_path / "out"
+    file.write_bytes(content)
+    assert_refused(snowshed_run(file, "-o", out), message)
+    for command in (["run", str(file), "-o", str(out)], ["plan", str(file)]):
+        assert main(command) == 2
+        said = capsys.readouterr()
+        assert message in said.err and said.err.count("\n") == 1 and said.out == ""
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "no scene given"),
+        (["scene.json"], "no output folder given (-o DIR)"),
+        (["scene.json", "-o"], "-o needs a folder"),
+        (["scene.json", "-o", "out", "--fly"], "unknown option --fly"),
+        (["scene.json", "other.json", "-o", "out"], "more than one scene: other.json"),
+        (["none.json", "-o", "out"], "none.json: no such file"),
+        ([".", "-o", "out"], ".: is a folder"),
+    ],
+)
+def test_bad_arguments(tmp_path, arguments, message):
+    assert_refused(snowshed_run(*arguments, cwd=tmp_path), message)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_folders_that_do_not_serve(results, scene, tmp_path):
+    other = tmp_path / "other.json"
+    tiny_scene(**{"panel.tilt": 55}).resolve().save(other)
+    before = sorted(path.name for path in results.iterdir())
+    assert_refused(snowshed_run(scene, "-o", results), "not empty")
+    assert_refused(snowshed_run(scene, "-o", scene), "is not a folder")
+    assert_refused(snowshed_run(other, "-o", results, "--resume"), "another scene")
+    assert_refused(snowshed_run(scene, "-o", tmp_path / "new", "--resume"), "nothing to resume")
+    assert_refused(snowshed_run(scene, "-o", tmp_path, "--resume"), "nothing to resume")
+    assert sorted(path.name for path in results.iterdir()) == before
+    assert list(tmp_path.iterdir()) == [other]
+
+
+def test_a_folder_that_cannot_be_made(scene, tmp_path):
+    (tmp_path / "loop").symlink_to("loop")
+    for folder in ("loop/out", "a" * 300):  # nobody can make these, root included
+        assert_refused(snowshed_run(scene, "-o", tmp_path / folder), folder)
+    assert [path.name for path in tmp_path.iterdir()] == ["loop"]
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda b: b[:-100], lambda b: b[:50], lambda b: b"", bytes.swapcase]
+)
+def test_a_damaged_checkpoint_is_refused(results, scene, tmp_path, capsys, damage):
+    content = damage((results / "checkpoint.bin").read_bytes())
+    (tmp_path / "checkpoint.bin").write_bytes(content)
+    (tmp_path / "scene.json").write_bytes((results / "scene.json").read_bytes())
+    assert_refused(snowshed_run(scene, "-o", tmp_path, "--resume"), "checkpoint.bin")
+    assert main(["run", str(scene), "-o", str(tmp_path), "--resume"]) == 2
+    said = capsys.readouterr().err
+    assert "checkpoint.bin" in said and said.count("\n") == 1
+    assert (tmp_path / "checkpoint.bin").read_bytes() == content
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_python_does_not_resume_what_has_no_table(results, scene, capsys):
+    assert main(["run", str(scene), "-o", str(results), "--resume"]) == 2
+    assert "made by snowshed-run" in capsys.readouterr().err
+
+
+def test_help_version_and_schema():
+    assert snowshed_run("--help").stdout.startswith("usage: snowshed-run")
+    assert snowshed_run("--version").stdout == f"{_core.version}\n"
+    assert json.loads(snowshed_run("--schema").stdout) == json.loads(_core.scene_schema())

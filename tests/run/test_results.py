@@ -1,0 +1,182 @@
+import re
+import shutil
+
+import pytest
+
+from snowshed import InputError
+from snowshed.cli.main import main
+from snowshed.io.atomic import replacing, write_text
+from snowshed.io.csv_table import Table
+from snowshed.run.results import EVENT_COLUMNS, Results, check_empty, read_events
+
+
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "old")
+    with pytest.raises(RuntimeError), replacing(path) as beside:
+        beside.write_text("half")
+        raise RuntimeError
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_old_file_stands_until_the_new_one_is_whole(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "old")
+    with replacing(path) as beside:
+        beside.write_text("new")
+        assert path.read_text() == "old"
+        assert beside.suffix == path.suffix
+    assert path.read_text() == "new"
+
+
+def test_table_goes_on_where_it_stopped(tmp_path):
+    path = tmp_path / "t.csv"
+    Table(path, ("event", "x")).add([{"event": i, "x": i / 3} for i in (1, 2, 3)])
+    again = Table(path, ("event", "x"))
+    again.keep_through(2)
+    again.add([{"event": 3, "x": 1.0}])
+    whole = Table(tmp_path / "u.csv", ("event", "x"))
+    whole.add([{"event": i, "x": x} for i, x in ((1, 1 / 3), (2, 2 / 3), (3, 1.0))])
+    assert path.read_bytes() == whole.path.read_bytes()
+    assert again.total("x") == pytest.approx(2.0)
+
+
+def test_nan_is_an_empty_cell(tmp_path):
+    table = Table(tmp_path / "t.csv", ("event", "x"))
+    table.add([{"event": 1, "x": float("nan")}])
+    assert table.path.read_text() == "event,x\n1,\n"
+
+
+def test_folder_must_be_empty(tmp_path):
+    check_empty(tmp_path)
+    check_empty(tmp_path / "new")
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="not empty"):
+        check_empty(tmp_path)
+    with pytest.raises(InputError, match="not a folder"):
+        check_empty(tmp_path / "file")
+
+
+def test_reopen_refuses_another_scene(tmp_path, tiny):
+    Results.create(tmp_path, tiny.resolve())
+    with pytest.raises(InputError, match="/panel/tilt"):
+        Results.reopen(tmp_path, tiny.set("panel.tilt", 55).resolve())
+    with pytest.raises(InputError, match="nothing to resume"):
+        Results.reopen(tmp_path / "new", tiny.resolve())
+
+
+def test_columns_of_the_events_table(finished):
+    table = read_events(finished)
+    assert list(table.columns) == list(EVENT_COLUMNS)
+    assert list(EVENT_COLUMNS[:16]) == [
+        "event",
+        "height_m",
+        "length_m",
+        "head_m",
+        "tail_m",
+        "width_m",
+        "volume_m3",
+        "density_kg_m3",
+        "on_panel_kg",
+        "detached_kg",
+        "body_height_m",
+        "body_length_m",
+        "mass_kg",
+        "sim_time_s",
+        "steps",
+        "wall_s",
+    ]
+
+
+def test_no_results(tmp_path):
+    with pytest.raises(InputError, match="no results"):
+        read_events(tmp_path)
+
+
+DAMAGED = {
+    "empty": b"",
+    "no text": b"\xff\xfe\x00\x01",
+    "another table": b"hello world\nthis, is not, it\n",
+    "no numbers": b"event,height_m\none,high\n",
+    "one column": b"12345",
+    "endless stack": b"event,height_m\n1,inf\n",
+    "too high": b"event,height_m\n1,1e999\n",
+    "text for a length": b"event,height_m,length_m\n1,0.1,long\n",
+    "cut off": b"event,height_m,length_m\n1,0.1,0.2\n2,0.1",
+    "names that are not": b"1," * 900,
+    "a line without end": b"1," * 100_000,
+}
+
+
+@pytest.mark.parametrize("content", DAMAGED.values(), ids=DAMAGED.keys())
+def test_a_damaged_table_of_events_is_named(tmp_path, content):
+    (tmp_path / "events.csv").write_bytes(content)
+    with pytest.raises(InputError, match=r"events\.csv: not a table") as caught:
+        read_events(tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"\xff\xfe\x00\x01", "can't decode"),
+        (b"event,mass\n1,2,3\n", "a row that has not"),
+        (b"event,mass\n1\n", "a row that has not"),
+        (b"mass\n1\n", "a row without the number of its event"),
+        (b"event,mass\nfirst,1\n", "a row without the number of its event"),
+        (b"event,load\n1,1\n", "its columns are not event, mass"),
+        (b"event,mass\n1,heavy\n", "no numbers in the column mass"),
+        (b"event,mass\n1,nan\n", "no numbers in the column mass"),
+        (b"event,mass\n1,1e308\n2,1e308\n", "no numbers in the column mass"),
+    ],
+)
+def test_a_damaged_table_is_not_continued(tmp_path, content, message):
+    (tmp_path / "t.csv").write_bytes(content)
+    with pytest.raises(InputError, match=rf"t\.csv: damaged: .*{message}"):
+        Table(tmp_path / "t.csv", ["event", "mass"]).total("mass")
+
+
+@pytest.mark.parametrize("name", ["run.json", "scene.json"])
+@pytest.mark.parametrize("content", [b"", b"\xff\x00", b"[" * 100_000, b"[]", b'{"wall_s": '])
+def test_a_damaged_file_of_a_folder_to_resume_is_named(tmp_path, tiny, name, content):
+    folder = Results.create(tmp_path, tiny.resolve())
+    folder.write_run({"wall_s": 2.5})
+    assert Results.reopen(tmp_path, tiny.resolve()).earlier_wall_s() == 2.5
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=rf"{re.escape(name)}: damaged: "):
+        Results.reopen(tmp_path, tiny.resolve()).earlier_wall_s()
+
+
+@pytest.mark.parametrize(
+    ("given", "shown"), [('"long"', "'long'"), ("true", "True"), ("1e999", "inf")]
+)
+def test_a_computing_time_that_is_no_number(tmp_path, given, shown):
+    (tmp_path / "run.json").write_text(f'{{"wall_s": {given}}}')
+    with pytest.raises(InputError, match=rf"run\.json: damaged: /wall_s: {shown} is not a number"):
+        Results(tmp_path).earlier_wall_s()
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        (lambda text: "", "holds 0 events, but 2 are done"),
+        (lambda text: text[: text.rindex("\n2,") + 1], "holds 1 events, but 2 are done"),
+        (
+            lambda text: re.sub(r"(?m)^1,[^,]*", "1,inf", text),
+            "no finite numbers in a column height_m",
+        ),
+        (lambda text: text.replace(",rest", ""), "a row that has not"),
+    ],
+)
+def test_a_damaged_table_of_events_is_not_resumed(finished, tmp_path, capsys, damage, message):
+    folder = tmp_path / "results"
+    shutil.copytree(finished, folder)
+    events = folder / "events.csv"
+    events.write_text(damage(events.read_text()))
+    before = sorted(folder.rglob("*"))
+    assert main(["run", str(folder / "scene.json"), "-o", str(folder), "--resume", "-q"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: {events}: ") and said.count("\n") == 1
+    assert re.search(message, said)
+    assert sorted(folder.rglob("*")) == before

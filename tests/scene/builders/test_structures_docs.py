@@ -1,0 +1,41 @@
+"""The scripts in the documentation of seasons, relations and structures run."""
+
+import re
+
+import numpy as np
+import pytest
+from paths import DOCS
+
+
+def scripts(page):
+    return re.findall(r"^```python\n(.*?)^```", (DOCS / page).read_text(), re.M | re.S)
+
+
+def test_the_script_that_draws_and_saves_a_roof(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    exec(scripts("structures.md")[0], {})
+    assert (tmp_path / "roof.png").stat().st_size > 10_000
+    assert (tmp_path / "roof.json").is_file()
+
+
+def test_the_script_that_puts_a_panel_on_terrain(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    heights = np.tile(-0.3 * np.arange(60.0), (60, 1))
+    header = "ncols 60\nnrows 60\nxllcorner 2600090\nyllcorner 1200185\ncellsize 1\n"
+    rows = "\n".join(" ".join(f"{z:.2f}" for z in row) for row in heights)
+    (tmp_path / "hill.asc").write_text(header + rows + "\n")
+    found = {}
+    exec(scripts("structures.md")[1], found)
+    assert found["scene"].resolve().data["obstacles"][0]["name"] == "terrain"
+
+
+def test_the_script_on_relations(capsys):
+    exec(scripts("season.md")[1], {})
+    assert "density 90 kg/m3 (110 to 363)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("page", ["season.md", "structures.md"])
+def test_the_pages_are_in_the_index_and_their_pictures_are_there(page):
+    assert page[:-3] in (DOCS / "index.md").read_text().split()
+    for picture in re.findall(r"\]\((images/[^)]+)\)", (DOCS / page).read_text()):
+        assert (DOCS / picture).is_file()

@@ -1,0 +1,171 @@
+"""Rasters and terrain, against planes and a cylinder whose distances are known."""
+
+import math
+import sys
+
+import numpy as np
+import pytest
+import rasterio
+
+from snowshed import InputError, Scene, _core
+from snowshed.scene.builders import Raster, on_terrain, read_raster, single_panel
+from snowshed.scene.builders.terrain import signed_distances
+
+ASCII = """ncols 3
+nrows 2
+xllcorner 1000
+yllcorner 2000
+cellsize 10
+NODATA_value -9999
+1 2 3
+4 5 -9999
+"""
+
+
+def test_an_ascii_grid_is_read_from_the_south(tmp_path):
+    (tmp_path / "a.asc").write_text(ASCII)
+    raster = read_raster(tmp_path / "a.asc")
+    assert (raster.east, raster.north, raster.cell) == (1005.0, 2005.0, 10.0)
+    np.testing.assert_array_equal(raster.heights, [[4, 5, np.nan], [1, 2, 3]])
+    found = raster.height_at(np.array([1005.0, 1010.0]), np.array([2015.0, 2010.0]))
+    np.testing.assert_allclose(found, [1.0, 3.0])
+    with pytest.raises(InputError, match=r"a\.asc: no height at 1020 east, 2010 north"):
+        raster.height_at(np.array([1020.0]), np.array([2010.0]))
+    with pytest.raises(InputError, match="999 east, 2010 north is outside the raster"):
+        raster.height_at(np.array([999.0]), np.array([2010.0]))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("nrows 2\n", "", "no nrows at its top"),
+        ("ncols 3", "ncols three", "line 1: 'ncols three' is not a key and a number"),
+        ("cellsize 10", "cellsize 0", "cellsize 0; give a length above 0 m"),
+        ("4 5", "4 five", "line 8: not a row of heights"),
+        ("4 5 ", "4 ", "5 heights; 3 columns and 2 rows need 6"),
+        ("ncols 3", "ncols 2.5", "ncols 2.5; give a whole number"),
+        ("ncols 3", "ncols nan", "ncols nan; give a whole number"),
+        ("nrows 2", "nrows 1e999", "nrows inf; give a whole number"),
+        ("xllcorner 1000", "xllcorner nan", "xllcorner nan; give a map coordinate"),
+        ("4 5", "4 inf", "a height that is not finite, 1 cells from the west and 0 from the south"),
+    ],
+)
+def test_bad_ascii_grids_are_named(tmp_path, old, new, message):
+    (tmp_path / "a.asc").write_text(ASCII.replace(old, new))
+    with pytest.raises(InputError, match=rf"a\.asc.*{message}"):
+        read_raster(tmp_path / "a.asc")
+
+
+def write_geotiff(path, crs, heights=((1, 2, 3), (4, 5, -9999)), dtype="float32", **more):
+    form = {"driver": "GTiff", "width": 3, "height": 2, "count": 1, "dtype": dtype, "crs": crs}
+    form.update(nodata=-9999, transform=rasterio.Affine(10, 0, 1000, 0, -10, 2020))
+    with rasterio.open(path, "w", **{**form, **more}) as out:
+        if heights is not None:
+            out.write(np.array(heights, dtype=dtype), 1)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (
+            {"heights": None, "width": 100_000, "height": 100_000, "tiled": True,
+             "sparse_ok": True},
+            "100000 columns and 100000 rows; at most 100000000 cells",
+        ),
+        ({"heights": ((1, 2, math.inf), (4, 5, 6))}, "a height that is not finite, 2 cells from"),
+        ({"dtype": "complex64", "nodata": None}, "holds complex64 values"),
+        ({"driver": "PNG", "dtype": "uint8", "nodata": None, "heights": ((1, 2, 3), (4, 5, 6))},
+         "not a GeoTIFF"),
+    ],
+)  # fmt: skip
+def test_geotiffs_that_hold_no_terrain_are_named(tmp_path, more, message):
+    write_geotiff(tmp_path / "a.tif", "EPSG:2056", **more)
+    with pytest.raises(InputError, match=rf"a\.tif: {message}"):
+        read_raster(tmp_path / "a.tif")
+
+
+def test_a_geotiff_holds_the_same_as_the_ascii_grid(tmp_path):
+    write_geotiff(tmp_path / "a.tif", "EPSG:2056")
+    (tmp_path / "a.asc").write_text(ASCII)
+    one, other = read_raster(tmp_path / "a.tif"), read_raster(tmp_path / "a.asc")
+    np.testing.assert_array_equal(one.heights, other.heights)
+    assert (one.east, one.north, one.cell) == (other.east, other.north, other.cell)
+    write_geotiff(tmp_path / "degrees.tif", "EPSG:4326")
+    with pytest.raises(InputError, match=r"its map is in degrees .*; project it to metres first"):
+        read_raster(tmp_path / "degrees.tif")
+    (tmp_path / "text.tif").write_text("heights")
+    with pytest.raises(InputError, match=r"text\.tif: not a GeoTIFF"):
+        read_raster(tmp_path / "text.tif")
+
+
+def test_without_its_library_a_geotiff_says_what_to_install(tmp_path, monkeypatch):
+    (tmp_path / "a.tif").write_text("")
+    (tmp_path / "a.asc").write_text(ASCII)
+    monkeypatch.setitem(sys.modules, "rasterio", None)
+    with pytest.raises(InputError, match=r'pip install "snowshed\[terrain\]"'):
+        read_raster(tmp_path / "a.tif")
+    assert read_raster(tmp_path / "a.asc").cell == 10.0
+    with pytest.raises(OSError, match="No such file"):
+        read_raster(tmp_path / "none.tif")
+
+
+def test_distances_from_a_slope_are_those_of_its_plane():
+    xs = np.linspace(0.0, 2.0, 21)
+    slope = math.radians(25.0)
+    distances, bottom = signed_distances(-math.tan(slope) * xs[:, None], xs, np.zeros(1), 0.1)
+    x, z = np.meshgrid(xs, bottom + 0.1 * np.arange(distances.shape[2]), indexing="ij")
+    exact = z * math.cos(slope) + x * math.sin(slope)
+    middle = (np.abs(x - 1.0) < 0.5) & (np.abs(exact) < 0.3)  # the terrain goes on level beyond
+    np.testing.assert_allclose(distances[:, 0][middle], exact[middle], atol=1e-5)
+
+
+def test_distances_in_3d_above_a_ridge():
+    axis = np.linspace(-1.0, 1.0, 41)
+    heights = np.sqrt(np.maximum(0.25 - axis[:, None] ** 2, 0.0)) * np.ones(5)
+    ys = 0.05 * np.arange(5)
+    distances, bottom = signed_distances(heights, axis, ys, 0.05)
+    level = round((0.55 - bottom) / 0.05)
+    z = bottom + 0.05 * level
+    assert distances[20, 2, level] == pytest.approx(z - 0.5, abs=1e-4)
+    corner = distances[20 + 8, 2, level]  # x = 0.4: nearest on a circle of radius 0.5
+    assert corner == pytest.approx(math.hypot(0.4, z) - 0.5, abs=0.01)
+
+
+def test_snow_on_a_terrain_of_one_slope_acts_as_on_tilted_ground(tmp_path):
+    """The grid made from a plane raster has the same distances as the plane."""
+    psi = math.radians(20.0)
+    east = np.arange(0.0, 21.0)
+    raster = Raster(-math.tan(psi) * east[None, :] + np.zeros((5, 1)), 0.0, 0.0, 1.0)
+    panel = single_panel(height=0.5, length=1.0, tilt=45.0, snow=0.1, dx=0.1)
+    scene = on_terrain(
+        panel, raster, tmp_path / "hill.npy", origin=(10.0, 2.0), azimuth=90.0, x=(-2, 4),
+        spacing=0.2,
+    )  # fmt: skip
+    ready = scene.resolve()
+    simulation = _core.Simulation(ready.json, ready.base_dir)
+    edge = 0.5 * math.cos(math.radians(45.0))
+    for x, above in ((edge, 0.5), (1.5, 0.0), (1.0, 0.1)):
+        z = above - (x - edge) * math.tan(psi)
+        found = simulation.obstacle_distance(np.array([[x, 0.0, z]]))[0]
+        assert found == pytest.approx(above * math.cos(psi), abs=0.01)
+    assert panel.ground is not None and panel.obstacles is None  # the scene given stays as it was
+
+
+def test_terrain_that_cannot_be_made(tmp_path):
+    raster = Raster(np.zeros((5, 5)), 0.0, 0.0, 1.0, "hill")
+    place = {"origin": (2.0, 2.0), "azimuth": 0.0}
+    with pytest.raises(InputError, match=r"hill: .* is outside the raster"):
+        on_terrain(Scene(dimension=2), raster, tmp_path / "a.npy", x=(-5, 5), **place)
+    with pytest.raises(InputError, match="x: 1 to 1 m is not allowed"):
+        on_terrain(Scene(dimension=2), raster, tmp_path / "a.npy", x=(1, 1), **place)
+    with pytest.raises(InputError, match=r"spacing: 0\.01 m makes a grid of 201 x 201"):
+        on_terrain(
+            Scene(dimension=3),
+            Raster(1e3 * np.eye(5), 0.0, 0.0, 1.0),
+            tmp_path / "a.npy",
+            x=(-1, 1),
+            y=(-1, 1),
+            spacing=0.01,
+            **place,
+        )
+    assert not (tmp_path / "a.npy").exists()

@@ -1,0 +1,108 @@
+"""The command ``snowshed lua``, and what happens where Lua is missing."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from snowshed import Scene, read_events
+from snowshed.cli.main import main
+
+TINY = """
+preset "lab-50"
+dimension(2)
+grid_size(0.02)
+events { count = 1, max_time = 0.1 }
+set("numerics.threads", 1)
+print("tilt", 50)
+"""
+
+
+@pytest.fixture
+def scripts(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "init.lua").write_text(TINY)
+    (tmp_path / "update.lua").write_text("panel { tilt = 40 }")
+    (tmp_path / "runs.lua").write_text(
+        "for _, t in ipairs { 35, 45 } do panel { tilt = t } run('t' .. t) end"
+    )
+    return tmp_path
+
+
+def test_to_json_leaves_lua_behind(scripts, capsys):
+    assert main(["lua", "init.lua", "update.lua", "--to-json", "scene.json"]) == 0
+    assert capsys.readouterr().err == "tilt 50\n"
+    expected = Scene.preset("lab-50").update(
+        {
+            "dimension": 2,
+            "numerics": {"dx": 0.02, "threads": 1},
+            "events": {"count": 1, "max_time": 0.1},
+            "panel.tilt": 40,
+        }
+    )
+    assert json.loads((scripts / "scene.json").read_text()) == expected.resolve().data
+
+
+def test_a_scene_runs_as_its_json_does(scripts, capsys):
+    assert main(["lua", "init.lua", "-q", "-o", "a", "--to-json", "scene.json"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert main(["run", "scene.json", "-q", "-o", "b"]) == 0
+    columns = ["height_m", "length_m", "mass_kg", "steps"]
+    assert read_events("a")[columns].equals(read_events("b")[columns])
+    assert (scripts / "a" / "stack.png").exists()
+
+
+def test_named_runs_get_folders_and_resume_starts_the_missing(scripts, capsys):
+    assert main(["lua", "init.lua", "runs.lua", "-o", "out"]) == 0
+    assert "run 2 of 2: t45" in capsys.readouterr().out
+    tilts = [json.loads((scripts / f"out/t{t}/scene.json").read_text()) for t in (35, 45)]
+    assert [scene["panel"]["tilt"] for scene in tilts] == [35, 45]
+
+    assert main(["lua", "init.lua", "runs.lua", "-o", "out"]) == 2
+    assert "out: not empty" in capsys.readouterr().err
+    (scripts / "out" / "t45").rename(scripts / "elsewhere")
+    assert main(["lua", "init.lua", "runs.lua", "-q", "-o", "out", "--resume"]) == 0
+    assert len(read_events("out/t35")) == len(read_events("out/t45")) == 1
+
+
+def test_named_scenes_go_to_a_folder(scripts, capsys):
+    assert main(["lua", "init.lua", "runs.lua", "--to-json", "scenes"]) == 0
+    assert sorted(f.name for f in (scripts / "scenes").iterdir()) == ["t35.json", "t45.json"]
+    assert main(["lua", "init.lua", "runs.lua", "--to-json", "init.lua"]) == 2
+    assert "--to-json: init.lua is a file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["init.lua"], "give -o DIR to run the scene, or --to-json FILE"),
+        (["none.lua", "-o", "out"], "none.lua: No such file"),
+        (["bad.lua", "-o", "out"], "bad.lua:1: os is not available to scene scripts"),
+        (["bytes.lua", "-o", "out"], "bytes.lua: not a UTF-8 text"),
+        (["init.lua", "bad.lua", "-q", "-o", "out"], "bad.lua:1: os is not available"),
+    ],
+)
+def test_bad_input_is_one_line_and_leaves_nothing(scripts, capsys, arguments, message):
+    (scripts / "bad.lua").write_text("os.exit(0)")
+    (scripts / "bytes.lua").write_bytes(b"x = '\xff'")
+    assert main(["lua", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert message in error and error.count("\n") == 1
+    assert not (scripts / "out").exists()
+
+
+def test_without_lupa_the_error_says_what_to_install(scripts, capsys, hide):
+    hide("lupa")
+    assert main(["lua", "init.lua", "-o", "out"]) == 2
+    error = capsys.readouterr().err
+    assert "running Lua scripts needs lupa" in error
+    assert 'pip install "snowshed[lua]"' in error
+    assert main(["scene", "--preset", "lab-50"]) == 0  # everything else works
+
+
+def test_nothing_of_lua_is_imported_by_the_other_commands():
+    command = "import sys, snowshed.cli.main; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True)
+    assert "snowshed.cli.main" in done.stdout.split()
+    assert not [m for m in done.stdout.split() if m.startswith(("lupa", "snowshed.scene.lua"))]

@@ -1,0 +1,206 @@
+import json
+
+import numpy as np
+import pytest
+
+from snowshed import (
+    ResolvedScene,
+    InputError,
+    Obstacle,
+    Panel,
+    Scene,
+    Shape,
+    Snow,
+    _core,
+)
+from snowshed.io.record import Record
+from snowshed.scene.schema import properties, resolve, scene_parameters
+
+SCHEMA = json.loads(_core.scene_schema())
+
+
+def check_mirror(record: type[Record], node: dict, seen: set) -> None:
+    """Compare a record's fields with the core's properties, and so on inward."""
+    inner = properties(SCHEMA, node)
+    assert set(record.keys()) == set(inner), record
+    seen.add(record)
+    for key, child in inner.items():
+        kind = record.record_type(key)
+        full = resolve(SCHEMA, child)
+        child = full.get("items", child)
+        assert (kind is not None) == bool(properties(SCHEMA, child)), key
+        if kind is not None and kind not in seen:
+            check_mirror(kind, child, seen)
+
+
+def test_fields_are_the_properties_of_the_cores_schema():
+    seen: set = set()
+    check_mirror(Scene, SCHEMA, seen)
+    assert len(seen) == 15  # every record there is
+
+
+def test_the_last_value_wins(tiny):
+    tiny.set("snow.density", 300).update({"snow": {"density": 250, "cohesion": 0.3}})
+    assert tiny.resolve().data["snow"]["density"] == 250
+    assert tiny.resolve().data["snow"]["cohesion"] == 0.3
+    assert tiny.resolve().data["snow"]["youngs_modulus"] == 1e6  # kept by the update
+
+
+def test_append_and_override_items(tiny):
+    tiny.append("obstacles", Obstacle("post", Shape.sphere((0.5, 0.1), 0.05)))
+    tiny.append("obstacles", {"shape": {"type": "box", "center": [1, 0], "size": [0.1, 0.1]}})
+    tiny.set("obstacles.1.friction", 0.7)
+    first, second = tiny.resolve().data["obstacles"]
+    assert first["name"] == "post"
+    assert second["friction"] == 0.7
+    assert isinstance(tiny.obstacles[1], Obstacle)
+
+
+def test_objects_on_the_way_are_created():
+    assert Scene().set("panel.tilt", 30).to_data()["panel"] == {"tilt": 30}
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("snow.densty", "/snow/densty: unknown key; allowed: model, density"),
+        ("gravity.x", "/gravity: a value"),
+        ("obstacles.3.friction", "/obstacles/3: no such item"),
+        ("obstacles.0", "/obstacles/0: set a key"),
+    ],
+)
+def test_wrong_paths_are_named(tiny, path, message):
+    with pytest.raises(InputError, match=message):
+        tiny.set(path, 1)
+
+
+def test_values_that_are_not_finite(tiny):
+    with pytest.raises(InputError, match="/panel/tilt: nan is not a finite number"):
+        tiny.set("panel.tilt", float("nan")).resolve()
+
+
+def test_errors_of_the_core_name_the_path(tiny):
+    with pytest.raises(InputError, match=r"^/snow/poissons_ratio: 0\.5"):
+        tiny.set("snow.poissons_ratio", 0.5).resolve()
+
+
+def test_numpy_values_are_welcome(tiny):
+    tiny.set("domain", {"min": np.array([-2, -1]), "max": np.array([2.0, 2.0])})
+    tiny.set("panel.tilt", np.float32(45))
+    assert tiny.resolve().data["domain"]["min"] == [-2, -1]
+
+
+def test_save_and_load(tmp_path, tiny):
+    ready = tiny.resolve()
+    ready.save(tmp_path / "scene.json")
+    assert ResolvedScene.load(tmp_path / "scene.json").data == ready.data
+    assert Scene.load(tmp_path / "scene.json").resolve().data == ready.data
+
+
+def test_load_says_what_is_no_scene(tmp_path):
+    path = tmp_path / "scene.json"
+    path.write_text("{")
+    with pytest.raises(InputError, match="not JSON"):
+        Scene.load(path)
+    path.write_text('{"panel": {"hight": 1}}')
+    with pytest.raises(InputError, match="/panel/hight: unknown key"):
+        Scene.load(path)
+    path.write_text('{"panel": 3}')
+    with pytest.raises(InputError, match=r"scene\.json: /panel: 3 is not an object"):
+        Scene.load(path)
+    for number in ("NaN", "-Infinity", "1e999", "1" + "0" * 400):
+        path.write_text(f'{{"panel": {{"tilt": {number}}}}}')
+        with pytest.raises(InputError, match=r"scene\.json: /panel/tilt: .* is not a finite"):
+            Scene.load(path)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        Shape.plane((0, 0, 0), (0, 0, 1)),
+        Shape.box((0, 0, 1), (1, 1, 1)),
+        Shape.sphere((0, 0, 1), 0.5),
+        Shape.cylinder((0, 0, 0), (0, 0, 1), 0.1),
+        Shape.capsule((0, 0, 0), (0, 0, 1), 0.1),
+        Shape.plate((0, 0, 1), (0, 0, 1), 1.0, width=1.0, thickness=0.02),
+        Shape.union(Shape.sphere((0, 0, 1), 0.5), Shape.sphere((0, 0, 2), 0.5)),
+        Shape.difference(Shape.sphere((0, 0, 1), 0.5), Shape.sphere((0, 0, 1), 0.2)),
+        Shape.transform(Shape.box((0, 0, 0), (1, 1, 1)), axis=(0, 1, 0), angle=30),
+    ],
+    ids=lambda shape: shape.type,
+)
+def test_the_core_takes_every_shape(shape):
+    scene = Scene.preset("lab-50").append("obstacles", Obstacle(shape=shape))
+    assert scene.resolve().data["obstacles"][0]["shape"]["type"] == shape.type
+
+
+def test_parameters_have_kinds_and_defaults():
+    found = {parameter.path: parameter for parameter in scene_parameters()}
+    assert found["snow.density"].unit == "kg/m3"
+    assert found["events.between"].choices == ("carry", "reseed")
+    assert found["obstacles"].kind == "list"
+    assert found["domain.min"].kind == "vector"
+    assert found["output.energy"].kind == "boolean"
+
+
+def test_defaults_live_in_the_core():
+    assert Panel() == Panel(None, None, None)
+    assert Scene().to_data() == {"snowshed": 1}
+
+
+def test_lab_presets_are_table_2_3_1():
+    for tilt in (40, 50):
+        data = Scene.preset(f"lab-{tilt}").resolve().data
+        panel, slab = data["panel"], data["slab"]
+        assert panel["tilt"] == tilt
+        assert (panel["height"], panel["length"], panel["width"]) == (0.33, 0.245, 0.213)
+        assert (slab["length"], slab["width"], slab["thickness"]) == (0.245, 0.142, 0.02)
+        assert (data["snow"]["density"], data["numerics"]["dx"]) == (210, 0.01)
+        assert (data["dimension"], data["events"]["count"]) == (3, 5)
+
+
+def test_sensitivity_preset_is_table_3_2_1():
+    data = Scene.preset("sensitivity").to_data()
+    assert (data["panel"]["height"], data["panel"]["tilt"]) == (0.5, 40)
+    assert (data["dimension"], data["events"]["count"]) == (3, 3)
+
+
+def test_geometry_preset_is_table_5_1_1():
+    data = Scene.preset("geometry").to_data()
+    panel = data["panel"]
+    assert (panel["height"], panel["length"], panel["tilt"]) == (2, 2, 40)
+    assert (data["slab"]["thickness"], data["numerics"]["dx"]) == (0.05, 0.01)
+    assert (data["dimension"], data["events"]["count"]) == (2, 5)
+
+
+def test_the_slab_of_a_preset_is_as_long_as_another_panel():
+    for name in ("lab-40", "lab-50", "sensitivity", "geometry"):
+        data = Scene.preset(name).set("panel.length", 4.0).resolve().data
+        assert data["slab"]["length"] == 4.0
+
+
+def test_calibrated_snow_is_table_4_3_1():
+    snow = Snow.preset("calibrated")
+    assert (snow.critical_state_slope, snow.preconsolidation_pressure) == (0.5, 7e3)
+    assert (snow.cohesion, snow.hardening_factor, snow.youngs_modulus) == (0.2, 0.1, 1e6)
+
+
+def test_unknown_presets():
+    with pytest.raises(InputError, match="lab-40"):
+        Scene.preset("lab")
+    with pytest.raises(InputError, match="calibrated"):
+        Snow.preset("wet")
+
+
+def test_distance_to_obstacles_where_they_are(tiny):
+    tiny.append("obstacles", Obstacle("post", Shape.sphere((3.0, 1.0), 0.5)))
+    tiny.append("obstacles", Obstacle("cart", Shape.box((9.0, 0.5), (1.0, 1.0))))
+    tiny.set("obstacles.1.motion.velocity", [10.0, 0.0])
+    simulation = _core.Simulation(tiny.set("events.max_time", 0.1).resolve().json)
+    points = np.array([[3.0, 0, 1.0], [3.0, 0, 2.0], [9.0, 0, 0.5]])
+    assert simulation.obstacle_distance(points) == pytest.approx([-0.5, 0.5, -0.5])
+    simulation.begin_event()
+    simulation.run(lambda info: True)
+    assert simulation.obstacle_distance(points)[2] == pytest.approx(10 * 0.1 - 0.5, abs=0.02)
+    with pytest.raises(InputError, match="points"):
+        simulation.obstacle_distance(points[0])

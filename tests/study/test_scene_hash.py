@@ -1,0 +1,114 @@
+"""What is the same run, and what is not."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from study_helpers import tiny_scene
+
+from snowshed import Obstacle, Scene, Shape, _core
+from snowshed.scene.schema import scene_parameters
+from snowshed.study import Run
+from snowshed.study.scene_hash import content_hash
+
+
+def run_of(scene: Scene) -> Run:
+    return Run.of(scene.resolve())
+
+
+def test_what_does_not_change_a_result_does_not_change_the_hash():
+    same = tiny_scene().update(
+        {
+            "title": "another",
+            "numerics.threads": 2,
+            "output": {"energy": True, "snapshot_interval": 0.1, "checkpoint_interval": 7},
+        }
+    )
+    assert run_of(same).hash == run_of(tiny_scene()).hash
+
+
+def test_given_defaults_whole_numbers_and_order_do_not_matter():
+    scene = tiny_scene().set("panel.tilt", 50).set("gravity", 9.81)
+    assert run_of(scene).hash == run_of(tiny_scene()).hash
+    data = json.loads(run_of(scene).scene)
+    assert content_hash(dict(reversed(data.items()))) == run_of(scene).hash
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("dimension", 3),
+        ("snow.cohesion", 0.2000001),
+        ("panel.friction", 0.31),
+        ("seeding.seed", 2),
+        ("numerics.precision", "double"),
+        ("events.count", 3),
+        ("events.between", "reseed"),
+        ("events.max_time", 0.06),
+    ],
+)
+def test_what_changes_a_result_changes_the_hash(path, value):
+    assert run_of(tiny_scene().set(path, value)).hash != run_of(tiny_scene()).hash
+
+
+def test_every_other_parameter_is_in_the_hash():
+    data = json.loads(run_of(tiny_scene()).scene)
+    hashes = {content_hash(data)}
+    varied = 0
+    for parameter in scene_parameters():
+        section, _, key = parameter.path.rpartition(".")
+        holder = data.get(section, data)
+        if section in ("output", "domain") or key in ("title", "threads", "obstacles", "bodies"):
+            continue
+        before, holder[key] = holder[key], "something else"
+        hashes.add(content_hash(data))
+        holder[key] = before
+        varied += 1
+    assert varied > 30 and len(hashes) == varied + 1
+
+
+def test_the_hash_is_the_same_in_every_process():
+    code = (
+        "import json, sys; from snowshed.study.scene_hash import content_hash; "
+        "print(content_hash(json.load(sys.stdin)))"
+    )
+    run = run_of(tiny_scene())
+    for seed in ("1", "2"):
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            input=run.scene,
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert done.stdout.strip() == run.hash
+
+
+def test_another_version_is_another_run(monkeypatch):
+    before = run_of(tiny_scene()).hash
+    monkeypatch.setattr(_core, "version", "99.0")
+    assert run_of(tiny_scene()).hash != before
+
+
+def test_files_count_by_their_content_not_by_their_path(tmp_path):
+    def hash_with(file):
+        scene = tiny_scene()
+        shape = Shape.grid(str(file), origin=(2, 0), spacing=0.1)
+        return run_of(scene.append("obstacles", Obstacle(shape=shape))).hash
+
+    one, copy = tmp_path / "one.npy", tmp_path / "copy.npy"
+    np.save(one, np.ones((3, 3)))
+    copy.write_bytes(one.read_bytes())
+    before = hash_with(one)
+    assert hash_with(copy) == before
+    np.save(one, np.full((3, 3), 2.0))
+    assert hash_with(one) != before
+
+
+def test_the_scene_of_a_run_can_be_run():
+    run = run_of(tiny_scene())
+    assert json.loads(_core.parse_scene(run.scene)) == json.loads(run.scene)

@@ -1,0 +1,118 @@
+"""The command: its exit codes, resuming, and the docs of its options."""
+
+import doctest
+import importlib
+import pkgutil
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import pytest
+import thesis
+from paths import ROOT
+from reproduce_helpers import geometry_table
+from thesis import studies
+
+from snowshed import Scene
+from snowshed.cli.main import main
+from snowshed.study import Study
+
+DOCS = ROOT / "docs" / "reproduce.md"
+MODULES = [module.name for module in pkgutil.walk_packages(thesis.__path__, "thesis.")]
+
+
+def run(*arguments):
+    return main(["reproduce", "thesis", *map(str, arguments)])
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_in_docstrings(name):
+    assert doctest.testmod(importlib.import_module(name)).failed == 0
+
+
+def test_every_option_is_in_the_docs():
+    from thesis.command import thesis
+
+    text = DOCS.read_text(encoding="utf-8")
+    for option in thesis.params:
+        for name in option.opts[-1:] + option.secondary_opts:
+            assert re.search(rf"`{name}[ `]", text), name
+
+
+def test_the_command_line_starts_without_it():
+    script = "import sys, snowshed.cli.main; print('thesis' in sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "False"
+
+
+def test_bad_input(tmp_path, capsys):
+    geometry_table(tmp_path / "rows.csv")
+    content = (tmp_path / "rows.csv").read_bytes()
+    (tmp_path / "half.csv").write_bytes(content[: len(content) // 2])
+    (tmp_path / "bytes.csv").write_bytes(bytes(range(128, 256)))
+    for arguments, message in (
+        (("-o", tmp_path / "c", "--table", tmp_path / "half.csv"), "half.csv: not a table: line "),
+        (("-o", tmp_path / "c", "--table", tmp_path / "bytes.csv"), "bytes.csv: not a table: "),
+        ((), "--output"),
+        (("-o", tmp_path / "a", "--stage", "x"), "stage: 'x' is unknown"),
+        (("-o", tmp_path / "a", "--full"), "take a new folder for --full"),
+        (("-o", tmp_path / "b", "--table", tmp_path / "none.csv"), "none.csv: No such file"),
+    ):
+        assert run(*arguments) == 2
+        assert message in capsys.readouterr().err
+    assert not (tmp_path / "c").exists()
+
+
+def small_studies(size):
+    scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.03})
+    scene.update({"events": {"count": 1, "max_time": 0.05}})
+    return [Study.product(scene, {"snow.cohesion": [0.15, 0.3]}, name=studies.INDEX, seeds=[1, 2])]
+
+
+def test_a_stage_of_real_snow(tmp_path, capsys, monkeypatch):
+    """Tiny runs, stopped in the air; the second call has nothing left to compute."""
+    from thesis import reproduction
+
+    monkeypatch.setitem(reproduction.MAKERS, "s-index", small_studies)
+    table = geometry_table(tmp_path / "rows.csv")
+    out = tmp_path / "out"
+    options = ("-o", out, "--stage", "s-index", "--jobs", "1", "--table", table)
+    for _ in range(2):
+        assert run(*options) == 0
+        shown = capsys.readouterr()
+        assert "The effect of β on the height is positive." in shown.out
+    assert "expected time" not in shown.err
+    assert (out / "thesis.html").is_file() and (out / "s-index" / "s.csv").is_file()
+
+
+def test_failed_simulations_have_an_exit_code(tmp_path, capsys, monkeypatch):
+    from thesis import command
+    from thesis.stage import State, StudyStage
+
+    table = geometry_table(tmp_path / "rows.csv")
+    state = StudyStage.state
+    monkeypatch.setattr(StudyStage, "state", lambda self: replace(state(self), failed=2))
+    assert isinstance(State(0, 0, 0), State) and command.thesis
+    assert run("-o", tmp_path / "out", "--report-only", "--table", table, "-q") == 3
+    assert "simulations failed: 2 of lab" in capsys.readouterr().err
+
+
+def test_an_interrupt_ends_with_130_and_the_same_command_goes_on(tmp_path):
+    table = geometry_table(tmp_path / "rows.csv")
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "snowshed", "reproduce", "thesis", "-o", str(out)]
+    command += ["--stage", "lab", "--jobs", "1", "--table", str(table)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 120
+    while not list(out.glob("runs/running/*")) and time.monotonic() < deadline:
+        assert process.poll() is None
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=120)
+    assert process.returncode == 130
+    assert "interrupted; the same command goes on" in said

@@ -1,0 +1,117 @@
+"""Slabs on an incline: Coulomb's law, its coarse solutions, and what is measured of them."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from validation.cases import incline
+from validation.cases.incline import ANGLE, CASES, DEFAULTS, SLAB, Incline
+
+COARSE = {**DEFAULTS, "dx": 0.025, "length": 0.5, "speed": 0.0}
+
+
+def measured(outcome):
+    return {one.quantity: one for one in outcome.measured}
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_directions(dimension):
+    plane = Incline(30.0, dimension)
+    slope, normal = np.array(plane.slope), np.array(plane.normal)
+    assert len(slope) == dimension
+    assert slope @ normal == pytest.approx(0)
+    assert slope @ slope == pytest.approx(1)
+    assert slope[0] > 0 > slope[-1]  # down is towards +x
+    assert plane.along[[0, 2]].tolist() == slope[[0, -1]].tolist()
+
+
+def test_coulomb():
+    assert Incline(90.0, 2).coulomb(0.5) == pytest.approx(9.81)
+    assert Incline(0.0, 2).coulomb(0.5) == pytest.approx(-0.5 * 9.81)
+    assert Incline(35.0, 2).coulomb(np.tan(np.radians(35))) == pytest.approx(0)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_every_entry_makes_a_scene(case):
+    for settings in [*case.matrix(False), *case.matrix(True)]:
+        data = incline.slab_scene(settings, 40.0).resolve().data
+        assert data["numerics"]["dx"] == settings["dx"]
+        assert data["obstacles"][0]["friction"] == settings["friction"]
+        assert data["numerics"]["threads"] == 1
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+@pytest.mark.parametrize("full", [False, True])
+def test_matrices_list_no_entry_twice(case, full):
+    entries = [tuple(sorted(one.items())) for one in case.matrix(full)]
+    assert len(set(entries)) == len(entries)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_slab_lies_on_the_plane(dimension):
+    settings = {**COARSE, "friction": 0.3, "dimension": dimension, "speed": 2.0}
+    drive = incline.Drive(incline.slab_scene(settings, 25.0))
+    plane = Incline(25.0, dimension)
+    normal = np.array([plane.normal[0], 0.0, plane.normal[-1]])
+    heights = drive.core.positions() @ normal
+    assert 0 < heights.min() < 0.25 * heights.max()
+    assert heights.max() < incline.THICKNESS
+    assert np.allclose(drive.core.velocities(), 2.0 * plane.along)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.6])
+def test_what_friction_cannot_hold_slides_as_coulomb_says(friction):
+    found = measured(SLAB.measure({**COARSE, "friction": friction}))
+    assert abs(found["acceleration"].error) < 0.01
+    assert ("effective_friction" in found) == (friction > 0)
+    for one in found.values():
+        assert one.error == pytest.approx(one.value / one.exact - 1)
+
+
+def test_too_much_friction_would_be_noticed():
+    """The friction that acted is what the acceleration says, not what the settings say."""
+    sliding = incline.Sliding({**COARSE, "friction": 0.5}, incline.TILT)
+    found = {one.quantity: one for one in incline._slide(sliding, 0.4)}
+    assert found["effective_friction"].value == pytest.approx(0.5, rel=0.01)
+    assert found["effective_friction"].error == pytest.approx(0.25, rel=0.05)
+
+
+def test_a_slab_at_rest_stays_where_friction_holds_it():
+    (creep,) = SLAB.measure({**COARSE, "friction": 0.95}).measured
+    assert creep.quantity == "creep"
+    assert abs(creep.error) < 1e-3
+
+
+def test_a_thrown_slab_stops_where_it_should():
+    settings = {**COARSE, "model": "elastic", "friction": 1.2, "speed": 1.0}
+    found = measured(SLAB.measure(settings))
+    assert abs(found["stopping_distance"].error) < 0.01
+    assert abs(found["creep"].value) < 1e-3
+
+
+def test_the_angle_is_found_between_those_that_were_tried(monkeypatch):
+    """With slabs that slide exactly where Coulomb says, bisection is as good as its width."""
+
+    core = SimpleNamespace(particle_updates=6, total_steps=3, particle_count=2)
+
+    class Block:
+        drive = SimpleNamespace(core=core, wall_s=0.5)
+
+        def __init__(self, settings, tilt):
+            self.exact = Incline(tilt, 2).coulomb(settings["friction"])
+
+        def acceleration(self, begin, end):
+            return max(self.exact, 0.0)
+
+    monkeypatch.setattr(incline, "Sliding", Block)
+    outcome = ANGLE.measure({**COARSE, "friction": 0.7})
+    (angle,) = outcome.measured
+    assert angle.exact == pytest.approx(np.degrees(np.arctan(0.7)))
+    assert abs(angle.error) < incline.NEAR
+    tried = outcome.wall_s / 0.5
+    assert (outcome.updates, outcome.steps) == (6 * tried, 3 * tried)
+
+
+def test_the_angle_of_a_coarse_slab():
+    (angle,) = ANGLE.measure({**COARSE, "length": 0.25, "friction": 0.6}).measured
+    assert abs(angle.error) < 0.1

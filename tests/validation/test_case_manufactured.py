@@ -1,0 +1,140 @@
+"""Chosen motions: Newton's law by differences, forces applied in time, and coarse solutions."""
+
+import numpy as np
+import pytest
+from validation.cases import manufactured
+from validation.cases.manufactured import APIC, CASES, FLIP, SCHEME, VORTEX, WAVES
+from validation.forced_body import ForcedBody
+from validation.manufactured_motions import (
+    DENSITY,
+    WAVE_SPEED,
+    YOUNGS_MODULUS,
+    AxialWaves,
+    Vortex,
+)
+
+MOTIONS = [AxialWaves(0.04), Vortex(1.0)]
+LARGEST = 0.4 / WAVE_SPEED  # a time near that of the largest displacement
+NEAR = 1e-4  # m, for differences in space
+
+
+def difference(function, at, step):
+    """The first derivative, from values up to two steps away."""
+    far = function(at - 2 * step) - function(at + 2 * step)
+    return (far + 8 * (function(at + step) - function(at - step))) / (12 * step)
+
+
+def gradient(field, points):
+    """d field/dX of a field of vectors or tensors, the last index that of X."""
+    parts = [
+        difference(lambda x, axis=axis: field(points + x * np.eye(2)[axis]), 0.0, NEAR)
+        for axis in range(2)
+    ]
+    return np.stack(parts, axis=-1)
+
+
+def first_piola_kirchhoff(motion, points, time):
+    """P = tau F^-T of Hencky elasticity, from an eigen-decomposition of F F^T."""
+    stretch = np.eye(2) + gradient(lambda x: motion.displacement(x, time), points)
+    values, vectors = np.linalg.eigh(stretch @ stretch.transpose(0, 2, 1))
+    strains = np.log(values) / 2
+    nu = motion.poissons_ratio
+    mu = YOUNGS_MODULUS / (2 * (1 + nu))
+    lam = YOUNGS_MODULUS * nu / ((1 + nu) * (1 - 2 * nu))
+    principal = 2 * mu * strains + lam * strains.sum(axis=1, keepdims=True)
+    stress = np.einsum("nik,nk,njk->nij", vectors, principal, vectors)
+    return stress @ np.linalg.inv(stretch).transpose(0, 2, 1)
+
+
+@pytest.mark.parametrize("motion", MOTIONS, ids=["waves", "vortex"])
+def test_body_forces_obey_newtons_law(motion):
+    points = np.random.default_rng(1).uniform(0.05, 0.95, (100, 2))
+    stress = gradient(lambda x: first_piola_kirchhoff(motion, x, LARGEST), points)
+    inner = np.einsum("nijj->ni", stress) / DENSITY
+    step = 1e-3 / WAVE_SPEED
+    acceleration = difference(lambda t: motion.velocity(points, t), LARGEST, step)
+    force = motion.body_force(points, LARGEST)
+    assert np.abs(acceleration - inner - force).max() < 1e-6 * np.abs(force).max()
+
+
+@pytest.mark.parametrize("motion", MOTIONS, ids=["waves", "vortex"])
+def test_velocities_are_the_rate_of_displacements(motion):
+    points = np.random.default_rng(2).uniform(0, 1, (50, 2))
+    rate = difference(lambda t: motion.displacement(points, t), LARGEST, 1e-3 / WAVE_SPEED)
+    assert motion.velocity(points, LARGEST) == pytest.approx(rate, rel=1e-8, abs=1e-8)
+
+
+@pytest.mark.parametrize("motion", MOTIONS, ids=["waves", "vortex"])
+def test_the_sides_of_the_square_carry_nothing(motion):
+    along = np.linspace(0, 1, 21)
+    for side in (0.0, 1.0):
+        for axis in range(2):
+            points = np.insert(along[:, np.newaxis], axis, side, axis=1)
+            traction = first_piola_kirchhoff(motion, points, LARGEST)[:, :, axis]
+            assert np.abs(traction).max() < 1e-5 * YOUNGS_MODULUS
+
+
+def test_strains_are_as_large_as_they_are_said_to_be():
+    points = np.stack(np.meshgrid(*[np.linspace(0, 1, 401)] * 2), axis=-1).reshape(-1, 2)
+    time = 0.5 / WAVE_SPEED
+    stretch = gradient(lambda x: AxialWaves(0.04).displacement(x, time), points)
+    assert np.abs(stretch).max() == pytest.approx(4 * np.pi * 0.04, rel=1e-3)
+    turned = np.eye(2) + gradient(lambda x: Vortex(1.0).displacement(x, time), points)
+    assert np.linalg.det(turned) == pytest.approx(1.0)
+    shear = np.linalg.norm(turned, axis=(1, 2)) ** 2 - 2  # s^2 of a simple shear
+    assert np.sqrt(shear.max()) == pytest.approx(0.84, abs=0.01)
+
+
+def test_a_body_whose_motion_is_none_stays_where_it_is():
+    body = ForcedBody(Vortex(0.0), {**SCHEME, **APIC, "dx": 0.1})
+    for _ in range(5):
+        body.step()
+    assert np.abs(body.residual()).max() < 1e-15
+
+
+def test_all_of_a_force_is_applied_although_steps_vary(monkeypatch):
+    """A force that is the same everywhere and always: momentum is force times time."""
+    monkeypatch.setattr(Vortex, "body_force", lambda self, points, time: 0 * points + [3.0, -1.0])
+    body = ForcedBody(Vortex(0.5), {**SCHEME, **FLIP, "dx": 0.1})
+    begun = body.drive.mean(body.drive.core.velocities())
+    steps = set()
+    for _ in range(10):
+        body.step()
+        steps.add(round(body.drive.core.time_step_s, 12))
+    assert len(steps) > 5
+    gained = body.drive.mean(body.drive.core.velocities()) - begun
+    # The last step's change of length is still owed.
+    still = body._owed.mean(axis=0)
+    assert gained[[0, 2]] + still == pytest.approx(np.array([3.0, -1.0]) * body.time)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_matrices(case):
+    for full in (False, True):
+        entries = case.matrix(full)
+        assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
+        for settings in entries:
+            assert manufactured.motion_of(settings).omega > 0
+    for quantity in case.quantities:
+        for full in (False, True):
+            assert any(quantity.bar_for.items() <= one.items() for one in case.matrix(full))
+
+
+@pytest.mark.parametrize("start", [WAVES, VORTEX], ids=["waves", "vortex"])
+@pytest.mark.parametrize("transfer", [FLIP, APIC], ids=["flip", "apic"])
+def test_finer_cells_follow_better(start, transfer):
+    settings = {**SCHEME, **start, **transfer, "particles_per_voxel": 9}
+    errors = [manufactured.measure({**settings, "dx": 1 / n}).measured[0].error for n in (12, 18)]
+    assert errors[1] < errors[0] / 1.5**1.6
+
+
+def test_smaller_steps_come_nearer_to_smallest(monkeypatch):
+    monkeypatch.setattr(manufactured, "SMALLEST", 0.9 / 16)
+    settings = manufactured.steps_matrix(False)[0]
+    found = [
+        manufactured.measure_steps({**settings, "step_factor": factor}).measured
+        for factor in (0.9, 0.45)
+    ]
+    assert [one.quantity for one in found[0]] == ["step", "displacement"]
+    coarse, fine = (one[0].error for one in found)
+    assert fine < 0.6 * coarse

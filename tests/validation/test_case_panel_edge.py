@@ -1,0 +1,81 @@
+"""A slab thrown from a panel's edge: the rigid slab, flights made up, and a coarse throw."""
+
+import math
+
+import numpy as np
+import pytest
+from validation.cases import panel_edge
+from validation.cases.panel_edge import CASE, SLAB, Moment
+from validation.rigid_slab import RigidSlab
+
+
+def test_a_tipping_slab_without_friction_keeps_its_energy():
+    slab = RigidSlab(0.4, 0.05, tilt=35, friction=0.0, way=0.6)
+    state = slab._leave()
+    x, z = slab._slope(state.position)
+    tilt = math.radians(35)
+    # It started `way` up the slope from the edge, half its thickness above the face.
+    start = 0.6 * math.sin(tilt) + 0.025 * math.cos(tilt)
+    kinetic = (state.velocity @ state.velocity + slab._inertia * state.spin**2) / 2
+    assert kinetic == pytest.approx(slab.gravity * (start - z), rel=1e-9)
+    assert x > 0
+    assert state.spin > 0
+
+
+def test_friction_slows_a_rigid_slab_down():
+    landings = [RigidSlab(0.2, 0.04, 40, mu, 1.0).landing(1.0) for mu in (0.0, 0.3, 0.6)]
+    assert landings[0].distance > landings[1].distance > landings[2].distance
+    assert landings[0].time_s < landings[1].time_s < landings[2].time_s
+
+
+def test_long_slabs_are_held_up_longer_and_fly_further():
+    near, far = (RigidSlab(length, 0.04, 40, 0.0, 1.0).landing(1.0) for length in (0.05, 0.3))
+    assert far.distance > near.distance
+
+
+def parabola(wind):
+    """A flight that `wind`, m/s2, pushes aside."""
+    times = np.linspace(0.0, 0.5, 251)
+    pull = np.array([wind, 0.0, -9.81])
+    return [
+        Moment(t, np.array([0.1, 0.0, 0.02]) + t * np.array([2.0, 0, -1.0]) + t**2 / 2 * pull,
+               np.array([2.0, 0, -1.0]) + t * pull, 0.0, 1.0)
+        for t in times
+    ]  # fmt: skip
+
+
+def test_deviation_from_the_parabola():
+    assert panel_edge.off_parabola(parabola(0.0)) < 1e-12
+    flight = parabola(0.1)
+    way = np.linalg.norm(flight[-1].position - flight[0].position)
+    assert panel_edge.off_parabola(flight) == pytest.approx(0.1 * 0.5**2 / 2 / way)
+
+
+def test_landing_is_where_the_drop_is_crossed():
+    flight = parabola(0.0)
+    while flight[-1].position[2] < -panel_edge.DROP:
+        last = flight.pop()
+    fall = (math.sqrt(1 + 2 * 9.81 * 1.02) - 1) / 9.81
+    assert panel_edge.landing([*flight, last]) == pytest.approx(0.1 + 2 * fall, abs=1e-4)
+
+
+@pytest.mark.parametrize("settings", CASE.matrix(True) + CASE.matrix(False), ids=str)
+def test_every_entry_makes_a_scene(settings):
+    data = panel_edge.panel_scene(settings).resolve().data
+    assert data["panel"]["friction"] == settings["friction"]
+    assert data["numerics"]["dx"] == settings["dx"]
+
+
+def test_a_coarse_throw():
+    outcome = CASE.measure({**SLAB, "dx": 0.02, "transfer": "apic"})
+    found = {one.quantity: one for one in outcome.measured}
+    assert set(found) == {quantity.name for quantity in CASE.quantities}
+    assert abs(found["landing"].error) < 0.01
+    assert found["flight"].error < 1e-3
+    assert found["spin"].value > 0
+    assert abs(found["spin_kept"].error) < 1e-3  # APIC
+
+
+def test_a_slab_that_stays_is_an_error():
+    with pytest.raises(ValueError, match="holds the slab"):
+        CASE.measure({**SLAB, "dx": 0.02, "friction": 1.0})

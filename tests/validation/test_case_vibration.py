@@ -1,0 +1,156 @@
+"""Vibrations: the beam by its energies, smoothing by interpolating, and coarse bodies."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import trapezoid
+from validation.cantilever import Cantilever
+from validation.cases import vibration
+from validation.cases.vibration import BAR, BAR_DEFAULTS, CANTILEVER_DEFAULTS, CASES
+from validation.elastic_bodies import TRANSFERS
+from validation.smoothing import Smoothing
+from validation.swing import Swing
+
+BEAM = Cantilever(1.0, 0.2, 1e6, 0.3, 210.0)
+APIC = {"transfer": "apic"}
+
+
+def measured(outcome):
+    return {one.quantity: one for one in outcome.measured}
+
+
+def test_the_beams_frequency_is_that_of_its_energies():
+    """Rayleigh's quotient: elastic energy over kinetic energy of the mode."""
+    x = np.linspace(0, 1, 2001)
+    w, psi = BEAM.shape(x)
+    shear = 1e6 / 2.6 * 0.2 * 10 * (1 + 3 / 7) / (12 + 11 * 3 / 7)
+    bent = 1e6 / 0.91 * 0.2**3 / 12 * np.gradient(psi, x, edge_order=2) ** 2
+    sheared = shear * (np.gradient(w, x, edge_order=2) - psi) ** 2
+    moving = 210.0 * (0.2 * w**2 + 0.2**3 / 12 * psi**2)
+    omega = math.sqrt(trapezoid(bent + sheared, x) / trapezoid(moving, x))
+    assert pytest.approx(omega, rel=1e-5) == 2 * math.pi * BEAM.frequency
+
+
+def test_the_beam_is_clamped_at_one_end_and_free_at_the_other():
+    x = np.linspace(0, 1, 2001)
+    w, psi = BEAM.shape(x)
+    assert w[0] == psi[0] == 0
+    assert w[-1] == pytest.approx(1.0)
+    assert abs(np.gradient(psi, x, edge_order=2)[-1]) < 1e-4  # no moment
+    assert np.gradient(w, x, edge_order=2)[-1] == pytest.approx(psi[-1], abs=1e-4)  # no shear
+
+
+@pytest.mark.parametrize("slenderness", [5, 10, 50])
+def test_timoshenkos_beam_is_slower_than_eulers(slenderness):
+    beam = Cantilever(1.0, 1 / slenderness, 1e6, 0.3, 210.0)
+    missing = 1 - beam.frequency / beam.euler_frequency
+    assert 0 < missing < 1 / slenderness**2
+    assert missing == pytest.approx(0.84 / slenderness**2, rel=0.1)
+
+
+def test_swing_of_a_vibration_with_another_on_top():
+    t = np.linspace(0, 3, 400)
+    slow = np.exp(-0.3 * t) * np.sin(2 * np.pi * 2 * t)
+    swing = Swing.fit(t, slow + 1e-3 * np.sin(2 * np.pi * 17 * t), frequency=2.1)
+    assert swing.frequency == pytest.approx(2.0, rel=1e-4)
+    assert swing.decay == pytest.approx(0.3, rel=1e-2)
+    assert swing.lost == pytest.approx(1 - math.exp(-0.15), rel=1e-2)
+
+
+def spline(basis, u):
+    """The quadratic or cubic B-spline, as a sum of truncated powers, and its support."""
+    n = 2 if basis == "quadratic" else 3
+    knots = np.arange(n + 2) - (n + 1) / 2
+    signs = np.array([(-1) ** k * math.comb(n + 1, k) for k in range(n + 2)])
+    return np.maximum(u[..., np.newaxis] - knots, 0) ** n @ signs / math.factorial(n)
+
+
+@pytest.mark.parametrize("basis", ["quadratic", "cubic"])
+@pytest.mark.parametrize("transfer", TRANSFERS, ids=str)
+def test_smoothing_is_that_of_interpolating_a_wave(basis, transfer):
+    """Once from particles to grid and back, on a ring of 20 cells with 64 particles each."""
+    cells, count = 20, 64
+    places = (np.arange(cells * count) + 0.5) / count
+    arms = (np.arange(cells) - places[:, np.newaxis] + cells / 2) % cells - cells / 2
+    weights = spline(basis, arms)
+    k = 2 * np.pi / cells
+    speeds = np.cos(k * places)
+    affine = -k * np.sin(k * places)
+    # The grid's velocities of a wave that has been through the grid once before.
+    grid = weights.T @ speeds / count
+    if transfer == APIC:
+        scale = 4 if basis == "quadratic" else 3
+        speeds, affine = weights @ grid, scale * (weights * arms) @ grid
+        again = weights.T @ speeds + np.sum(weights * arms * affine[:, np.newaxis], axis=0)
+    else:
+        ratio = transfer["flip_ratio"]
+        again = weights.T @ (ratio * speeds + (1 - ratio) * (weights @ grid))
+    kept = (again / count) @ grid / (grid @ grid)
+    settings = {**transfer, "basis": basis, "dx": 1.0}
+    assert Smoothing.of(settings, k).kept == pytest.approx(kept, abs=1e-4)
+
+
+@pytest.mark.parametrize("transfer", TRANSFERS, ids=str)
+def test_what_smoothing_takes_per_period_is_what_its_recurrence_takes(transfer):
+    smoothing = Smoothing.of({**transfer, "basis": "quadratic", "dx": 0.05}, np.pi)
+    frequency, dt = 2.0, 0.001
+    # Symplectic Euler raises a frequency by (omega dt)^2/24, which is left out.
+    stiffness = (2 * np.pi * frequency) ** 2 / smoothing.felt
+    q, v, values = 0.0, 1.0, []
+    for _ in range(1500):
+        force = -stiffness * q
+        q += dt * (v + dt * force)
+        v = smoothing.kept * v + smoothing.felt * dt * force
+        values.append(q)
+    swing = Swing.fit(dt * np.arange(1, 1501), np.array(values), frequency)
+    assert smoothing.lost(frequency, dt) == pytest.approx(swing.lost, rel=2e-2, abs=1e-6)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_every_entry_makes_a_scene_and_none_comes_twice(case):
+    make = vibration.bar_scene if case is BAR else vibration.cantilever_scene
+    for full in (False, True):
+        entries = case.matrix(full)
+        assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
+        for settings in entries:
+            data = make(settings).resolve().data
+            assert data["numerics"]["dx"] == settings["dx"]
+            assert data["numerics"]["sleep_speed"] == 0
+            assert len(data["obstacles"]) == (case is not BAR)
+        for quantity in case.quantities:
+            assert any(quantity.bar_for.items() <= one.items() for one in entries)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.3])
+def test_where_the_bodies_are(offset):
+    settings = {**BAR_DEFAULTS, **APIC, "grid_offset": offset}
+    x = vibration.Drive(vibration.bar_scene(settings)).core.positions()[:, 0]
+    assert x.min() == pytest.approx((offset + 0.25) * 0.05)
+    assert x.max() == pytest.approx(1 + (offset - 0.25) * 0.05)
+    settings = {**CANTILEVER_DEFAULTS, **APIC, "grid_offset": offset}
+    drive = vibration.Drive(vibration.cantilever_scene(settings))
+    x = drive.core.positions()[:, 0]
+    assert x.min() == pytest.approx((offset - 4 + 0.25) * 0.025)
+    assert x.max() == pytest.approx(1 + (offset - 0.25) * 0.025)
+    inside = drive.core.obstacle_distance(drive.core.positions()) < 0
+    assert inside.mean() == pytest.approx(4 / 44, abs=0.01)
+
+
+def test_a_coarse_bar_rings_as_it_should_and_fades_as_explained():
+    found = {
+        str(transfer): measured(BAR.measure({**BAR_DEFAULTS, **transfer})) for transfer in TRANSFERS
+    }
+    for one in found.values():
+        assert abs(one["frequency"].error) < 0.01
+        assert abs(one["lost_in_theory"].error) < 5e-4
+    lost = [one["lost"].value for one in found.values()]
+    flip, flip_99, flip_95, apic, pic = lost
+    assert apic < flip < flip_99 < flip_95 < pic
+
+
+def test_a_coarse_cantilever():
+    settings = {**CANTILEVER_DEFAULTS, **APIC, "dx": 0.05}
+    found = measured(vibration.CANTILEVER.measure(settings))
+    assert abs(found["frequency"].error) < 0.04
+    assert 0 < found["lost"].value < 0.02

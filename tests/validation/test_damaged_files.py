@@ -1,0 +1,126 @@
+"""Damaged files of a verification folder are named, with the line and what is wrong."""
+
+import json
+
+import pandas as pd
+import pytest
+from made_up import made_up_case
+from validation import stress, suite
+from validation.folder import SuiteFolder
+
+from snowshed import InputError
+from snowshed.analysis.verification.measurements import Measured, Measurement
+from snowshed.analysis.verification.recorded import load_recorded
+from snowshed.cli.main import main
+
+WHOLE = Measurement("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
+
+# A line of measurements.jsonl, and what must be said of it.
+LINES = {
+    "nothing": (b"", "damaged: Expecting value"),
+    "random bytes": (bytes(range(128, 250)), "damaged: 'utf-8' codec can't decode byte 0x80"),
+    "half": (json.dumps(WHOLE.to_json()).encode()[:99], "damaged: "),
+    "deep": (b"[" * 100_000, "damaged: maximum recursion depth exceeded"),
+    "list": (b"[]", "damaged: not a JSON object"),
+    "no case": ({"case": None}, "damaged: /case: null is not a text"),
+    "endless": ({"wall_s": float("inf")}, "damaged: /wall_s: Infinity is not a finite number"),
+    "too large": ({"steps": 10**400}, "damaged: /steps: 1000000"),
+    "switch": ({"updates": True}, "damaged: /updates: true is not a finite number"),
+    "settings": ({"settings": {"dx": [1]}}, "damaged: /settings/dx: not a setting"),
+    "column": ({"settings": {"steps": 1}}, "damaged: /settings/steps: not a setting"),
+    "text": ({"measured": "height"}, 'damaged: /measured: "height" is not a list'),
+    "part": ({"measured": [3]}, "/measured/0: damaged: not a JSON object"),
+    "number": (
+        {"measured": [{"quantity": "a", "value": None, "exact": "2", "error": 0}]},
+        '/measured/0: damaged: /exact: "2" is not a finite number',
+    ),
+    "lack": ({"measured": [{"quantity": "a", "value": 1}]}, "damaged: /exact is missing"),
+    "unknown": ({"wind": 3}, "damaged: unknown key 'wind'"),
+}
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_a_damaged_line_of_measurements(name, tmp_path):
+    line, message = LINES[name]
+    if isinstance(line, dict):
+        line = json.dumps({**WHOLE.to_json(), **line}).encode()
+    folder = SuiteFolder.create(tmp_path)
+    folder.measurements.append(WHOLE)
+    with folder.measurements.path.open("ab") as file:
+        file.write(line + b"\n")
+    with pytest.raises(InputError) as caught:
+        folder.measurements.read()
+    said = str(caught.value)
+    assert said.startswith(f"{tmp_path / 'measurements.jsonl'}:2: ")
+    assert message in said and len(said) < 400 + len(str(tmp_path))
+
+
+@pytest.mark.parametrize("missing", WHOLE.to_json())
+def test_a_missing_key_of_a_measurement(missing):
+    data = {key: value for key, value in WHOLE.to_json().items() if key != missing}
+    with pytest.raises(InputError, match=rf"^m\.jsonl:1: damaged: /{missing} is missing$"):
+        Measurement.from_json(data, "m.jsonl:1")
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "damaged: Expecting value"),
+        (b"\xff\xff", "damaged: 'utf-8' codec"),
+        (b"{}", "damaged: /measurements is missing"),
+        (b'{"measurements": [1]}', "/measurements/0: damaged: not a JSON object"),
+    ],
+)
+def test_a_damaged_file_of_recorded_measurements(content, message, tmp_path, capsys):
+    path = tmp_path / "recorded.json"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"recorded\.json: ") as caught:
+        load_recorded(path)
+    assert message in str(caught.value)
+    assert main(["verify", "--record", str(path), "-o", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.startswith(f"error: {path}: ")
+    assert not (tmp_path / "out").exists()
+
+
+RUNS = pd.DataFrame({"outcome": ["rest", "failed"], "n": [1.5, None], "wall_s": [0.7, 0.3]})
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("{", "", "damaged: "),
+        ("0.7", "0.2", "damaged: /runs is not what was written"),
+        ('"failed"', "7", "damaged: /runs is not what was written"),
+        ("0.7", "NaN", "damaged: /runs is not what was written"),
+        ('"runs"', '"walks"', "damaged: /runs is missing"),
+    ],
+)
+def test_damaged_runs_of_the_stress_suite(old, new, message, tmp_path):
+    folder = SuiteFolder.create(tmp_path)
+    folder.keep_stress(RUNS, full=False, seed=1)
+    file = tmp_path / "stress.json"
+    assert folder.kept_stress(full=False, seed=1).equals(RUNS)
+    file.write_text(file.read_text().replace(old, new, 1))
+    with pytest.raises(InputError, match=r"stress\.json: ") as caught:
+        folder.kept_stress(full=False, seed=1)
+    assert message in str(caught.value)
+
+
+def test_the_runs_of_another_stress_suite_do_not_count(tmp_path):
+    folder = SuiteFolder.create(tmp_path)
+    folder.keep_stress(RUNS, full=False, seed=1)
+    assert folder.kept_stress(full=True, seed=1) is None
+    assert folder.kept_stress(full=False, seed=2) is None
+
+
+@pytest.mark.parametrize("name", ["measurements.jsonl", "stress.json"])
+def test_resuming_in_a_damaged_folder_is_one_line_and_code_2(name, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(suite, "case_modules", lambda: ["made_up"])
+    monkeypatch.setattr(suite, "cases_of", lambda module: [made_up_case(entries=[{"dx": 0.1}])])
+    monkeypatch.setattr(stress, "run", lambda *_: pytest.fail("the damage was not found"))
+    SuiteFolder.create(tmp_path / "out")
+    (tmp_path / "out" / name).write_text("snow\n")
+    assert main(["verify", "-q", "--resume", "-o", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: {tmp_path / 'out' / name}:") and said.count("\n") == 1
+    assert not (tmp_path / "out" / "verification.html").exists()

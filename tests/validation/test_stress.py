@@ -1,0 +1,186 @@
+"""Runs, their books and the verdict on them."""
+
+import math
+from typing import Any, cast
+
+import numpy as np
+import pandas as pd
+import pytest
+from validation.stress import run_trials, summarise
+from validation.stress.books import Books
+from validation.stress.design import Trial, trials
+from validation.stress.judge import GAIN_BOUND, judge
+from validation.stress.scenes import build
+from validation.stress.solve import solve
+from validation.stress.space import reference
+
+from snowshed import _core
+
+TERMS = ("kinetic", "gravitational", "elastic", "plastic", "friction", "sticking", "impact")
+
+
+class Ledger:
+    """A simulation that consists of its energies and two particles."""
+
+    def __init__(self) -> None:
+        self.values = {f"{name}_j": 0.0 for name in (*TERMS, "transfer", "sleep")}
+        self.velocity = np.zeros((2, 3))
+
+    def energy(self) -> dict[str, float]:
+        return dict(self.values)
+
+    def masses(self) -> Any:
+        return np.array([1.0, 3.0])
+
+    def velocities(self) -> Any:
+        return self.velocity
+
+
+def books_of(ledger: Ledger, **laid: float) -> Books:
+    books = Books(cast(_core.Simulation, ledger), gravity=10.0, dx=0.1)
+    before = ledger.energy()
+    ledger.values.update(laid)
+    books.begin(before)
+    return books
+
+
+def test_books_are_relative_to_what_came_in() -> None:
+    ledger = Ledger()
+    books = books_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
+    ledger.values.update(
+        kinetic_j=15.0, gravitational_j=70.0, plastic_j=30.0, transfer_j=3.0, sleep_j=1.0
+    )
+    books.sample()  # 50 J came in; 15 J are there, 34 J were spent: 1 J is missing
+    errors = books.energy_errors()
+    assert errors["energy_error"] == pytest.approx(1 / 50)
+    assert errors["energy_gain"] == 0
+    assert errors["stored_excess"] == pytest.approx((15 - 50) / 50)
+    ledger.values.update(kinetic_j=40.0, elastic_j=12.0)  # 2 J more than came in
+    books.sample()
+    errors = books.energy_errors()
+    assert errors["stored_excess"] == errors["final_excess"] == pytest.approx(2 / 50)
+    assert errors["energy_gain"] == pytest.approx((2 + 34) / 50)
+
+
+def test_books_of_a_second_event_count_what_it_brought() -> None:
+    ledger = Ledger()
+    books = books_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
+    ledger.values.update(kinetic_j=0.0, gravitational_j=90.0, sticking_j=30.0)
+    books.sample()
+    before = ledger.energy()
+    ledger.values.update(kinetic_j=5.0, gravitational_j=150.0)
+    books.begin(before)
+    books.sample()
+    assert books.energy_errors()["energy_error"] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_momentum_is_that_of_free_flight() -> None:
+    ledger = Ledger()
+    ledger.velocity = np.array([[1.0, 0, 0], [0, 0, 2.0]])
+    books = books_of(ledger)
+    ledger.velocity = np.array([[1.0, 0, -5.0], [0, 0, -3.0]])  # 0.5 s later
+    assert books.momentum_error(0.5) == pytest.approx(0.0, abs=1e-15)
+    ledger.velocity[0, 0] = 1.5
+    assert books.momentum_error(0.5) == pytest.approx(0.5 / (1 + 6 + 20))
+
+
+SOUND: dict[str, Any] = {
+    "ended": "rest",
+    "message": "",
+    "precision": "float",
+    "steps": 100,
+    "finite": True,
+    "checkpoint": True,
+    "mass_error": 0.0,
+    "momentum_error": math.nan,
+    "energy_error": 0.01,
+    "stored_excess": -0.2,
+    "final_excess": -0.3,
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "outcome"),
+    [
+        ({}, "rest"),
+        ({"ended": "crashed", "message": "exit code -11"}, "failed"),
+        ({"ended": "stopped", "message": "particle 3 at (0, 1) m: too much"}, "stopped"),
+        ({"ended": "stopped", "message": "it went wrong"}, "failed"),
+        ({"ended": "stopped", "message": "particle 3: so", "checkpoint": False}, "failed"),
+        ({"finite": False}, "failed"),
+        ({"mass_error": 1e-6}, "failed"),
+        ({"momentum_error": 1e-3}, "failed"),
+        ({"final_excess": 2 * GAIN_BOUND}, "failed"),
+        ({"energy_error": math.inf}, "failed"),
+    ],
+)
+def test_verdicts(change: dict[str, Any], outcome: str) -> None:
+    verdict, reason = judge({**SOUND, **change})
+    assert verdict == outcome
+    assert bool(reason) == (outcome == "failed")
+
+
+def test_bad_input_is_refused_without_measures() -> None:
+    record = {"ended": "refused", "message": "/panel/tilt: 95 is outside the allowed range"}
+    assert judge(record) == ("refused", "")
+
+
+def test_free_fall_differs_from_the_books_by_what_symplectic_euler_does() -> None:
+    """It falls too far, by g t dt/2: a block that has not reached the ground shows nothing else."""
+    point = {**reference(), "kind": "throw", "speed": 0.1, "precision": "double"}
+    scene = build(point, max_time=0.005)
+    assert scene.events is not None
+    scene.events.count = 1
+    simulation = _core.Simulation(scene.resolve().json)
+    books = Books(simulation, gravity=9.81, dx=0.02)
+    before = simulation.energy()
+    simulation.begin_event()
+    books.begin(before)
+    simulation.run(lambda report: True)
+    books.sample()
+    time, dt = simulation.time_s, simulation.time_step_s
+    assert books.momentum_error(time) < 1e-12
+    came_in = 0.5 * 0.1**2 + 9.81 * (0.08 * time + 0.5 * 9.81 * time**2)
+    too_far = 0.5 * 9.81 * time * dt
+    expected = 9.81 * too_far / came_in
+    assert books.energy_errors()["energy_error"] == pytest.approx(expected, rel=0.05)
+
+
+@pytest.fixture(scope="module")
+def some() -> pd.DataFrame:
+    quick = trials(full=False)
+    return run_trials([Trial(t.design, t.varied, t.point, 100) for t in quick[::4]])
+
+
+def test_runs_rest_or_go_on_or_stop_with_a_reason(some: pd.DataFrame) -> None:
+    failed = some[some.outcome == "failed"]
+    assert failed.empty, failed.reason.tolist()
+    assert set(some.design) == {"reference", "single", "pairwise", "random"}
+
+
+def test_tables_count_every_run_once(some: pd.DataFrame) -> None:
+    tables = {table.name: table for table in summarise(some)}
+    assert tables["outcomes"].frame["all"].sum() == len(some)
+    stopped = some.outcome.isin(["refused", "stopped"]).sum()
+    assert tables["errors"].frame["runs"].sum() == stopped
+    assert tables["cost"].frame["runs"].sum() == len(some) - stopped
+    assert tables["savings"].frame["runs"].sum() == len(some) - stopped
+    assert tables["failures"].frame.empty
+    assert all(table.title and table.remark for table in tables.values())
+
+
+def test_snow_comes_to_rest() -> None:
+    """Soft snow, cheap in steps, dropped from a hand's breadth."""
+    point = {**reference(), "kind": "throw", "youngs_modulus": 1e4, "cells": 1, "thickness": 0.1}
+    record = solve(point, steps=5000)
+    assert record["ended"] == "rest"
+    assert judge({**point, **record}) == ("rest", "")
+
+
+def test_a_particle_that_is_compressed_beyond_measure_is_named() -> None:
+    """Elastic snow of 10 kPa at Mach 15 has nothing to stop it."""
+    point = {**reference(), "kind": "collide", "model": "elastic", "youngs_modulus": 1e4}
+    record = solve({**point, "density": 917.0, "speed": 100.0, "transfer": "apic"}, steps=500)
+    assert record["ended"] == "stopped"
+    assert record["message"].startswith("particle ")
+    assert record["finite"] and record["checkpoint"]

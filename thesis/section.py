@@ -1,0 +1,123 @@
+"""A section of the report, and tables that several sections share."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from snowshed.io.arrays import Floats
+from snowshed.io.formatting import NOTHING, number
+from snowshed.plot.html_page import Grid, Picture
+from snowshed.study.table import value_at
+from thesis.claims.hypothesis_tests import Judged, widening
+from thesis.printed import Printed
+from thesis.size import MEASURED_FRICTION
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Resolution of the figures that stages save, see `snowshed.plot.figure_style.save`.
+SAVED_DPI = 160
+#: For sections whose panel has one friction.
+PANEL_FRICTION = (
+    f"The thesis does not print the panel's friction; here it is {MEASURED_FRICTION}, the least "
+    "static coefficient that it measured."
+)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section of the report.
+
+    Attributes
+    ----------
+    name, title
+        For links, and as its heading.
+    paragraphs
+        What was computed and how, and what to know when reading.
+    tables
+        With their titles.
+    pictures, claims
+        Figures, and what was found of the thesis's claims.
+    missing
+        What is not there yet, a line each.
+    """
+
+    name: str
+    title: str
+    paragraphs: Sequence[str] = ()
+    tables: Sequence[tuple[str, Grid]] = ()
+    pictures: Sequence[Picture] = ()
+    claims: Sequence[Judged] = ()
+    missing: Sequence[str] = ()
+
+    def lacking(self, *lines: str) -> Section:
+        """Return the section with more lines on what is missing."""
+        return replace(self, missing=[*self.missing, *lines])
+
+
+def settings_grid(printed: Sequence[Printed], scenes: Sequence[str]) -> Grid:
+    """Return a table of parameters: what the thesis prints, and what the scenes have.
+
+    Parameters
+    ----------
+    printed
+        The rows.
+    scenes
+        Complete scenes as JSON.
+
+    Examples
+    --------
+    >>> row = Printed("cohesion", "snow.cohesion", "0.1, 0.2")
+    >>> settings_grid([row], ['{"snow": {"cohesion": 0.1}}']).rows
+    [['cohesion', '0.1, 0.2', '0.1', '']]
+    """
+    data = [json.loads(scene) for scene in scenes]
+    rows = []
+    for row in printed:
+        values = {value_at(scene, row.path) for scene in data} - {None}
+        ours = ", ".join(_text(value, row) for value in sorted(values)) or NOTHING
+        rows.append([row.name, row.text, ours + ("D" if row.path == "dimension" else ""), row.unit])
+    return Grid(["parameter", "thesis", "here", "unit"], rows, "llll")
+
+
+def _text(value: Any, row: Printed) -> str:
+    if isinstance(value, str):
+        return value.upper()
+    return number(value / row.scale, 4) if value else row.zero
+
+
+def widenings(table: pd.DataFrame, noise: pd.DataFrame) -> Floats:
+    """Return by how much the noise of each row is widened, since its seedings are few.
+
+    Parameters
+    ----------
+    table
+        With the columns ``event`` and ``target``.
+    noise
+        From `snowshed.analysis.sensitivity.seeding_noise`.
+    """
+    keys = zip(table["event"], table["target"])
+    return np.array([widening(float(noise["freedom"].get(key, 0))) for key in keys])
+
+
+def grouped(table: pd.DataFrame, *keys: str) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:
+    """Yield the rows that share some columns, with their values there, in the table's order."""
+    for values, rows in table.groupby(list(keys), sort=False):
+        yield tuple(values) if isinstance(values, tuple) else (values,), rows
+
+
+def plus_minus(value: float, noise: float, digits: int = 3) -> str:
+    """Return a number with its noise, to a fixed number of decimals.
+
+    Examples
+    --------
+    >>> plus_minus(0.1234, 0.0056), plus_minus(0.1234, float("nan"))
+    ('0.123 ± 0.006', '0.123')
+    """
+    text = f"{value:.{digits}f}"
+    return text if noise != noise else f"{text} ± {noise:.{digits}f}"

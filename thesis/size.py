@@ -1,0 +1,94 @@
+"""How much is computed: the thesis's own settings, or enough to see the way within minutes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from snowshed.analysis.regression.folds import CrossValidation
+
+#: Of the panel where there is one value: the least static coefficient that the thesis measured.
+MEASURED_FRICTION = 0.6
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is computed.
+
+    Attributes
+    ----------
+    name
+        "quick" or "full".
+    dimension, dx
+        Of the snow's simulations in chapters 3 and 4, and the grid size (m) of the laboratory too.
+    frictions, release_frictions
+        Of the panel: in the laboratory, and at 30 degrees.
+    lab_seeds, index_seeds, fixation_seeds, grid_seeds
+        Seedings of each point of the stages.
+    grid_events
+        Events of the calibration.
+    slopes, pressures, cohesions
+        Its triplets: M, p0 (Pa), beta.
+    steps
+        Of the posterior's Markov chains.
+    simulates_panels
+        Whether the panels of chapter 5 are simulated, the thesis's 122 and those with more tilts
+        besides; else the rows are those that come with snowshed.
+    folds
+        Of the nested cross-validation.
+    """
+
+    name: str
+    dimension: int
+    dx: float
+    frictions: Sequence[float]
+    release_frictions: Sequence[float]
+    lab_seeds: int
+    index_seeds: int
+    fixation_seeds: int
+    grid_seeds: int
+    grid_events: int
+    slopes: Sequence[float]
+    pressures: Sequence[float]
+    cohesions: Sequence[float]
+    steps: int
+    simulates_panels: bool
+    folds: CrossValidation
+
+
+FULL = Size(
+    name="full",
+    dimension=3,
+    dx=0.01,
+    frictions=(0.3, 0.6, 0.8),
+    release_frictions=(0.3, 0.5, 0.6),
+    lab_seeds=4,
+    index_seeds=4,
+    fixation_seeds=2,
+    grid_seeds=2,
+    grid_events=5,
+    slopes=(0.4, 0.5, 0.6, 0.7),
+    pressures=(4e3, 5e3, 6e3, 7e3),
+    cohesions=(0.05, 0.1, 0.2),
+    steps=2000,
+    simulates_panels=True,
+    folds=CrossValidation(),
+)
+QUICK = Size(
+    name="quick",
+    dimension=2,
+    dx=0.02,
+    frictions=(0.3, 0.6),
+    release_frictions=(0.3, 0.6),
+    lab_seeds=2,
+    index_seeds=2,
+    fixation_seeds=1,
+    grid_seeds=1,
+    grid_events=3,
+    slopes=(0.4, 0.5, 0.7),
+    pressures=(4e3, 7e3),
+    cohesions=(0.05, 0.2),
+    steps=500,
+    simulates_panels=False,
+    folds=CrossValidation(rounds=2, folds=5, inner_folds=3),
+)

@@ -1,0 +1,185 @@
+"""The report: ``verification.html``, which needs no other file, its figures and its tables.
+
+==================== ========================================================================
+verification.html    the report
+results.csv          one row per measured quantity: `snowshed.analysis.verification.measurements.to_table`
+results.json         the same, with orders of convergence, cheapest settings and bars
+stress.csv           one row per run of the stress suite, if it ran
+figures/             the figures of the report (.png)
+==================== ========================================================================
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+from snowshed.analysis.verification import analysis, wording
+from snowshed.analysis.verification.case import Case
+from snowshed.analysis.verification.measurements import Measurement, to_table
+from snowshed.io.atomic import write_text
+from snowshed.plot.html_page import template, write_pictures
+from validation import sections
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from validation.stress import SummaryTable
+
+TEMPLATE = "verification.html.j2"
+
+
+@dataclass(frozen=True)
+class Stress:
+    """What the stress suite gave: one row per run, and the tables that sum them up."""
+
+    runs: pd.DataFrame
+    tables: Sequence[SummaryTable]
+
+    @property
+    def failed(self) -> int:
+        """How many runs ended in a way that is not allowed."""
+        return int((self.runs["outcome"] == "failed").sum())
+
+
+@dataclass(frozen=True)
+class Suite:
+    """Cases and what was measured of them.
+
+    Attributes
+    ----------
+    cases, measurements
+        What was asked for, and all that was measured of it.
+    full
+        Whether the matrices were the full ones.
+    stress
+        The stress suite's results, if it ran.
+    """
+
+    cases: Sequence[Case]
+    measurements: Sequence[Measurement]
+    full: bool
+    stress: Optional[Stress] = None
+
+    def facts(self) -> dict[str, str]:
+        """Return what made the results."""
+        failed = sum(1 for one in self.measurements if one.failure)
+        return {
+            "suite": "full" if self.full else "quick",
+            "version": _all({one.version for one in self.measurements}),
+            "machine": _all({one.machine for one in self.measurements}),
+            "date": _all({one.date for one in self.measurements}),
+            "measurements": f"{len(self.measurements)}, {failed} failed",
+            "duration": wording.duration(math.fsum(one.elapsed_s for one in self.measurements)),
+        }
+
+
+def write_report(suite: Suite, folder: Path) -> list[analysis.Bar]:
+    """Write the report's files into a folder; return what was demanded and what was found."""
+    table = to_table(suite.measurements)
+    bars = analysis.bars(table, suite.cases)
+    answers = analysis.cheapest(table, suite.cases)
+    about_cases = [
+        sections.section(case, [m for m in suite.measurements if m.case == case.name], table)
+        for case in suite.cases
+    ]
+    pictures = [picture for about in about_cases for picture in about.pictures]
+    write_pictures(pictures, folder / "figures")
+    write_text(folder / "results.csv", table.to_csv(index=False, float_format="%.9g"))
+    write_text(folder / "results.json", json_text(suite, table, bars, answers))
+    if suite.stress is not None:
+        runs = suite.stress.runs.to_csv(index=False, float_format="%.9g")
+        write_text(folder / "stress.csv", runs)
+    page = render(suite, bars, answers, about_cases)
+    write_text(folder / "verification.html", page)
+    return bars
+
+
+def problems(suite: Suite, bars: Sequence[analysis.Bar]) -> list[str]:
+    """Return everything that is not as it should be, a line each."""
+    titles = {case.name: case.title for case in suite.cases}
+    lines = [
+        f"{titles[bar.case]}, {bar.quantity.title}: demanded {sections.demanded(bar)}, "
+        f"worst {sections.found(bar)}, {wording.settings(bar.settings)}"
+        for bar in bars
+        if bar.holds is False
+    ]
+    lines += [
+        f"{titles[one.case]}, {wording.settings(one.settings)}: {one.failure}"
+        for one in suite.measurements
+        if one.failure
+    ]
+    if suite.stress is not None and suite.stress.failed:
+        lines.append(f"stress suite: {suite.stress.failed} runs failed")
+    return lines
+
+
+def render(
+    suite: Suite,
+    bars: Sequence[analysis.Bar],
+    answers: Sequence[analysis.Cheapest],
+    about_cases: Sequence[sections.Section],
+) -> str:
+    """Return the report as HTML."""
+    return template("validation", TEMPLATE).render(
+        facts=suite.facts(),
+        counts=Counter(bar.holds for bar in bars),
+        problems=problems(suite, bars),
+        bars=sections.bars_grid(bars, suite.cases),
+        cheapest=sections.cheapest_grid(answers, suite.cases, suite.measurements),
+        sections=about_cases,
+        stress=suite.stress,
+        grid_of=sections.frame_grid,
+    )
+
+
+def json_text(
+    suite: Suite,
+    table: pd.DataFrame,
+    bars: Sequence[analysis.Bar],
+    answers: Sequence[analysis.Cheapest],
+) -> str:
+    """Return the results as JSON; numbers that are not finite are null."""
+    data = {
+        "about": suite.facts(),
+        "bars": [
+            {**asdict(bar), "quantity": bar.quantity.name, "holds": bar.holds} for bar in bars
+        ],
+        "cheapest": [asdict(one) for one in answers],
+        "orders": _orders(suite, table),
+        "measurements": [one.to_json() for one in suite.measurements],
+    }
+    return json.dumps(_plain(data), indent=1, allow_nan=False) + "\n"
+
+
+def _orders(suite: Suite, table: pd.DataFrame) -> list[dict[str, Any]]:
+    return [
+        {"case": case.name, "quantity": quantity.name, "in": quantity.order_in, **asdict(one)}
+        for case in suite.cases
+        for quantity in case.quantities
+        if quantity.order_in is not None
+        for one in analysis.convergences(
+            analysis.solutions(analysis.rows_of(table, case.name, quantity.name)),
+            quantity.order_in,
+        )
+    ]
+
+
+def _plain(value: Any) -> Any:
+    """Return data as JSON has it."""
+    if isinstance(value, Mapping):
+        return {str(name): _plain(inner) for name, inner in value.items()}
+    if isinstance(value, (str, bool, int)) or value is None:
+        return value
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    return [_plain(inner) for inner in value]
+
+
+def _all(values: set[str]) -> str:
+    return ", ".join(sorted(values)) or wording.NOTHING

@@ -1,0 +1,174 @@
+"""One run: a point's scene is built, run to its end, and everything about it measured."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+
+from snowshed import _core
+from validation.stress.books import Books
+from validation.stress.scenes import build, longest_event
+from validation.stress.space import Point
+
+#: Steps between two looks at the books.
+STEPS_PER_SAMPLE = 16
+
+#: An event may take this many times the planned steps, where steps shorten, before it is cut.
+PATIENCE = 4
+
+Record = dict[str, Any]
+
+
+def solve(point: Point, steps: int) -> Record:
+    """Make one run and return what is known about it.
+
+    Parameters
+    ----------
+    point:
+        A value for every parameter.
+    steps:
+        Steps of the initial length that each event may take.
+
+    Returns
+    -------
+    dict
+        ``ended``: how the last event ended (``rest``, ``time_limit``, ``step_limit``), or
+        ``refused`` or ``stopped`` where there was an `InputError` or a `SimulationError`, whose
+        text is the ``message``; and the measures of `tables.COLUMNS`.
+
+    Examples
+    --------
+    >>> from validation.stress.space import reference
+    >>> solve(reference(), steps=50)["ended"]
+    'time_limit'
+    """
+    record: Record = {"ended": "", "message": ""}
+    started = time.perf_counter()
+    run: Optional[_Run] = None
+    try:
+        run = _Run(point, steps)
+        record["ended"] = run.all_events()
+    except _core.InputError as error:
+        record.update(ended="refused", message=str(error))
+    except _core.SimulationError as error:
+        record.update(ended="stopped", message=str(error))
+    record["wall_s"] = time.perf_counter() - started
+    if run is not None:
+        record.update(run.measures())
+    return record
+
+
+class _Run:
+    """A simulation with its books."""
+
+    def __init__(self, point: Point, steps: int) -> None:
+        self.free = point["kind"] == "collide"
+        self.most_steps = PATIENCE * steps
+        self.first_step = _first_step(point)
+        limit = min(longest_event(point), steps * self.first_step)
+        scene = build(point, limit).resolve()
+        self.gravity = float(scene.data["gravity"])
+        self.count = int(scene.data["events"]["count"])
+        self.simulation = _core.Simulation(scene.json)
+        self.books = Books(self.simulation, self.gravity, float(scene.data["numerics"]["dx"]))
+        self.smallest_dt = math.inf
+        self.fastest = 0.0
+        self.duration = 0.0
+        self.mass_error = 0.0
+        self.momentum_error = 0.0
+
+    def all_events(self) -> str:
+        """Run the events; return how the last one ended."""
+        ended = ""
+        for _ in range(self.count):
+            ended = self._event()
+            if ended == "step_limit":
+                break
+        return ended
+
+    def _event(self) -> str:
+        before = self.simulation.energy()
+        old_mass = self.simulation.masses().sum()
+        conversion = self.simulation.begin_event()
+        if conversion is not None:
+            after = float(np.sum(conversion["masses_after"]))
+            self.mass_error = max(self.mass_error, abs(after / old_mass - 1.0))
+        self.books.begin(before)
+        laid = self.simulation.masses()
+        start, first = self.duration, self.simulation.total_steps
+
+        def watch(report: dict[str, Any]) -> bool:
+            self.smallest_dt = min(self.smallest_dt, report["dt_s"])
+            self.duration = start + report["time_s"]
+            taken = report["steps"] - first
+            if taken % STEPS_PER_SAMPLE == 1:
+                self.books.sample()
+            return bool(taken < self.most_steps)
+
+        ended = self.simulation.run(watch, 0.0)
+        self.books.sample()
+        self.duration = start + self.simulation.time_s
+        if not np.array_equal(laid, self.simulation.masses()):
+            self.mass_error = math.inf
+        if self.free:
+            error = self.books.momentum_error(self.simulation.time_s)
+            self.momentum_error = max(self.momentum_error, error)
+        return "step_limit" if ended == "interrupted" else ended
+
+    def measures(self) -> Record:
+        """Return the numbers of the run as far as it came, and whether it can be saved."""
+        simulation = self.simulation
+        speeds = np.linalg.norm(simulation.velocities(), axis=1)
+        return {
+            "particles": simulation.particle_count,
+            "steps": simulation.total_steps,
+            "rejected": simulation.rejected_steps,
+            "updates": simulation.particle_updates,
+            "time_s": self.duration,
+            "first_dt_s": self.first_step,
+            "smallest_dt_s": self.smallest_dt if math.isfinite(self.smallest_dt) else math.nan,
+            "fastest_m_s": float(speeds.max()) if speeds.size else 0.0,
+            "mass_error": self.mass_error,
+            "momentum_error": self.momentum_error if self.free else math.nan,
+            **self.books.energy_errors(),
+            "finite": _is_finite(simulation),
+            "checkpoint": _can_be_saved(simulation),
+        }
+
+
+def _first_step(point: Point) -> float:
+    """Return the length of the first step, s."""
+    simulation = _core.Simulation(build(point).resolve().json)
+    simulation.begin_event()
+    simulation.step(1)
+    return simulation.time_step_s
+
+
+def _is_finite(simulation: _core.Simulation) -> bool:
+    density = simulation.density()
+    values = (
+        simulation.positions(),
+        simulation.velocities(),
+        simulation.pressures(),
+        density,
+        np.array(list(simulation.energy().values())),
+    )
+    return all(bool(np.isfinite(v).all()) for v in values) and bool((density > 0).all())
+
+
+def _can_be_saved(simulation: _core.Simulation) -> bool:
+    """Tell whether a checkpoint written now is read again and holds the same finite snow."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = str(Path(folder) / "checkpoint.bin")
+        try:
+            simulation.save(path)
+            again = _core.Simulation.load(path)
+        except (OSError, _core.InputError, _core.SimulationError):
+            return False
+    same = np.array_equal(again.positions(), simulation.positions())
+    return bool(same) and _is_finite(again)

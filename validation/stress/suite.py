@@ -1,0 +1,66 @@
+"""The suite: every trial of the design through the worker, judged, in one table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Optional
+
+import pandas as pd
+
+from validation.stress.design import Trial, trials
+from validation.stress.judge import judge
+from validation.stress.worker import worker
+
+#: Called with the number of runs made, the number of all, and how many have failed.
+Progress = Callable[[int, int, int], None]
+
+
+def run(full: bool, seed: int = 1, progress: Optional[Progress] = None) -> pd.DataFrame:
+    """Make all runs of the quick or the full stress suite.
+
+    Parameters
+    ----------
+    full:
+        Whether to make the full suite (thousands of runs, about ten minutes on one core) or the
+        quick one (seconds).
+    seed:
+        Of the random combinations.
+    progress:
+        Called after every run.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per run: ``design``, ``varied``, a column for each parameter of
+        `space.PARAMETERS`, ``outcome`` (one of `judge.OUTCOMES`), ``reason`` where it failed, and
+        the measures of `solve.solve`.
+
+    Raises
+    ------
+    InputError
+        If `allpairspy` is not installed.
+    """
+    return run_trials(trials(full, seed), progress)
+
+
+def run_trials(plan: Sequence[Trial], progress: Optional[Progress] = None) -> pd.DataFrame:
+    """Make the given runs; the table is that of `run`."""
+    rows: list[dict[str, Any]] = []
+    failed = 0
+    with worker() as process:
+        for trial in plan:
+            record = {**trial.point, **process.solve(trial.point, trial.steps)}
+            outcome, reason = judge(record)
+            failed += outcome == "failed"
+            rows.append(
+                {
+                    "design": trial.design,
+                    "varied": trial.varied,
+                    "outcome": outcome,
+                    "reason": reason,
+                    **record,
+                }
+            )
+            if progress is not None:
+                progress(len(rows), len(plan), failed)
+    return pd.DataFrame(rows)
