@@ -142,9 +142,9 @@ TEST(Seed, RefusesWhatCannotBeFilled) {
   expect_input_error(seed_it(make_plane({0, 0, 0}, {0, 0, 1}), 3, voxel_edge, 8), "unbounded");
   expect_input_error(seed_it(box, 3, 1e-4, 8), "2e8");
   expect_input_error(seed_it(make_sphere({0, 0, 0}, 1e5), 3, 1e-3, 8), "voxels");
-  expect_input_error(seed_it(box, 3, 0, 8), "voxel_edge size");
-  expect_input_error(seed_it(box, 3, voxel_edge, -1), "particles per voxel_edge");
-  expect_input_error(seed_it(box, 3, voxel_edge, std::nan("")), "particles per voxel_edge");
+  expect_input_error(seed_it(box, 3, 0, 8), "voxel size");
+  expect_input_error(seed_it(box, 3, voxel_edge, -1), "particles per voxel");
+  expect_input_error(seed_it(box, 3, voxel_edge, std::nan("")), "particles per voxel");
   expect_input_error(seed_it(box, 4, voxel_edge, 8), "2 or 3");
   const Shape nothing = subtract(box, {make_sphere({0, 0, 0}, 2)});
   expect_input_error(seed_it(nothing, 3, 0.1, 8), "empty");
