@@ -36,7 +36,7 @@ PYTHON_FOLDERS = $(wildcard python tests tools examples benchmarks lua_compat)
 help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
 	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
-	@echo "make test      all tests (test-cpp, test-py: one language; test-slow: those that take minutes)"
+	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
 	@echo "make sanitize  the tests with AddressSanitizer, UBSan and ThreadSanitizer"
 	@echo "make fuzz      fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
 	@echo "make bench     speed of the solver and of the laboratory events, kept in benchmarks/results"
@@ -119,7 +119,8 @@ sanitize: sanitize-address sanitize-thread
 sanitize-address: $(VENV)/.dev-tools
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
 	$(call build_sanitized,address)
-	sh tools/sanitized_pytest.sh $(WATCHED)-address $(VENV) "asan ubsan" tests/test_*.py -k "not lua"
+	sh tools/sanitized_pytest.sh $(WATCHED)-address $(VENV) "asan ubsan" \
+	  tests/test_*.py tests/{cli,io,methods,run,scene,snow/stack}/test_*.py -k "not lua"
 
 sanitize-thread: $(VENV)/.dev-tools
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."

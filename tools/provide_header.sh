@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs the package of a C++ header unless the compiler finds it:  provide_header.sh HEADER
-# PACKAGE [COMPILER FLAG...]
+# Installs the package of a C++ header unless the compiler finds the header:
+#   provide_header.sh HEADER PACKAGE [COMPILER FLAG...]
 set -eu
 header=$1
 package=$2

@@ -55,7 +55,7 @@ void read(const std::string& path, const std::string& grid) {
 
 void write(const std::string& path) {
   const snowshed::WriteRequest request = snowshed::read_request(std::cin);
-  const auto summary = snowshed::write_particles(path, request.cloud, request.how);
+  const auto summary = snowshed::write_particles(path, request.cloud, request.settings);
   std::cout << nlohmann::json{{"surface_voxels", summary.surface_voxels},
                               {"density_voxels", summary.density_voxels},
                               {"volume_m3", summary.volume},

@@ -40,17 +40,17 @@ WriteRequest read_request(std::istream& in) try {
   std::getline(in, line);
   const auto header = nlohmann::json::parse(line);
   WriteRequest request;
-  request.how.dimension = header.at("dimension");
-  request.how.voxel = header.at("voxel");
-  request.how.width = header.at("width");
-  request.how.radius =
-      particle_radius(request.how.dimension, request.how.voxel, header.at("particles_per_voxel"));
+  request.settings.dimension = header.at("dimension");
+  request.settings.voxel = header.at("voxel");
+  request.settings.width = header.at("width");
+  request.settings.radius = particle_radius(request.settings.dimension, request.settings.voxel,
+                                            header.at("particles_per_voxel"));
   const std::size_t particles = header.at("particles");
   if (double(particles) > max_particles) throw InputError("particles", "at most 2e8 are written");
   const std::vector<double> x = read_values<double>(in, 3 * particles);
   for (std::size_t n = 0; n < particles; ++n)
-    request.cloud.positions.emplace_back(x[3 * n], request.how.dimension == 2 ? 0.0 : x[3 * n + 1],
-                                         x[3 * n + 2]);
+    request.cloud.positions.emplace_back(
+        x[3 * n], request.settings.dimension == 2 ? 0.0 : x[3 * n + 1], x[3 * n + 2]);
   request.cloud.masses = read_values<double>(in, particles);
   for (const auto& attribute : header.at("attributes"))
     request.cloud.attributes.push_back(read_attribute(in, attribute, particles));

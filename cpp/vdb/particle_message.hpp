@@ -9,7 +9,7 @@ namespace snowshed {
 
 struct WriteRequest {
   ParticleCloud cloud;
-  VdbWriting how;
+  VdbWriteSettings settings;
 };
 
 /// Reads a message. The line is {"particles", "dimension", "voxel", "particles_per_voxel", "width",

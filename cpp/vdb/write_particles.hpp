@@ -15,7 +15,7 @@ struct ParticleCloud {
   std::vector<PointArray> attributes;  // of floats or 32-bit integers, with 1 or 3 components
 };
 
-struct VdbWriting {
+struct VdbWriteSettings {
   int dimension = 3;
   double voxel = 0;   // m, cell size of the simulation
   double radius = 0;  // m, of a particle, see particle_radius
@@ -42,6 +42,6 @@ struct VdbSummary {
 /// In 2D, solid and density are extruded along y over `width`; points stay in the plane. Throws
 /// InputError as `particles_to_level_set`, and openvdb::Exception if it cannot write.
 VdbSummary write_particles(const std::string& path, const ParticleCloud& cloud,
-                           const VdbWriting& how);
+                           const VdbWriteSettings& settings);
 
 }  // namespace snowshed

@@ -73,9 +73,9 @@ struct CamClay {
   /// Returns an elastic trial to the yield surface by backward Euler with hardening. The return
   /// value says whether any particle of the pack yielded. With D the change of e_v,
   ///   p = p_tr + K_d D,   q = q_tr N / (N - c D),   y(p, q, p0(e_v + D)) = 0,
-  /// where N = 2p - (1 - beta) p0 is y_p/M^2 and c = 6 mu (1 + 2 beta)/M^2. The bracket of D begins
-  /// at zero, the trial, where y > 0. It ends where the flow becomes purely deviatoric (N = 0, y <
-  /// 0), or at the origin if softening reduces p0 to zero before. Newton steps that leave the
+  /// where N = 2p - (1 - beta) p0 is y_p/M^2 and c = 6 mu (1 + 2 beta)/M^2. D is bracketed. At one
+  /// end D = 0, the trial, and y > 0. At the other the flow becomes purely deviatoric (N = 0, y <
+  /// 0), or the stress is zero if softening reduces p0 to zero before. Newton steps that leave the
   /// bracket are replaced by bisection.
   template <class V>
   SNOWSHED_INLINE bool return_map(PQ<V>& s, V& ev) const {
@@ -165,7 +165,7 @@ struct CamClay {
     // First guess: N (q_tr/q_s - 1) + c D = 0. This is y = 0 written for the shear q_s on the
     // surface, with N linear in D. q_s is that at the pressure of the trial; if the trial lies
     // beyond the tips of the ellipse, it is that near the tips. The guess never passes the centre
-    // line. It is zero, the trial itself, if q hardly changes.
+    // line. It is zero, the trial itself, if q hardly decreases.
     const V inside =
         max(V((trial.p + beta * p0_old) * (p0_old - trial.p)), V(T(0.05) * p0_old * p0_old));
     const V q_s = sqrt(V(m2 / (T(1) + T(2) * beta) * inside));
