@@ -1,4 +1,4 @@
-"""The command ``snowshed reproduce thesis``."""
+"""The commands ``snowshed reproduce`` and ``python -m thesis``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def reproduce() -> None:
 
     \b
     Example:
-      snowshed reproduce thesis --quick -o thesis
+      snowshed reproduce thesis --quick -o reproduction
     """  # noqa: D301 - click wants the control character
 
 
@@ -67,7 +67,7 @@ def thesis(
 
     \b
     Example:
-      snowshed reproduce thesis --quick -o thesis
+      snowshed reproduce thesis --quick -o reproduction
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.regression.rows import read_rows
     from thesis.folder import ReproductionFolder

@@ -1,4 +1,4 @@
-"""What ``snowshed reproduce`` shows: one bar over all stages, and the verdicts."""
+"""What the reproduction shows: one bar over all stages, and the verdicts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command ``snowshed verify``; all that takes long to import is imported when it runs."""
+"""The command ``python -m validation``; what takes long to import is imported when it runs."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ import click
 from snowshed.cli.exit_codes import Stopped
 
 if TYPE_CHECKING:
-    from snowshed.analysis.verification.case import Case
     from snowshed.analysis.verification.measurements import Measurement
+    from validation.case import Case
     from validation.folder import SuiteFolder
     from validation.report import Stress
 
@@ -40,7 +40,7 @@ PATH = click.Path(path_type=Path)
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
 )
-def verify(
+def validate(
     quick: bool,
     names: Sequence[str],
     stress: Optional[bool],
@@ -57,7 +57,7 @@ def verify(
 
     \b
     Example:
-      snowshed verify --quick -o verification
+      python -m validation --quick -o verification
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.verification.recorded import load_recorded, record
     from validation.folder import SuiteFolder
@@ -121,7 +121,7 @@ def _stress(results: SuiteFolder, *, full: bool, seed: int, quiet: bool) -> Stre
 def _resume_command(
     quick: bool, names: Sequence[str], stress: bool, seed: int, folder: Path
 ) -> str:
-    words = ["snowshed", "verify", "--quick" if quick else "--full"]
+    words = ["python", "-m", "validation", "--quick" if quick else "--full"]
     words += [word for name in names for word in ("--case", name)]
     words += ["--stress", "--seed", str(seed)] if stress else ["--no-stress"]
     return shlex.join([*words, "--resume", "-o", str(folder)])

@@ -1,4 +1,4 @@
-"""What ``snowshed verify`` shows: the progress bar, and which bars hold."""
+"""What ``python -m validation`` shows: the progress bar, and which bars hold."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from contextlib import contextmanager
 from rich.progress import TextColumn, TimeElapsedColumn
 
 from snowshed.analysis.verification import wording
-from snowshed.analysis.verification.analysis import Bar as Demand
-from snowshed.analysis.verification.case import Case
 from snowshed.cli.terminal import one_bar, plain_table, wide_console
+from snowshed.io import formatting
 from validation import sections
+from validation.bars import Bar as Demand
+from validation.case import Case
 from validation.runner import Progress, Reporter
 
 STYLES = {"holds": "none", "does not hold": "bold red", "not measured": "dim"}
@@ -33,7 +34,7 @@ def suite_progress() -> Iterator[Reporter]:
         def report(progress: Progress) -> None:
             what = wording.settings(progress.task.settings)
             done = f"{progress.done + 1}/{progress.count}"
-            left = "" if progress.left_s is None else f"{wording.duration(progress.left_s)} left"
+            left = "" if progress.left_s is None else f"{formatting.duration(progress.left_s)} left"
             show(progress.fraction, f"{done} {progress.task.case.name}: {what}"[:70], left)
 
         yield report

@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Settings
+from snowshed.analysis.verification.measurements import Settings
 from snowshed.io.arrays import Floats
 from snowshed.scene.shape import Shape
 from validation.driving import Drive

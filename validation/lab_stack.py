@@ -19,12 +19,13 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.verification.case import Measured, Outcome, Settings, Value
+from snowshed.analysis.verification.measurements import Measured, Settings, Value
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.atomic import write_text
 from snowshed.run.conversion import outline_difference
 from snowshed.scene.scene import Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
+from validation.case import Outcome
 from validation.driving import absolute, apply_settings
 
 #: What is measured of a stack; body: of its largest connected body.

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from typing import NamedTuple, Optional
 
 from snowshed import _core
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Settings
-from snowshed.analysis.verification.measurements import Measurement, MeasurementFile, key_of
+from snowshed.analysis.verification.measurements import Measured, Measurement, Settings, key_of
 from snowshed.run.machine import cpu_name
+from validation.case import Case, Outcome
+from validation.measurement_file import MeasurementFile
 from validation.worker import Answer, Worker
 
 

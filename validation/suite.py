@@ -7,8 +7,8 @@ import pkgutil
 from collections.abc import Sequence
 
 from snowshed._core import InputError
-from snowshed.analysis.verification.case import Case
 from validation import cases
+from validation.case import Case
 
 
 def case_modules() -> list[str]:

@@ -5,7 +5,9 @@ import signal
 import sys
 import time
 
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity
+from validation.case import Case, Outcome, Quantity
+
+from snowshed.analysis.verification.measurements import Measured
 
 MEGABYTES = 150
 

@@ -4,8 +4,7 @@ import pytest
 
 from snowshed import InputError, Scene
 from snowshed.analysis.verification import recorded
-from snowshed.analysis.verification.case import Measured
-from snowshed.analysis.verification.measurements import Measurement
+from snowshed.analysis.verification.measurements import Measured, Measurement
 from snowshed.analysis.verification.recorded import load_recorded, record
 from snowshed.cli.accuracy import CASE, QUANTITIES, choose
 from snowshed.cli.main import main

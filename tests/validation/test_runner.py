@@ -12,16 +12,11 @@ import pytest
 from made_up import MEGABYTES, made_up_case
 from validation import runner, suite
 from validation.folder import SuiteFolder
+from validation.measurement_file import MeasurementFile
 from validation.runner import Estimate, run_suite, tasks_of
 
 from snowshed._core import InputError
-from snowshed.analysis.verification.case import Measured
-from snowshed.analysis.verification.measurements import (
-    Measurement,
-    MeasurementFile,
-    settings_of,
-    to_table,
-)
+from snowshed.analysis.verification.measurements import Measured, Measurement, settings_of, to_table
 
 FAILURES = {
     "raises": "ValueError: no such snow (made_up.py:",

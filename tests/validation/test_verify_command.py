@@ -6,8 +6,8 @@ import sys
 import pytest
 from made_up import made_up_case
 from validation import runner, suite
+from validation.case import Quantity
 
-from snowshed.analysis.verification.case import Quantity
 from snowshed.analysis.verification.recorded import load_recorded
 from snowshed.cli.main import main
 

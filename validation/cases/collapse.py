@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.scene.components import Body, Events, Ground, Snow
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from snowshed.snow.stack.connected_components import largest_body
+from validation.case import Case, Outcome, Quantity
 from validation.driving import apply_settings, relative
 from validation.granular_column import (
     critical_state_slope,

@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
 from snowshed.scene.components import Panel, Slab
 from snowshed.scene.scene import Scene
+from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, apply_settings, relative
 from validation.rigid_slab import RigidSlab
 

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
 from snowshed.scene.components import Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.cantilever import Cantilever
+from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, relative
 from validation.elastic_bodies import TRANSFERS, elastic_scene, from_plane, in_plane
 from validation.smoothing import Smoothing

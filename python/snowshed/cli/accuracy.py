@@ -17,12 +17,12 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.scene_options import option_name
+from snowshed.io.formatting import percent
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from snowshed.analysis.verification.case import Settings, Value
-    from snowshed.analysis.verification.measurements import Measurement
+    from snowshed.analysis.verification.measurements import Measurement, Settings, Value
 
 CASE = "stack_convergence"
 QUANTITIES = ("height", "length")
@@ -102,9 +102,8 @@ def choose(
     >>> choice.values["numerics.dx"] > 0
     True
     """
-    from snowshed.analysis.verification.analysis import quickest
     from snowshed.analysis.verification.recorded import load_recorded
-    from snowshed.analysis.verification.wording import percent
+    from snowshed.analysis.verification.solutions import quickest
 
     data = scene.resolve().data
     thickness = _slab_thickness(data)
@@ -112,8 +111,8 @@ def choose(
     stacks = _nearest(recorded_stacks(listed), data)
     if not stacks:
         raise InputError(
-            f"--accuracy: nothing is recorded to choose from; make it with snowshed verify --full "
-            f"--case {CASE} --record FILE"
+            "--accuracy: nothing is recorded to choose from; in the source of snowshed, "
+            f"`python -m validation --full --case {CASE} --record FILE -o DIR` makes it"
         )
     costs, errors = [stack.wall_s for stack in stacks], [stack.error for stack in stacks]
     stack = stacks[quickest(costs, errors, wanted)]
@@ -172,8 +171,8 @@ class RecordedStack:
 
 def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     """Return what is recorded of stacks."""
-    from snowshed.analysis.verification.analysis import assured_errors, key_of, rows_of, solutions
     from snowshed.analysis.verification.measurements import to_table
+    from snowshed.analysis.verification.solutions import assured_errors, key_of, rows_of, solutions
 
     table = to_table(one for one in measurements if one.case == CASE and not one.failure)
 
@@ -236,7 +235,7 @@ def _distance(value: Value, mine: Value) -> float:
 
 def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any]) -> list[str]:
     """Return the rest of the first sentence and all that follow it."""
-    from snowshed.analysis.verification.wording import percent, settings
+    from snowshed.analysis.verification.wording import settings
 
     scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != "dx"}
     height, length = (percent(error, 2) for error in stack.errors)

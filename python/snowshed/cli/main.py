@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
+#: Where the source lies, of a package that is used in place.
+SOURCE = Path(__file__).parents[3]
+
 
 def run_options(command: Command, *, required: bool = True) -> Command:
     """Add the options of commands that run a scene; `required`: that they cannot do without."""
@@ -207,6 +210,31 @@ class Deferred(click.Command):
         return command
 
 
+class FromSource(Deferred):
+    """A deferred command that comes with the source of snowshed and not with the package."""
+
+    def load(self) -> click.Command:
+        """Return the command itself.
+
+        Raises
+        ------
+        click.UsageError
+            If the installed package does not lie in its source.
+        """
+        folder = self._module.partition(".")[0]
+        if (SOURCE / folder / "__init__.py").is_file():
+            sys.path.append(str(SOURCE))
+        try:
+            return super().load()
+        except ModuleNotFoundError as error:
+            if (error.name or "").partition(".")[0] != folder:
+                raise
+            raise click.UsageError(
+                f"{self.name} comes with the source of snowshed, not with the installed package: "
+                f"run `make {folder}` there"
+            ) from None
+
+
 DEFERRED = (
     ("study", "study", "Compute many runs: one scene, and parameters that vary."),
     ("geometry", "regression", "Write the study of panel geometries that regress takes."),
@@ -216,15 +244,34 @@ DEFERRED = (
     ("sensitivity", "sensitivity", "Find which snow parameters matter for the stack."),
     ("calibrate", "calibration", "Find the snow whose simulated stacks are those measured."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
+    ("verify", "verify", "Check this installation against known answers, in seconds."),
 )
 for name, module, short_help in DEFERRED:
     cli.add_command(Deferred(name, f"snowshed.cli.commands.{module}", short_help))
+cli.add_command(
+    FromSource("reproduce", "thesis.command", "Reproduce a publication, with the source at hand.")
+)
 
 
-def main(arguments: Optional[Sequence[str]] = None) -> int:
-    """Run the command line and return its exit code."""
+def main(
+    arguments: Optional[Sequence[str]] = None,
+    *,
+    command: click.Command = cli,
+    name: str = "snowshed",
+) -> int:
+    """Run a command line and return its exit code.
+
+    Parameters
+    ----------
+    arguments
+        What follows the program's name.  [default: as the process was given them]
+    command
+        What to run; other programs than snowshed itself end in the same ways.
+    name
+        The program, as its help calls it.
+    """
     try:
-        return cli.main(arguments, prog_name="snowshed", standalone_mode=False) or 0
+        return command.main(arguments, prog_name=name, standalone_mode=False) or 0
     except click.ClickException as error:
         return _fail(error.format_message(), max(error.exit_code, 2))
     except OSError as error:

@@ -1,21 +1,17 @@
-"""What a verification case is: a problem with a known answer, and how it was solved.
+"""What a case is: a problem with a known answer, and how it was solved.
 
-A case's module in `validation.cases` makes one `Case`. The runner takes every entry of its
+A module in `validation.cases` makes one `Case`, or several. The runner takes every entry of its
 matrix of settings through `Case.measure`, in a process of its own, and the report compares.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Optional, Union
+from typing import Optional
 
-Value = Union[str, int, float, bool]
-
-#: One way of solving a case: names of scene parameters without their section ("dx", "transfer",
-#: "flip_ratio", "basis", "precision", "particles_per_voxel", "step_factor", "between",
-#: "dimension", "seed", ...) or of the case's own parameters ("friction", "law"), and their values.
-Settings = Mapping[str, Value]
+from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.io.formatting import number, percent
 
 
 @dataclass(frozen=True)
@@ -48,15 +44,9 @@ class Quantity:
     least_order: Optional[float] = None
     relative: bool = True
 
-
-@dataclass(frozen=True)
-class Measured:
-    """One quantity of one solution: its value, the value it should have, and the error."""
-
-    quantity: str
-    value: float
-    exact: float
-    error: float
+    def error_in_words(self, error: Optional[float]) -> str:
+        """Return an error in percent, or in the quantity's unit."""
+        return percent(error) if self.relative else number(error)
 
 
 @dataclass(frozen=True)
