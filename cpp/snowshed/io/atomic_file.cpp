@@ -80,11 +80,12 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
     buffer_.insert(buffer_.end(), begin, begin + bytes);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(const std::function<void(const std::filesystem::path&)>& check) {
   flush();
   sync();
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("cannot close the file");
   if (temporary_.empty()) return;
+  if (check) check(temporary_);
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot put the file in place");
   temporary_.clear();
   sync_folder(path_);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,8 +26,9 @@ class AtomicFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// Makes the file durable and visible. Nothing may be written afterwards.
-  void commit();
+  /// Makes the file durable and visible. Nothing may be written afterwards. `check`, where given,
+  /// is called with the path of the temporary; if it throws, the older file stays.
+  void commit(const std::function<void(const std::filesystem::path&)>& check = {});
 
  private:
   void flush();

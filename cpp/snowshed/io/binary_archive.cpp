@@ -86,10 +86,10 @@ class ChecksummedFile {
     pass(rest, word);
   }
 
-  void finish() {
+  void finish(const std::function<void(const std::filesystem::path&)>& check) {
     const std::uint64_t sum = sum_.value();
     file_.write(&sum, sizeof sum);
-    file_.commit();
+    file_.commit(check);
   }
 
  private:
@@ -118,7 +118,8 @@ void BinaryWriter::add_section(Section section) {
   sections_.push_back(std::move(section));
 }
 
-void BinaryWriter::save(const std::filesystem::path& path) const {
+void BinaryWriter::save(const std::filesystem::path& path,
+                        const std::function<void(const std::filesystem::path&)>& check) const {
   Header header{{}, format_version, static_cast<std::uint32_t>(sections_.size()), smallest_file};
   std::copy(std::begin(magic), std::end(magic), header.magic);
   for (const Section& s : sections_)
@@ -133,7 +134,7 @@ void BinaryWriter::save(const std::filesystem::path& path) const {
     file.write(s.name.data(), s.name.size());
     file.write(s.data, s.bytes);
   }
-  file.finish();
+  file.finish(check);
 }
 
 BinaryReader BinaryReader::load(const std::filesystem::path& path) {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -83,8 +84,10 @@ class BinaryWriter {
 
   void add_text(const std::string& name, std::string text);
 
-  /// Writes the file atomically. Throws FileError if that fails. May be called again.
-  void save(const std::filesystem::path& path) const;
+  /// Writes the file atomically. Throws FileError if that fails. May be called again. `check`, if
+  /// given, is called with the path of the new file before that file replaces an older one.
+  void save(const std::filesystem::path& path,
+            const std::function<void(const std::filesystem::path&)>& check = {}) const;
 
  private:
   struct Section {

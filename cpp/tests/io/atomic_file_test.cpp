@@ -77,6 +77,20 @@ TEST_F(AtomicFileTest, KeepsTheOlderFileWhenTheDiskFillsUp) {
   EXPECT_EQ(number_of_files(), 1u);
 }
 
+TEST_F(AtomicFileTest, KeepsTheOlderFileWhenTheNewOneFailsItsCheck) {
+  write_atomic(path("a"), "older");
+  {
+    AtomicFile file(path("a"));
+    file.write("new");
+    EXPECT_THROW(file.commit([](const std::filesystem::path& written) {
+      throw InputError(written.string(), content(written));
+    }),
+                 InputError);
+  }
+  EXPECT_EQ(content(path("a")), "older");
+  EXPECT_EQ(number_of_files(), 1u);
+}
+
 TEST_F(AtomicFileTest, NamesPathAndReasonOfAMissingFolder) {
   const auto file = path("missing") / "a";
   EXPECT_EQ(message_of<FileError>([&] { write_atomic(file, "x"); }),

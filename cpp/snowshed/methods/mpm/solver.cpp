@@ -130,6 +130,28 @@ void MpmSolver<T, D>::add(const ParticleBatch& batch) {
 }
 
 template <class T, int D>
+void MpmSolver<T, D>::check(const std::vector<ParticleBatch>& batches) const {
+  for (const ParticleBatch& batch : batches) {
+    materials_.at(std::size_t(batch.material_id));
+    for (const Vec3& x : batch.positions)
+      Placement<D>::of(section<D>(x), options_.numerics.dx, options_.numerics.basis);
+  }
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::add(const std::vector<ParticleBatch>& batches) {
+  check(batches);
+  for (const ParticleBatch& batch : batches) add(batch);
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::replace(const std::vector<ParticleBatch>& batches) {
+  check(batches);
+  clear();
+  add(batches);
+}
+
+template <class T, int D>
 BlockKey MpmSolver<T, D>::put(std::size_t particle, const VecD<D>& position) {
   const auto place = Placement<D>::of(position, options_.numerics.dx, options_.numerics.basis);
   for (int d = 0; d < D; ++d) particles_.cell[d][particle] = T(place.cell[d]);
