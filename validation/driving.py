@@ -10,11 +10,12 @@ from snowshed import _core
 from snowshed.analysis.verification.case import Measured, Outcome, Settings
 from snowshed.io.arrays import Floats
 from snowshed.io.record import Record
-from snowshed.scene.components import Numerics, Seeding, Snow
+from snowshed.methods.mpm import MpmSettings
+from snowshed.scene.components import Seeding, Snow
 from snowshed.scene.scene import Scene
 
 #: The sections in which a setting's name is looked for; other names stand at the scene's top.
-SECTIONS: Mapping[str, type[Record]] = {"numerics": Numerics, "seeding": Seeding, "snow": Snow}
+SECTIONS: Mapping[str, type[Record]] = {"numerics": MpmSettings, "seeding": Seeding, "snow": Snow}
 #: The most steps between two looks at the clock.
 LONGEST_STRETCH = 200
 

@@ -47,7 +47,7 @@ def test_every_row_says_how_it_was_computed(computed):
     assert not {"wall_s", *TIMING} & set(table.columns)
     settings = table.iloc[0][["seed", "dimension", "dx", "precision", "transfer", "flip_ratio"]]
     assert settings.tolist() == [1, 2, 0.02, "float", "flip", 0.99]
-    assert {"version", "basis", "step_factor", "particles_per_voxel", "pattern"} <= set(table)
+    assert {"version", "basis", "courant_factor", "particles_per_voxel", "pattern"} <= set(table)
     timed = read_table(computed, timing=True)
     assert (timed.wall_s > 0).all() and (timed.run_wall_s > 0).all()
     assert (timed.threads == 1).all() and (timed.particles > 0).all()

@@ -134,7 +134,7 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
   return naming(path, [&] {
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
     const Vec3 size = shape->bounds().max - shape->bounds().min;
-    return measure(*shape, scene.dimension, std::max(scene.numerics.dx, size.maxCoeff() / 64));
+    return measure(*shape, scene.dimension, std::max(scene.mpm().dx, size.maxCoeff() / 64));
   });
 }
 
@@ -145,7 +145,7 @@ std::vector<double> count_particles(const Scene& scene, const std::filesystem::p
     const BodySpec& body = scene.bodies[i];
     const double volume = body_volume(body, scene, body_path(i), base_dir);
     const double count =
-        volume / std::pow(scene.numerics.dx, scene.dimension) * scene.seeding.particles_per_voxel;
+        volume / std::pow(scene.mpm().dx, scene.dimension) * scene.seeding.particles_per_voxel;
     if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
     if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
     for (int event = 1; event <= scene.events.count; ++event)
@@ -174,7 +174,7 @@ MpmOptions solver_options(const Scene& scene) {
   o.dimension = scene.dimension;
   o.gravity = scene.gravity;
   o.snows = assemble_snows(scene);
-  o.numerics = scene.numerics;
+  o.numerics = scene.mpm();
   o.energy = scene.output.energy;
   return o;
 }
@@ -197,7 +197,7 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
 Simulation::~Simulation() = default;
 
 int Simulation::threads() const {
-  return scene_.numerics.threads > 0 ? scene_.numerics.threads : omp_get_num_procs();
+  return scene_.mpm().threads > 0 ? scene_.mpm().threads : omp_get_num_procs();
 }
 
 std::optional<Reseeding> Simulation::begin_event() {
@@ -230,10 +230,10 @@ Simulation::SeededBody Simulation::seed_body(const BodySpec& body, const std::st
     const Shape shape = build_shape(body.shape, scene_.dimension, path, base_dir_);
     ParticleBatch batch;
     batch.positions =
-        snowshed::seed(*shape, scene_.dimension, scene_.numerics.dx,
+        snowshed::seed(*shape, scene_.dimension, scene_.mpm().dx,
                        scene_.seeding.particles_per_voxel, scene_.seeding.pattern, seed);
     const Snow& snow = snow_of(scene_, body);
-    const double mass = snow.density * measure(*shape, scene_.dimension, scene_.numerics.dx);
+    const double mass = snow.density * measure(*shape, scene_.dimension, scene_.mpm().dx);
     batch.mass = mass / double(batch.positions.size());
     batch.velocity = body.velocity;
     batch.event = event_ + 1;
@@ -257,7 +257,7 @@ double Simulation::lift_of_next_slab() const {
     top = std::max(top, frame.normal.dot(state.positions[i] - frame.center));
   }
   const double last_mass = event_mass_ > 0 ? event_mass_ : next_mass;
-  return mass > 0.02 * std::min(last_mass, next_mass) ? top + 0.5 * scene_.numerics.dx : 0.0;
+  return mass > 0.02 * std::min(last_mass, next_mass) ? top + 0.5 * scene_.mpm().dx : 0.0;
 }
 
 double Simulation::height_over_panel(const std::vector<Vec3>& positions) const {
@@ -283,7 +283,7 @@ std::vector<bool> Simulation::on_panel(const std::vector<Vec3>& positions) const
   std::vector<bool> there(positions.size(), false);
   if (!scene_.panel) return there;
   const PanelFrame frame = panel_frame(scene_);
-  const double dx = scene_.numerics.dx;
+  const double dx = scene_.mpm().dx;
   // Above the face, no higher than all snow so far together could lie.
   const double height = 2 * dx + laid_height_;
   for (std::size_t i = 0; i < there.size(); ++i) {
@@ -306,7 +306,7 @@ double Simulation::obstacle_distance(const Vec3& x) const {
 Reseeding Simulation::reseed_stack() try {
   ParticleState old = solver_->state();
   const Seeding& s = scene_.seeding;
-  const double dx = scene_.numerics.dx;
+  const double dx = scene_.mpm().dx;
   const Shape solid =
       particles_to_level_set(old.positions, scene_.dimension, dx,
                              particle_radius(scene_.dimension, dx, s.particles_per_voxel));

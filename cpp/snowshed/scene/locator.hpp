@@ -52,6 +52,11 @@ class Locator : public Walker<Locator> {
     if (value) meet(at(key), *value);
     Walker::optional(key, value, doc);
   }
+  void method(const char* key, const char* settings_key, MethodSettings& settings, const char* doc,
+              const char* settings_doc) {
+    meet(at(settings_key), settings);
+    Walker::method(key, settings_key, settings, doc, settings_doc);
+  }
   template <class T>
   void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {
     meet(at(key), items);

@@ -17,6 +17,7 @@ class Rules {
   explicit Rules(const Scene& scene) : scene_(scene) {}
 
   void check() const {
+    check_parts(scene_, info_of(scene_.numerics));
     if (scene_.domain) check_domain(*scene_.domain);
     if (scene_.panel) check_panel(*scene_.panel);
     if (scene_.slab) check_slab(*scene_.slab);
@@ -168,7 +169,7 @@ class Rules {
   void check_in_domain(const T& member, const ShapeSpec& shape) const {
     const auto bounds = shape_bounds(shape);
     if (!scene_.domain || !bounds) return;
-    const double rounding = 1e-6 * scene_.numerics.dx;
+    const double rounding = 1e-6 * resolution(scene_.numerics);
     for (const int i : {0, 1, 2}) {
       if (i == 1 && !in_3d()) continue;
       const double low = scene_.domain->min[i], high = scene_.domain->max[i];
@@ -205,6 +206,20 @@ class Rules {
 };
 
 }  // namespace
+
+void check_parts(const Scene& scene, const MethodInfo& method) {
+  const auto check = [&](const auto& part, bool given, bool taken) {
+    if (given && !taken)
+      throw InputError(path_of(scene, part),
+                       "the method " + quote(method.name) + " takes no such part");
+  };
+  check(scene.panel, scene.panel.has_value(), method.takes.panel);
+  check(scene.slab, scene.slab.has_value(), method.takes.slab);
+  check(scene.ground, scene.ground.has_value(), method.takes.ground);
+  check(scene.obstacles, !scene.obstacles.empty(), method.takes.obstacles);
+  check(scene.bodies, !scene.bodies.empty(), method.takes.bodies);
+  check(scene.domain, scene.domain.has_value(), method.takes.domain);
+}
 
 void check_rules(const Scene& scene) { Rules(scene).check(); }
 

@@ -5,6 +5,9 @@
 
 namespace snowshed {
 
+/// Throws InputError at the first part of the scene that the method does not take.
+void check_parts(const Scene& scene, const MethodInfo& method);
+
 /// Throws InputError at the first field at odds with another. Expects each field in its range.
 void check_rules(const Scene& scene);
 

@@ -1,8 +1,10 @@
 // What visitors of a scene that hold no JSON share: a path, and the walk into nested objects.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "snowshed/core/errors.hpp"
@@ -36,6 +38,14 @@ class Walker {
     for (std::size_t i = 0; i < items.size(); ++i)
       visit(pointer(at(key), std::to_string(i)), items[i]);
   }
+
+  void method(const char*, const char* settings_key, MethodSettings& settings, const char*,
+              const char*) {
+    std::visit([&](auto& own) { visit(at(settings_key), own); }, settings);
+  }
+
+  void alias(const char*, const char*) {}
+  void accuracy(std::initializer_list<const char*>) {}
 
   void variants(const char* key, std::string& type, const char*) {
     variant_key_ = key;

@@ -112,7 +112,8 @@ def run_events(
     [1]
     """
     ready = scene.resolve() if isinstance(scene, Scene) else scene
-    if ageing is not None and ready.data["events"]["between"] != "carry":
+    data: dict[str, Any] = ready.data
+    if ageing is not None and data["events"]["between"] != "carry":
         raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
     open_run = _reopen if resume else _create
     simulation, results = open_run(ready, out_dir, None if ageing is None else ageing.data)
@@ -166,7 +167,7 @@ class _EventLoop:
     ) -> None:
         self.simulation = simulation
         self.results = results
-        self.scene = scene.data
+        self.scene: dict[str, Any] = scene.data
         self.count = int(self.scene["events"]["count"])
         self.ageing = ageing
         self.interrupt = interrupt

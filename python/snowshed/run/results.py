@@ -33,6 +33,7 @@ from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.json_file import is_number, read_object
 from snowshed.run.ageing import AGEING_COLUMNS
 from snowshed.run.conversion import CONVERSION_COLUMNS
+from snowshed.scene.schema import with_current_names
 from snowshed.scene.scene import ResolvedScene, PathLike
 from snowshed.snow.stack.measure import StackMeasure
 
@@ -125,7 +126,7 @@ class Results:
         folder = Path(folder)
         if not (folder / "scene.json").is_file():
             raise InputError(f"{folder}: nothing to resume; it holds no scene.json")
-        earlier = read_object(folder / "scene.json")
+        earlier = with_current_names(read_object(folder / "scene.json"))
         if differing := _differences(earlier, scene.data):
             raise InputError(
                 f"{folder}: made by another scene, which differs in {', '.join(differing)}; "

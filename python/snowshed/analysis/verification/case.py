@@ -13,7 +13,7 @@ from typing import Optional, Union
 Value = Union[str, int, float, bool]
 
 #: One way of solving a case: names of scene parameters without their section ("dx", "transfer",
-#: "flip_ratio", "basis", "precision", "particles_per_voxel", "step_factor", "between",
+#: "flip_ratio", "basis", "precision", "particles_per_voxel", "courant_factor", "between",
 #: "dimension", "seed", ...) or of the case's own parameters ("friction", "law"), and their values.
 Settings = Mapping[str, Value]
 
@@ -33,7 +33,7 @@ class Quantity:
     bar_for:
         The settings that the bar is for: every name given here must have this value.
     order_in:
-        The setting whose power law the error follows (``"dx"``, ``"step_factor"``), if any.
+        The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
     least_order:
         The smallest order of convergence allowed.
     relative:

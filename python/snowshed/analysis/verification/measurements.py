@@ -17,6 +17,7 @@ from snowshed._core import InputError
 from snowshed.analysis.verification.case import Measured, Settings
 from snowshed.io.json_file import check_values, is_number, parse_object
 from snowshed.io.messages import quoted, shortened
+from snowshed.scene.accuracy_settings import FORMER_NAMES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -124,7 +125,8 @@ class Measurement:
         measured = [
             _measured(one, f"{where}: /measured/{i}") for i, one in enumerate(data["measured"])
         ]
-        return cls(**{**data, "measured": measured})
+        settings = {FORMER_NAMES.get(k, k): v for k, v in data["settings"].items()}
+        return cls(**{**data, "settings": settings, "measured": measured})
 
 
 def key_of(case: str, settings: Settings) -> str:
