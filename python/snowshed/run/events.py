@@ -11,6 +11,7 @@ moved mass, height, length and outline. What time does to a stack that is carrie
 
 from __future__ import annotations
 
+import json
 import platform
 import time
 from collections.abc import Callable
@@ -167,7 +168,7 @@ class _EventLoop:
     ) -> None:
         self.simulation = simulation
         self.results = results
-        self.scene: dict[str, Any] = scene.data
+        self.scene: dict[str, Any] = json.loads(scene.json)
         self.count = int(self.scene["events"]["count"])
         self.ageing = ageing
         self.interrupt = interrupt
