@@ -55,7 +55,7 @@ const char* const rich_scene = R"({"snowshed": 1, "dimension": %D, "title": "see
               "velocity": [0, Y(0) -1], "event": 2, "snow": {"density": 150}}],
   "seeding": {"particles_per_voxel": 6, "pattern": "jittered", "seed": 7, "allow_sparse": true},
   "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "basis": "cubic",
-               "step_factor": 0.5, "strain_limit": 0.1, "threads": 1},
+               "courant_factor": 0.5, "strain_limit": 0.1, "threads": 1},
   "events": {"count": 2, "between": "reseed", "max_time": 3, "rest_speed": 0.02, "rest_time": 0.1},
   "output": {"snapshot_interval": 0.1, "energy": true, "checkpoint_interval": 60}})";
 
@@ -241,8 +241,8 @@ Scene scene_of_checkpoint(int dimension, bool running) {
   scene.events.rest_time = 0.005;
   if (!running) return scene;
   scene.events.between = Between::reseed;
-  scene.numerics.precision = Precision::float64;
-  scene.numerics.transfer = Transfer::apic;
+  scene.mpm().precision = Precision::float64;
+  scene.mpm().transfer = Transfer::apic;
   scene.output.energy = true;
   scene.domain.emplace(Domain{Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   ObstacleSpec plate;

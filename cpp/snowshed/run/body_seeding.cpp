@@ -52,7 +52,7 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
   return naming(path, [&] {
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
     const Vec3 size = shape->bounds().max - shape->bounds().min;
-    return measure(*shape, scene.dimension, std::max(scene.numerics.dx, size.maxCoeff() / 64));
+    return measure(*shape, scene.dimension, std::max(resolution(scene.numerics), size.maxCoeff() / 64));
   });
 }
 
@@ -60,7 +60,7 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
 double seed_body(const BodySpec& body, const Scene& scene, const std::string& path,
                  const std::filesystem::path& base_dir, std::uint64_t seed, ParticleBatch& batch) {
   const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
-  const double dx = scene.numerics.dx;
+  const double dx = resolution(scene.numerics);
   const Snow& snow = snow_of(scene, body);
   batch.positions = snowshed::seed(*shape, scene.dimension, dx, scene.seeding.particles_per_voxel,
                                    scene.seeding.pattern, seed);
@@ -104,7 +104,7 @@ std::vector<double> count_particles(const Scene& scene, const std::filesystem::p
     const BodySpec& body = scene.bodies[i];
     const double volume = body_volume(body, scene, body_path(i), base_dir);
     const double count =
-        volume / std::pow(scene.numerics.dx, scene.dimension) * scene.seeding.particles_per_voxel;
+        volume / std::pow(resolution(scene.numerics), scene.dimension) * scene.seeding.particles_per_voxel;
     if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
     if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
     for (int event = 1; event <= scene.events.count; ++event)

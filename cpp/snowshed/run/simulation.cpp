@@ -39,13 +39,13 @@ std::unique_ptr<Method> Simulation::empty_method() const {
   o.dimension = scene_.dimension;
   o.gravity = scene_.gravity;
   o.snows = snows_;
-  o.numerics = scene_.numerics;
+  o.numerics = scene_.mpm();
   o.energy = scene_.output.energy;
   return make_mpm(o, obstacles_);
 }
 
 int Simulation::threads() const {
-  return scene_.numerics.threads > 0 ? scene_.numerics.threads : omp_get_num_procs();
+  return scene_.mpm().threads > 0 ? scene_.mpm().threads : omp_get_num_procs();
 }
 
 std::optional<Reseeding> Simulation::begin_event() {

@@ -85,7 +85,7 @@ class Simulation {
   int threads() const;
 
   /// The smallest length that is resolved, m.
-  double resolution() const { return scene_.numerics.dx; }
+  double resolution() const { return snowshed::resolution(scene_.numerics); }
 
   /// How high all snow laid so far would lie on the panel had none of it left, m.
   double laid_height() const { return laid_height_; }

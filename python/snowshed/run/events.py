@@ -116,7 +116,8 @@ def run_events(
     [1]
     """
     ready = scene.resolve() if isinstance(scene, Scene) else scene
-    if ageing is not None and ready.data["events"]["between"] != "carry":
+    data: dict[str, Any] = ready.data
+    if ageing is not None and data["events"]["between"] != "carry":
         raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
     open_run = _resume if resume else _create
     sequence, results = open_run(ready, out_dir, None if ageing is None else ageing.data)

@@ -22,6 +22,7 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
+from snowshed.scene.accuracy_settings import FORMER_NAMES
 from snowshed.scene.scene import PathLike
 
 FORMAT = "snowshed stack model"
@@ -177,6 +178,7 @@ class _Reader:
         settings = _entry(facts, "settings", dict)
         if not all(isinstance(value, str) for value in settings.values()):
             raise InputError("settings: not texts")
+        settings = {FORMER_NAMES.get(key, key): value for key, value in settings.items()}
         return StackModel(inputs, members, _entry(facts, "title", str), measure, settings)
 
     def _facts(self) -> dict[str, Any]:
