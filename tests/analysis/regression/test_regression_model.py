@@ -43,7 +43,7 @@ def ensemble_model(rows, target="ratio", rounds=2, folds=5):
     values = rows.targets[target]
     scaled = (values - values.mean()) / values.std()
     choices = [{**PARAMETERS, "epsilon": epsilon} for epsilon in np.linspace(0.005, 0.05, folds)]
-    models = [kind.fit(parameters, inputs, scaled) for parameters in choices]
+    models = [kind.estimator(parameters).fit(inputs, scaled).expansion_ for parameters in choices]
     ensemble = Ensemble(
         inputs,
         np.array([model.coefficients for model in models]),
