@@ -36,8 +36,8 @@ class ShuffledGroupKFold:
     >>> folds = ShuffledGroupKFold(2, (1,))
     >>> for train, test in folds.split(np.zeros((5, 1)), groups=[7, 7, 8, 9, 9]):
     ...     print(train.tolist(), test.tolist())
-    [0, 1] [2, 3, 4]
-    [2, 3, 4] [0, 1]
+    [3, 4] [0, 1, 2]
+    [0, 1, 2] [3, 4]
     """
 
     n_splits: int
