@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from snowshed import _core
 from snowshed._core import InputError
+from snowshed._core import version as snowshed_version
 from snowshed.analysis.regression.damage import DAMAGED
 from snowshed.analysis.regression.domain import Domain
 from snowshed.analysis.regression.ensemble import Ensemble
@@ -115,7 +115,7 @@ def save_model(model: StackModel, file: PathLike) -> None:
     facts = {
         "format": FORMAT,
         "format_version": VERSION,
-        "snowshed": _core.version,
+        "snowshed": snowshed_version,
         "title": model.title,
         "measure": model.measure,
         "settings": dict(model.settings),
