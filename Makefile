@@ -14,6 +14,8 @@ FUZZED := build/fuzz
 DEMO := demo-results
 FUZZ_SECONDS ?= 60
 CLANG_FORMAT := 23.1.5
+VERIFY ?= --quick
+THESIS ?= --quick
 
 # Several tools must find cmake and ninja, which may be only in .venv.
 export PATH := $(CURDIR)/$(BIN):$(PATH)
@@ -27,15 +29,17 @@ SHELL := bash
 
 CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/snowshed cpp/vdb -type f)
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
-PYTHON_FOLDERS = $(wildcard python tests tools examples benchmarks lua_compat)
+PYTHON_FOLDERS = $(wildcard python validation thesis tests tools examples benchmarks lua_compat)
 
-.PHONY: help build demo test test-cpp test-py test-slow sanitize sanitize-address sanitize-thread fuzz \
-  bench docs format lint tidy clean
+.PHONY: help build demo verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
+  sanitize-thread fuzz bench docs format lint tidy clean
 .NOTPARALLEL:
 
 help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
 	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
+	@echo "make verify    problems with known answers, a minute (VERIFY=--full: hours)"
+	@echo "make thesis    the thesis reproduced, some minutes (THESIS=--full: days)"
 	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
 	@echo "make sanitize  the tests with AddressSanitizer, UBSan and ThreadSanitizer"
 	@echo "make fuzz      fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
@@ -77,6 +81,15 @@ demo: build
 	$(BIN)/snowshed panel --preset lab-50 --friction 0.3 -o $(DEMO)
 	@echo "Pictures:"
 	@ls $(DEMO)/*.png
+
+# Old results of the quick suite give way; those of the full one took hours and never do.
+verify: build $(VENV)/.dev-tools
+	$(if $(findstring --full,$(VERIFY)),,rm -rf verification-quick)
+	$(BIN)/python -m validation $(VERIFY) -o verification-$(patsubst --%,%,$(firstword $(VERIFY)))
+
+# What was interrupted goes on.
+thesis: build $(VENV)/.dev-tools
+	$(BIN)/python -m thesis $(THESIS) -o reproduction-$(patsubst --%,%,$(firstword $(THESIS)))
 
 # --- test ----------------------------------------------------------------------------------
 
@@ -151,11 +164,15 @@ format: $(VENV)/.cpp-tools $(VENV)/.dev-tools
 	$(BIN)/ruff check --fix $(PYTHON_FOLDERS)
 	$(BIN)/ruff format $(PYTHON_FOLDERS)
 
-lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools
+# Of the compiled core; mypy looks for it beside the package's other modules.
+python/snowshed/_core.pyi:
+	ln -s ../../cpp/bindings/_core.pyi $@
+
+lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools python/snowshed/_core.pyi
 	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
 	$(BIN)/ruff check $(PYTHON_FOLDERS)
 	$(BIN)/ruff format --check $(PYTHON_FOLDERS)
-	$(BIN)/mypy python/snowshed
+	$(BIN)/mypy python/snowshed validation thesis
 
 tidy: $(VENV)/.build-tools $(VENV)/.cpp-tools
 	sh tools/tidy.sh

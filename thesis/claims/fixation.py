@@ -1,8 +1,8 @@
 """Claims of section 3.4: what stacks do, on average over all other parameters.
 
-The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the standard
-deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last. Values of
-the other parameters are a design, no sample: the seeding is all that is by chance.
+The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the
+standard deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last.
+Values of the other parameters are a design, no sample: the seeding is all that is by chance.
 """
 
 from __future__ import annotations

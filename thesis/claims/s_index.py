@@ -1,6 +1,7 @@
 """Claims of section 3.3, about the single-parameter index S.
 
-The data are the table of `snowshed.analysis.sensitivity.local_index`. S is taken after the last event.
+The data are the table of `snowshed.analysis.sensitivity.local_index`. S is that after the last
+event.
 """
 
 from __future__ import annotations

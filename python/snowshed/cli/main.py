@@ -35,9 +35,6 @@ if TYPE_CHECKING:
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-#: Where the source lies, of a package that is used in place.
-SOURCE = Path(__file__).parents[3]
-
 
 def run_options(command: Command, *, required: bool = True) -> Command:
     """Add the options of commands that run a scene; `required`: that they cannot do without."""
@@ -210,31 +207,6 @@ class Deferred(click.Command):
         return command
 
 
-class FromSource(Deferred):
-    """A deferred command that comes with the source of snowshed and not with the package."""
-
-    def load(self) -> click.Command:
-        """Return the command itself.
-
-        Raises
-        ------
-        click.UsageError
-            If the installed package does not lie in its source.
-        """
-        folder = self._module.partition(".")[0]
-        if (SOURCE / folder / "__init__.py").is_file():
-            sys.path.append(str(SOURCE))
-        try:
-            return super().load()
-        except ModuleNotFoundError as error:
-            if (error.name or "").partition(".")[0] != folder:
-                raise
-            raise click.UsageError(
-                f"{self.name} comes with the source of snowshed, not with the installed package: "
-                f"run `make {folder}` there"
-            ) from None
-
-
 DEFERRED = (
     ("study", "study", "Compute many runs: one scene, and parameters that vary."),
     ("geometry", "regression", "Write the study of panel geometries that regress takes."),
@@ -245,12 +217,10 @@ DEFERRED = (
     ("calibrate", "calibration", "Find the snow whose simulated stacks are those measured."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
     ("verify", "verify", "Check this installation against known answers, in seconds."),
+    ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),
 )
 for name, module, short_help in DEFERRED:
     cli.add_command(Deferred(name, f"snowshed.cli.commands.{module}", short_help))
-cli.add_command(
-    FromSource("reproduce", "thesis.command", "Reproduce a publication, with the source at hand.")
-)
 
 
 def main(
@@ -271,7 +241,8 @@ def main(
         The program, as its help calls it.
     """
     try:
-        return command.main(arguments, prog_name=name, standalone_mode=False) or 0
+        settings = cli.context_settings
+        return command.main(arguments, prog_name=name, standalone_mode=False, **settings) or 0
     except click.ClickException as error:
         return _fail(error.format_message(), max(error.exit_code, 2))
     except OSError as error:

@@ -20,7 +20,8 @@ def filled(package: str, name: str, values: Mapping[str, str]) -> str:
 
     Examples
     --------
-    >>> "panel.friction = 0.8" in filled("snowshed.analysis.regression", "geometry", {"friction": "0.8"})
+    >>> study = filled("snowshed.analysis.regression", "geometry", {"friction": "0.8"})
+    >>> "panel.friction = 0.8" in study
     True
     """
     file = resources.files(package) / "studies" / f"{name}.toml"

@@ -4,14 +4,14 @@ The steps, in this order:
 
 1. Snow still on the panel is set aside and reported.
 2. The ground is turned level (A.4.4).
-3. The outermost 3 % are dropped (A.4.1, A.4.2; ``snowshed.snow.stack.trimming``).
-4. The shell is extracted (A.4.3; ``snowshed.snow.stack.surface``); height, length, head, tail and width are
+3. The outermost 3 % are dropped (A.4.1, A.4.2; module ``trimming``).
+4. The shell is extracted (A.4.3; module ``surface``); height, length, head, tail and width are
    those of the shell, as in the thesis.
 
-Steps 3 and 4 are repeated on the largest connected body alone (``snowshed.snow.stack.connected_components``), because the
-lab measured a continuous body and left out what had rolled away. Mass and volume are those of all
-snow off the panel, outliers included; a particle that has flown apart counts with no more than a
-voxel, whatever its deformation says. In 2D the snow is a strip one metre wide.
+Steps 3 and 4 are repeated on the largest connected body alone (module ``connected_components``),
+because the lab measured a continuous body and left out what had rolled away. Mass and volume are
+those of all snow off the panel, outliers included; a particle that has flown apart counts with no
+more than a voxel, whatever its deformation says. In 2D the snow is a strip one metre wide.
 """
 
 from __future__ import annotations

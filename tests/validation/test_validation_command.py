@@ -4,12 +4,12 @@ import subprocess
 import sys
 
 import pytest
-from made_up import made_up_case
+from made_up import made_up_case, program
+from paths import ROOT
 from validation import runner, suite
 from validation.case import Quantity
 
 from snowshed.analysis.verification.recorded import load_recorded
-from snowshed.cli.main import main
 
 HOLDING = (Quantity("height", "height, m", bar=0.2, bar_for={"transfer": "apic"}, order_in="dx"),)
 
@@ -35,7 +35,7 @@ def cases(monkeypatch):
 
 
 def verify(folder, *options):
-    return main(["verify", *options, "--no-stress", "-o", str(folder)])
+    return program(*options, "--no-stress", "-o", folder)
 
 
 def test_it_writes_the_report_and_says_that_all_holds(cases, tmp_path, capsys):
@@ -82,7 +82,7 @@ def test_bad_input(cases, tmp_path, capsys):
     assert "not empty" in capsys.readouterr().err
     assert verify(tmp_path / "nowhere", "--resume") == 2
     assert "nothing to resume" in capsys.readouterr().err
-    assert main(["verify"]) == 2
+    assert program() == 2
 
 
 def test_an_interrupted_suite_goes_on(cases, tmp_path, capsys, monkeypatch):
@@ -96,15 +96,15 @@ def test_an_interrupted_suite_goes_on(cases, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(runner.Worker, "measure", interrupted)
     assert verify(tmp_path / "my out", "--case", "made_up") == 130
     message = capsys.readouterr().err.strip().splitlines()[-1]
-    _, _, resume = message.partition("error: interrupted; go on with: snowshed ")
-    assert main(shlex.split(resume)) == 0
+    _, _, resume = message.partition("go on with: python -m validation ")
+    assert program(*shlex.split(resume)) == 0
     measurements = (tmp_path / "my out" / "measurements.jsonl").read_text().splitlines()
     assert len(measurements) == len(set(measurements)) == 4
 
 
 def test_measurements_can_be_recorded(cases, tmp_path):
     path = tmp_path / "recorded.json"
-    assert verify(tmp_path / "out", "-q", "--record", str(path)) == 0
+    assert verify(tmp_path / "out", "-q", "--record", path) == 0
     assert [one.case for one in load_recorded(path)] == ["made_up"] * 4
 
 
@@ -128,14 +128,14 @@ def test_the_stress_suite_runs_once_and_is_reported(cases, tmp_path, capsys, mon
     monkeypatch.setattr(stress, "run", run)
     monkeypatch.setattr(stress, "summarise", summarise)
     out = tmp_path / "out"
-    assert main(["verify", "-o", str(out)]) == 0
+    assert program("-o", out) == 0
     assert "All of them" in (out / "verification.html").read_text(encoding="utf-8")
     first = (out / "stress.csv").read_text()
-    assert main(["verify", "--resume", "-q", "-o", str(out)]) == 0
+    assert program("--resume", "-q", "-o", out) == 0
     assert (out / "stress.csv").read_text() == first
     assert calls == [(False, 1)]
     capsys.readouterr()
-    assert main(["verify", "--resume", "-q", "--full", "--seed", "7", "-o", str(out)]) == 1
+    assert program("--resume", "-q", "--full", "--seed", "7", "-o", out) == 1
     assert capsys.readouterr().err == "error: stress suite: 1 runs failed\n"
     assert calls[1:] == [(True, 7)]
     assert verify(tmp_path / "other", "--case", "made_up", "-q") == 0
@@ -143,7 +143,21 @@ def test_the_stress_suite_runs_once_and_is_reported(cases, tmp_path, capsys, mon
 
 
 def test_help_stays_quick():
-    heavy = "{'jinja2', 'matplotlib', 'pandas', 'rich', 'scipy', 'snowshed.analysis.verification.analysis'}"
-    code = f"import sys, snowshed.cli.main; print(*({heavy} & set(sys.modules)))"
+    heavy = {"jinja2", "matplotlib", "pandas", "rich", "scipy", "validation.report"}
+    code = f"import sys, validation.command; print(*({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "\n"
+
+
+@pytest.mark.parametrize("package", ["validation", "thesis"])
+def test_python_m(package):
+    def run(*arguments):
+        words = [sys.executable, "-m", package, *arguments]
+        return subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
+
+    shown = run("-h")
+    assert (shown.returncode, shown.stderr) == (0, "")
+    assert shown.stdout.startswith(f"Usage: python -m {package} [OPTIONS]")
+    refused = run()
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert refused.stderr == "error: Missing option '-o' / '--output'.\n"
