@@ -1,13 +1,12 @@
 #include "snowshed/run/simulation.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/parallel.hpp"
 #include "snowshed/core/timer.hpp"
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/particles/point_grid.hpp"
@@ -197,7 +196,7 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
 Simulation::~Simulation() = default;
 
 int Simulation::threads() const {
-  return scene_.numerics.threads > 0 ? scene_.numerics.threads : omp_get_num_procs();
+  return threads_to_use(scene_.numerics.threads);
 }
 
 std::optional<Reseeding> Simulation::begin_event() {
@@ -327,8 +326,9 @@ Reseeding Simulation::reseed_stack() try {
     batch.material_id = material_id;
     after.densities.push_back(snows_[std::size_t(material_id)].density);
   }
-  solver_->clear();
-  for (const auto& [_, batch] : batches) solver_->add(batch);
+  std::vector<ParticleBatch> all;
+  for (auto& [_, batch] : batches) all.push_back(std::move(batch));
+  solver_->replace(all);
 
   Reseeding::Cloud before;
   for (std::size_t i = 0; i < old.masses.size(); ++i)
