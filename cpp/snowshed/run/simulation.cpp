@@ -1,13 +1,12 @@
 #include "snowshed/run/simulation.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/parallel.hpp"
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 #include "snowshed/run/body_seeding.hpp"
@@ -45,7 +44,7 @@ std::unique_ptr<Method> Simulation::empty_method() const {
 }
 
 int Simulation::threads() const {
-  return scene_.mpm().threads > 0 ? scene_.mpm().threads : omp_get_num_procs();
+  return threads_to_use(scene_.mpm().threads);
 }
 
 std::optional<Reseeding> Simulation::begin_event() {
