@@ -104,7 +104,7 @@ class Drive:
     def damp(self, exponent: float) -> None:
         """Let the velocities of all particles fall by the factor ``exp(-exponent)``."""
         started = time.perf_counter()
-        self.core.kick(math.expm1(-exponent) * self.core.velocities())
+        self.core.add_velocity(math.expm1(-exponent) * self.core.velocities())
         self.wall_s += time.perf_counter() - started
 
     def run_to(self, time_s: float) -> None:

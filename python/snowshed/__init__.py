@@ -23,6 +23,8 @@ from snowshed.analysis.dimension_ratio import dimension_ratio
 from snowshed.run.events import Progress, run_events
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.results import read_events
+from snowshed.run.results_reader import Results
+from snowshed.run.simulation import Simulation
 from snowshed.scene.components import (
     Body,
     Domain,
@@ -48,7 +50,6 @@ __all__ = [
     "Events",
     "Extent",
     "Ground",
-    "ResolvedScene",
     "InputError",
     "Interrupted",
     "Layer",
@@ -58,9 +59,12 @@ __all__ = [
     "Output",
     "Panel",
     "Progress",
+    "ResolvedScene",
+    "Results",
     "Scene",
     "Seeding",
     "Shape",
+    "Simulation",
     "SimulationError",
     "Slab",
     "Snow",

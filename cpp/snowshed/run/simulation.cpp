@@ -243,6 +243,13 @@ Simulation::SeededBody Simulation::seed_body(const BodySpec& body, const std::st
   });
 }
 
+void Simulation::add_snow(ParticleBatch batch) {
+  batch.event = std::max(event_, 1);
+  solver_->add(batch);
+  event_mass_ += batch.mass * double(batch.positions.size());
+  laid_height_ += height_over_panel(batch.positions);
+}
+
 /// Later slabs lie on the snow that stayed on the panel; stray grains do not count.
 double Simulation::lift_of_next_slab() const {
   const double next_mass = slab_mass(scene_, event_ + 1);

@@ -270,7 +270,7 @@ class _EventLoop:
         return self._measure_of(
             self.simulation.positions(),
             self.simulation.masses(),
-            self.simulation.density(),
+            self.simulation.densities(),
             self.simulation.on_panel(),
         )
 

@@ -14,6 +14,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/particles/id_order.hpp"
 
 namespace snowshed {
 
@@ -47,6 +48,7 @@ struct Particles {
   }
 
   void resize(std::size_t n) {
+    order_by_id_.clear();
     for_each_array([n](const char*, auto& array) { array.resize(n); });
   }
 
@@ -90,8 +92,16 @@ struct Particles {
       for (auto& c : affine) stop(c);
   }
 
+  /// Where the particles are, ordered by id: computed when first asked for, then known until they
+  /// are rearranged.
+  const std::vector<std::uint32_t>& order_by_id() const {
+    if (order_by_id_.size() != size()) order_by_id_ = snowshed::order_by_id(id.data(), size());
+    return order_by_id_;
+  }
+
   /// Rearranges: the new particle i is the old particle order[i].
   void permute(const std::vector<std::uint32_t>& order, int threads) {
+    order_by_id_.clear();
     for_each_array([&order, threads](const char*, auto& array) {
       std::remove_reference_t<decltype(array)> sorted;
       sorted.resize(order.size());
@@ -119,6 +129,8 @@ struct Particles {
     f("event", self.event);
     if (self.has_material_id) f("kind", self.material_id);
   }
+
+  mutable std::vector<std::uint32_t> order_by_id_;  // empty: not known
 };
 
 }  // namespace snowshed

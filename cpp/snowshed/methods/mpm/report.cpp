@@ -1,25 +1,11 @@
 // What a solver tells of its particles: energies, and copies for the outside.
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "snowshed/core/parallel.hpp"
 #include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
 namespace snowshed {
-namespace {
-
-/// A particle's affine matrix in the space (x, y, z); without y in 2D.
-template <class T, int D>
-Mat3 affine_of(const Particles<T, D>& particles, std::size_t i) {
-  const auto axis = [](int d) { return d == D - 1 ? 2 : d; };
-  Mat3 c = Mat3::Zero();
-  for (int r = 0; r < D; ++r)
-    for (int k = 0; k < D; ++k) c(axis(r), axis(k)) = double(particles.affine[r * D + k][i]);
-  return c;
-}
-
-}  // namespace
 
 template <class T, int D>
 void MpmSolver<T, D>::update_energy_balance() {
@@ -99,44 +85,30 @@ EnergyBalance MpmSolver<T, D>::energy() const {
   return energy_balance;
 }
 
-/// Where each particle is now, ordered by id: for the outside, particles keep their places.
-template <class T, int D>
-std::vector<std::size_t> MpmSolver<T, D>::places_by_id() const {
-  std::vector<std::size_t> at(particles_.size());
-  std::iota(at.begin(), at.end(), std::size_t(0));
-  std::sort(at.begin(), at.end(),
-            [this](std::size_t a, std::size_t b) { return particles_.id[a] < particles_.id[b]; });
-  return at;
-}
-
 template <class T, int D>
 ParticleState MpmSolver<T, D>::state() const {
-  const std::size_t n = particles_.size();
-  const std::vector<std::size_t> at = places_by_id();
-  const std::vector<BlockKey> blocks = blocks_of_particles(layout_);
+  const std::vector<std::uint32_t>& at = order_by_id();
+  const std::vector<double> x = positions();
+  const auto by_id = [&](auto& values, auto value) {
+    values.resize(at.size());
+    parallel_for_each(std::ptrdiff_t(at.size()), max_threads_,
+                      [&](std::ptrdiff_t k) { values[k] = value(at[k]); });
+  };
   ParticleState s;
-  s.positions.reserve(n);
-  for (std::size_t i : at) {
-    s.positions.push_back(embed(
-        position_of(particles_, i, blocks[i], options_.numerics.dx, options_.numerics.basis)));
-    VecD<D> v;
-    for (int d = 0; d < D; ++d) v[d] = double(particles_.velocity[d][i]);
-    s.velocities.push_back(embed(v));
-    Sym<double, D> a;
-    for (int k = 0; k < a.size; ++k) a.c[k] = double(particles_.be_minus_identity[k][i]);
-    const Material& snow = material_of(i);
-    const double elastic_volume = trace(hencky_strain(a));
-    const double plastic = particles_.has_plastic ? double(particles_.plastic[i]) : 0.0;
-    s.masses.push_back(double(particles_.mass[i]));
-    s.plastic_strains.push_back(plastic);
-    s.volume_ratios.push_back(std::exp(elastic_volume + plastic - snow.initial_plastic_strain));
-    s.densities.push_back(snow.density / s.volume_ratios.back());
-    s.pressures.push_back(-snow.elastic.bulk * elastic_volume);
-    s.ids.push_back(particles_.id[i]);
-    s.events.push_back(particles_.event[i]);
-    if (options_.snows.size() > 1) s.material_ids.push_back(particles_.material_id[i]);
-    if (particles_.has_affine) s.affine.push_back(affine_of(particles_, i));
-  }
+  by_id(s.positions, [&](std::size_t i) { return Vec3::Map(&x[3 * i]); });
+  by_id(s.velocities, [this](std::size_t i) { return velocity(i); });
+  by_id(s.masses, [this](std::size_t i) { return double(particles_.mass[i]); });
+  by_id(s.volume_ratios, [this](std::size_t i) { return volume_ratio(i); });
+  by_id(s.pressures, [this](std::size_t i) { return pressure(i); });
+  by_id(s.plastic_strains, [this](std::size_t i) { return plastic_strain(i); });
+  if (particles_.has_affine) by_id(s.affine, [this](std::size_t i) { return affine(i); });
+  by_id(s.ids, [this](std::size_t i) { return particles_.id[i]; });
+  by_id(s.events, [this](std::size_t i) { return particles_.event[i]; });
+  if (options_.snows.size() > 1)
+    by_id(s.material_ids, [this](std::size_t i) { return particles_.material_id[i]; });
+  s.densities.resize(at.size());
+  for (std::size_t k = 0; k < at.size(); ++k)
+    s.densities[k] = material_of(at[k]).density / s.volume_ratios[k];
   return s;
 }
 

@@ -27,6 +27,11 @@ class MpmSolver final : public Method {
   double time_step() const override { return dt_; }
   const StepCounters& counters() const override { return counters_; }
   ParticleState state() const override;
+  std::vector<FieldInfo> fields() const override;
+  FieldView field(const std::string& name) const override;
+  const std::vector<std::uint32_t>& order_by_id() const override {
+    return particles_.order_by_id();
+  }
   MotionSummary motion(double speed) const override;
   EnergyBalance energy() const override;
   std::size_t bytes() const override;
@@ -66,7 +71,15 @@ class MpmSolver final : public Method {
   const Material& material_of(std::size_t particle) const {
     return materials_[particles_.has_material_id ? particles_.material_id[particle] : 0];
   }
-  std::vector<std::size_t> places_by_id() const;
+  double elastic_volume(std::size_t particle) const;  ///< logarithm of the elastic volume ratio
+  double plastic_strain(std::size_t particle) const;
+  double volume_ratio(std::size_t particle) const;
+  double pressure(std::size_t particle) const;  ///< Kirchhoff, Pa, compression positive
+  Vec3 velocity(std::size_t particle) const;
+  Mat3 affine(std::size_t particle) const;
+  std::vector<double> positions() const;  ///< x, y, z of each, in the order of storage
+  template <class Visit>
+  void visit_fields(Visit visit) const;
 
   MpmOptions options_;
   Kernels<T> kernels_;
