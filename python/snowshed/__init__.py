@@ -26,6 +26,8 @@ from snowshed.methods.mpm import MpmSettings
 from snowshed.run.events import Progress, run_events
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.results import read_events
+from snowshed.run.results_reader import Results
+from snowshed.run.simulation import Simulation
 from snowshed.scene.components import (
     Body,
     Domain,
@@ -60,9 +62,11 @@ __all__ = [
     "Panel",
     "Progress",
     "ResolvedScene",
+    "Results",
     "Scene",
     "Seeding",
     "Shape",
+    "Simulation",
     "SimulationError",
     "Slab",
     "Snow",

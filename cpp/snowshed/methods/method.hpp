@@ -19,10 +19,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/energy_balance.hpp"
+#include "snowshed/particles/field_view.hpp"
 
 namespace snowshed {
 
@@ -114,9 +116,17 @@ class Method {
   virtual double time_step() const = 0;  ///< s, of the last step
   virtual const StepCounters& counters() const = 0;
 
+  /// The quantities of the particles that can be read one by one, and whether they are stored.
+  virtual std::vector<FieldInfo> fields() const = 0;
+  /// One of them, in the order of storage: the particles' memory where it is stored, otherwise a
+  /// copy computed now. Throws InputError where there is no such field.
+  virtual FieldView field(const std::string& name) const = 0;
+  /// Where the particles are stored, ordered by id.
+  virtual const std::vector<std::uint32_t>& order_by_id() const = 0;
+
   // --- what the snow is and does; also of a method that has failed -----------------------------
 
-  virtual std::size_t size() const = 0;    ///< particles
+  virtual std::size_t size() const = 0;  ///< particles
   virtual ParticleState state() const = 0;
   virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
   /// The energy balance; all zero unless the method was made to keep it.

@@ -252,7 +252,7 @@ class _Recorder:
         return self._measure_of(
             self.simulation.positions(),
             self.simulation.masses(),
-            self.simulation.density(),
+            self.simulation.densities(),
             self.simulation.on_panel(),
         )
 

@@ -60,7 +60,7 @@ void MpmSolver<T, D>::replace(const std::vector<ParticleBatch>& batches) {
 template <class T, int D>
 void MpmSolver<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
   require_sound();
-  const std::vector<std::size_t> at = state_.places_by_id();
+  const std::vector<std::uint32_t>& at = order_by_id();
   check_count("velocity changes", velocity_changes.size(), at.size());
   for (const Vec3& change : velocity_changes)
     if (!change.allFinite()) throw InputError("velocity changes", "not finite");
@@ -91,7 +91,7 @@ template <class T, int D>
 void MpmSolver<T, D>::settle(const std::vector<double>& drops,
                              const std::vector<double>& plastic_changes) {
   require_sound();
-  const std::vector<std::size_t> at = state_.places_by_id();
+  const std::vector<std::uint32_t>& at = order_by_id();
   check_count("drops", drops.size(), at.size());
   check_count("plastic changes", plastic_changes.size(), at.size());
   for (std::size_t k = 0; k < at.size(); ++k)

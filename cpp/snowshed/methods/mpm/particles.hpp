@@ -15,6 +15,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/particles/id_order.hpp"
 
 namespace snowshed {
 
@@ -48,6 +49,7 @@ struct Particles {
   }
 
   void resize(std::size_t n) {
+    order_by_id_.clear();
     for_each_array([n](const char*, auto& array) { array.resize(n); });
   }
 
@@ -107,8 +109,16 @@ struct Particles {
             AlignedVector<std::uint8_t>(has_material_id ? n : 0)};
   }
 
+  /// Where the particles are, ordered by id: computed when first asked for, then known until they
+  /// are rearranged.
+  const std::vector<std::uint32_t>& order_by_id() const {
+    if (order_by_id_.size() != size()) order_by_id_ = snowshed::order_by_id(id.data(), size());
+    return order_by_id_;
+  }
+
   /// Rearranges: the new particle i is the old particle order[i]. `spare` is of as many particles.
   void permute(const std::vector<std::uint32_t>& order, Spare& spare, int threads) noexcept {
+    order_by_id_.clear();
     for_each_array([&](const char*, auto& array) {
       auto& sorted = std::get<std::remove_reference_t<decltype(array)>>(spare);
       parallel_for_each(std::ptrdiff_t(order.size()), threads,
@@ -135,6 +145,8 @@ struct Particles {
     f("event", self.event);
     if (self.has_material_id) f("kind", self.material_id);
   }
+
+  mutable std::vector<std::uint32_t> order_by_id_;  // empty: not known
 };
 
 }  // namespace snowshed

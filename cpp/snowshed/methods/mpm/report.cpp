@@ -1,24 +1,11 @@
 // What a solver tells of its particles: energies, and copies for the outside.
-#include <algorithm>
 #include <cmath>
 
+#include "snowshed/core/parallel.hpp"
 #include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
 namespace snowshed {
-namespace {
-
-/// A particle's affine matrix in the space (x, y, z); without y in 2D.
-template <class T, int D>
-Mat3 affine_of(const Particles<T, D>& particles, std::size_t i) {
-  const auto axis = [](int d) { return d == D - 1 ? 2 : d; };
-  Mat3 c = Mat3::Zero();
-  for (int r = 0; r < D; ++r)
-    for (int k = 0; k < D; ++k) c(axis(r), axis(k)) = double(particles.affine[r * D + k][i]);
-  return c;
-}
-
-}  // namespace
 
 template <class T, int D>
 void MpmSolver<T, D>::update_energy_balance() noexcept {
@@ -52,32 +39,28 @@ void MpmSolver<T, D>::update_energy_balance() noexcept {
 
 template <class T, int D>
 ParticleState MpmSolver<T, D>::state() const {
-  const std::size_t n = state_.particles.size();
-  const std::vector<std::size_t> at = state_.places_by_id();
-  const std::vector<BlockKey> blocks = blocks_of_particles(state_.layout);
+  const std::vector<std::uint32_t>& at = order_by_id();
+  const std::vector<double> x = positions();
+  const auto by_id = [&](auto& values, auto value) {
+    values.resize(at.size());
+    parallel_for_each(std::ptrdiff_t(at.size()), model_.max_threads,
+                      [&](std::ptrdiff_t k) { values[k] = value(at[k]); });
+  };
   ParticleState s;
-  s.positions.reserve(n);
-  for (std::size_t i : at) {
-    s.positions.push_back(embed(
-        position_of(state_.particles, i, blocks[i], model_.options.numerics.dx, model_.options.numerics.basis)));
-    VecD<D> v;
-    for (int d = 0; d < D; ++d) v[d] = double(state_.particles.velocity[d][i]);
-    s.velocities.push_back(embed(v));
-    Sym<double, D> a;
-    for (int k = 0; k < a.size; ++k) a.c[k] = double(state_.particles.be_minus_identity[k][i]);
-    const Material& snow = state_.material_of(model_, i);
-    const double elastic_volume = trace(hencky_strain(a));
-    const double plastic = state_.particles.has_plastic ? double(state_.particles.plastic[i]) : 0.0;
-    s.masses.push_back(double(state_.particles.mass[i]));
-    s.plastic_strains.push_back(plastic);
-    s.volume_ratios.push_back(std::exp(elastic_volume + plastic - snow.initial_plastic_strain));
-    s.densities.push_back(snow.density / s.volume_ratios.back());
-    s.pressures.push_back(-snow.elastic.bulk * elastic_volume);
-    s.ids.push_back(state_.particles.id[i]);
-    s.events.push_back(state_.particles.event[i]);
-    if (model_.options.snows.size() > 1) s.material_ids.push_back(state_.particles.material_id[i]);
-    if (state_.particles.has_affine) s.affine.push_back(affine_of(state_.particles, i));
-  }
+  by_id(s.positions, [&](std::size_t i) { return Vec3::Map(&x[3 * i]); });
+  by_id(s.velocities, [this](std::size_t i) { return velocity(i); });
+  by_id(s.masses, [this](std::size_t i) { return double(state_.particles.mass[i]); });
+  by_id(s.volume_ratios, [this](std::size_t i) { return volume_ratio(i); });
+  by_id(s.pressures, [this](std::size_t i) { return pressure(i); });
+  by_id(s.plastic_strains, [this](std::size_t i) { return plastic_strain(i); });
+  if (state_.particles.has_affine) by_id(s.affine, [this](std::size_t i) { return affine(i); });
+  by_id(s.ids, [this](std::size_t i) { return state_.particles.id[i]; });
+  by_id(s.events, [this](std::size_t i) { return state_.particles.event[i]; });
+  if (model_.options.snows.size() > 1)
+    by_id(s.material_ids, [this](std::size_t i) { return state_.particles.material_id[i]; });
+  s.densities.resize(at.size());
+  for (std::size_t k = 0; k < at.size(); ++k)
+    s.densities[k] = state_.material_of(model_, at[k]).density / s.volume_ratios[k];
   return s;
 }
 

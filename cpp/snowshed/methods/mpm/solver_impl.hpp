@@ -38,6 +38,11 @@ class MpmSolver final : public Method {
   double time_step() const override { return state_.progress.dt; }
   const StepCounters& counters() const override { return state_.progress.counters; }
   ParticleState state() const override;
+  std::vector<FieldInfo> fields() const override;
+  FieldView field(const std::string& name) const override;
+  const std::vector<std::uint32_t>& order_by_id() const override {
+    return state_.particles.order_by_id();
+  }
   MotionSummary motion(double speed) const override;
   EnergyBalance energy() const override { return state_.energy(model_); }
   std::size_t bytes() const override;
@@ -72,6 +77,15 @@ class MpmSolver final : public Method {
   void update_energy_balance() noexcept;
   void require_sound() const;  ///< throws SimulationError after a step that broke the particles
   void accept(MpmState<T, D> next) noexcept;
+  double elastic_volume(std::size_t particle) const;  ///< logarithm of the elastic volume ratio
+  double plastic_strain(std::size_t particle) const;
+  double volume_ratio(std::size_t particle) const;
+  double pressure(std::size_t particle) const;  ///< Kirchhoff, Pa, compression positive
+  Vec3 velocity(std::size_t particle) const;
+  Mat3 affine(std::size_t particle) const;
+  std::vector<double> positions() const;  ///< x, y, z of each, in the order of storage
+  template <class Visit>
+  void visit_fields(Visit visit) const;
 
   const MpmModel<T, D> model_;
   MpmState<T, D> state_;

@@ -38,7 +38,8 @@ struct MpmState {
 
   /// Appends particles; `blocks` gets the block of each. Throws InputError for a batch that is not
   /// of this model, SimulationError outside the addressable grid.
-  void append(const MpmModel<T, D>& model, const ParticleBatch& batch, std::vector<BlockKey>& blocks);
+  void append(const MpmModel<T, D>& model, const ParticleBatch& batch,
+              std::vector<BlockKey>& blocks);
 
   /// Puts a particle at a position (m); returns the block it is in.
   BlockKey put(const MpmModel<T, D>& model, std::size_t particle, const VecD<D>& position);
@@ -59,9 +60,6 @@ struct MpmState {
   EnergyBalance energy(const MpmModel<T, D>& model) const;
   /// Enters the present energies and, as added, what they are over `before` (J).
   void record_added(const MpmModel<T, D>& model, double before);
-
-  /// Where each particle is now, ordered by id: for the outside, particles keep their places.
-  std::vector<std::size_t> places_by_id() const;
 };
 
 }  // namespace snowshed
