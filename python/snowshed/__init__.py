@@ -20,8 +20,9 @@ if "OMP_WAIT_POLICY" not in os.environ:
 from snowshed._core import InputError, SimulationError
 from snowshed._core import version as __version__
 from snowshed.analysis.dimension_ratio import dimension_ratio
-from snowshed.run.events import Progress, run_events
+from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.progress import Progress
 from snowshed.run.results import read_events
 from snowshed.scene.components import (
     Body,

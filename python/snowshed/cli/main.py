@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import click
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.cli.accuracy import accuracy_option, check_alone, choose
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.scene_options import in_terms_of_options, scene_from_options, scene_options

@@ -13,8 +13,6 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed import _core
@@ -24,6 +22,7 @@ from snowshed.run.ageing import Ageing
 from snowshed.run.conversion import conversion_row
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import cpu_name, peak_memory_mb
+from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import Results, check_empty, measured_columns, read_events
 from snowshed.scene.scene import ResolvedScene, PathLike, Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
@@ -32,32 +31,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far a run has come.
-
-    Attributes
-    ----------
-    event, count
-        The event that runs, from 1, and how many there will be.
-    time
-        Simulated time in this event, s.
-    fraction
-        Estimated part of this event that is done, 0 to 1.
-    updates_per_s
-        Particle updates per second.
-    """
-
-    event: int
-    count: int
-    time: float = 0.0
-    fraction: float = 0.0
-    updates_per_s: float = 0.0
-
-
-Reporter = Callable[[Progress], None]
 
 
 def run_events(
@@ -208,7 +181,7 @@ class _EventLoop:
             if conversion is not None:
                 row = conversion_row(self.simulation.event, conversion, self._measure_of)
                 self.results.conversions.add([row])
-        self._tell(Progress(self.simulation.event, self.count, self.simulation.time_s))
+        self._tell(self.simulation.time_s, 0.0)
 
     def _age(self) -> None:
         """Let the time since the last event pass."""
@@ -229,15 +202,7 @@ class _EventLoop:
             self._checkpoint("running")
 
     def _on_report(self, info: dict[str, Any]) -> Union[bool, str]:
-        self._tell(
-            Progress(
-                self.simulation.event,
-                self.count,
-                info["time_s"],
-                info["progress"],
-                info["updates_per_s"],
-            )
-        )
+        self._tell(info["time_s"], info["progress"], info["updates_per_s"])
         if self.interrupt.requested:
             return False
         interval = self.scene["output"]["checkpoint_interval"]
@@ -264,7 +229,7 @@ class _EventLoop:
         }
         events.add([row])
         self.results.write_series()
-        self._tell(Progress(event, self.count, self.simulation.time_s, 1.0))
+        self._tell(self.simulation.time_s, 1.0)
 
     def _measure(self) -> StackMeasure:
         return self._measure_of(
@@ -322,6 +287,21 @@ class _EventLoop:
         """Return the wall time of the run, with that before it was resumed, s."""
         return time.monotonic() - self.started
 
-    def _tell(self, progress: Progress) -> None:
-        if self.report is not None:
-            self.report(progress)
+    def _tell(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
+        """Report where the run is; `fraction` is the part of the event that is done."""
+        if self.report is None:
+            return
+        event = self.simulation.event
+        ended = event - 1 + int(fraction == 1.0)
+        self.report(
+            Progress(
+                (event - 1 + fraction) / self.count,
+                ended,
+                self.count,
+                "events",
+                f"{time_s:.2f} s of event {event}",
+                event=event,
+                time=time_s,
+                updates_per_s=updates_per_s,
+            )
+        )

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.scene.scene import PathLike

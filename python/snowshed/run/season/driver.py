@@ -20,7 +20,7 @@ from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
 from snowshed.run.season.table import season_table
 from snowshed.run.season.weather import Weather, read_season
-from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 
 if TYPE_CHECKING:
     import pandas as pd
