@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from snowshed import (
-    ResolvedScene,
     InputError,
     Obstacle,
     Panel,
+    ResolvedScene,
     Scene,
     Shape,
     Snow,

@@ -18,11 +18,11 @@ from hypothesis import strategies as st
 
 from snowshed import (
     Body,
-    ResolvedScene,
     InputError,
     Layer,
     Motion,
     Obstacle,
+    ResolvedScene,
     Scene,
     Shape,
     Snow,

@@ -24,7 +24,7 @@ from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_inter
 from snowshed.run.machine import cpu_name, peak_memory_mb
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import Results, check_empty, measured_columns, read_events
-from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from snowshed._core import InputError
 from snowshed.io.vdb.writing import WrittenVdb, write_vdb
 from snowshed.io.vtp import read_particles
-from snowshed.scene.scene import ResolvedScene, PathLike
+from snowshed.scene.scene import PathLike, ResolvedScene
 
 POINT_QUANTITIES = ("velocity", "event", "mass", "density", "volumetric_plastic_strain", "id")
 

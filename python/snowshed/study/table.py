@@ -11,7 +11,7 @@ from snowshed.io.json_file import is_number
 from snowshed.io.messages import shortened
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import PathLike
-from snowshed.study.definition import SEED
+from snowshed.study.factors import SEED
 from snowshed.study.store import COUNTS, MEASURES, TIMING, WORDS, Store, StoredRun
 
 if TYPE_CHECKING:

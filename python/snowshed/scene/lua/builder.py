@@ -11,7 +11,7 @@ from typing import Any
 from snowshed._core import InputError
 from snowshed.scene.lua.origins import Origins
 from snowshed.scene.lua.sandbox import Place
-from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 
 
 @dataclass(frozen=True)
