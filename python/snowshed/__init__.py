@@ -23,8 +23,9 @@ from snowshed._core import version as __version__
 from snowshed.analysis.dimension_ratio import dimension_ratio
 from snowshed.io.renamed import renamed as _renamed
 from snowshed.methods.mpm import MpmSettings
-from snowshed.run.events import Progress, run_events
+from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.progress import Progress
 from snowshed.run.results import read_events
 from snowshed.run.results_reader import Results
 from snowshed.run.simulation import Simulation

@@ -8,6 +8,7 @@ from bad_scenes import bad_scene  # noqa: F401
 
 from snowshed import _core, read_events
 from snowshed.cli import main as cli
+from snowshed.cli.commands.run import panel
 from snowshed.cli.main import main
 from snowshed.cli.scene_options import PREFIXED, SHORT_NAMES, option_name
 from snowshed.scene.schema import scene_parameters
@@ -42,8 +43,8 @@ def test_every_parameter_has_an_option_of_its_own():
     paths = {parameter.path for parameter in scene_parameters()}
     assert set(SHORT_NAMES) <= paths
     assert set(PREFIXED) <= {path.partition(".")[0] for path in paths}
-    own = {name for o in cli.panel.params for name in o.opts}
-    assert len(own) == sum(len(o.opts) for o in cli.panel.params)
+    own = {name for o in panel.params for name in o.opts}
+    assert len(own) == sum(len(o.opts) for o in panel.params)
     assert set(names) <= own
 
 

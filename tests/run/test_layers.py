@@ -65,7 +65,10 @@ def test_reseeding_converts_each_snow_by_itself(tmp_path):
 def test_one_snow_needs_no_kinds(finished):
     simulation = _core.Simulation.load(str(finished / "checkpoint.bin"))
     assert len(simulation.snows) == 1
-    assert not simulation.material_ids().any() and len(simulation.material_ids()) == simulation.particle_count
+    assert (
+        not simulation.material_ids().any()
+        and len(simulation.material_ids()) == simulation.particle_count
+    )
     first = next((finished / "particles").glob("*.vtp"))
     assert b'Name="snow"' not in first.read_bytes()
 
