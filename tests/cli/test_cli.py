@@ -70,6 +70,22 @@ def test_options_of_every_kind(capsys):
     assert data["events"]["between"] == "reseed"
 
 
+def test_former_options_are_taken_and_hidden(capsys):
+    assert main(["scene", "--preset", "lab-50", "--step-factor", "0.5"]) == 0
+    assert json.loads(capsys.readouterr().out)["numerics"]["courant_factor"] == 0.5
+    assert (
+        main(["scene", "--preset", "lab-50", "--step-factor", "0.5", "--courant-factor", "0.5"])
+        == 2
+    )
+    assert "means the same as" in capsys.readouterr().err
+    assert main(["scene", "--accuracy", "5%", "--step-factor", "0.5"]) == 2
+    assert "--step-factor: --accuracy chooses" in capsys.readouterr().err
+    assert main(["scene", "--preset", "lab-50", "--step-factor", "7"]) == 2
+    assert "/numerics/courant_factor): 7 is outside" in capsys.readouterr().err
+    main(["scene", "--help"])
+    assert "--step-factor" not in capsys.readouterr().out
+
+
 def test_help_names_unit_and_default(capsys):
     assert main(["panel", "--help"]) == 0
     text = " ".join(capsys.readouterr().out.split())
