@@ -29,7 +29,7 @@ class Quantity:
     bar_for:
         The settings that the bar is for: every name given here must have this value.
     order_in:
-        The setting whose power law the error follows (``"dx"``, ``"step_factor"``), if any.
+        The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
     least_order:
         The smallest order of convergence allowed.
     relative:

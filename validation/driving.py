@@ -8,12 +8,13 @@ from collections.abc import Collection, Mapping, Sequence
 from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.record import Record
 from snowshed.run.self_test import drive
-from snowshed.scene.components import Numerics, Seeding, Snow
+from snowshed.methods.mpm import MpmSettings
+from snowshed.scene.components import Seeding, Snow
 from snowshed.scene.scene import Scene
 from validation.case import Outcome
 
 #: The sections in which a setting's name is looked for; other names stand at the scene's top.
-SECTIONS: Mapping[str, type[Record]] = {"numerics": Numerics, "seeding": Seeding, "snow": Snow}
+SECTIONS: Mapping[str, type[Record]] = {"numerics": MpmSettings, "seeding": Seeding, "snow": Snow}
 
 
 def apply_settings(

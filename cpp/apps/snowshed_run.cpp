@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "run_folder.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/run/event_sequence.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace {
@@ -54,15 +54,65 @@ Options parse(int argc, char** argv) {
   return o;
 }
 
-int run(const Options& o) {
+/// Shows on one line of the terminal how far the run has come.
+class Display : public snowshed::EventObserver {
+ public:
+  explicit Display(bool quiet) : quiet_(quiet) {}
+
+  void progress(const snowshed::Simulation& sim, const snowshed::RunReport& r) override {
+    if (!quiet_)
+      std::fprintf(stderr, "\revent %d  %3.0f %%  t = %.3f s  %.1f M updates/s ", sim.event(),
+                   100 * r.progress, r.time, r.updates_per_s / 1e6);
+  }
+  void event_ended(const snowshed::Simulation&, const snowshed::EventFacts& facts) override {
+    if (!quiet_)
+      std::fprintf(stderr, "\revent %d  %s after %.3f s of snow time%30s\n", facts.event,
+                   facts.ended == "rest" ? "at rest" : "time limit", facts.sim_time, "");
+  }
+  bool stop_requested() override { return interrupted != 0; }
+
+ private:
+  bool quiet_;
+};
+
+/// What time does to the stack between events is the Python package's to compute.
+void refuse_ageing(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "ageing.json"))
+    throw snowshed::InputError(folder.string(),
+                               "its snow ages between events; resume it with: snowshed");
+}
+
+snowshed::EventSequence open(const Options& o) {
   const snowshed::Scene scene = snowshed::load_scene(o.scene);
+  if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder);
+  refuse_ageing(o.folder);
+  return snowshed::EventSequence::resume(scene, ".", o.folder);
+}
+
+/// Returns whether the run came to its end; after an error, the folder says so.
+bool run_all(snowshed::EventSequence& sequence, bool quiet) try {
+  Display display(quiet);
+  return sequence.run(display, 0.1);
+} catch (const snowshed::FileError&) {
+  throw;
+} catch (const std::exception& error) {
+  sequence.record_failure(error.what());
+  throw;
+}
+
+int run(const Options& o) {
   std::signal(SIGINT, [](int) { interrupted = 1; });
   std::signal(SIGTERM, [](int) { interrupted = 1; });
-  const auto go_on = [] { return interrupted == 0; };
-  if (snowshed::run_into_folder(scene, o.folder, o.resume, o.quiet, go_on)) return 0;
-  std::fprintf(stderr, "error: interrupted; go on with: snowshed-run %s -o %s --resume\n",
-               o.scene.c_str(), o.folder.c_str());
-  return 130;
+  snowshed::EventSequence sequence = open(o);
+  if (!run_all(sequence, o.quiet)) {
+    std::fprintf(stderr, "error: interrupted; go on with: snowshed-run %s -o %s --resume\n",
+                 o.scene.c_str(), o.folder.c_str());
+    return 130;
+  }
+  if (!o.quiet)
+    std::fprintf(stderr, "for tables and pictures: snowshed run %s -o %s --resume\n",
+                 o.scene.c_str(), o.folder.c_str());
+  return 0;
 }
 
 }  // namespace

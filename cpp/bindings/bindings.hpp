@@ -3,10 +3,19 @@
 
 #include <pybind11/pybind11.h>
 
+#include <optional>
+
 namespace snowshed {
+
+struct Reseeding;
+struct RunReport;
 
 void bind_scene(pybind11::module_&);
 void bind_simulation(pybind11::module_&);
+void bind_event_sequence(pybind11::module_&);
 void bind_material(pybind11::module_&);
+
+pybind11::object reseeding_dict(const std::optional<Reseeding>&);  ///< None where there is none
+pybind11::dict report_dict(const RunReport&);
 
 }  // namespace snowshed

@@ -14,5 +14,6 @@ PYBIND11_MODULE(_core, m) {
   py::register_exception<snowshed::FileError>(m, "FileError", PyExc_OSError);
   snowshed::bind_scene(m);
   snowshed::bind_simulation(m);
+  snowshed::bind_event_sequence(m);
   snowshed::bind_material(m);
 }

@@ -3,6 +3,7 @@
 
 #include "bindings.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/run/run_record.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -30,8 +31,9 @@ py::array_t<To> column(const std::vector<From>& values) {
 
 py::object vector(const Vec3& v) { return py::make_tuple(v[0], v[1], v[2]); }
 
-py::object begin_event(Simulation& sim) {
-  const auto r = sim.begin_event();
+}  // namespace
+
+py::object reseeding_dict(const std::optional<Reseeding>& r) {
   if (!r) return py::none();
   py::dict d;
   for (const auto& [when, cloud] : {std::pair("before", &r->before), {"after", &r->after}}) {
@@ -44,50 +46,34 @@ py::object begin_event(Simulation& sim) {
   return d;
 }
 
-/// The callback answers True (go on), False (interrupted) or "checkpoint".
+py::dict report_dict(const RunReport& r) {
+  py::dict d;
+  d["time_s"] = r.time;
+  d["steps"] = r.steps;
+  d["dt_s"] = r.time_step;
+  d["rms_speed"] = r.rms_speed;
+  d["particles"] = r.particles;
+  d["updates_per_s"] = r.updates_per_s;
+  d["progress"] = r.progress;
+  return d;
+}
+
+namespace {
+
+/// The callback answers whether to go on.
 std::string run(Simulation& sim, const py::function& callback, double interval) {
-  std::string reason = "interrupted";
   const auto observer = [&](const RunReport& r) {
     py::gil_scoped_acquire gil;
-    py::dict d;
-    d["time_s"] = r.time;
-    d["steps"] = r.steps;
-    d["dt_s"] = r.time_step;
-    d["rms_speed"] = r.rms_speed;
-    d["particles"] = r.particles;
-    d["updates_per_s"] = r.updates_per_s;
-    d["progress"] = r.progress;
-    const py::object answer = callback(d);
-    if (py::isinstance<py::str>(answer)) {
-      reason = answer.cast<std::string>();
-      return false;
-    }
-    return answer.cast<bool>();
+    return callback(report_dict(r)).cast<bool>();
   };
-  RunEnd end;
-  {
-    py::gil_scoped_release release;
-    end = sim.run(observer, interval);
-  }
-  if (end == RunEnd::rest) return "rest";
-  if (end == RunEnd::time_limit) return "time_limit";
-  return reason;
+  py::gil_scoped_release release;
+  const RunEnd end = sim.run(observer, interval);
+  return end == RunEnd::paused ? "interrupted" : name_of(end);
 }
 
 py::dict energy(const Simulation& sim) {
-  const EnergyBalance e = sim.solver().energy();
   py::dict d;
-  d["kinetic_j"] = e.kinetic;
-  d["gravitational_j"] = e.gravitational;
-  d["elastic_j"] = e.elastic;
-  d["plastic_j"] = e.plastic;
-  d["friction_j"] = e.friction;
-  d["sticking_j"] = e.sticking;
-  d["impact_j"] = e.impact;
-  d["transfer_j"] = e.transfer;
-  d["sleep_j"] = e.sleep;
-  d["added_j"] = e.added;
-  d["residual_j"] = e.residual();
+  for (const auto& [name, joules] : named_energies(sim.solver().energy())) d[name.c_str()] = joules;
   return d;
 }
 
@@ -154,7 +140,7 @@ void bind_simulation(py::module_& m) {
           "load", [](const std::string& path) { return Simulation::load(path); }, "path"_a)
       .def(
           "save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a)
-      .def("begin_event", &begin_event)
+      .def("begin_event", [](Simulation& s) { return reseeding_dict(s.begin_event()); })
       .def("run", &run, "callback"_a, "interval_s"_a = 0.5)
       .def("step", &Simulation::step, "count"_a = 1, py::call_guard<py::gil_scoped_release>())
       .def(
@@ -192,8 +178,16 @@ void bind_simulation(py::module_& m) {
            [](const Simulation& s) {
              return column<bool>(s.on_panel(s.solver().state().positions));
            })
+      .def(
+          "on_panel_at",
+          [](const Simulation& s, const py::array_t<double>& positions, double laid_height) {
+            return column<bool>(s.on_panel(vectors(positions, "positions"), laid_height));
+          },
+          "positions"_a, "laid_height"_a)
       .def("obstacle_distance", &obstacle_distance, "points"_a)
       .def_property_readonly("event", &Simulation::event)
+      .def_property_readonly("event_count",
+                             [](const Simulation& s) { return s.scene().events.count; })
       .def_property_readonly("event_running", &Simulation::event_running)
       .def_property_readonly("time_s", &Simulation::event_time)
       .def_property_readonly("total_steps",
@@ -214,6 +208,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("scene", [](const Simulation& s) { return write_scene(s.scene()); })
       .def_property_readonly("snows", &snows)
       .def_property_readonly("threads", &Simulation::threads)
+      .def_property_readonly("resolution", &Simulation::resolution)
       .def_property_readonly("dimension", [](const Simulation& s) { return s.scene().dimension; })
       .def_property_readonly("ground_tilt_deg", [](const Simulation& s) {
         return s.scene().ground ? s.scene().ground->tilt : 0.0;

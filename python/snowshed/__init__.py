@@ -10,6 +10,7 @@ Examples
 """
 
 import os
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 # The solver's threads meet twice a step. By default OpenMP's runtime makes the early ones spin for
 # a long time, which on a busy machine takes the processor from the thread they wait for. The
@@ -20,6 +21,8 @@ if "OMP_WAIT_POLICY" not in os.environ:
 from snowshed._core import InputError, SimulationError
 from snowshed._core import version as __version__
 from snowshed.analysis.dimension_ratio import dimension_ratio
+from snowshed.io.renamed import renamed as _renamed
+from snowshed.methods.mpm import MpmSettings
 from snowshed.run.events import Progress, run_events
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.results import read_events
@@ -30,7 +33,6 @@ from snowshed.scene.components import (
     Ground,
     Layer,
     Motion,
-    Numerics,
     Obstacle,
     Output,
     Panel,
@@ -48,16 +50,16 @@ __all__ = [
     "Events",
     "Extent",
     "Ground",
-    "ResolvedScene",
     "InputError",
     "Interrupted",
     "Layer",
     "Motion",
-    "Numerics",
+    "MpmSettings",
     "Obstacle",
     "Output",
     "Panel",
     "Progress",
+    "ResolvedScene",
     "Scene",
     "Seeding",
     "Shape",
@@ -72,3 +74,6 @@ __all__ = [
     "read_events",
     "run_events",
 ]
+
+if not _TYPE_CHECKING:
+    __getattr__ = _renamed(__name__, {"InitialisedScene": ResolvedScene, "Numerics": MpmSettings})

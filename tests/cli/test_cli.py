@@ -174,8 +174,7 @@ def test_ctrl_c_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     def pressed(*_):
         signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr("snowshed.run.events._EventLoop._begin", pressed)
-    monkeypatch.setattr("snowshed.run.events._EventLoop._advance", lambda loop: loop._stop())
+    monkeypatch.setattr("snowshed.run.events._Recorder.event_begun", pressed)
     out = tmp_path / "out"
     assert main(["panel", *TINY, "-q", "-o", str(out)]) == 130
     message = capsys.readouterr().err
@@ -186,11 +185,10 @@ def test_ctrl_c_says_how_to_go_on(tmp_path, capsys, monkeypatch):
 
 
 def test_a_failed_simulation_is_code_3(tmp_path, capsys, monkeypatch):
-    class Failing(_core.Simulation):
-        def run(self, callback, interval_s=0.5):
-            raise _core.SimulationError("time step underflow")
+    def fail(*_):
+        raise _core.SimulationError("time step underflow")
 
-    monkeypatch.setattr(_core, "Simulation", Failing)
+    monkeypatch.setattr(_core.EventSequence, "run", fail)
     assert main(["panel", *TINY, "-q", "-o", str(tmp_path / "out")]) == 3
     assert capsys.readouterr().err == "error: time step underflow\n"
 

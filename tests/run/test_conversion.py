@@ -1,10 +1,12 @@
+import json
+
 import numpy as np
 import pandas as pd
 import pytest
 from conftest import tiny_scene
 from test_events import compare_tables, interrupt_at
 
-from snowshed import InputError, Interrupted, _core, run_events
+from snowshed import Body, InputError, Interrupted, Shape, _core, run_events
 from snowshed.run import events
 from snowshed.run.conversion import CONVERSION_COLUMNS, conversion_row, outline_difference
 from snowshed.snow.stack.measure import StackMeasure
@@ -91,14 +93,19 @@ def test_a_reseeded_run_resumes(reseeded, tmp_path, monkeypatch):
     assert first == second
 
 
-def test_input_errors_during_a_run_leave_a_checkpoint(tmp_path, tiny, monkeypatch):
-    class Barren(_core.Simulation):
-        def begin_event(self):
-            if self.event == 1:
-                raise InputError("/bodies/0/shape: no room")
-            return super().begin_event()
+def test_snow_that_cannot_be_laid_leaves_the_checkpoint_of_the_event_before(tmp_path, tiny):
+    body = tmp_path / "body.npy"
+    np.save(body, np.hypot(*np.mgrid[-2:3, -2:3]) * 0.05 - 0.08)
+    shape = Shape.grid(str(body), origin=(1, 0), spacing=0.05)
+    tiny.append("bodies", Body(shape=shape, event=2))
 
-    monkeypatch.setattr(_core, "Simulation", Barren)
-    with pytest.raises(InputError, match="no room"):
-        run_events(tiny, tmp_path, pictures=False)
-    assert '"status": "failed"' in (tmp_path / "run.json").read_text()
+    def spoil(progress):
+        if progress.event == 1 and progress.fraction == 1:
+            body.write_text("no array")
+
+    with pytest.raises(InputError, match="/bodies/0/shape"):
+        run_events(tiny, tmp_path / "out", progress=spoil, pictures=False)
+    facts = json.loads((tmp_path / "out" / "run.json").read_text())
+    assert (facts["status"], facts["events"]) == ("failed", 1)
+    np.save(body, np.hypot(*np.mgrid[-2:3, -2:3]) * 0.05 - 0.08)
+    assert list(run_events(tiny, tmp_path / "out", resume=True, pictures=False).event) == [1, 2]

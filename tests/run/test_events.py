@@ -110,16 +110,14 @@ def test_the_handler_of_interrupts_is_put_back(tmp_path, tiny):
 
 def test_checkpoints_on_the_way_change_nothing(finished, tmp_path, tiny, monkeypatch):
     monkeypatch.setattr(events, "REPORT_INTERVAL", 0.02)
-    saved = []
+    saved = set()
 
-    class Counting(_core.Simulation):
-        def save(self, path):
-            saved.append(self.time_s)
-            super().save(path)
+    def look(progress):
+        if (tmp_path / "checkpoint.bin").exists():
+            saved.add((tmp_path / "checkpoint.bin").read_bytes())
 
-    monkeypatch.setattr(_core, "Simulation", Counting)
     tiny.update({"output": {"energy": True, "checkpoint_interval": 1e-6}})
-    run_events(tiny, tmp_path, pictures=False)
+    run_events(tiny, tmp_path, progress=look, pictures=False)
     assert len(saved) > 3
     compare_tables(finished, tmp_path)
 
@@ -160,30 +158,39 @@ def test_a_truncated_checkpoint_is_refused(tmp_path, tiny):
         run_events(tiny, tmp_path, resume=True, pictures=False)
 
 
-def test_a_run_that_cannot_go_on_leaves_a_checkpoint(tmp_path, tiny, monkeypatch):
-    class Failing(_core.Simulation):
-        def run(self, callback, interval_s=0.5):
-            if self.event == 2:
-                raise SimulationError("time step below 1e-12 s at particle 7")
-            return super().run(callback, interval_s)
+def fail_at(event, error):
+    """A progress reporter that raises an error once snow slides in an event."""
 
-    monkeypatch.setattr(_core, "Simulation", Failing)
-    with pytest.raises(SimulationError, match="particle 7"):
-        run_events(tiny, tmp_path, pictures=False)
+    def report(progress):
+        if progress.event == event and progress.time > 0:
+            raise error
+
+    return report
+
+
+@pytest.mark.parametrize("kind", [SimulationError, InputError])
+def test_a_run_that_cannot_go_on_leaves_a_checkpoint(finished, tmp_path, tiny, monkeypatch, kind):
+    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.0)
+    tiny.set("output.energy", True)
+    with pytest.raises(kind, match="particle 7"):
+        run_events(tiny, tmp_path, progress=fail_at(2, kind("at particle 7")), pictures=False)
     facts = json.loads((tmp_path / "run.json").read_text())
-    assert facts["status"] == "failed"
+    assert (facts["status"], facts["events"]) == ("failed", 1)
     assert "particle 7" in facts["error"]
-    assert (tmp_path / "checkpoint.bin").stat().st_size > 0
     assert list(read_events(tmp_path).event) == [1]
+    assert _core.Simulation.load(str(tmp_path / "checkpoint.bin")).time_s > 0
+    assert list(run_events(tiny, tmp_path, resume=True, pictures=False).event) == [1, 2]
 
 
-def test_nothing_is_left_when_seeding_fails(tmp_path, tiny, monkeypatch):
-    class Barren(_core.Simulation):
-        def begin_event(self):
-            raise InputError("/seeding: no room")
+def test_what_is_no_failure_of_the_run_is_not_recorded(tmp_path, tiny):
+    with pytest.raises(MemoryError):
+        run_events(tiny, tmp_path, progress=fail_at(2, MemoryError()), pictures=False)
+    assert json.loads((tmp_path / "run.json").read_text())["status"] == "running"
 
-    monkeypatch.setattr(_core, "Simulation", Barren)
-    with pytest.raises(InputError):
+
+def test_nothing_is_left_when_seeding_fails(tmp_path, tiny):
+    tiny.update({"bodies": [{"shape": {"type": "sphere", "radius": 1e-4, "center": [0, 1]}}]})
+    with pytest.raises(InputError, match="/bodies/0"):
         run_events(tiny, tmp_path / "new")
     assert not (tmp_path / "new").exists()
 

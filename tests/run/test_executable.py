@@ -1,18 +1,22 @@
 """The standalone executable, which needs no Python, and its agreement with the package."""
 
 import json
+import shutil
 import signal
 import subprocess
 import sysconfig
 import time
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from bad_scenes import bad_scene  # noqa: F401
 from conftest import tiny_scene
+from test_events import interrupt_at
 
-from snowshed import ResolvedScene, _core, run_events
+from snowshed import Interrupted, ResolvedScene, _core, run_events
 from snowshed.cli.main import main
+from snowshed.run import events
 
 EXECUTABLE = Path(sysconfig.get_path("scripts")) / "snowshed-run"
 
@@ -219,9 +223,86 @@ def test_a_damaged_checkpoint_is_refused(results, scene, tmp_path, capsys, damag
     assert len(list(tmp_path.iterdir())) == 2
 
 
-def test_python_does_not_resume_what_has_no_table(results, scene, capsys):
-    assert main(["run", str(scene), "-o", str(results), "--resume"]) == 2
-    assert "made by snowshed-run" in capsys.readouterr().err
+@pytest.fixture(scope="module")
+def measured(longer, tmp_path_factory) -> Path:
+    """The folder of the longer scene, run by Python in one go."""
+    folder = tmp_path_factory.mktemp("measured")
+    run_events(ResolvedScene.load(longer[0]), folder, pictures=False)
+    return folder
+
+
+def begin_with_executable(scene, out, where):
+    """Stop it within the first event, or kill it once the only checkpoint is that of its end."""
+    if where == "within":
+        interrupt(scene, out, lambda folder: (folder / "scene.json").exists())
+        return
+    run = subprocess.Popen([EXECUTABLE, scene, "-o", out, "-q"])
+    while run.poll() is None and not (out / "checkpoint.bin").exists():
+        time.sleep(0.002)
+    run.kill()
+    run.wait()
+
+
+def begin_with_python(scene, out, where):
+    """Stop it within the second event, or keep the folder as it was when that began."""
+    ready = ResolvedScene.load(scene)
+    if where == "within":
+        with pytest.raises(Interrupted):
+            run_events(ready, out, progress=interrupt_at(2, 0.1), pictures=False)
+        return
+
+    def keep(progress):
+        if progress.event == 2 and not out.exists():
+            shutil.copytree(beside, out)
+
+    beside = out.with_name("beside")
+    run_events(ready, beside, progress=keep, pictures=False)
+
+
+@pytest.mark.parametrize("where", ["within", "between"])
+def test_python_goes_on_with_what_the_executable_began(longer, measured, tmp_path, where):
+    scene, _ = longer
+    begin_with_executable(scene, tmp_path / "out", where)
+    assert not (tmp_path / "out" / "events.csv").exists()
+    run_events(ResolvedScene.load(scene), tmp_path / "out", resume=True, pictures=False)
+    assert_same_results(tmp_path / "out", measured)
+
+
+@pytest.mark.parametrize("where", ["within", "between"])
+def test_the_executable_goes_on_with_what_python_began(
+    longer, measured, tmp_path, monkeypatch, where
+):
+    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.0)
+    scene, results = longer
+    begin_with_python(scene, tmp_path / "out", where)
+    done = snowshed_run(scene, "-o", tmp_path / "out", "--resume")
+    assert done.returncode == 0
+    assert done.stderr.endswith(
+        f"for tables and pictures: snowshed run {scene} -o {tmp_path / 'out'} --resume\n"
+    )
+    assert particle_files(tmp_path / "out") == particle_files(results)
+    run_events(ResolvedScene.load(scene), tmp_path / "out", resume=True, pictures=False)
+    assert_same_results(tmp_path / "out", measured)
+
+
+def assert_same_results(out, measured):
+    """The same bits of particles; tables as far as single precision tells."""
+    assert particle_files(out) == particle_files(measured)
+    for name in ("particles.pvd", "snapshots/snapshots.pvd"):
+        assert (out / name).read_bytes() == (measured / name).read_bytes()
+    for name in ("events.csv", "outline.csv"):
+        one, other = (pd.read_csv(folder / name) for folder in (out, measured))
+        one, other = (table.drop(columns="wall_s", errors="ignore") for table in (one, other))
+        pd.testing.assert_frame_equal(one, other, rtol=1e-4, atol=1e-6)
+    facts, whole = (json.loads((f / "run.json").read_text()) for f in (out, measured))
+    assert facts["status"] == "finished" and facts.keys() == whole.keys()
+    assert facts["steps"] == whole["steps"]
+
+
+def test_a_stack_that_ages_is_not_the_executables(results, scene, tmp_path):
+    shutil.copytree(results, tmp_path / "out")
+    (tmp_path / "out" / "ageing.json").write_text("{}")
+    assert_refused(snowshed_run(scene, "-o", tmp_path / "out", "--resume"), "ages between events")
 
 
 def test_help_version_and_schema():

@@ -1,13 +1,16 @@
+import json
 import re
 import shutil
 
+import pandas as pd
 import pytest
+from conftest import tiny_scene
 
-from snowshed import InputError
+from snowshed import InputError, run_events
 from snowshed.cli.main import main
 from snowshed.io.atomic import replacing, write_text
 from snowshed.io.csv_table import Table
-from snowshed.run.results import EVENT_COLUMNS, Results, check_empty, read_events
+from snowshed.run.results import EVENT_COLUMNS, check_empty, read_events
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -58,12 +61,16 @@ def test_folder_must_be_empty(tmp_path):
         check_empty(tmp_path / "file")
 
 
-def test_reopen_refuses_another_scene(tmp_path, tiny):
-    Results.create(tmp_path, tiny.resolve())
-    with pytest.raises(InputError, match="/panel/tilt"):
-        Results.reopen(tmp_path, tiny.set("panel.tilt", 55).resolve())
+def resume(scene, folder):
+    return run_events(scene, folder, resume=True, pictures=False)
+
+
+def test_resuming_refuses_another_scene(finished, tmp_path, tiny):
+    tiny.set("output.energy", True)
+    with pytest.raises(InputError, match="differs in /panel/tilt;"):
+        resume(tiny.set("panel.tilt", 55), finished)
     with pytest.raises(InputError, match="nothing to resume"):
-        Results.reopen(tmp_path / "new", tiny.resolve())
+        resume(tiny, tmp_path / "new")
 
 
 def test_columns_of_the_events_table(finished):
@@ -140,33 +147,45 @@ def test_a_damaged_table_is_not_continued(tmp_path, content, message):
 @pytest.mark.parametrize("name", ["run.json", "scene.json"])
 @pytest.mark.parametrize("content", [b"", b"\xff\x00", b"[" * 100_000, b"[]", b'{"wall_s": '])
 def test_a_damaged_file_of_a_folder_to_resume_is_named(tmp_path, tiny, name, content):
-    folder = Results.create(tmp_path, tiny.resolve())
-    folder.write_run({"wall_s": 2.5})
-    assert Results.reopen(tmp_path, tiny.resolve()).earlier_wall_s() == 2.5
+    tiny.resolve().save(tmp_path / "scene.json")
     (tmp_path / name).write_bytes(content)
-    with pytest.raises(InputError, match=rf"{re.escape(name)}: damaged: "):
-        Results.reopen(tmp_path, tiny.resolve()).earlier_wall_s()
+    with pytest.raises(InputError, match=re.escape(name)) as caught:
+        resume(tiny, tmp_path)
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 500
+    assert (tmp_path / name).read_bytes() == content
+
+
+FACTS = {"event": 1, "sim_time_s": 1.0, "steps": 9, "wall_s": 1.0, "ended": "rest"}
 
 
 @pytest.mark.parametrize(
-    ("given", "shown"), [('"long"', "'long'"), ("true", "True"), ("1e999", "inf")]
+    ("content", "message"),
+    [
+        ({"wall_s": "long"}, '/wall_s: "long" is not a number'),
+        ({"wall_s": True}, "/wall_s: true is not a number"),
+        ({}, "has no wall_s"),
+        ({"wall_s": 1, "finished_events": {}}, "/finished_events: an object is not an array"),
+        ({"wall_s": 1, "finished_events": [7]}, "/finished_events/0: 7 is not an object"),
+        ({"wall_s": 1, "finished_events": [FACTS]}, "/finished_events/0: has no laid_height_m"),
+        ({"wall_s": 1, "finished_events": [{**FACTS, "steps": "many"}]}, '/steps: "many" is not'),
+    ],
 )
-def test_a_computing_time_that_is_no_number(tmp_path, given, shown):
-    (tmp_path / "run.json").write_text(f'{{"wall_s": {given}}}')
-    with pytest.raises(InputError, match=rf"run\.json: damaged: /wall_s: {shown} is not a number"):
-        Results(tmp_path).earlier_wall_s()
+def test_a_record_that_cannot_be_gone_on_with(tmp_path, tiny, content, message):
+    tiny.resolve().save(tmp_path / "scene.json")
+    (tmp_path / "run.json").write_text(json.dumps(content))
+    with pytest.raises(InputError, match=rf"run\.json: .*{re.escape(message)}"):
+        resume(tiny, tmp_path)
 
 
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
-        (lambda text: "", "holds 0 events, but 2 are done"),
-        (lambda text: text[: text.rindex("\n2,") + 1], "holds 1 events, but 2 are done"),
         (
             lambda text: re.sub(r"(?m)^1,[^,]*", "1,inf", text),
             "no finite numbers in a column height_m",
         ),
         (lambda text: text.replace(",rest", ""), "a row that has not"),
+        (lambda text: re.sub(r"(?m)^1,.*\n", "", text), "its events are not 1, 2"),
     ],
 )
 def test_a_damaged_table_of_events_is_not_resumed(finished, tmp_path, capsys, damage, message):
@@ -180,3 +199,16 @@ def test_a_damaged_table_of_events_is_not_resumed(finished, tmp_path, capsys, da
     assert said.startswith(f"error: {events}: ") and said.count("\n") == 1
     assert re.search(message, said)
     assert sorted(folder.rglob("*")) == before
+
+
+@pytest.mark.parametrize("kept", [0, 1])
+def test_events_that_the_table_lacks_are_measured_from_their_particles(finished, tmp_path, kept):
+    """Stored in single precision: all but their last digits are those measured in memory."""
+    folder = tmp_path / "results"
+    shutil.copytree(finished, folder)
+    lines = (folder / "events.csv").read_text().splitlines(keepends=True)
+    (folder / "events.csv").write_text("".join(lines[: 1 + kept]))
+    resume(tiny_scene(**{"output.energy": True}), folder)
+    for name in ("events.csv", "outline.csv", "energy.csv"):
+        one, other = (pd.read_csv(f / name) for f in (finished, folder))
+        pd.testing.assert_frame_equal(one, other, rtol=1e-4, atol=1e-6)

@@ -175,12 +175,11 @@ def test_what_an_attempt_left_half_written_does_not_hinder_the_next(tmp_path):
 
 
 def test_a_failure_is_reported_alike_after_its_process_was_killed(tmp_path, monkeypatch):
-    class Failing(_core.Simulation):
-        def run(self, callback, interval_s=0.5):
-            raise _core.SimulationError("time step underflow")
+    def fail(*_):
+        raise _core.SimulationError("time step underflow")
 
     task = task_of(tiny_scene(), tmp_path / "failing")
-    monkeypatch.setattr(_core, "Simulation", Failing)
+    monkeypatch.setattr(_core.EventSequence, "run", fail)
     first = compute(task)
     monkeypatch.undo()
     again = compute(task)
@@ -189,12 +188,11 @@ def test_a_failure_is_reported_alike_after_its_process_was_killed(tmp_path, monk
 
 
 def test_without_memory_enough_a_run_can_be_tried_again(tmp_path, monkeypatch):
-    class Hungry(_core.Simulation):
-        def run(self, callback, interval_s=0.5):
-            raise MemoryError
+    def run_out_of_memory(*_):
+        raise MemoryError
 
     task = task_of(tiny_scene(), tmp_path / "hungry")
-    monkeypatch.setattr(_core, "Simulation", Hungry)
+    monkeypatch.setattr(_core.EventSequence, "run", run_out_of_memory)
     assert compute(task).status == "lost"
     monkeypatch.undo()
     assert compute(task).status == "done"

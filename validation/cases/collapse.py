@@ -173,9 +173,9 @@ def matrix(full: bool) -> list[Settings]:
         for scheme in (
             {"flip_ratio": 0.95},
             {"flip_ratio": 0.999},
-            {"step_factor": 0.3},
+            {"courant_factor": 0.3},
             # The same share of PIC per second as 0.99 at three times the step: 0.99^(1/3).
-            {"step_factor": 0.3, "flip_ratio": 0.9967},
+            {"courant_factor": 0.3, "flip_ratio": 0.9967},
             {"sleep_speed": 0.005},
             {"sleep_speed": 0.02},
         )

@@ -1,6 +1,10 @@
 // Where the energy went.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace snowshed {
 
 /// Energy books, J (per metre of width in 2D). The first three are the present store; the others
@@ -16,5 +20,14 @@ struct EnergyBalance {
   double spent() const { return plastic + friction + sticking + impact + transfer + sleep; }
   double residual() const { return stored() + spent() - added; }
 };
+
+/// Returns the balance as tables have it, names with units.
+inline std::vector<std::pair<std::string, double>> named_energies(const EnergyBalance& e) {
+  return {
+      {"kinetic_j", e.kinetic}, {"gravitational_j", e.gravitational}, {"elastic_j", e.elastic},
+      {"plastic_j", e.plastic}, {"friction_j", e.friction},           {"sticking_j", e.sticking},
+      {"impact_j", e.impact},   {"transfer_j", e.transfer},           {"sleep_j", e.sleep},
+      {"added_j", e.added},     {"residual_j", e.residual()}};
+}
 
 }  // namespace snowshed

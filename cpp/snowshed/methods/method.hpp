@@ -60,6 +60,10 @@ class Method {
   virtual ~Method() = default;
 
   virtual void add(const ParticleBatch&) = 0;
+  /// Adds all particles of several batches, in their order, or none of them.
+  virtual void add(const std::vector<ParticleBatch>&) = 0;
+  /// Puts the particles of several batches in place of all there are, or leaves these as they are.
+  virtual void replace(const std::vector<ParticleBatch>&) = 0;
   virtual void clear() = 0;  ///< removes all particles
 
   /// Adds to the velocity of each particle, ordered by id; the energy books count it as added.

@@ -1,8 +1,6 @@
 // When is snow at rest?
 #pragma once
 
-#include "snowshed/methods/mpm/solver.hpp"
-
 namespace snowshed {
 
 /// The snow rests when for `rest_time` seconds on end its speed (root of twice the kinetic energy

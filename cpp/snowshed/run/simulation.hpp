@@ -1,5 +1,5 @@
-// A scene being simulated: one slide-off event after another onto what lies there already.
-// This is what Python and snowshed-run drive; the loop over events is theirs.
+// A scene being simulated, in memory: one slide-off event after another onto what lies there.
+// `EventSequence` drives it through all events and keeps a results folder.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "snowshed/methods/mpm/solver.hpp"
+#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/obstacle.hpp"
 #include "snowshed/run/cost_estimate.hpp"
+#include "snowshed/run/panel_region.hpp"
+#include "snowshed/run/reseeding.hpp"
 #include "snowshed/run/rest_detector.hpp"
 #include "snowshed/scene/scene.hpp"
 
@@ -32,17 +35,6 @@ struct RunReport {
   std::size_t particles = 0;
 };
 
-/// The conversion of the stack between events with between = "reseed".
-struct Reseeding {
-  struct Cloud {
-    std::vector<Vec3> positions;    // m
-    std::vector<double> masses;     // kg
-    std::vector<double> densities;  // kg/m3, initial
-    std::vector<bool> on_panel;
-  };
-  Cloud before, after;
-};
-
 class Simulation {
  public:
   /// Builds obstacles, reads all files and checks that the scene fits into memory; seeds nothing
@@ -52,10 +44,9 @@ class Simulation {
 
   /// Lays the next event's snow: the slab on the panel (above what remained there, unless that is
   /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
-  /// "reseed", from the second event on the stack is first turned into a solid and seeded afresh at
-  /// rest, in its initial state, with its mass; event and snow of a new particle are those of the
-  /// old one nearest to it, and each snow keeps its mass. Throws InputError where the snow of this
-  /// event cannot be seeded, SimulationError where the stack cannot be converted.
+  /// "reseed", from the second event on the stack is first seeded afresh (`reseed_stack`). All or
+  /// nothing: throws InputError where the snow of this event cannot be seeded, SimulationError
+  /// where the stack cannot be converted or an event still runs, and leaves everything as it was.
   std::optional<Reseeding> begin_event();
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
@@ -77,12 +68,15 @@ class Simulation {
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
+  /// Writes a checkpoint, which replaces an older one only once it has been read back. Throws
+  /// SimulationError where the state could not be resumed from, FileError where it cannot be
+  /// written; the older file stays then.
   void save(const std::filesystem::path& checkpoint) const;
   /// Throws InputError where the file is not a sound checkpoint.
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint);
 
   const Scene& scene() const { return scene_; }
-  const std::vector<Snow>& snows() const { return snows_; }  ///< by ParticleState::kinds
+  const std::vector<Snow>& snows() const { return snows_; }  ///< by ParticleState::material_ids
   const CostEstimate& cost() const { return cost_; }
   const Method& solver() const { return *solver_; }
   int event() const { return event_; }
@@ -90,8 +84,20 @@ class Simulation {
   double event_time() const { return solver_->time() - event_start_; }
   int threads() const;
 
-  /// For each position, whether it is that of snow on the panel.
-  std::vector<bool> on_panel(const std::vector<Vec3>& positions) const;
+  /// The smallest length that is resolved, m.
+  double resolution() const { return snowshed::resolution(scene_.numerics); }
+
+  /// How high all snow laid so far would lie on the panel had none of it left, m.
+  double laid_height() const { return laid_height_; }
+
+  /// Returns for each position whether it is that of snow on the panel, now or when the snow laid
+  /// until then had the given height.
+  std::vector<bool> on_panel(const std::vector<Vec3>& positions) const {
+    return on_panel(positions, laid_height_);
+  }
+  std::vector<bool> on_panel(const std::vector<Vec3>& positions, double laid_height) const {
+    return panel_.contains(positions, laid_height);
+  }
 
   /// Signed distance to the nearest of the scene's obstacles where they are now, m; ground, panel
   /// and domain do not count. Infinite without any.
@@ -101,21 +107,20 @@ class Simulation {
   void write_vtp(const std::filesystem::path&) const;
 
  private:
-  double lift_of_next_slab() const;
-  struct SeededBody {
-    double mass;    // kg
-    double height;  // m, along the panel's normal, of what lies over the panel
-  };
-  SeededBody seed_body(const BodySpec&, const std::string& path, std::uint64_t seed);
-  double height_over_panel(const std::vector<Vec3>& positions) const;
-  Reseeding reseed_stack();
+  double lift_of_next_slab(const std::optional<Reseeding>&) const;
+  ParticleState as_held(const std::vector<ParticleBatch>&) const;
+  void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
+  bool is_at_rest();
+  std::unique_ptr<Method> empty_method() const;
+  void read_back(const std::filesystem::path& checkpoint) const;
   RunReport report(double rms_speed) const;
 
   Scene scene_;
-  std::vector<Snow> snows_;  // by kind
+  std::vector<Snow> snows_;  // by material_id
   std::filesystem::path base_dir_;
   CostEstimate cost_;
-  std::vector<Obstacle> obstacles_;  // those of the scene's list
+  PanelRegion panel_;
+  std::vector<Obstacle> obstacles_, listed_obstacles_;  // all, and those of the scene's list
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   RestDetector rest_;
@@ -123,7 +128,7 @@ class Simulation {
   bool running_ = false;
   double event_start_ = 0;  // s
   double event_mass_ = 0;   // kg, laid by the present event
-  double laid_height_ = 0;  // m, on the panel, of all snow laid so far had none of it left
+  double laid_height_ = 0;  // m
 };
 
 }  // namespace snowshed

@@ -1,6 +1,8 @@
 // Saving and restoring a simulation: its scene, where it stands between events, and the solver.
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/memory.hpp"
 #include "snowshed/io/binary_archive.hpp"
+#include "snowshed/methods/method.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -16,7 +18,20 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   out.add("run", std::vector<double>{event_start_, event_mass_, r.since, r.speed_at_start, r.speed,
                                      r.next, laid_height_});
   solver_->save(out);
-  out.save(checkpoint);
+  try {
+    out.save(checkpoint, [this](const std::filesystem::path& written) { read_back(written); });
+  } catch (const InputError& error) {
+    throw SimulationError(checkpoint.string() + ": not replaced, as the present state cannot be " +
+                          "resumed from: " + error.what());
+  }
+}
+
+/// Throws InputError where `load` would. Particles and grid are there twice meanwhile; where that
+/// does not fit into memory, only the file is checked.
+void Simulation::read_back(const std::filesystem::path& checkpoint) const {
+  const BinaryReader in = BinaryReader::load(checkpoint);
+  in.require_finite();
+  if (solver_->bytes() < available_memory_bytes()) empty_method()->load(in);
 }
 
 std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint) {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "snowshed/io/pvd_series.hpp"
-#include "snowshed/methods/mpm/solver.hpp"
+#include "snowshed/methods/method.hpp"
 
 namespace snowshed {
 

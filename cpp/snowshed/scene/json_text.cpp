@@ -59,9 +59,9 @@ std::string with_plain_blanks(std::string text) {
 }
 
 /// Receives the parser's events and builds the value. The parser itself does not recurse.
-class Builder {
+class ValueBuilder {
  public:
-  Builder(const std::string& text, const std::string& name) : text_(text), name_(name) {}
+  ValueBuilder(const std::string& text, const std::string& name) : text_(text), name_(name) {}
 
   json take() { return std::move(root_); }
 
@@ -168,7 +168,7 @@ void append(std::string& out, const ordered_json& value, const std::string& inde
 json parse_json(const std::string& text, const std::string& name) {
   if (text.size() > max_text_bytes)
     throw InputError(name, "longer than " + std::to_string(max_text_bytes >> 20) + " MB");
-  Builder builder(text, name);
+  ValueBuilder builder(text, name);
   json::sax_parse(with_plain_blanks(text), &builder);
   return builder.take();
 }

@@ -13,7 +13,7 @@ namespace {
 
 using AtomicFileTest = TemporaryFolder;
 
-/// No file may grow beyond `bytes` while this lives: what a full disk looks like.
+/// Lets no file grow beyond `bytes` within its scope, as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -73,6 +73,20 @@ TEST_F(AtomicFileTest, KeepsTheOlderFileWhenTheDiskFillsUp) {
     message = message_of<FileError>([&] { write_atomic(path("a"), std::string(300'000, 'x')); });
   }
   EXPECT_NE(message.find(path("a").string() + ": cannot write: "), std::string::npos) << message;
+  EXPECT_EQ(content(path("a")), "older");
+  EXPECT_EQ(number_of_files(), 1u);
+}
+
+TEST_F(AtomicFileTest, KeepsTheOlderFileWhenTheNewOneFailsItsCheck) {
+  write_atomic(path("a"), "older");
+  {
+    AtomicFile file(path("a"));
+    file.write("new");
+    EXPECT_THROW(file.commit([](const std::filesystem::path& written) {
+      throw InputError(written.string(), content(written));
+    }),
+                 InputError);
+  }
   EXPECT_EQ(content(path("a")), "older");
   EXPECT_EQ(number_of_files(), 1u);
 }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "geometry/readers/npy_testing.hpp"
 #include "io/temporary_folder.hpp"
 #include "run/simulation_testing.hpp"
 #include "snowshed/core/errors.hpp"
@@ -33,7 +36,7 @@ TEST_F(SimulationTest, ThreadsDoNotChangeTheBits) {
   Simulation one(scene);
   one.begin_event();
   one.run(go_on, never);
-  scene.numerics.threads = 2;
+  scene.mpm().threads = 2;
   Simulation two(scene);
   two.begin_event();
   two.run(go_on, never);
@@ -54,7 +57,7 @@ TEST_F(SimulationTest, EventsBringTheirSnowAndKeepTheOld) {
   const ParticleState s = sim.solver().state();
   EXPECT_EQ(s.events.front(), 1);
   EXPECT_EQ(s.events.back(), 3);
-  for (const Vec3& x : s.positions) EXPECT_GT(x.z(), -scene.numerics.dx);  // none in the ground
+  for (const Vec3& x : s.positions) EXPECT_GT(x.z(), -scene.mpm().dx);  // none in the ground
 }
 
 TEST_F(SimulationTest, ReseedingKeepsTheMass) {
@@ -67,6 +70,79 @@ TEST_F(SimulationTest, ReseedingKeepsTheMass) {
   EXPECT_TRUE(sim.begin_event().has_value());
   const ParticleState s = sim.solver().state();
   EXPECT_NEAR(total_mass(s), 2 * before, 1e-5 * before);
+}
+
+/// A grid file of a solid, spacing 0.02 m.
+std::string solid_grid() {
+  using namespace geometry_testing;
+  std::vector<double> distances;
+  for (int i = -2; i <= 2; ++i)
+    for (int k = -2; k <= 2; ++k) distances.push_back(0.02 * std::hypot(i, k) - 0.03);
+  return npy_file(1, npy_header("<f8", "(5, 5)"), npy_data(distances));
+}
+
+TEST_F(SimulationTest, AnEventThatCannotBeginLeavesAllAsItWas) {
+  for (const Between between : {Between::carry, Between::reseed}) {
+    Scene scene = small_scene();
+    scene.events.between = between;
+    BodySpec body;
+    body.event = 2;
+    body.shape.type = "grid";
+    body.shape.file = path("solid.npy").string();
+    body.shape.origin = {0.4, 0, 0.1};
+    body.shape.spacing = 0.02;
+    scene.bodies.push_back(body);
+    write_plainly(path("solid.npy"), solid_grid());
+    const auto undisturbed = run_all(scene);
+
+    Simulation sim(scene);
+    sim.begin_event();
+    sim.run(go_on, never);
+    sim.save(path("before"));
+    write_plainly(path("solid.npy"), "spoilt");
+    EXPECT_THROW(sim.begin_event(), InputError);
+    EXPECT_EQ(sim.event(), 1);
+    EXPECT_FALSE(sim.event_running());
+    sim.save(path("after"));
+    EXPECT_TRUE(content(path("after")) == content(path("before")));
+
+    write_plainly(path("solid.npy"), solid_grid());
+    while (sim.event() < scene.events.count) {
+      sim.begin_event();
+      sim.run(go_on, never);
+    }
+    expect_same_bits(sim, *undisturbed);
+  }
+}
+
+TEST_F(SimulationTest, SnowBeyondTheGridIsNotAdded) {
+  Scene scene = small_scene();
+  BodySpec far;
+  far.event = 2;
+  far.shape.type = "sphere";
+  far.shape.radius = 0.02;
+  far.shape.center = {1e6, 0, 0};
+  scene.bodies.push_back(far);
+  Simulation sim(scene);
+  sim.begin_event();
+  sim.run(go_on, never);
+  const std::size_t n = sim.solver().size();
+  EXPECT_THROW(sim.begin_event(), InputError);
+  EXPECT_EQ(sim.solver().size(), n);
+  EXPECT_EQ(sim.solver().state().positions.size(), n);
+}
+
+TEST_F(SimulationTest, ACheckpointIsNotReplacedByOneThatCannotBeLoaded) {
+  Simulation sim(small_scene());
+  sim.begin_event();
+  sim.save(path("checkpoint"));
+  const std::string good = content(path("checkpoint"));
+  // Infinite in single precision.
+  sim.add_velocity(std::vector<Vec3>(sim.solver().size(), Vec3(1e300, 0, 0)));
+  const std::string said = message_of<SimulationError>([&] { sim.save(path("checkpoint")); });
+  EXPECT_NE(said.find("not a finite number"), std::string::npos) << said;
+  EXPECT_TRUE(content(path("checkpoint")) == good);
+  EXPECT_EQ(number_of_files(), 1u);
 }
 
 TEST_F(SimulationTest, EndsAtRestOrAtTheTimeLimit) {

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 from matplotlib.figure import Figure
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.io.arrays import Floats
+from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import FAINT, INK, STACK, blank, describe, quiet
 from snowshed.scene.builders.slope import BOARD_CELLS
@@ -76,7 +77,7 @@ def _limits(simulation: _core.Simulation, scene: dict[str, Any]) -> Limits:
     return (
         float(low[0]) - room,
         float(high[0]) + room,
-        min(floor, -fall) - 0.2 * room - scene["numerics"]["dx"],
+        min(floor, -fall) - 0.2 * room - resolution_of(scene),
         float(high[1]) + 0.5 * room,
     )
 
@@ -98,7 +99,7 @@ def _draw_panel(axes: Axes, simulation: _core.Simulation, scene: dict[str, Any])
         return
     half = 0.5 * frame["length"] * np.asarray(frame["slope"])
     face = np.array([frame["center"] - half, frame["center"] + half])
-    thickness = max(scene["panel"]["thickness"], BOARD_CELLS * scene["numerics"]["dx"])
+    thickness = max(scene["panel"]["thickness"], BOARD_CELLS * resolution_of(scene))
     back = face[::-1] - thickness * np.asarray(frame["normal"])
     axes.fill(*np.concatenate([face, back])[:, [0, 2]].T, color="#c9d1d8", linewidth=0, zorder=1)
     axes.plot(*face[:, [0, 2]].T, color=INK, linewidth=3.5, zorder=4, label="panel")
@@ -115,12 +116,12 @@ def _draw_ground(axes: Axes, scene: dict[str, Any], tilt: float) -> None:
 
 def _near_section(positions: Floats, scene: dict[str, Any]) -> Floats:
     """Return the particles that lie within a cell of y = 0; in 2D all of them."""
-    near: Floats = positions[np.abs(positions[:, 1]) <= scene["numerics"]["dx"]]
+    near: Floats = positions[np.abs(positions[:, 1]) <= resolution_of(scene)]
     return near
 
 
 def _dot(scene: dict[str, Any], width: float) -> float:
     """Return the area of a particle's dot, points squared, so that dots nearly touch."""
     count = scene["seeding"]["particles_per_voxel"]
-    spacing = scene["numerics"]["dx"] / count ** (1.0 / scene["dimension"])
+    spacing = resolution_of(scene) / count ** (1.0 / scene["dimension"])
     return float(np.clip((0.9 * spacing * 72.0 * (WIDTH - 1.0) / width) ** 2, 1.0, 60.0))

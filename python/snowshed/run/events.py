@@ -1,4 +1,7 @@
-"""The multi-event loop (thesis 3.1.1): slab after slab slides off onto the growing stack.
+"""Several events (thesis 3.1.1): slab after slab slides off onto the growing stack.
+
+The core runs the events and keeps the results folder; what is measured, drawn and aged is done
+here, while it runs.
 
 Each event runs until the snow rests: slower than ``events.rest_speed`` (root mean square, as the
 core defines it) for ``events.rest_time``, or until ``events.max_time``, and the table says which.
@@ -11,21 +14,20 @@ moved mass, height, length and outline. What time does to a stack that is carrie
 
 from __future__ import annotations
 
-import platform
-import time
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed import _core
 from snowshed.io.arrays import Booleans, Floats
-from snowshed.io.atomic import replacing
+from snowshed.io.vtp import read_particles
 from snowshed.run.ageing import Ageing
 from snowshed.run.conversion import conversion_row
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
-from snowshed.run.machine import cpu_name, peak_memory_mb
-from snowshed.run.results import Results, check_empty, measured_columns, read_events
-from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+from snowshed.run.machine import machine_facts
+from snowshed.run.results import RunFolder, measured_columns, read_events
+from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 
 if TYPE_CHECKING:
@@ -78,7 +80,9 @@ def run_events(
     out_dir
         The results folder (see ``snowshed.run.results``); new or empty, unless resuming.
     resume
-        Go on from the checkpoint in `out_dir`; the results are those of an uninterrupted run.
+        Go on from the checkpoint in `out_dir`, which ``snowshed-run`` may have written too; the
+        particles are those of an uninterrupted run. Events that are missing in the tables are
+        measured from their stored particles, in single precision.
     ageing
         What time does to the stack between the events; None: nothing. The same when resuming.
     progress
@@ -112,84 +116,120 @@ def run_events(
     [1]
     """
     ready = scene.resolve() if isinstance(scene, Scene) else scene
-    if ageing is not None and ready.data["events"]["between"] != "carry":
+    data: dict[str, Any] = ready.data
+    if ageing is not None and data["events"]["between"] != "carry":
         raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
-    open_run = _reopen if resume else _create
-    simulation, results = open_run(ready, out_dir, None if ageing is None else ageing.data)
+    open_run = _resume if resume else _create
+    sequence, results = open_run(ready, out_dir, None if ageing is None else ageing.data)
+    sequence.describe_machine(machine_facts())
     with deferred_interrupts() as interrupt:
-        loop = _EventLoop(simulation, results, ready, ageing, interrupt, progress)
-        loop.run()
+        recorder = _Recorder(sequence.simulation, results, ageing, interrupt, progress)
+        recorder.fill_in(sequence.finished_events)
+        _run(sequence, recorder)
     if pictures:
-        loop.draw()
+        recorder.draw()
     return read_events(results.folder)
 
 
 def _create(
     scene: ResolvedScene, folder: PathLike, ageing: Optional[dict[str, Any]]
-) -> tuple[_core.Simulation, Results]:
-    check_empty(folder)
-    simulation = _core.Simulation(scene.json, scene.base_dir)
-    simulation.begin_event()  # seeding may fail too, and then nothing must be left behind
-    return simulation, Results.create(folder, scene, ageing)
+) -> tuple[_core.EventSequence, RunFolder]:
+    sequence = _core.EventSequence.create(scene.json, scene.base_dir, os.fspath(folder))
+    results = RunFolder(folder)
+    if ageing is not None:
+        results.write_ageing(ageing)
+    return sequence, results
 
 
-def _reopen(
+def _resume(
     scene: ResolvedScene, folder: PathLike, ageing: Optional[dict[str, Any]]
-) -> tuple[_core.Simulation, Results]:
-    results = Results.reopen(folder, scene, ageing)
-    if results.checkpoint.exists():
-        simulation = _core.Simulation.load(str(results.checkpoint))
-    else:
-        simulation = _core.Simulation(scene.json, scene.base_dir)
+) -> tuple[_core.EventSequence, RunFolder]:
+    results = RunFolder(folder)
+    sequence = _core.EventSequence.resume(scene.json, scene.base_dir, os.fspath(folder))
+    results.check(ageing)
+    simulation = sequence.simulation
     results.keep_through(simulation.event, running=simulation.event_running)
-    done, listed = simulation.event - simulation.event_running, len(results.events.rows)
-    if done and not results.events.path.exists():
-        raise _core.InputError(f"{folder}: made by snowshed-run, which must resume it")
-    if listed < done:
-        raise _core.InputError(
-            f"{results.events.path}: damaged: holds {listed} events, but {done} are done"
-        )
-    return simulation, results
+    events = results.events
+    if events.rows and not sequence.finished_events:  # of the version before
+        sequence.count_from(int(events.total("steps")), events.total("wall_s"))
+    return sequence, results
 
 
-class _EventLoop:
-    """One run of the loop: a simulation, the results it fills, and the clock."""
+def _run(sequence: _core.EventSequence, recorder: _Recorder) -> None:
+    """Run the events that are left; a failure is written down in the folder."""
+    try:
+        finished = sequence.run(recorder, REPORT_INTERVAL)
+    except (_core.SimulationError, _core.InputError) as error:
+        sequence.record_failure(str(error))
+        raise
+    if not finished:
+        raise Interrupted(recorder.results.folder)
+
+
+class _Recorder:
+    """Measures the stack after each event and fills the tables, as the core's loop tells it."""
 
     def __init__(
         self,
         simulation: _core.Simulation,
-        results: Results,
-        scene: ResolvedScene,
+        results: RunFolder,
         ageing: Optional[Ageing],
         interrupt: InterruptRequest,
         report: Optional[Reporter],
     ) -> None:
         self.simulation = simulation
         self.results = results
-        self.scene = scene.data
-        self.count = int(self.scene["events"]["count"])
+        self.count = simulation.event_count
         self.ageing = ageing
         self.interrupt = interrupt
         self.report = report
         self.stack: Optional[StackMeasure] = None
-        self.checkpoint_at = time.monotonic()
-        self.started = time.monotonic() - results.earlier_wall_s()
-        if interval := self.scene["output"]["snapshot_interval"]:
-            simulation.set_snapshots(str(results.snapshots), interval)
 
-    def run(self) -> None:
-        """Run the events that are left."""
-        try:
-            while self.simulation.event_running or self.simulation.event < self.count:
-                if self.interrupt.requested:
-                    self._stop()
-                self._begin()
-                self._record(self._advance())
-                self._checkpoint("running")
-        except (_core.SimulationError, _core.InputError) as error:
-            self._checkpoint("failed", error=str(error))
-            raise
-        self._checkpoint("finished")
+    def between_events(self) -> None:
+        """Let the time since the last event pass."""
+        if self.ageing is None:
+            return
+        row = self.ageing.apply(self.simulation, self.simulation.event + 1)
+        if row is not None:
+            self.results.ageings.add([row])
+
+    def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
+        """Write down how far reseeding moved the stack."""
+        if reseeding is not None:
+            row = conversion_row(self.simulation.event, reseeding, self._measure_of)
+            self.results.conversions.add([row])
+        self._tell(self.simulation.time_s, 0.0)
+
+    def progress(self, report: dict[str, Any]) -> None:
+        """Pass on how far the event has come."""
+        self._tell(report["time_s"], report["progress"], report["updates_per_s"])
+
+    def stop_requested(self) -> bool:
+        """Return whether to stop at the next safe point."""
+        return self.interrupt.requested
+
+    def event_ended(self, facts: dict[str, Any]) -> None:
+        """Measure the stack as it is in memory."""
+        self.stack = self._measure()
+        self._record(facts, self.stack)
+        self._tell(self.simulation.time_s, 1.0)
+
+    def fill_in(self, finished: list[dict[str, Any]]) -> None:
+        """Measure the events that the tables lack from their stored particles."""
+        done = self.simulation.event - self.simulation.event_running
+        facts_of = {facts["event"]: facts for facts in finished}
+        for event in self.results.missing_events(done):
+            if event not in facts_of:
+                raise _core.InputError(
+                    f"{self.results.run}: does not tell how event {event} went, for the version "
+                    "before did not write it; go on with: snowshed-run"
+                )
+            facts = facts_of[event]
+            particles = read_particles(self.results.particles_of(event))
+            positions = particles["position"].astype(float)
+            on_panel = self.simulation.on_panel_at(positions, facts["laid_height_m"])
+            masses, density = (particles[name].astype(float) for name in ("mass", "density"))
+            self._record(facts, self._measure_of(positions, masses, density, on_panel))
 
     def draw(self) -> None:
         """Draw the pictures of the stack as it is now."""
@@ -201,70 +241,12 @@ class _EventLoop:
         table = read_events(self.results.folder)
         save(growth_figure(table, self.simulation.scene), self.results.growth_picture)
 
-    def _begin(self) -> None:
-        if not self.simulation.event_running:
-            self._age()
-            conversion = self.simulation.begin_event()
-            if conversion is not None:
-                row = conversion_row(self.simulation.event, conversion, self._measure_of)
-                self.results.conversions.add([row])
-        self._tell(Progress(self.simulation.event, self.count, self.simulation.time_s))
-
-    def _age(self) -> None:
-        """Let the time since the last event pass."""
-        if self.ageing is None or not self.simulation.event:
-            return
-        row = self.ageing.apply(self.simulation, self.simulation.event + 1)
-        if row is not None:
-            self.results.ageings.add([row])
-
-    def _advance(self) -> str:
-        """Run the event to its end; return how it ended."""
-        while True:
-            ended = self.simulation.run(self._on_report, REPORT_INTERVAL)
-            if ended == "interrupted":
-                self._stop()
-            if ended != "checkpoint":
-                return ended
-            self._checkpoint("running")
-
-    def _on_report(self, info: dict[str, Any]) -> Union[bool, str]:
-        self._tell(
-            Progress(
-                self.simulation.event,
-                self.count,
-                info["time_s"],
-                info["progress"],
-                info["updates_per_s"],
-            )
-        )
-        if self.interrupt.requested:
-            return False
-        interval = self.scene["output"]["checkpoint_interval"]
-        due = interval > 0 and time.monotonic() - self.checkpoint_at > interval
-        return "checkpoint" if due else True
-
-    def _record(self, ended: str) -> None:
-        """Measure the stack and write everything about the event that has just ended."""
-        event = self.simulation.event
-        self.stack = self._measure()
-        with replacing(self.results.particles_of(event)) as beside:
-            self.simulation.write_vtk(str(beside))
-        self.results.add_outline(event, self.stack.outline)
-        if self.scene["output"]["energy"]:
-            self.results.energies.add([{"event": event, **self.simulation.energy()}])
-        events = self.results.events
-        row = {
-            **measured_columns(self.stack),
-            "event": event,
-            "sim_time_s": self.simulation.time_s,
-            "steps": self.simulation.total_steps - int(events.total("steps")),
-            "wall_s": max(self._wall() - events.total("wall_s"), 0.0),
-            "ended": ended,
-        }
-        events.add([row])
-        self.results.write_series()
-        self._tell(Progress(event, self.count, self.simulation.time_s, 1.0))
+    def _record(self, facts: Mapping[str, Any], stack: StackMeasure) -> None:
+        event = facts["event"]
+        self.results.add_outline(event, stack.outline)
+        if facts["energy"]:
+            self.results.energies.add([{"event": event, **facts["energy"]}])
+        self.results.events.add([{**facts, **measured_columns(stack)}])
 
     def _measure(self) -> StackMeasure:
         return self._measure_of(
@@ -282,46 +264,11 @@ class _EventLoop:
             masses,
             density,
             dimension=self.simulation.dimension,
-            dx=self.scene["numerics"]["dx"],
+            dx=self.simulation.resolution,
             ground_tilt_deg=self.simulation.ground_tilt_deg,
             exclude=on_panel,
         )
 
-    def _stop(self) -> None:
-        self._checkpoint("interrupted")
-        raise Interrupted(self.results.folder)
-
-    def _checkpoint(self, status: str, **more: str) -> None:
-        with replacing(self.results.checkpoint) as beside:
-            self.simulation.save(str(beside))
-        self.results.write_run({**self._facts(), "status": status, **more})
-        self.checkpoint_at = time.monotonic()
-
-    def _facts(self) -> dict[str, Any]:
-        """Return what run.json says about the run so far."""
-        wall = self._wall()
-        updates = self.simulation.particle_updates
-        return {
-            "version": _core.version,
-            "machine": platform.platform(),
-            "cpu": cpu_name(),
-            "threads": self.simulation.threads,
-            "scalar": self.scene["numerics"]["precision"],
-            "dimension": self.simulation.dimension,
-            "events": len(self.results.events.rows),
-            "particles": self.simulation.particle_count,
-            "steps": self.simulation.total_steps,
-            "particle_updates": updates,
-            "slept_updates": self.simulation.slept_updates,
-            "updates_per_s": updates / wall if wall else 0.0,
-            "peak_memory_mb": round(peak_memory_mb(), 1),
-            "wall_s": wall,
-        }
-
-    def _wall(self) -> float:
-        """Return the wall time of the run, with that before it was resumed, s."""
-        return time.monotonic() - self.started
-
-    def _tell(self, progress: Progress) -> None:
+    def _tell(self, time: float, fraction: float, updates_per_s: float = 0.0) -> None:
         if self.report is not None:
-            self.report(progress)
+            self.report(Progress(self.simulation.event, self.count, time, fraction, updates_per_s))

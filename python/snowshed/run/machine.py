@@ -22,3 +22,8 @@ def peak_memory_mb() -> float:
     """Return the most memory this process has held so far, MB."""
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / 1e6 if sys.platform == "darwin" else peak * 1024 / 1e6
+
+
+def machine_facts() -> dict[str, str]:
+    """Return what run.json says of the machine."""
+    return {"machine": platform.platform(), "cpu": cpu_name()}

@@ -8,13 +8,18 @@ conversions.csv    how far reseeding moved the stack (only with between = "resee
 ageing.csv         what time did to the stack between events (only if it aged), and how long it
                    had: ageing.json
 energy.csv         energy books at the end of each event (only with output.energy)
-run.json           version, machine, size and speed of the run, and its status
+run.json           version, machine, size and speed of the run, how each event went, and its status
 checkpoint.bin     the state from which the run goes on
 particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series
 snapshots/         particle snapshots during the events (only with output.snapshot_interval)
 stack.png          side view of the last stack
 growth.png         height, length, head and tail against the event
 ================== ==========================================================================
+
+``snowshed-run`` writes the same folder without tables and pictures, which resuming it with
+``snowshed run --resume`` adds. What is then measured comes from the stored particles, in single
+precision: its last digits may differ from what is measured while a run goes on. conversions.csv
+has no rows of events that ``snowshed-run`` began.
 """
 
 from __future__ import annotations
@@ -30,10 +35,10 @@ from snowshed._core import InputError
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv
-from snowshed.io.json_file import is_number, read_object
+from snowshed.io.json_file import read_object
 from snowshed.run.ageing import AGEING_COLUMNS
 from snowshed.run.conversion import CONVERSION_COLUMNS
-from snowshed.scene.scene import ResolvedScene, PathLike
+from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
@@ -62,8 +67,6 @@ EVENT_COLUMNS = (
     "body_tail_m",
 )
 
-ADDED_UP = ("steps", "wall_s")  # over the events so far, when a run goes on
-
 
 def measured_columns(stack: StackMeasure) -> dict[str, float]:
     """Return the columns of events.csv that a measured stack fills."""
@@ -86,66 +89,50 @@ def measured_columns(stack: StackMeasure) -> dict[str, float]:
     }
 
 
-class Results:
-    """A results folder that is being written; use `create` or `reopen`."""
+class RunFolder:
+    """The results folder of a run and the tables in it.
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.scene = folder / "scene.json"
-        self.checkpoint = folder / "checkpoint.bin"
-        self.run = folder / "run.json"
-        self.particles = folder / "particles"
-        self.snapshots = folder / "snapshots"
-        self.stack_picture = folder / "stack.png"
-        self.growth_picture = folder / "growth.png"
-        self.events = Table(folder / "events.csv", EVENT_COLUMNS)
-        self.outlines = Table(folder / "outline.csv", ("event", "x", "z"))
-        self.conversions = Table(folder / "conversions.csv", CONVERSION_COLUMNS)
-        self.ageings = Table(folder / "ageing.csv", AGEING_COLUMNS)
-        self.energies = Table(folder / "energy.csv")
+    The core writes the scene, the particles, the checkpoint and run.json
+    (``_core.EventSequence``); the tables are written here.
+    """
 
-    @classmethod
-    def create(
-        cls, folder: PathLike, scene: ResolvedScene, ageing: Optional[Mapping[str, Any]] = None
-    ) -> Results:
-        """Make a results folder for a scene; raises InputError if it holds anything."""
-        check_empty(folder)
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        scene.save(folder / "scene.json")
-        if ageing is not None:
-            write_text(folder / "ageing.json", json.dumps(ageing, indent=2) + "\n")
-        return cls(folder)
+    def __init__(self, folder: PathLike) -> None:
+        self.folder = Path(folder)
+        self.scene = self.folder / "scene.json"
+        self.checkpoint = self.folder / "checkpoint.bin"
+        self.run = self.folder / "run.json"
+        self.ageing = self.folder / "ageing.json"
+        self.stack_picture = self.folder / "stack.png"
+        self.growth_picture = self.folder / "growth.png"
+        self.events = Table(self.folder / "events.csv", EVENT_COLUMNS)
+        self.outlines = Table(self.folder / "outline.csv", ("event", "x", "z"))
+        self.conversions = Table(self.folder / "conversions.csv", CONVERSION_COLUMNS)
+        self.ageings = Table(self.folder / "ageing.csv", AGEING_COLUMNS)
+        self.energies = Table(self.folder / "energy.csv")
 
-    @classmethod
-    def reopen(
-        cls, folder: PathLike, scene: ResolvedScene, ageing: Optional[Mapping[str, Any]] = None
-    ) -> Results:
-        """Open the folder of an earlier run of the same scene; raises InputError if it is not."""
-        folder = Path(folder)
-        if not (folder / "scene.json").is_file():
-            raise InputError(f"{folder}: nothing to resume; it holds no scene.json")
-        earlier = read_object(folder / "scene.json")
-        if differing := _differences(earlier, scene.data):
-            raise InputError(
-                f"{folder}: made by another scene, which differs in {', '.join(differing)}; "
-                "resume with the scene.json in it"
-            )
-        file = folder / "ageing.json"
-        if (read_object(file) if file.is_file() else None) != ageing:
-            raise InputError(f"{file}: between its events the stack aged in another way")
-        results = cls(folder)
-        if results.events.rows:  # so that damage is known before the run goes on
-            read_events(folder)
-            for column in ADDED_UP:
-                results.events.total(column)
-        return results
+    def write_ageing(self, ageing: Mapping[str, Any]) -> None:
+        """Write down what time does to the stack between the events."""
+        write_text(self.ageing, json.dumps(ageing, indent=2) + "\n")
+
+    def check(self, ageing: Optional[Mapping[str, Any]]) -> None:
+        """Raise InputError if the tables are damaged, or the stack aged in another way."""
+        if (read_object(self.ageing) if self.ageing.is_file() else None) != ageing:
+            raise InputError(f"{self.ageing}: between its events the stack aged in another way")
+        if self.events.rows:
+            read_events(self.folder)
+
+    def missing_events(self, done: int) -> range:
+        """Return those of the events that are done which the table does not hold yet."""
+        listed = len(self.events.rows)
+        if [int(row["event"]) for row in self.events.rows] != list(range(1, listed + 1)):
+            raise InputError(f"{self.events.path}: damaged: its events are not 1, 2, ...")
+        return range(listed + 1, done + 1)
 
     def keep_through(self, event: int, *, running: bool) -> None:
         """Drop what belongs to events after `event`, or to `event` itself if it still runs."""
-        finished = event - 1 if running else event
-        for table in (self.events, self.outlines, self.energies):
-            table.keep_through(finished)
+        self.events.keep_through(event - 1 if running else event)
+        for table in (self.outlines, self.energies):  # an event's own row is written last
+            table.keep_through(len(self.events.rows))
         self.conversions.keep_through(event)
         self.ageings.keep_through(event)
 
@@ -154,37 +141,12 @@ class Results:
         self.outlines.add({"event": event, "x": x, "z": z} for x, z in outline.tolist())
 
     def particles_of(self, event: int) -> Path:
-        """Return the file for the particles after an event; its folder exists."""
-        self.particles.mkdir(exist_ok=True)
-        return self.particles / f"event_{event:03d}.vtp"
-
-    def write_series(self) -> None:
-        """Write the list that makes ParaView show the particles of all events as a series."""
-        events = (int(row["event"]) for row in self.events.rows)
-        entries = "".join(
-            f'    <DataSet timestep="{event}" file="particles/event_{event:03d}.vtp"/>\n'
-            for event in events
-        )
-        write_text(
-            self.folder / "particles.pvd",
-            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
-            f"{entries}  </Collection>\n</VTKFile>\n",
-        )
-
-    def write_run(self, facts: Mapping[str, Any]) -> None:
-        """Write run.json."""
-        write_text(self.run, json.dumps(facts, indent=2) + "\n")
+        """Return the file of the particles after an event."""
+        return self.folder / "particles" / f"event_{event:03d}.vtp"
 
     def read_run(self) -> dict[str, Any]:
         """Read run.json; empty before its first writing."""
         return read_object(self.run) if self.run.exists() else {}
-
-    def earlier_wall_s(self) -> float:
-        """Return the computing time of the run so far, s."""
-        seconds = self.read_run().get("wall_s", 0.0)
-        if not is_number(seconds):
-            raise InputError(f"{self.run}: damaged: /wall_s: {seconds!r} is not a number")
-        return float(seconds)
 
 
 def check_empty(folder: PathLike) -> None:
@@ -215,13 +177,3 @@ def read_events(folder: PathLike) -> pd.DataFrame:
         if table[name].dtype.kind not in "if" or np.isinf(table[name]).any():
             raise InputError(f"{path}: not a table of events; no finite numbers in a column {name}")
     return table
-
-
-def _differences(one: Any, other: Any, path: str = "") -> list[str]:
-    """Return the JSON paths at which two documents differ."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        keys = sorted(one.keys() | other.keys())
-        return [
-            found for k in keys for found in _differences(one.get(k), other.get(k), f"{path}/{k}")
-        ]
-    return [] if one == other else [path]

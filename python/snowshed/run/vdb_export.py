@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from snowshed._core import InputError
 from snowshed.io.vdb.writing import WrittenVdb, write_vdb
 from snowshed.io.vtp import read_particles
-from snowshed.scene.scene import ResolvedScene, PathLike
+from snowshed.methods.registry import resolution_of
+from snowshed.scene.scene import PathLike, ResolvedScene
 
 POINT_QUANTITIES = ("velocity", "event", "mass", "density", "volumetric_plastic_strain", "id")
 
@@ -95,7 +96,7 @@ def _write(file: Path, output: Path, scene: dict[str, Any], width: Optional[floa
         particles["position"],
         particles["mass"],
         dimension=scene["dimension"],
-        dx=scene["numerics"]["dx"],
+        dx=resolution_of(scene),
         particles_per_voxel=scene["seeding"]["particles_per_voxel"],
         width=width,
         attributes=points,

@@ -16,7 +16,7 @@ from snowshed import _core
 from snowshed._core import InputError
 from snowshed.run.events import Progress, run_events
 from snowshed.run.interrupt import Interrupted
-from snowshed.run.results import Results
+from snowshed.run.results import RunFolder
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.scene_hash import content_hash
 from snowshed.study.locks import holding
@@ -57,7 +57,7 @@ def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Ou
             f"this is another version of snowshed ({_core.version})"
         )
         return Outcome(task.hash, "unable", error=reason)
-    earlier = Results(folder).read_run()
+    earlier = RunFolder(folder).read_run()
     if earlier.get("status") == "failed":  # the one before was killed before it could say so
         return _outcome(task, folder, earlier["error"])
     try:
@@ -91,7 +91,7 @@ def _run_or_resume(task: Task, folder: Path, report: Optional[Callable[[Progress
 
 def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
     """Return what the results folder says, as far as the run came."""
-    results = Results(folder)
+    results = RunFolder(folder)
     events = [{name: _value(name, cell) for name, cell in row.items()}
               for row in results.events.rows]  # fmt: skip
     status = "done" if error is None else "failed"

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping
+import textwrap
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
 from snowshed.io.messages import shortened
-from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.io.record import check_once
+from snowshed.methods.mpm import MpmSettings
+from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.study.definition import Part, Study
@@ -45,7 +48,7 @@ SAMPLE_METHODS: Mapping[str, Callable[..., Factor]] = {
     "sobol": sobol,
 }
 
-TEMPLATE = """\
+_TEMPLATE = """\
 # A study: one scene, and the parameters that vary in it.
 #   snowshed study plan FILE          how many runs, and how long they will take
 #   snowshed study run FILE -o DIR    compute them; again after an interruption to go on
@@ -65,7 +68,7 @@ panel.friction = 0.2          # any field of a scene
 
 [accuracy]                    # settings that every row of the table records
 dx = 0.02
-# particles_per_voxel, pattern, precision, transfer, flip_ratio, basis, step_factor, strain_limit
+@OTHERS@
 
 # Every value of every axis with every value of the others.
 [axes]
@@ -93,6 +96,12 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 # [[part]]
 # axes.panel.tilt = [50, 60]
 """
+_OTHER_SETTINGS = ", ".join(name for name in ACCURACY if name != MpmSettings.RESOLUTION)
+
+#: A commented study file to begin with.
+TEMPLATE = _TEMPLATE.replace(
+    "@OTHERS@", textwrap.fill(_OTHER_SETTINGS, 98, initial_indent="# ", subsequent_indent="# ")
+)
 
 
 def load(file: Path) -> Study:
@@ -152,8 +161,10 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
         if key in data:
             scene.set(path, _typed(data[key], int, key, "a whole number"))
     accuracy = _table(data.get("accuracy", {}), "accuracy")
-    _check_keys(accuracy, tuple(ACCURACY), "accuracy.")
-    return scene.update({ACCURACY[key]: value for key, value in accuracy.items()})
+    names = {key: FORMER_NAMES.get(key, key) for key in accuracy}
+    _check_keys(names.values(), tuple(ACCURACY), "accuracy.")
+    _named("accuracy", check_once, names, "")
+    return scene.update({ACCURACY[names[key]]: value for key, value in accuracy.items()})
 
 
 def _scene_file(file: Path) -> dict[str, Any]:
@@ -304,7 +315,7 @@ def _table(value: Any, where: str) -> Mapping[str, Any]:
     return value
 
 
-def _check_keys(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> None:
+def _check_keys(data: Iterable[str], allowed: tuple[str, ...], where: str) -> None:
     for key in data:
         if key not in allowed:
             raise InputError(f"{where}{key}: unknown key; allowed: {', '.join(allowed)}")

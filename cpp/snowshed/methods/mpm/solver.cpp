@@ -130,6 +130,28 @@ void MpmSolver<T, D>::add(const ParticleBatch& batch) {
 }
 
 template <class T, int D>
+void MpmSolver<T, D>::check(const std::vector<ParticleBatch>& batches) const {
+  for (const ParticleBatch& batch : batches) {
+    materials_.at(std::size_t(batch.material_id));
+    for (const Vec3& x : batch.positions)
+      Placement<D>::of(section<D>(x), options_.numerics.dx, options_.numerics.basis);
+  }
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::add(const std::vector<ParticleBatch>& batches) {
+  check(batches);
+  for (const ParticleBatch& batch : batches) add(batch);
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::replace(const std::vector<ParticleBatch>& batches) {
+  check(batches);
+  clear();
+  add(batches);
+}
+
+template <class T, int D>
 BlockKey MpmSolver<T, D>::put(std::size_t particle, const VecD<D>& position) {
   const auto place = Placement<D>::of(position, options_.numerics.dx, options_.numerics.basis);
   for (int d = 0; d < D; ++d) particles_.cell[d][particle] = T(place.cell[d]);
@@ -214,8 +236,8 @@ void MpmSolver<T, D>::step() {
     sort();
     scatter();
   }
-  dt_ = update_within_limits(
-      next_time_step(elastic_limit_, speed_, options_.numerics.dx, options_.numerics.step_factor));
+  dt_ = update_within_limits(next_time_step(elastic_limit_, speed_, options_.numerics.dx,
+                                            options_.numerics.courant_factor));
   g2p2g(dt_);
   time_ += dt_;
   ++counters_.steps;
@@ -319,7 +341,7 @@ double MpmSolver<T, D>::update_within_limits(double dt) {
       std::ostringstream message;
       message << "the time step fell to " << dt << " s at t = " << time_
               << " s: the snow would strain by " << strain << " in one step (limit " << limit
-              << "); try a smaller numerics.step_factor";
+              << "); try a smaller numerics.courant_factor";
       throw SimulationError(message.str());
     }
     update(dt);
@@ -332,8 +354,9 @@ double MpmSolver<T, D>::update_within_limits(double dt) {
 template <class T, int D>
 double MpmSolver<T, D>::largest_strain() {
   const double dx = options_.numerics.dx;
-  const double rate_limit = options_.numerics.strain_limit /
-                            next_time_step(elastic_limit_, 0.0, dx, options_.numerics.step_factor);
+  const double rate_limit =
+      options_.numerics.strain_limit /
+      next_time_step(elastic_limit_, 0.0, dx, options_.numerics.courant_factor);
   const auto bound_over = [&](const auto& grid_blocks) {
     VecD<D> low = VecD<D>::Constant(infinity), high = -low;
     for (std::int32_t g : grid_blocks) {
@@ -417,7 +440,7 @@ void MpmSolver<T, D>::check_particles() const {
               << ", beyond what can be resolved (" << elastic_strain_limit
               << "); snow.youngs_modulus is too small for such speeds";
     else
-      message << "its state is no longer finite; try a smaller numerics.step_factor or double "
+      message << "its state is no longer finite; try a smaller numerics.courant_factor or double "
                  "precision";
     throw SimulationError(message.str());
   }

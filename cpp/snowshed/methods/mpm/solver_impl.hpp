@@ -16,6 +16,8 @@ class MpmSolver final : public Method {
   MpmSolver(const MpmOptions& options, std::vector<Obstacle> obstacles);
 
   void add(const ParticleBatch&) override;
+  void add(const std::vector<ParticleBatch>&) override;
+  void replace(const std::vector<ParticleBatch>&) override;
   void clear() override;
   void add_velocity(const std::vector<Vec3>& velocity_changes) override;
   void settle(const std::vector<double>& drops,
@@ -61,6 +63,7 @@ class MpmSolver final : public Method {
   double elastic_energy() const;
   double kinetic_energy() const;
   void find_elastic_limits();
+  void check(const std::vector<ParticleBatch>&) const;          ///< throws where `add` would
   BlockKey put(std::size_t particle, const VecD<D>& position);  ///< returns the block it is in
   void place(std::vector<BlockKey> blocks);  ///< makes all else follow the particles
   const Material& material_of(std::size_t particle) const {

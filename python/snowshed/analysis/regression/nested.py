@@ -27,7 +27,7 @@ from snowshed.io.json_file import read_object
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 
 IDENTITY = "regression.json"
-FORMAT = 1  # of the results of folds; another one is computed anew
+FORMAT = 2  # of the results of folds; another one is computed anew
 POLL_S = 0.25  # s between looks at interrupts
 
 
@@ -161,8 +161,8 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
     if path.is_file():
         if read_object(path) != identity:
             raise InputError(
-                f"{folder}: holds a regression of another table, or with other folds; take a new "
-                "folder"
+                f"{folder}: holds a regression of another table, with other folds, or by another "
+                "version of snowshed; take a new folder"
             )
         return
     if folder.exists() and any(folder.iterdir()):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Union
 from snowshed._core import InputError
 from snowshed.io.json_file import check_values, is_number
 from snowshed.io.messages import quoted, shortened
+from snowshed.scene.accuracy_settings import FORMER_NAMES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 Value = Union[str, int, float, bool]
 
 #: One way of solving a problem: names of scene parameters without their section ("dx", "transfer",
-#: "flip_ratio", "basis", "precision", "particles_per_voxel", "step_factor", "between",
+#: "flip_ratio", "basis", "precision", "particles_per_voxel", "courant_factor", "between",
 #: "dimension", "seed", ...) or of the problem's own parameters ("friction", "law"), and their
 #: values.
 Settings = Mapping[str, Value]
@@ -137,7 +138,8 @@ class Measurement:
         measured = [
             _measured(one, f"{where}: /measured/{i}") for i, one in enumerate(data["measured"])
         ]
-        return cls(**{**data, "measured": measured})
+        settings = {FORMER_NAMES.get(k, k): v for k, v in data["settings"].items()}
+        return cls(**{**data, "settings": settings, "measured": measured})
 
 
 def key_of(case: str, settings: Settings) -> str:

@@ -115,7 +115,7 @@ def prediction_json(prediction: Prediction) -> str:
         "units": TARGETS,
         "extrapolated": prediction.extrapolated,
         "objections": list(prediction.objections),
-        "predictions": prediction.table.to_dict("records"),
+        "predictions": prediction.table.drop(columns=["panel", "extrapolated"]).to_dict("records"),
     }
     return json.dumps(content, indent=1)
 

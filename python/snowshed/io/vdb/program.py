@@ -6,7 +6,7 @@ import os
 import subprocess
 from pathlib import Path
 
-from snowshed import _core
+import snowshed._core as _core
 
 PROGRAM = Path(_core.__file__).with_name("snowshed-vdb")
 REFUSED = 2  # exit code; the reason is on standard output

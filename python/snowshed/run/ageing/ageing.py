@@ -18,6 +18,7 @@ import numpy as np
 from snowshed import _core
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats
+from snowshed.methods.registry import resolution_of
 from snowshed.run.ageing.columns import SnowColumns
 from snowshed.snow.relations.relation import choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
@@ -165,7 +166,7 @@ class _Snow:
             self.masses[self.stack],
             densities[self.stack],
             simulation.dimension,
-            float(scene["numerics"]["dx"]),
+            resolution_of(scene),
         )
         snows = [json.loads(snow) for snow in simulation.snows]
         self._kinds = simulation.kinds()

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import read_csv
+from snowshed.methods.registry import resolution_of
 from snowshed.run.events import Reporter, run_events
 from snowshed.run.results import EVENT_COLUMNS, check_empty
 from snowshed.run.season.accumulation import Day, accumulate, pauses
@@ -20,7 +21,7 @@ from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
 from snowshed.run.season.table import season_table
 from snowshed.run.season.weather import Weather, read_season
-from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -108,9 +109,10 @@ def run_season(
     settings = settings or SeasonSettings()
     rows = read_season(season) if isinstance(season, (str, os.PathLike)) else season
     ready = scene.resolve() if isinstance(scene, Scene) else scene
-    if "panel" not in ready.data:
+    data: dict[str, Any] = ready.data
+    if "panel" not in data:
         raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
-    days = accumulate(rows, settings, ready.data["panel"]["tilt"], ready.data["gravity"])
+    days = accumulate(rows, settings, data["panel"]["tilt"], data["gravity"])
     folder = SeasonFolder(out_dir)
     if not resume:
         check_empty(folder.folder)
@@ -142,7 +144,7 @@ def _result(
     outlines = _table_or_empty(folder.run.outlines.path, ("event", "x", "z"))
     table = season_table(scene.data, days, settings, events, outlines)
     simulated = table[pd.notna(table["event"]) & pd.notna(table["stack_height_m"])]
-    dx = float(scene.data["numerics"]["dx"])
+    dx = resolution_of(scene.data)
     staying = _first_staying(events)
     return SeasonResult(
         table,
@@ -189,7 +191,7 @@ def _notes(
     if estimated:
         notes.append(f"{estimated} densities are estimates ({settings.density})")
     if released:
-        dx = scene["numerics"]["dx"]
+        dx = resolution_of(scene)
         thinnest = min(day.thickness for day in released)
         if thinnest < 2.0 * dx:
             notes.append(

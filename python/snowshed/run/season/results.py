@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from snowshed.run.results import Results
+from snowshed.run.results import RunFolder
 from snowshed.scene.scene import PathLike
 
 SEASON_COLUMNS = (
@@ -44,4 +44,4 @@ class SeasonFolder:
         self.table = self.folder / "season.csv"
         self.figure = self.folder / "season.png"
         self.summary = self.folder / "season.json"
-        self.run = Results(self.folder / "run")
+        self.run = RunFolder(self.folder / "run")

@@ -1,8 +1,11 @@
-// What visitors of a scene that hold no JSON share: a path, and the walk into nested objects.
+// Base of the visitors that know where in a scene they are: it keeps the path to the object that is
+// visited, and visits the objects in it.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "snowshed/core/errors.hpp"
@@ -11,15 +14,16 @@
 
 namespace snowshed {
 
-/// The whole document is "/" in messages, "" as a prefix of paths.
+/// The path as messages show it: the whole document, whose path is empty, is "/".
 inline std::string shown_path(const std::string& path) { return path.empty() ? "/" : path; }
 
-/// `Self` is the visitor; it is copied to visit what lies deeper.
+/// `Self` is the visitor. A copy of it visits each nested object.
 template <class Self>
-class Walker {
+class PathVisitor {
  public:
-  /// `dimension` is a reference because reading a scene fills it in on the way.
-  Walker(std::string path, const int& dimension) : path_(std::move(path)), dimension_(dimension) {}
+  /// `dimension` is a reference, because a reader learns it from the scene it reads.
+  PathVisitor(std::string path, const int& dimension)
+      : path_(std::move(path)), dimension_(dimension) {}
 
   template <class T>
   void object(const char* key, T& value, Need, const char*) {
@@ -36,6 +40,14 @@ class Walker {
     for (std::size_t i = 0; i < items.size(); ++i)
       visit(pointer(at(key), std::to_string(i)), items[i]);
   }
+
+  void method(const char*, const char* settings_key, MethodSettings& settings, const char*,
+              const char*) {
+    std::visit([&](auto& own) { visit(at(settings_key), own); }, settings);
+  }
+
+  void alias(const char*, const char*) {}
+  void accuracy(std::initializer_list<const char*>) {}
 
   void variants(const char* key, std::string& type, const char*) {
     variant_key_ = key;

@@ -1,0 +1,99 @@
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "snowshed/run/event_sequence.hpp"
+#include "snowshed/scene/scene_json.hpp"
+
+namespace py = pybind11;
+
+namespace snowshed {
+namespace {
+
+py::dict facts_dict(const EventFacts& facts) {
+  py::dict d;
+  d["event"] = facts.event;
+  d["sim_time_s"] = facts.sim_time;
+  d["steps"] = facts.steps;
+  d["wall_s"] = facts.wall;
+  d["ended"] = facts.ended;
+  d["laid_height_m"] = facts.laid_height;
+  py::dict energy;
+  for (const auto& [name, joules] : facts.energy) energy[name.c_str()] = joules;
+  d["energy"] = energy;
+  return d;
+}
+
+/// Passes all on to a Python object with the same methods.
+class PythonObserver : public EventObserver {
+ public:
+  explicit PythonObserver(py::object observer) : observer_(std::move(observer)) {}
+
+  void between_events(Simulation&) override {
+    py::gil_scoped_acquire gil;
+    observer_.attr("between_events")();
+  }
+  void event_begun(const Simulation&, const std::optional<Reseeding>& reseeding) override {
+    py::gil_scoped_acquire gil;
+    observer_.attr("event_begun")(reseeding_dict(reseeding));
+  }
+  void progress(const Simulation&, const RunReport& report) override {
+    py::gil_scoped_acquire gil;
+    observer_.attr("progress")(report_dict(report));
+  }
+  void event_ended(const Simulation&, const EventFacts& facts) override {
+    py::gil_scoped_acquire gil;
+    observer_.attr("event_ended")(facts_dict(facts));
+  }
+  bool stop_requested() override {
+    py::gil_scoped_acquire gil;
+    return observer_.attr("stop_requested")().cast<bool>();
+  }
+
+ private:
+  py::object observer_;
+};
+
+bool run(EventSequence& sequence, const py::object& observer, double report_interval) {
+  PythonObserver passing_on(observer);
+  py::gil_scoped_release release;
+  return sequence.run(passing_on, report_interval);
+}
+
+py::list finished_events(const EventSequence& sequence) {
+  py::list events;
+  for (const EventFacts& facts : sequence.record().finished) events.append(facts_dict(facts));
+  return events;
+}
+
+}  // namespace
+
+void bind_event_sequence(py::module_& m) {
+  using namespace py::literals;
+  py::class_<EventSequence>(m, "EventSequence")
+      .def_static(
+          "create",
+          [](const std::string& json, const std::string& base_dir, const std::string& folder) {
+            return EventSequence::create(parse_scene(json), base_dir, folder);
+          },
+          "scene_json"_a, "base_dir"_a, "folder"_a)
+      .def_static(
+          "resume",
+          [](const std::string& json, const std::string& base_dir, const std::string& folder) {
+            return EventSequence::resume(parse_scene(json), base_dir, folder);
+          },
+          "scene_json"_a, "base_dir"_a, "folder"_a)
+      .def("run", &run, "observer"_a, "report_interval_s"_a)
+      .def("record_failure", &EventSequence::record_failure, "error"_a)
+      .def("count_from", &EventSequence::count_from, "steps"_a, "wall_s"_a)
+      .def(
+          "describe_machine",
+          [](EventSequence& s, std::map<std::string, std::string> facts) {
+            s.record().machine = std::move(facts);
+          },
+          "facts"_a)
+      .def_property_readonly("simulation", &EventSequence::simulation,
+                             py::return_value_policy::reference_internal)
+      .def_property_readonly("finished_events", &finished_events);
+}
+
+}  // namespace snowshed

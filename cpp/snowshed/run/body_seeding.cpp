@@ -1,0 +1,116 @@
+#include "snowshed/run/body_seeding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/run/cost_estimate.hpp"
+#include "snowshed/sampling/seeding.hpp"
+#include "snowshed/sampling/voxel_set.hpp"
+#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/build_shape.hpp"
+#include "snowshed/scene/shape_measure.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Geometry knows no scene; gives its errors the place in it.
+template <class Action>
+auto naming(const std::string& path, Action action) {
+  try {
+    return action();
+  } catch (const InputError& error) {
+    if (!error.where().empty() && error.where().front() == '/') throw;
+    throw InputError(path, error.what());
+  } catch (const SimulationError& error) {  // beyond the addressable grid
+    throw InputError(path, error.what());
+  }
+}
+
+std::string body_path(std::size_t i) { return "/bodies/" + std::to_string(i) + "/shape"; }
+
+/// Where in the scene the bodies of `assemble_bodies` stand.
+std::vector<std::string> body_paths(const Scene& scene, int event) {
+  std::vector<std::string> paths;
+  if (scene.slab) {
+    const auto& layers = scene.slab->layers;
+    if (layers.empty()) paths.push_back("/slab");
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      if (is_laid_in(layers[i], event)) paths.push_back("/slab/layers/" + std::to_string(i));
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (is_laid_in(scene.bodies[i], event)) paths.push_back(body_path(i));
+  return paths;
+}
+
+/// What the scene tells of a body's volume (m3, in 2D m2); else it is measured, coarsely, in the
+/// solid itself, whose files are read here before anything is run.
+double body_volume(const BodySpec& body, const Scene& scene, const std::string& path,
+                   const std::filesystem::path& base_dir) {
+  if (const auto told = shape_volume(body.shape, scene.dimension)) return *told;
+  return naming(path, [&] {
+    const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
+    const Vec3 size = shape->bounds().max - shape->bounds().min;
+    return measure(*shape, scene.dimension, std::max(resolution(scene.numerics), size.maxCoeff() / 64));
+  });
+}
+
+/// Fills a body of snow with particles of equal mass; returns its mass, kg.
+double seed_body(const BodySpec& body, const Scene& scene, const std::string& path,
+                 const std::filesystem::path& base_dir, std::uint64_t seed, ParticleBatch& batch) {
+  const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
+  const double dx = resolution(scene.numerics);
+  const Snow& snow = snow_of(scene, body);
+  batch.positions = snowshed::seed(*shape, scene.dimension, dx, scene.seeding.particles_per_voxel,
+                                   scene.seeding.pattern, seed);
+  const double mass = snow.density * measure(*shape, scene.dimension, dx);
+  batch.mass = mass / double(batch.positions.size());
+  batch.velocity = body.velocity;
+  batch.material_id = material_id_of(snow, assemble_snows(scene));
+  return mass;
+}
+
+}  // namespace
+
+SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
+                      const PanelRegion& panel, int event, double lift) {
+  SeededSnow snow;
+  const std::vector<BodySpec> bodies = assemble_bodies(scene, event, lift);
+  const std::vector<std::string> paths = body_paths(scene, event);
+  const std::size_t layers = assemble_slab(scene, event).size();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::uint64_t seed = scene.seeding.seed + 1000003u * std::uint64_t(event) + i;
+    ParticleBatch& batch = snow.batches.emplace_back();
+    batch.event = event;
+    snow.mass += naming(
+        paths[i], [&] { return seed_body(bodies[i], scene, paths[i], base_dir, seed, batch); });
+    if (i >= layers) snow.height_on_panel += panel.height_of(batch.positions);
+  }
+  if (scene.slab) snow.height_on_panel += slab_thickness(*scene.slab, event);
+  return snow;
+}
+
+double slab_mass(const Scene& scene, int event) {
+  double mass = 0;
+  for (const BodySpec& layer : assemble_slab(scene, event))
+    mass += snow_of(scene, layer).density * shape_volume(layer.shape, scene.dimension).value();
+  return mass;
+}
+
+std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir) {
+  std::vector<double> counts = estimate_cost(scene).particles;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const BodySpec& body = scene.bodies[i];
+    const double volume = body_volume(body, scene, body_path(i), base_dir);
+    const double count =
+        volume / std::pow(resolution(scene.numerics), scene.dimension) * scene.seeding.particles_per_voxel;
+    if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
+    if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
+    for (int event = 1; event <= scene.events.count; ++event)
+      if (is_laid_in(body, event)) counts[std::size_t(event - 1)] += count;
+  }
+  return counts;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,32 @@
+// The snow that an event brings: how much it will be, and where its particles are.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "snowshed/methods/method.hpp"
+#include "snowshed/run/panel_region.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// The slab and the bodies of one event, as particles.
+struct SeededSnow {
+  std::vector<ParticleBatch> batches;  // one for each layer of the slab, then for each body
+  double mass = 0;                     // kg
+  double height_on_panel = 0;          // m along its normal: the slab, and bodies over the panel
+};
+
+/// Seeds the snow of `event` (1 is the first), its slab `lift` metres above the panel. Throws
+/// InputError naming the layer or body that cannot be seeded.
+SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
+                      const PanelRegion& panel, int event, double lift);
+
+/// Returns the mass of the slab laid at the start of an event, kg.
+double slab_mass(const Scene& scene, int event);
+
+/// Returns how many particles each event will bring, by the volumes of its snow; reads the files
+/// of bodies. Throws InputError where a body cannot be built or is too small for a particle.
+std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir);
+
+}  // namespace snowshed

@@ -1,0 +1,130 @@
+#include "snowshed/run/event_sequence.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "snowshed/methods/energy_balance.hpp"
+
+namespace fs = std::filesystem;
+
+namespace snowshed {
+
+EventSequence EventSequence::create(const Scene& scene, const fs::path& base_dir,
+                                    const fs::path& folder) {
+  ResultsFolder::require_empty(folder);
+  auto sim = std::make_unique<Simulation>(scene, base_dir);
+  sim->begin_event();  // seeding may fail, and then nothing must be left behind
+  ResultsFolder results = ResultsFolder::create(folder, sim->scene());
+  return {std::move(sim), std::move(results), {}};
+}
+
+EventSequence EventSequence::resume(const Scene& scene, const fs::path& base_dir,
+                                    const fs::path& folder) {
+  ResultsFolder results = ResultsFolder::reopen(folder, scene);
+  RunRecord record = RunRecord::read(results.record());
+  auto sim = fs::exists(results.checkpoint()) ? Simulation::load(results.checkpoint())
+                                              : std::make_unique<Simulation>(scene, base_dir);
+  record.keep_through(sim->event() - int(sim->event_running()));
+  return {std::move(sim), std::move(results), std::move(record)};
+}
+
+EventSequence::EventSequence(std::unique_ptr<Simulation> sim, ResultsFolder folder,
+                             RunRecord record)
+    : sim_(std::move(sim)),
+      folder_(std::move(folder)),
+      record_(std::move(record)),
+      steps_before_(0),
+      wall_before_(0),
+      earlier_wall_(record_.wall) {
+  for (const EventFacts& facts : record_.finished) {
+    steps_before_ += facts.steps;
+    wall_before_ += facts.wall;
+  }
+  const int done = sim_->event() - int(sim_->event_running());
+  if (int(record_.finished.size()) < done)  // of the version before, which kept no such record
+    count_from(sim_->solver().counters().steps, earlier_wall_);
+}
+
+bool EventSequence::is_done() const {
+  return !sim_->event_running() && sim_->event() >= sim_->scene().events.count;
+}
+
+bool EventSequence::run(EventObserver& observer, double report_interval) {
+  const double every = sim_->scene().output.snapshot_interval;
+  if (every > 0) sim_->write_snapshots(folder_.snapshots(), every);
+  while (!is_done()) {
+    const bool stopped = observer.stop_requested();
+    if (!stopped) begin_event(observer);
+    const RunEnd end = stopped ? RunEnd::paused : run_event(observer, report_interval);
+    if (end == RunEnd::paused) return checkpoint("interrupted"), false;
+    end_event(observer, end);
+  }
+  write_record("finished");
+  return true;
+}
+
+void EventSequence::begin_event(EventObserver& observer) {
+  std::optional<Reseeding> reseeding;
+  if (!sim_->event_running()) {
+    if (sim_->event() > 0) observer.between_events(*sim_);
+    reseeding = sim_->begin_event();
+  }
+  observer.event_begun(*sim_, reseeding);
+}
+
+/// Returns how the event ended; paused where the observer stopped it.
+RunEnd EventSequence::run_event(EventObserver& observer, double report_interval) {
+  const double every = sim_->scene().output.checkpoint_interval;
+  while (true) {
+    bool stopped = false;
+    const auto go_on = [&](const RunReport& report) {
+      observer.progress(*sim_, report);
+      stopped = observer.stop_requested();
+      return !stopped && !(every > 0 && since_checkpoint_.seconds() > every);
+    };
+    const RunEnd end = sim_->run(go_on, report_interval);
+    if (end != RunEnd::paused || stopped) return end;
+    checkpoint("running");
+  }
+}
+
+/// The checkpoint comes last: what is newer than it is written again when the run is resumed.
+void EventSequence::end_event(EventObserver& observer, RunEnd end) {
+  EventFacts facts;
+  facts.event = sim_->event();
+  facts.sim_time = sim_->event_time();
+  facts.steps = sim_->solver().counters().steps - steps_before_;
+  facts.wall = std::max(wall() - wall_before_, 0.0);
+  facts.ended = name_of(end);
+  facts.laid_height = sim_->laid_height();
+  if (sim_->scene().output.energy) facts.energy = named_energies(sim_->solver().energy());
+  folder_.write_particles(*sim_);
+  observer.event_ended(*sim_, facts);
+  steps_before_ += facts.steps;
+  wall_before_ += facts.wall;
+  record_.finished.push_back(std::move(facts));
+  checkpoint("running");
+}
+
+void EventSequence::checkpoint(const std::string& status) {
+  write_record(status);
+  sim_->save(folder_.checkpoint());
+  since_checkpoint_.restart();
+}
+
+void EventSequence::write_record(const std::string& status, const std::string& error) {
+  record_.wall = wall();
+  record_.write(folder_.record(), *sim_, status, error);
+}
+
+/// Between two events the last checkpoint is of the same snow, before it aged.
+void EventSequence::record_failure(const std::string& error) {
+  try {
+    if (sim_->event_running()) sim_->save(folder_.checkpoint());
+  } catch (const std::exception&) {  // the last good one stays
+  }
+  write_record("failed", error);
+}
+
+}  // namespace snowshed

@@ -1,0 +1,80 @@
+// All events of a scene, one after the other, into a results folder: the one loop that both the
+// executable and Python run.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "snowshed/core/timer.hpp"
+#include "snowshed/run/results_folder.hpp"
+#include "snowshed/run/run_record.hpp"
+#include "snowshed/run/simulation.hpp"
+
+namespace snowshed {
+
+/// Is told how a sequence of events goes on.
+class EventObserver {
+ public:
+  virtual ~EventObserver() = default;
+
+  /// Before the next event begins; the snow may be settled.
+  virtual void between_events(Simulation&) {}
+  /// An event has begun, or is gone on with; `reseeding` tells what became of the stack before it.
+  virtual void event_begun(const Simulation&, const std::optional<Reseeding>& /*reseeding*/) {}
+  virtual void progress(const Simulation&, const RunReport&) {}
+  /// An event has ended and its particles are in the folder, but there is no checkpoint of it yet.
+  virtual void event_ended(const Simulation&, const EventFacts&) {}
+  /// Asked at every report and between events; true interrupts the sequence.
+  virtual bool stop_requested() { return false; }
+};
+
+class EventSequence {
+ public:
+  /// Begins a run in a folder that is new or empty. The first snow is laid before anything is
+  /// written. Throws InputError.
+  static EventSequence create(const Scene& scene, const std::filesystem::path& base_dir,
+                              const std::filesystem::path& folder);
+
+  /// Goes on from the last checkpoint in the folder of an earlier run of the same scene, whichever
+  /// program began it, or begins where there is no checkpoint yet. Throws InputError.
+  static EventSequence resume(const Scene& scene, const std::filesystem::path& base_dir,
+                              const std::filesystem::path& folder);
+
+  /// Runs the events that are left, with a report every `report_interval` seconds of wall time and
+  /// checkpoints as the scene's output.checkpoint_interval asks, and after each event. Returns
+  /// false if the observer stopped it, after a checkpoint. What is thrown by the simulation or the
+  /// observer comes through.
+  bool run(EventObserver&, double report_interval);
+
+  /// Records in the folder that the run cannot go on, with a checkpoint of its last good state.
+  void record_failure(const std::string& error);
+
+  /// Steps and wall time (s) of the events that are done, where run.json does not tell.
+  void count_from(std::int64_t steps, double wall) { steps_before_ = steps, wall_before_ = wall; }
+
+  Simulation& simulation() { return *sim_; }
+  const RunRecord& record() const { return record_; }
+  RunRecord& record() { return record_; }
+
+ private:
+  EventSequence(std::unique_ptr<Simulation>, ResultsFolder, RunRecord);
+
+  bool is_done() const;
+  void begin_event(EventObserver&);
+  RunEnd run_event(EventObserver&, double report_interval);
+  void end_event(EventObserver&, RunEnd);
+  void checkpoint(const std::string& status);
+  void write_record(const std::string& status, const std::string& error = "");
+  double wall() const { return earlier_wall_ + clock_.seconds(); }
+
+  std::unique_ptr<Simulation> sim_;
+  ResultsFolder folder_;
+  RunRecord record_;
+  std::int64_t steps_before_;          // the present event
+  double wall_before_, earlier_wall_;  // s, before the present event and before resuming
+  Stopwatch clock_, since_checkpoint_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,109 @@
+#include "snowshed/run/reseeding.hpp"
+
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/particles/point_grid.hpp"
+#include "snowshed/sampling/particle_voxels.hpp"
+#include "snowshed/sampling/seeding.hpp"
+
+namespace snowshed {
+namespace {
+
+/// For each point the particle nearest to it, all of them within `reach` of one.
+std::vector<std::size_t> nearest_particles(const std::vector<Vec3>& points,
+                                           const std::vector<Vec3>& particles, double reach) {
+  const PointGrid grid(particles, reach);
+  std::vector<std::size_t> found;
+  for (const Vec3& x : points) {
+    std::size_t at = particles.size() - 1;
+    double nearest = std::numeric_limits<double>::infinity();
+    grid.for_each_near(x, [&](std::size_t i, const Vec3& y) {
+      const double distance = (x - y).squaredNorm();
+      if (distance >= nearest) return;
+      nearest = distance;
+      at = i;
+    });
+    found.push_back(at);
+  }
+  return found;
+}
+
+int material_id_of(const ParticleState& particles, std::size_t i) {
+  return particles.material_ids.empty() ? 0 : particles.material_ids[i];
+}
+
+/// Shares out the mass of old particles among the new ones that stand for them (`old_of`): each
+/// snow keeps its mass, in equal parts. That of a snow without new particles goes to all.
+std::vector<double> share_masses(const ParticleState& old, const std::vector<std::size_t>& old_of,
+                                 std::size_t snows) {
+  std::vector<double> mass(snows), count(snows);
+  for (std::size_t i = 0; i < old.masses.size(); ++i) mass[material_id_of(old, i)] += old.masses[i];
+  for (const std::size_t i : old_of) ++count[material_id_of(old, i)];
+  double placed = 0, left = 0;
+  for (std::size_t k = 0; k < snows; ++k) (count[k] > 0 ? placed : left) += mass[k];
+  std::vector<double> masses;
+  for (const std::size_t i : old_of) {
+    const int material_id = material_id_of(old, i);
+    masses.push_back(mass[material_id] / count[material_id] * (1 + left / placed));
+  }
+  return masses;
+}
+
+/// Points that fill the stack as a solid.
+std::vector<Vec3> fill_stack(const Scene& scene, const std::vector<Vec3>& stack, int event) {
+  const Seeding& s = scene.seeding;
+  const double dx = resolution(scene.numerics);
+  const Shape solid = particles_to_level_set(
+      stack, scene.dimension, dx, particle_radius(scene.dimension, dx, s.particles_per_voxel));
+  return seed(*solid, scene.dimension, dx, s.particles_per_voxel, s.pattern,
+              s.seed + 1000003u * std::uint64_t(event) + 500000u);
+}
+
+/// The new particles by event and snow, which they have from the old ones.
+std::vector<ParticleBatch> batches_of(const Reseeding::Cloud& cloud, const ParticleState& old,
+                                      const std::vector<std::size_t>& old_of) {
+  std::map<std::pair<int, int>, ParticleBatch> sorted;
+  for (std::size_t i = 0; i < old_of.size(); ++i) {
+    const int event = old.events[old_of[i]], material_id = material_id_of(old, old_of[i]);
+    ParticleBatch& batch = sorted[{event, material_id}];
+    batch.positions.push_back(cloud.positions[i]);
+    batch.mass = cloud.masses[i];
+    batch.event = event;
+    batch.material_id = material_id;
+  }
+  std::vector<ParticleBatch> batches;
+  for (auto& [_, batch] : sorted) batches.push_back(std::move(batch));
+  return batches;
+}
+
+}  // namespace
+
+Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleState old, int event,
+                       double laid_height) try {
+  const std::vector<Snow> snows = assemble_snows(scene);
+  const auto initial_density = [&](std::size_t i) {
+    return snows[std::size_t(material_id_of(old, i))].density;
+  };
+  Reseeding r;
+  r.after.positions = fill_stack(scene, old.positions, event);
+  const auto old_of = nearest_particles(r.after.positions, old.positions, 1.5 * resolution(scene.numerics));
+  r.after.masses = share_masses(old, old_of, snows.size());
+  for (const std::size_t i : old_of) r.after.densities.push_back(initial_density(i));
+  r.after.on_panel = panel.contains(r.after.positions, laid_height);
+  r.batches = batches_of(r.after, old, old_of);
+
+  for (std::size_t i = 0; i < old.masses.size(); ++i)
+    r.before.densities.push_back(initial_density(i));
+  r.before.on_panel = panel.contains(old.positions, laid_height);
+  r.before.positions = std::move(old.positions);
+  r.before.masses = std::move(old.masses);
+  return r;
+} catch (const InputError& error) {
+  throw SimulationError(std::string("cannot reseed the stack: ") + error.what());
+}
+
+}  // namespace snowshed

@@ -1,0 +1,31 @@
+// The thesis's way between events (A.3.5): the stack is turned into a solid and seeded afresh.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/methods/method.hpp"
+#include "snowshed/run/panel_region.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// The stack before and after it was seeded afresh.
+struct Reseeding {
+  struct Cloud {
+    std::vector<Vec3> positions;    // m
+    std::vector<double> masses;     // kg
+    std::vector<double> densities;  // kg/m3, initial
+    std::vector<bool> on_panel;
+  };
+  Cloud before, after;
+  std::vector<ParticleBatch> batches;  // the particles after, by event and snow
+};
+
+/// Seeds the stack `old` afresh before the event that follows `event`: at rest, in its initial
+/// state, with its mass. Event and snow of a new particle are those of the old one nearest to it,
+/// and each snow keeps its mass. The snow that stayed on the panel is converted along with it, so
+/// nothing is lost. Throws SimulationError where the stack cannot be converted.
+Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleState old, int event,
+                       double laid_height);
+
+}  // namespace snowshed

@@ -1,0 +1,80 @@
+#include "snowshed/run/results_folder.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/pvd_series.hpp"
+#include "snowshed/scene/json_text.hpp"
+#include "snowshed/scene/scene_json.hpp"
+
+namespace fs = std::filesystem;
+
+namespace snowshed {
+namespace {
+
+/// The JSON paths at which two scenes differ, "/panel/tilt, /snow/density".
+std::string differences(const Scene& one, const Scene& other) {
+  const auto json_of = [](const Scene& s) { return parse_json(write_scene(resolve(s)), "scene"); };
+  std::set<std::string> paths;
+  for (const auto& change : nlohmann::json::diff(json_of(one), json_of(other)))
+    paths.insert(change["path"].get<std::string>());
+  std::string list;
+  for (const std::string& path : paths) list += (list.empty() ? "" : ", ") + path;
+  return list;
+}
+
+/// Where the system refuses, the error is a FileError, as everywhere.
+template <class Action>
+auto with_file_errors(Action action) {
+  try {
+    return action();
+  } catch (const fs::filesystem_error& error) {
+    throw FileError(error.path1().string() + ": " + error.code().message());
+  }
+}
+
+void make_folder(const fs::path& folder) {
+  with_file_errors([&] { fs::create_directories(folder); });
+}
+
+}  // namespace
+
+void ResultsFolder::require_empty(const fs::path& folder) {
+  const bool exists = with_file_errors([&] { return fs::exists(folder); });
+  if (!exists) return;
+  if (!fs::is_directory(folder)) throw InputError(folder.string(), "is not a folder");
+  if (!with_file_errors([&] { return fs::is_empty(folder); }))
+    throw InputError(folder.string(), "not empty; choose a new folder, or go on with --resume");
+}
+
+ResultsFolder ResultsFolder::create(fs::path folder, const Scene& scene) {
+  require_empty(folder);
+  make_folder(folder);
+  write_atomic(folder / "scene.json", write_scene(scene) + "\n");
+  return ResultsFolder(std::move(folder));
+}
+
+ResultsFolder ResultsFolder::reopen(fs::path folder, const Scene& scene) {
+  const fs::path file = folder / "scene.json";
+  if (!with_file_errors([&] { return fs::is_regular_file(file); }))
+    throw InputError(folder.string(), "nothing to resume; it holds no scene.json");
+  const std::string paths = differences(load_scene(file), scene);
+  if (!paths.empty())
+    throw InputError(folder.string(), "made by another scene, which differs in " + paths +
+                                          "; resume with the scene.json in it");
+  return ResultsFolder(std::move(folder));
+}
+
+void ResultsFolder::write_particles(const Simulation& sim) const {
+  char name[32];
+  std::snprintf(name, sizeof name, "particles/event_%03d.vtp", sim.event());
+  make_folder(folder_ / "particles");
+  sim.write_vtp(folder_ / name);
+  PvdSeries::reopen(folder_ / "particles.pvd", sim.event()).append(sim.event(), name);
+}
+
+}  // namespace snowshed

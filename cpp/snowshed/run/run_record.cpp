@@ -1,0 +1,108 @@
+#include "snowshed/run/run_record.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "snowshed/core/memory.hpp"
+#include "snowshed/io/atomic_file.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/scene/enum_names.hpp"
+#include "snowshed/scene/json_text.hpp"
+#include "snowshed/scene/json_value.hpp"
+
+namespace snowshed {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+ordered_json to_json(const EventFacts& facts) {
+  ordered_json j{{"event", facts.event}, {"sim_time_s", facts.sim_time},
+                 {"steps", facts.steps}, {"wall_s", facts.wall},
+                 {"ended", facts.ended}, {"laid_height_m", facts.laid_height}};
+  for (const auto& [name, joules] : facts.energy) j["energy"][name] = joules;
+  return j;
+}
+
+/// The value of a key that must be there.
+const json& require(const json& object, const char* key, const std::string& path) {
+  if (!object.is_object()) throw wrong_type(path, object, "an object");
+  if (!object.contains(key)) throw InputError(path, std::string("has no ") + key);
+  return object[key];
+}
+
+EventFacts event_facts(const json& j, const std::string& path) {
+  const auto number = [&](const char* key) {
+    return to_number(require(j, key, path), path + "/" + key, "a number");
+  };
+  EventFacts facts;
+  facts.event = int(std::clamp(number("event"), 0.0, 1e9));
+  facts.sim_time = number("sim_time_s");
+  facts.steps = std::int64_t(std::clamp(number("steps"), 0.0, 1e18));
+  facts.wall = number("wall_s");
+  facts.ended = to_text(require(j, "ended", path), path + "/ended");
+  facts.laid_height = number("laid_height_m");
+  if (j.contains("energy") && j["energy"].is_object())
+    for (const auto& [name, joules] : j["energy"].items())
+      facts.energy.emplace_back(name, to_number(joules, path + "/energy/" + name, "a number"));
+  return facts;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_limit"; }
+
+RunRecord RunRecord::read(const std::filesystem::path& file) {
+  RunRecord record;
+  if (!std::filesystem::is_regular_file(file)) return record;
+  const std::string name = file.string();
+  const json j = parse_json(text_of(file), name);
+  record.wall = to_number(require(j, "wall_s", name), name + ": /wall_s", "a number");
+  if (!j.contains("finished_events")) return record;  // of the version before
+  const json& events = j["finished_events"];
+  if (!events.is_array()) throw wrong_type(name + ": /finished_events", events, "an array");
+  for (std::size_t i = 0; i < events.size(); ++i)
+    record.finished.push_back(
+        event_facts(events[i], name + ": /finished_events/" + std::to_string(i)));
+  return record;
+}
+
+void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
+                      const std::string& status, const std::string& error) const {
+  const Method& method = sim.solver();
+  const StepCounters& c = method.counters();
+  ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant()}};
+  for (const auto& [key, fact] : machine) j[key] = fact;
+  j["threads"] = sim.threads();
+  j["scalar"] = name_of(sim.scene().mpm().precision);
+  j["dimension"] = sim.scene().dimension;
+  j["events"] = sim.event() - int(sim.event_running());
+  j["particles"] = method.size();
+  j["steps"] = c.steps;
+  j["rejected_steps"] = c.rejected;
+  j["particle_updates"] = c.particle_updates;
+  j["slept_updates"] = c.slept_updates;
+  j["updates_per_s"] = wall > 0 ? double(c.particle_updates) / wall : 0.0;
+  j["peak_memory_mb"] = double(peak_resident_bytes()) / 1e6;
+  j["wall_s"] = wall;
+  j["finished_events"] = ordered_json::array();
+  for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
+  j["status"] = status;
+  if (!error.empty()) j["error"] = error;
+  write_atomic(file, pretty(j) + "\n");
+}
+
+void RunRecord::keep_through(int event) {
+  const auto later = [event](const EventFacts& facts) { return facts.event > event; };
+  finished.erase(std::remove_if(finished.begin(), finished.end(), later), finished.end());
+}
+
+}  // namespace snowshed

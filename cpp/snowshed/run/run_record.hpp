@@ -1,0 +1,46 @@
+// What run.json says of a run: what it ran on, how far it came, and how each event went.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "snowshed/run/simulation.hpp"
+
+namespace snowshed {
+
+/// How one event went. With particles/event_NNN.vtp this is all that measuring the event takes.
+struct EventFacts {
+  int event = 0;
+  double sim_time = 0;  // s
+  std::int64_t steps = 0;
+  double wall = 0;                                     // s
+  std::string ended;                                   // "rest" or "time_limit"
+  double laid_height = 0;                              // m, see Simulation::laid_height
+  std::vector<std::pair<std::string, double>> energy;  // J, by name; empty without energy books
+};
+
+/// Returns what run.json calls the two ways in which events end.
+std::string name_of(RunEnd);
+
+class RunRecord {
+ public:
+  /// Reads run.json; an empty record where there is none. Throws InputError where it is damaged.
+  static RunRecord read(const std::filesystem::path& file);
+
+  /// Writes run.json. `status` is running, interrupted, failed (then with an `error`) or finished.
+  void write(const std::filesystem::path& file, const Simulation&, const std::string& status,
+             const std::string& error = "") const;
+
+  /// Forgets the events after `event`, which will be run again.
+  void keep_through(int event);
+
+  std::vector<EventFacts> finished;            // by event
+  std::map<std::string, std::string> machine;  // further facts, by key
+  double wall = 0;                             // s, of the whole run so far
+};
+
+}  // namespace snowshed

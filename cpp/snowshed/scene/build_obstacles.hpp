@@ -1,0 +1,20 @@
+// The solids of a scene, ready to be collided with.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "snowshed/methods/obstacle.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// Builds the ground, the panel, the obstacles of the scene's list and the sides of its domain, in
+/// this order. Relative file names are looked for in `base_dir`. Throws InputError naming the
+/// obstacle whose shape cannot be built.
+std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem::path& base_dir);
+
+/// Returns those of the scene's list among the obstacles that `build_obstacles` built.
+std::vector<Obstacle> listed_obstacles(const Scene& scene, const std::vector<Obstacle>& built);
+
+}  // namespace snowshed

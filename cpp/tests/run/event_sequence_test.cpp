@@ -1,0 +1,134 @@
+#include "snowshed/run/event_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "run/simulation_testing.hpp"
+#include "snowshed/core/errors.hpp"
+
+namespace snowshed {
+namespace {
+
+using EventSequenceTest = TemporaryFolder;
+
+/// Notes what it is told; stops or throws at a report.
+class Witness : public EventObserver {
+ public:
+  explicit Witness(int stops_at = -1, int throws_at = -1)
+      : stops_at_(stops_at), throws_at_(throws_at) {}
+
+  void between_events(Simulation& sim) override { note("between", sim.event()); }
+  void event_begun(const Simulation& sim, const std::optional<Reseeding>& reseeding) override {
+    note(reseeding ? "reseeded" : "begun", sim.event());
+  }
+  void progress(const Simulation& sim, const RunReport&) override {
+    if (sim.event() == 2 && ++reports_ == throws_at_) throw SimulationError("no further");
+  }
+  void event_ended(const Simulation&, const EventFacts& facts) override {
+    note(facts.ended, facts.event);
+    EXPECT_GT(facts.steps, 0);
+  }
+  bool stop_requested() override { return stops_at_ >= 0 && reports_ >= stops_at_; }
+
+  std::string seen;
+
+ private:
+  void note(const std::string& what, int event) {
+    seen += what + " " + std::to_string(event) + ", ";
+  }
+  int stops_at_, throws_at_, reports_ = 0;
+};
+
+Scene two_events(Between between = Between::carry) {
+  Scene scene = small_scene();
+  scene.events.count = 2;
+  scene.events.between = between;
+  return scene;
+}
+
+TEST_F(EventSequenceTest, TellsWhatHappensInOrder) {
+  Witness carried, reseeded;
+  EXPECT_TRUE(EventSequence::create(two_events(), ".", path("a")).run(carried, 0));
+  EXPECT_EQ(carried.seen, "begun 1, time_limit 1, between 1, begun 2, time_limit 2, ");
+  EXPECT_TRUE(
+      EventSequence::create(two_events(Between::reseed), ".", path("b")).run(reseeded, never));
+  EXPECT_EQ(reseeded.seen, "begun 1, time_limit 1, between 1, reseeded 2, time_limit 2, ");
+}
+
+TEST_F(EventSequenceTest, GoesOnWhereItWasStopped) {
+  Witness whole, first(20), second;
+  EventSequence uninterrupted = EventSequence::create(two_events(), ".", path("a"));
+  EXPECT_TRUE(uninterrupted.run(whole, 0));
+  EXPECT_FALSE(EventSequence::create(two_events(), ".", path("b")).run(first, 0));
+  EventSequence resumed = EventSequence::resume(two_events(), ".", path("b"));
+  ASSERT_TRUE(resumed.simulation().event_running());
+  EXPECT_TRUE(resumed.run(second, 0));
+  expect_same_bits(resumed.simulation(), uninterrupted.simulation());
+  ASSERT_EQ(resumed.record().finished.size(), 2u);
+  for (int i : {0, 1}) {
+    const EventFacts &a = resumed.record().finished[i], &b = uninterrupted.record().finished[i];
+    EXPECT_EQ(a.steps, b.steps);
+    EXPECT_EQ(a.sim_time, b.sim_time);
+    EXPECT_EQ(a.laid_height, b.laid_height);
+    EXPECT_EQ(a.energy, b.energy);
+  }
+}
+
+TEST_F(EventSequenceTest, ARecordAheadOfTheCheckpointIsRunAgain) {
+  Witness first, second;
+  EventSequence::create(two_events(), ".", path("a")).run(first, never);
+  std::filesystem::remove(path("a") / "checkpoint.bin");
+  EventSequence again = EventSequence::resume(two_events(), ".", path("a"));
+  EXPECT_TRUE(again.record().finished.empty());
+  EXPECT_TRUE(again.run(second, never));
+  EXPECT_EQ(second.seen, first.seen);
+}
+
+TEST_F(EventSequenceTest, AFailureIsRecordedAndCanBeResumedFrom) {
+  Witness failing(-1, 20), second;
+  EventSequence sequence = EventSequence::create(two_events(), ".", path("a"));
+  EXPECT_THROW(sequence.run(failing, 0), SimulationError);
+  sequence.record_failure("no further");
+  EXPECT_NE(content(path("a") / "run.json").find("\"error\": \"no further\""), std::string::npos);
+  EventSequence resumed = EventSequence::resume(two_events(), ".", path("a"));
+  EXPECT_GT(resumed.simulation().event_time(), 0);
+  EXPECT_TRUE(resumed.run(second, never));
+}
+
+/// The state between two events may have aged already, which would happen to it twice.
+TEST_F(EventSequenceTest, AFailureBetweenEventsLeavesTheCheckpointOfTheLast) {
+  Witness quiet;
+  Scene scene = two_events();
+  EventSequence sequence = EventSequence::create(scene, ".", path("a"));
+  EXPECT_TRUE(sequence.run(quiet, never));
+  const std::string before = content(path("a") / "checkpoint.bin");
+  const std::size_t n = sequence.simulation().solver().size();
+  sequence.simulation().settle(std::vector<double>(n, 0.001), std::vector<double>(n, 0.0));
+  sequence.record_failure("no snow");
+  EXPECT_TRUE(content(path("a") / "checkpoint.bin") == before);
+}
+
+TEST_F(EventSequenceTest, ResumesOnlyItsOwnScene) {
+  Witness quiet;
+  Scene scene = two_events();
+  EventSequence::create(scene, ".", path("a")).run(quiet, never);
+  scene.panel->tilt = 55;
+  scene.gravity = 3;
+  const std::string said =
+      message_of<InputError>([&] { EventSequence::resume(scene, ".", path("a")); });
+  EXPECT_NE(said.find("differs in /gravity, /panel/tilt;"), std::string::npos) << said;
+  EXPECT_THROW(EventSequence::resume(scene, ".", path("nowhere")), InputError);
+}
+
+TEST_F(EventSequenceTest, LeavesNothingWhereItCannotBegin) {
+  Scene scene = two_events();
+  scene.bodies.emplace_back().shape.type = "sphere";
+  scene.bodies.back().shape.center = {1e6, 0, 0};  // the grid does not reach so far
+  EXPECT_THROW(EventSequence::create(scene, ".", path("a")), InputError);
+  EXPECT_FALSE(std::filesystem::exists(path("a")));
+  write_plainly(path("file"), "");
+  EXPECT_THROW(EventSequence::create(two_events(), ".", path("file")), InputError);
+}
+
+}  // namespace
+}  // namespace snowshed
