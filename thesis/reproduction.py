@@ -26,7 +26,7 @@ MAKERS = {
 
 @dataclass(frozen=True)
 class Progress:
-    """How far the computation is.
+    """Progress of the computation.
 
     Attributes
     ----------

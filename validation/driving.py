@@ -7,8 +7,8 @@ from collections.abc import Collection, Mapping, Sequence
 
 from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.record import Record
-from snowshed.run.self_test import drive
 from snowshed.methods.mpm import MpmSettings
+from snowshed.run.self_test import drive
 from snowshed.scene.components import Seeding, Snow
 from snowshed.scene.scene import Scene
 from validation.case import Outcome

@@ -53,7 +53,7 @@ FILE = Path(__file__).with_name("lab_stack.json")
 
 @dataclass(frozen=True)
 class Conversion:
-    """What reseeding did to a stack.
+    """A stack before and after reseeding.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Conversion:
 
 @dataclass
 class LabRun:
-    """What a run of the laboratory scene gave.
+    """The results of a run of the laboratory scene.
 
     Attributes
     ----------
