@@ -72,10 +72,11 @@ class _Run:
         self.first_step = _first_step(point)
         limit = min(longest_event(point), steps * self.first_step)
         scene = build(point, limit).resolve()
-        self.gravity = float(scene.data["gravity"])
-        self.count = int(scene.data["events"]["count"])
+        data: dict[str, Any] = scene.data
+        self.gravity = float(data["gravity"])
+        self.count = int(data["events"]["count"])
         self.simulation = _core.Simulation(scene.json)
-        dx = float(scene.data["numerics"]["dx"])
+        dx = float(data["numerics"]["dx"])
         self.conservation = Conservation(self.simulation, self.gravity, dx)
         self.smallest_dt = math.inf
         self.fastest = 0.0

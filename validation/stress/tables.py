@@ -129,8 +129,8 @@ def _balances(frame: pd.DataFrame) -> SummaryTable:
         "Largest error of each run, looked at every 16 steps. Energy is relative to all that came "
         "in with thrown snow and as work of gravity, momentum to the sum of all momenta. The last "
         "rows matter most: energy that comes from nowhere. What the balance misses is of first "
-        "order in the time step; it is largest where few steps cover the whole motion, in soft snow, "
-        "and in blows at many times the speed of sound in the snow."
+        "order in the time step; it is largest where few steps cover the whole motion, in soft "
+        "snow, and in blows at many times the speed of sound in the snow."
     )
     return SummaryTable("balances", "Mass, momentum and energy", remark, pd.DataFrame(rows))
 
