@@ -1,4 +1,4 @@
-"""What a check is: something measured, and the largest error that is allowed."""
+"""Checks: something measured, and the largest error that is allowed."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Result:
-    """What a check found.
+    """The result of a check.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Result:
 
     @property
     def holds(self) -> bool:
-        """Whether the error is within the bar."""
+        """True if the error is within the bar."""
         return abs(self.error) <= self.check.bar
 
 
