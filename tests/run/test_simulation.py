@@ -323,7 +323,10 @@ def test_snows_are_those_of_the_scene(falling):
         (lambda s: s.run(until="sleep"), "until: 'sleep'; allowed: \"rest\""),
         (lambda s: s.run(until=np.nan), "until: nan; a finite number"),
         (lambda s: s.run(until=lambda s: True, every=0), "every: 0; a whole number from 1"),
-        (lambda s: Simulation(3), "scene: int; allowed: Scene, ResolvedScene, dict, path"),
+        (
+            lambda s: Simulation(3),
+            "scene: a value of type int; allowed: Scene, ResolvedScene, dict, path",
+        ),
         (lambda s: Simulation({"panle": {}}), "/panle: unknown key"),
     ],
 )

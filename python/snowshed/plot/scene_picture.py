@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,7 +13,7 @@ from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import FAINT, INK, STACK, blank, describe, quiet
 from snowshed.scene.builders.slope import BOARD_CELLS
-from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.scene.scene import SceneLike, resolve_scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +24,7 @@ WIDTH = 9.0  # inches
 SAMPLES = (900, 500)  # of the obstacles, along x and z
 
 
-def scene_figure(scene: Union[Scene, ResolvedScene]) -> Figure:
+def scene_figure(scene: SceneLike) -> Figure:
     """Draw a scene in the plane y = 0, with the snow of its first event in place.
 
     Parameters
@@ -37,7 +37,7 @@ def scene_figure(scene: Union[Scene, ResolvedScene]) -> Figure:
     InputError
         If the scene is wrong.
     """
-    ready = scene.resolve() if isinstance(scene, Scene) else scene
+    ready = resolve_scene(scene)
     simulation = Simulation(ready.json, ready.base_dir)
     simulation.begin_event()
     data = ready.data

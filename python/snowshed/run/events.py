@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed import _core
 from snowshed.io.arrays import Booleans, Floats
@@ -27,7 +27,7 @@ from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_inter
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
-from snowshed.scene.scene import PathLike, ResolvedScene, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ REPORT_INTERVAL = 0.5  # s of wall time between progress reports
 
 
 def run_events(
-    scene: Union[Scene, ResolvedScene],
+    scene: SceneLike,
     out_dir: PathLike,
     *,
     resume: bool = False,
@@ -50,7 +50,7 @@ def run_events(
     Parameters
     ----------
     scene
-        What to simulate.
+        What to simulate: a scene, its JSON data, or the path of a scene file.
     out_dir
         The results folder (see ``snowshed.run.results``); new or empty, unless resuming.
     resume
@@ -82,6 +82,7 @@ def run_events(
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene
     >>> tiny = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
     >>> tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
     >>> with TemporaryDirectory() as folder:
@@ -89,7 +90,7 @@ def run_events(
     >>> table.event.tolist()
     [1]
     """
-    ready = scene.resolve() if isinstance(scene, Scene) else scene
+    ready = resolve_scene(scene)
     data: dict[str, Any] = ready.data
     if ageing is not None and data["events"]["between"] != "carry":
         raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')

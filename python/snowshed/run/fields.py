@@ -46,9 +46,10 @@ class Field:
         """The values, in the order of storage; an array that cannot be written to.
 
         Where `stored`, the array shows the particles' memory without a copy. It is valid until the
-        next call that changes the simulation: then it may follow the particles or stay behind, and
-        must be taken anew. Its memory stays as long as the array. The order of storage changes
-        from step to step; all fields and `Simulation.on_panel` share it.
+        next call that changes the simulation. After that it may show anything, since particles are
+        sorted into other memory from time to time, and must be taken anew; copy what is to stay.
+        The array keeps its memory, which is never freed below it. Between two such calls all
+        fields are in the same order.
         """
         return self._simulation.field(self.name)
 

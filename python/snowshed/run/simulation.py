@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import operator
 import os
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Literal, Union, cast
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Literal, Union, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,13 +18,12 @@ from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
 from snowshed.run.fields import Fields
 from snowshed.run.particle_dataset import particle_dataset
 from snowshed.scene.components import Snow
-from snowshed.scene.scene import PathLike, ResolvedScene, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 
 if TYPE_CHECKING:
     import xarray
 
-SceneLike = Union[Scene, ResolvedScene, Mapping[str, object], PathLike]
 Order = Literal["id", "storage"]
 Ended = Literal["rest", "time_limit", "reached"]
 
@@ -67,6 +66,7 @@ class Simulation:
 
     Examples
     --------
+    >>> from snowshed import Scene
     >>> scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
     >>> simulation = Simulation(scene)
     >>> simulation.begin_event()
@@ -79,7 +79,7 @@ class Simulation:
     """
 
     def __init__(self, scene: SceneLike) -> None:
-        ready = _resolved(scene)
+        ready = resolve_scene(scene)
         self._core = _core.Simulation(ready.json, ready.base_dir)
 
     @classmethod
@@ -184,7 +184,7 @@ class Simulation:
         return "reached"
 
     def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:
-        longest = float(self.scene.data["events"]["max_time"])
+        longest = float(self._data["events"]["max_time"])
         while not condition(self):
             if self.time >= longest:
                 return "time_limit"
@@ -227,6 +227,7 @@ class Simulation:
 
         Examples
         --------
+        >>> from snowshed import Scene
         >>> simulation = Simulation(Scene.preset("lab-50").update({"dimension": 2}))
         >>> simulation.begin_event()
         >>> before = simulation.particle_count
@@ -263,9 +264,9 @@ class Simulation:
         self._core.add_velocity(np.broadcast_to(vectors, (self.particle_count, 3)))
 
     def _seeded_mass(self, snow: Snow) -> float:
-        scene = self.scene.data
-        voxel = scene["numerics"]["dx"] ** scene["dimension"]
-        return float(cast(float, snow.density) * voxel / scene["seeding"]["particles_per_voxel"])
+        voxel = self._core.resolution**self.dimension
+        per_voxel = self._data["seeding"]["particles_per_voxel"]
+        return float(cast(float, snow.density) * voxel / per_voxel)
 
     # --- reading ---------------------------------------------------------------------------
 
@@ -352,7 +353,7 @@ class Simulation:
             self.masses(),
             self.densities(),
             dimension=self.dimension,
-            dx=self.scene.data["numerics"]["dx"],
+            dx=self._core.resolution,
             ground_tilt_deg=self._core.ground_tilt_deg,
             exclude=self.on_panel(),
         )
@@ -365,7 +366,7 @@ class Simulation:
         InputError
             If the scene does not keep it (``output.energy``).
         """
-        if not self.scene.data["output"]["energy"]:
+        if not self._data["output"]["energy"]:
             raise InputError("/output/energy: false; the energy balance is kept only where true")
         return {name[: -len("_j")]: value for name, value in self._core.energy().items()}
 
@@ -375,6 +376,11 @@ class Simulation:
     def scene(self) -> ResolvedScene:
         """The complete scene."""
         return ResolvedScene(self._core.scene)
+
+    @property
+    def _data(self) -> dict[str, Any]:
+        data: dict[str, Any] = self.scene.data
+        return data
 
     @property
     def snows(self) -> list[Snow]:
@@ -422,18 +428,6 @@ class Simulation:
             f"<Simulation in {self.dimension}D: event {self.event} {state}, t = {self.time:g} s, "
             f"{self.particle_count} particles>"
         )
-
-
-def _resolved(scene: SceneLike) -> ResolvedScene:
-    if isinstance(scene, ResolvedScene):
-        return scene
-    if isinstance(scene, Scene):
-        return scene.resolve()
-    if isinstance(scene, Mapping):
-        return Scene.from_data(dict(scene)).resolve()
-    if isinstance(scene, (str, os.PathLike)):
-        return ResolvedScene.load(scene)
-    raise InputError(f"scene: {type(scene).__name__}; allowed: Scene, ResolvedScene, dict, path")
 
 
 def _whole(name: str, given: int, *, lowest: int) -> int:

@@ -38,7 +38,7 @@ from snowshed.scene.components import (
     Snow,
 )
 
-__all__ = ["PathLike", "ResolvedScene", "Scene"]
+__all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 
 Holder = Union[Record, List[Record]]
 
@@ -321,3 +321,39 @@ class ResolvedScene:
     def save(self, path: PathLike) -> None:
         """Write the scene to a file."""
         write_text(path, self.json.rstrip() + "\n")
+
+
+SceneLike = Union[Scene, ResolvedScene, Mapping[str, JsonValue], PathLike]
+
+
+def resolve_scene(scene: SceneLike) -> ResolvedScene:
+    """Return the complete scene of whatever stands for one.
+
+    Parameters
+    ----------
+    scene
+        A scene, resolved or not; its JSON data; or the path of a scene file.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, or `scene` is none of these.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> resolve_scene({"slab": {"thickness": 0.1}, "panel": {}}).data["slab"]["thickness"]
+    0.1
+    """
+    if isinstance(scene, ResolvedScene):
+        return scene
+    if isinstance(scene, Scene):
+        return scene.resolve()
+    if isinstance(scene, Mapping):
+        return Scene.from_data(scene).resolve()
+    if isinstance(scene, (str, os.PathLike)):
+        return ResolvedScene.load(scene)
+    raise InputError(
+        f"scene: a value of type {type(scene).__name__}; allowed: Scene, ResolvedScene, dict, path"
+    )
