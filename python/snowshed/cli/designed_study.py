@@ -97,7 +97,7 @@ def write_study(text: str, folder: Path) -> Path:
 
 def plan(context: click.Context, file: Path, jobs: Optional[int]) -> None:
     """Say how many runs a study file makes, and how long they take."""
-    from snowshed.cli.main.commands import study as command
+    from snowshed.cli.commands import study as command
 
     context.invoke(command.plan, file=file, jobs=jobs)
 
@@ -110,7 +110,7 @@ def compute(
     Ends the command, with the exit codes of ``snowshed study run``, if runs fail or are
     interrupted; the same command goes on then.
     """
-    from snowshed.cli.main.commands import study as command
+    from snowshed.cli.commands import study as command
     from snowshed.study import Study
 
     store = folder / RUNS

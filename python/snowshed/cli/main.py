@@ -95,7 +95,7 @@ def run(scene: Path, folder: Path, resume: bool, quiet: bool) -> None:
 @accuracy_option
 def plan(scene: Path, accuracy: Optional[float]) -> None:
     """Say what running a scene file would use and cost, without running it."""
-    from snowshed.cli.main import console
+    from snowshed.cli import console
 
     ready = ResolvedScene.load(scene)
     if accuracy is not None:
@@ -136,7 +136,7 @@ def schema() -> None:
 def compare(one: Path, other: Path) -> None:
     """Compare the stack heights of a 3D and a 2D results folder."""
     from snowshed.analysis.dimension_ratio import compare_folders
-    from snowshed.cli.main import console
+    from snowshed.cli import console
 
     console.print_ratios(compare_folders(one, other))
 
@@ -286,13 +286,13 @@ def _progress(quiet: bool) -> Iterator[Optional[Reporter]]:
     if quiet:
         yield None
         return
-    from snowshed.cli.main import console
+    from snowshed.cli import console
 
     with console.progress_bar() as report:
         yield report
 
 
 def _show(table: pd.DataFrame, folder: Path) -> None:
-    from snowshed.cli.main import console
+    from snowshed.cli import console
 
     console.print_events(table, folder)
