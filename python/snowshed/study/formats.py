@@ -100,7 +100,6 @@ def _write_parquet(table: pd.DataFrame, file: Path) -> None:
 
 
 def _write_netcdf(table: pd.DataFrame, file: Path) -> None:
-    require("scipy.io", "study", "the NetCDF format")
     to_dataset(table).to_netcdf(file, engine="scipy")
 
 
