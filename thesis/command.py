@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -98,7 +97,7 @@ def _compute(stages: Sequence[Stage], folder: Path, jobs: Optional[int], quiet: 
     from thesis.reproduction import compute
 
     try:
-        with nullcontext() if quiet else progress_bar() as progress:
+        with progress_bar(quiet=quiet) as progress:
             compute(stages, jobs=jobs, progress=progress)
     except StudyError as error:
         raise Failed(str(error)) from None

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Optional, Protocol
 
 from snowshed._core import InputError
+from snowshed.run.progress import Progress
 from snowshed.study import Study, forecast
-from snowshed.study.session import Resources, StudyProgress, resume
+from snowshed.study.session import Resources, resume
 from snowshed.study.store import Store, StoredRun
 
 #: Takes the part of a stage's work that is done, 0 to 1, and what is being done.
@@ -99,8 +100,8 @@ class StudyStage:
         names = self._registered()
         for number, name in enumerate(names):
 
-            def tell(progress: StudyProgress, name: str = name, number: int = number) -> None:
-                words = f"{name}: {progress.done}/{progress.runs} simulations"
+            def tell(progress: Progress, name: str = name, number: int = number) -> None:
+                words = f"{name}: {progress.done}/{progress.count} simulations"
                 report((number + progress.fraction) / len(names), words)
 
             resume(self._runs, name, jobs=jobs, progress=tell)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -95,11 +94,11 @@ def _measure(
     cases: Sequence[Case], results: SuiteFolder, *, full: bool, quiet: bool
 ) -> list[Measurement]:
     from snowshed.analysis.verification.recorded import load_recorded
-    from validation.display import suite_progress
+    from validation.display import validation_bar
     from validation.runner import run_suite
 
     durations = {one.key: one.elapsed_s for one in load_recorded()}
-    with nullcontext() if quiet else suite_progress() as progress:
+    with validation_bar(quiet=quiet) as progress:
         return run_suite(
             cases, results.measurements, full=full, progress=progress, durations=durations
         )
@@ -107,12 +106,12 @@ def _measure(
 
 def _stress(results: SuiteFolder, *, full: bool, seed: int, quiet: bool) -> Stress:
     from validation import stress
-    from validation.display import stress_progress
+    from validation.display import validation_bar
     from validation.report import Stress
 
     runs = results.kept_stress(full=full, seed=seed)
     if runs is None:
-        with nullcontext() if quiet else stress_progress() as progress:
+        with validation_bar(quiet=quiet) as progress:
             runs = stress.run(full, seed, progress)
         results.keep_stress(runs, full=full, seed=seed)
     return Stress(runs, stress.summarise(runs))

@@ -206,7 +206,7 @@ class _Tape:
     def measure_present(self) -> StackMeasure:
         """Measure the stack as it is."""
         now = self._simulation
-        return self._measure(now.positions(), now.masses(), now.on_panel(), now.density())
+        return self._measure(now.positions(), now.masses(), now.on_panel(), now.densities())
 
     def measure_conversion(self, reseeded: Mapping[str, Any]) -> Conversion:
         """Measure what the core says of a conversion: the snow before and after."""

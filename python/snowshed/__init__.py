@@ -23,9 +23,12 @@ from snowshed._core import version as __version__
 from snowshed.analysis.dimension_ratio import dimension_ratio
 from snowshed.io.renamed import renamed as _renamed
 from snowshed.methods.mpm import MpmSettings
-from snowshed.run.events import Progress, run_events
+from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.progress import Progress
 from snowshed.run.results import read_events
+from snowshed.run.results_reader import Results
+from snowshed.run.simulation import Simulation
 from snowshed.scene.components import (
     Body,
     Domain,
@@ -60,9 +63,11 @@ __all__ = [
     "Panel",
     "Progress",
     "ResolvedScene",
+    "Results",
     "Scene",
     "Seeding",
     "Shape",
+    "Simulation",
     "SimulationError",
     "Slab",
     "Snow",

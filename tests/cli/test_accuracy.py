@@ -179,3 +179,8 @@ def test_the_package_brings_recorded_runs(dimension):
     choice = choose(0.5, scene_with(dimension=dimension))
     assert 0 < choice.values["numerics.dx"] <= THICKNESS
     assert choice.reason.startswith("--accuracy 50 %: dx ")
+
+
+def test_recorded_runs_have_the_names_of_today():
+    names = {name for one in load_recorded() for name in one.settings}
+    assert "courant_factor" in names and "step_factor" not in names

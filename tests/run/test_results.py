@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 from conftest import tiny_scene
 
-from snowshed import InputError, run_events
+from snowshed import InputError, Scene, run_events
 from snowshed.cli.main import main
 from snowshed.io.atomic import replacing, write_text
 from snowshed.io.csv_table import Table
@@ -94,6 +94,16 @@ def test_columns_of_the_events_table(finished):
         "steps",
         "wall_s",
     ]
+
+
+def test_a_folder_of_the_last_version_is_reopened(tmp_path):
+    scene = Scene.preset("lab-50").set("numerics.courant_factor", 0.5).resolve()
+    file = Results.create(tmp_path / "out", scene).folder / "scene.json"
+    file.write_text(file.read_text().replace("courant_factor", "step_factor"))
+    assert Results.reopen(tmp_path / "out", scene).folder == tmp_path / "out"
+    file.write_text(file.read_text().replace('"step_factor": 0.5', '"step_factor": 0.4'))
+    with pytest.raises(InputError, match="differs in /numerics/courant_factor"):
+        Results.reopen(tmp_path / "out", scene)
 
 
 def test_no_results(tmp_path):

@@ -10,6 +10,7 @@ from validation import runner, suite
 from validation.case import Quantity
 
 from snowshed.analysis.verification.recorded import load_recorded
+from snowshed.run.progress import Progress
 
 HOLDING = (Quantity("height", "height, m", bar=0.2, bar_for={"transfer": "apic"}, order_in="dx"),)
 
@@ -118,7 +119,7 @@ def test_the_stress_suite_runs_once_and_is_reported(cases, tmp_path, capsys, mon
     def run(full, seed, progress):
         calls.append((full, seed))
         if progress is not None:
-            progress(1, 2, 0)
+            progress(Progress(0.5, 1, 2, "runs"))
         outcomes = ["rest", "failed" if seed == 7 else "rest"]
         return pd.DataFrame({"outcome": outcomes, "message": [None, "x"], "n": [1.5, None]})
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed.io.formatting import percent
 from snowshed.plot.labels import setting
+from snowshed.scene.thesis_tables import CALIBRATED
 from thesis.claims.hypothesis_tests import (
     CONFIRMED,
     CONTRADICTED,
@@ -20,12 +21,6 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-#: The calibrated snow (Table 4.3.1).
-CALIBRATED: Mapping[str, float] = {
-    "snow.critical_state_slope": 0.5,
-    "snow.preconsolidation_pressure": 7e3,
-    "snow.cohesion": 0.2,
-}
 #: The best part of the sets, among which a known snow should be found.
 BEST_PART = 0.25
 

@@ -87,7 +87,7 @@ class Spinning:
         x, z = in_plane(self.drive.core.positions()).T
         self.radii = np.hypot(x, z)
         self._inertia = self._moment_of_inertia_in_cell(settings)
-        self.drive.core.kick(from_plane(RATE * np.stack([z, -x], axis=1)))
+        self.drive.core.add_velocity(from_plane(RATE * np.stack([z, -x], axis=1)))
 
     @staticmethod
     def _moment_of_inertia_in_cell(settings: Settings) -> float:
@@ -125,7 +125,7 @@ class Spinning:
             places, speeds = in_plane(core.positions()), in_plane(core.velocities())
             outwards = places / np.hypot(*places.T)[:, np.newaxis]
             along = np.sum(outwards * speeds, axis=1)[:, np.newaxis]
-            core.kick(from_plane(-DAMPED * along * outwards))
+            core.add_velocity(from_plane(-DAMPED * along * outwards))
 
 
 def per_turn(kept: float, time: float) -> float:

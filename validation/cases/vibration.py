@@ -59,7 +59,7 @@ class Vibrating:
         self.drive, self._mode, self._frequency = drive, mode, frequency
         self._start = in_plane(drive.core.positions())
         self._norm = float(drive.masses @ np.sum(mode**2, axis=1))
-        drive.core.kick(from_plane(2 * math.pi * frequency * height * mode))
+        drive.core.add_velocity(from_plane(2 * math.pi * frequency * height * mode))
 
     def swing(self, periods: float, steps: int) -> Swing:
         """Let it vibrate, look every so many steps, and return the vibration."""

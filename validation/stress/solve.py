@@ -152,7 +152,7 @@ def _first_step(point: Point) -> float:
 
 
 def _is_finite(simulation: _core.Simulation) -> bool:
-    density = simulation.density()
+    density = simulation.densities()
     values = (
         simulation.positions(),
         simulation.velocities(),

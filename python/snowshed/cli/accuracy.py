@@ -147,10 +147,10 @@ def check_alone(options: Mapping[str, Any]) -> None:
     >>> check_alone({"panel__tilt": 50.0, "numerics__basis": None})
     """
     for name, value in options.items():
-        path = current_path(name.replace("__", "."))
-        if value is not None and path in ACCURACY.values():
+        given = name.replace("__", ".")
+        if value is not None and current_path(given) in ACCURACY.values():
             raise InputError(
-                f"{option_name(path)}: --accuracy chooses grid and scheme; give one of the two"
+                f"{option_name(given)}: --accuracy chooses grid and scheme; give one of the two"
             )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 from matplotlib.figure import Figure
 
-import snowshed._core as _core
+from snowshed._core import Simulation
 from snowshed.io.arrays import Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
@@ -38,7 +38,7 @@ def scene_figure(scene: Union[Scene, ResolvedScene]) -> Figure:
         If the scene is wrong.
     """
     ready = scene.resolve() if isinstance(scene, Scene) else scene
-    simulation = _core.Simulation(ready.json, ready.base_dir)
+    simulation = Simulation(ready.json, ready.base_dir)
     simulation.begin_event()
     data = ready.data
     left, right, bottom, top = _limits(simulation, data)
@@ -67,7 +67,7 @@ def scene_figure(scene: Union[Scene, ResolvedScene]) -> Figure:
     return figure
 
 
-def _limits(simulation: _core.Simulation, scene: dict[str, Any]) -> Limits:
+def _limits(simulation: Simulation, scene: dict[str, Any]) -> Limits:
     """Return a view of the snow, of what holds it, and of as much ground to either side."""
     snow = simulation.positions()[:, [0, 2]]
     low, high = snow.min(axis=0), snow.max(axis=0)
@@ -82,7 +82,7 @@ def _limits(simulation: _core.Simulation, scene: dict[str, Any]) -> Limits:
     )
 
 
-def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
+def _draw_obstacles(axes: Axes, simulation: Simulation) -> None:
     x = np.linspace(*axes.get_xlim(), SAMPLES[0])
     z = np.linspace(*axes.get_ylim(), SAMPLES[1])
     points = np.stack(np.meshgrid(x, 0.0, z, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -92,7 +92,7 @@ def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
         axes.contour(x, z, distance, [0.0], colors=[FAINT], linewidths=1.2, zorder=2)
 
 
-def _draw_panel(axes: Axes, simulation: _core.Simulation, scene: dict[str, Any]) -> None:
+def _draw_panel(axes: Axes, simulation: Simulation, scene: dict[str, Any]) -> None:
     """Draw the panel's face, and the board below it as thick as the core makes it."""
     frame = simulation.panel_frame()
     if frame is None:

@@ -15,8 +15,7 @@ moved mass, height, length and outline. What time does to a stack that is carrie
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed import _core
@@ -26,6 +25,7 @@ from snowshed.run.ageing import Ageing
 from snowshed.run.conversion import conversion_row
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
+from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
 from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
@@ -34,32 +34,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far a run has come.
-
-    Attributes
-    ----------
-    event, count
-        The event that runs, from 1, and how many there will be.
-    time
-        Simulated time in this event, s.
-    fraction
-        Estimated part of this event that is done, 0 to 1.
-    updates_per_s
-        Particle updates per second.
-    """
-
-    event: int
-    count: int
-    time: float = 0.0
-    fraction: float = 0.0
-    updates_per_s: float = 0.0
-
-
-Reporter = Callable[[Progress], None]
 
 
 def run_events(
@@ -252,7 +226,7 @@ class _Recorder:
         return self._measure_of(
             self.simulation.positions(),
             self.simulation.masses(),
-            self.simulation.density(),
+            self.simulation.densities(),
             self.simulation.on_panel(),
         )
 
@@ -269,6 +243,21 @@ class _Recorder:
             exclude=on_panel,
         )
 
-    def _tell(self, time: float, fraction: float, updates_per_s: float = 0.0) -> None:
-        if self.report is not None:
-            self.report(Progress(self.simulation.event, self.count, time, fraction, updates_per_s))
+    def _tell(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
+        """Report where the run is; `fraction` is the part of the event that is done."""
+        if self.report is None:
+            return
+        event = self.simulation.event
+        ended = event - 1 + int(fraction == 1.0)
+        self.report(
+            Progress(
+                (event - 1 + fraction) / self.count,
+                ended,
+                self.count,
+                "events",
+                f"{time_s:.2f} s of event {event}",
+                event=event,
+                time=time_s,
+                updates_per_s=updates_per_s,
+            )
+        )

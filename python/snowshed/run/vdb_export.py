@@ -13,7 +13,8 @@ from snowshed._core import InputError
 from snowshed.io.vdb.writing import WrittenVdb, write_vdb
 from snowshed.io.vtp import read_particles
 from snowshed.methods.registry import resolution_of
-from snowshed.scene.scene import PathLike, ResolvedScene
+from snowshed.run.results_reader import Results
+from snowshed.scene.scene import PathLike
 
 POINT_QUANTITIES = ("velocity", "event", "mass", "density", "volumetric_plastic_strain", "id")
 
@@ -56,7 +57,7 @@ def export_folder(
         If the folder holds no such particles, or snowshed was built without OpenVDB.
     """
     folder = Path(folder)
-    scene = _scene(folder)
+    scene = Results(folder).scene.data
     output = folder / "vdb" if output is None else Path(output)
     files = list(_particle_files(folder, snapshots))
     written = []
@@ -66,13 +67,6 @@ def export_folder(
             report(exported)
         written.append(exported)
     return written
-
-
-def _scene(folder: Path) -> dict[str, Any]:
-    path = folder / "scene.json"
-    if not path.is_file():
-        raise InputError(f"{folder}: no results; it holds no scene.json")
-    return ResolvedScene.load(path).data
 
 
 def _particle_files(folder: Path, snapshots: bool) -> Iterator[Path]:

@@ -10,7 +10,7 @@ import json
 from dataclasses import dataclass
 from typing import List, Literal, Optional, Union
 
-import snowshed._core as _core
+from snowshed._core import snow_preset
 from snowshed.io.record import Alias, Record
 from snowshed.scene.shape import Shape, Vector
 
@@ -62,7 +62,7 @@ class Snow(Record):
         >>> Snow.preset("calibrated").critical_state_slope
         0.5
         """
-        return cls.from_data(json.loads(_core.snow_preset(name)))
+        return cls.from_data(json.loads(snow_preset(name)))
 
 
 @dataclass

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional, Union
 
-import snowshed._core as _core
-from snowshed._core import InputError
+from snowshed._core import InputError, load_scene, parse_scene
+from snowshed._core import preset as preset_text
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import JsonObject, JsonValue
@@ -145,7 +145,7 @@ class Scene(Record):
         InputError
             If there is no such preset.
         """
-        return cls.from_data(json.loads(_core.preset(name)))
+        return cls.from_data(json.loads(preset_text(name)))
 
     def set(self, path: str, value: object) -> Scene:
         """Set the value at a dotted path such as ``"snow.density"`` or ``"obstacles.0.friction"``.
@@ -305,12 +305,12 @@ class ResolvedScene:
     @classmethod
     def parse(cls, text: str, base_dir: PathLike = ".") -> ResolvedScene:
         """Validate JSON text; raises InputError."""
-        return cls(_core.parse_scene(text, os.fspath(base_dir)), os.fspath(base_dir))
+        return cls(parse_scene(text, os.fspath(base_dir)), os.fspath(base_dir))
 
     @classmethod
     def load(cls, path: PathLike) -> ResolvedScene:
         """Read and validate a scene file; raises InputError."""
-        return cls(_core.load_scene(os.fspath(path)), os.fspath(Path(path).parent))
+        return cls(load_scene(os.fspath(path)), os.fspath(Path(path).parent))
 
     @property
     def data(self) -> JsonObject:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Optional, cast
 
-import snowshed._core as _core
+from snowshed._core import scene_schema as schema_text
 from snowshed.io.json_file import JsonObject, JsonValue
 
 Node = Mapping[str, JsonValue]
@@ -47,7 +47,7 @@ class Parameter:
 @functools.cache
 def scene_schema() -> JsonObject:
     """Return the JSON Schema of a scene; it is shared, so leave it as it is."""
-    return cast(JsonObject, json.loads(_core.scene_schema()))
+    return cast(JsonObject, json.loads(schema_text()))
 
 
 @functools.cache

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.scene.scene import ResolvedScene
 
 HASH_DIGITS = 32  # hexadecimal: 128 bits

@@ -12,7 +12,7 @@ from snowshed.io.messages import shortened
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
-from snowshed.study.definition import SEED
+from snowshed.study.factors import SEED
 from snowshed.study.store import COUNTS, MEASURES, TIMING, WORDS, Store, StoredRun
 
 if TYPE_CHECKING:

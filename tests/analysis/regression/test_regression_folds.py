@@ -1,5 +1,6 @@
 """Folds, the nested cross-validation over them, and what is kept of it."""
 
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -131,7 +132,7 @@ def test_an_interrupted_regression_goes_on_where_it_was(tmp_path, monkeypatch):
     def compute_then_interrupt(task, rows, scheme):
         done.append(task)
         if len(done) == 3:
-            nested.signal.raise_signal(nested.signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
         return compute(task, rows, scheme)
 
     monkeypatch.setattr(nested, "compute", compute_then_interrupt)

@@ -185,7 +185,7 @@ def _read(path: Path) -> pd.DataFrame:
 
     try:
         if path.suffix != ".parquet":
-            return read_csv(path, dtype=str, keep_default_na=False)
+            return read_csv(path, as_text=True)
         parquet = require("pyarrow.parquet", "study", "reading Parquet")
         count = parquet.read_metadata(path).num_rows
         if count > LARGEST_TABLE:

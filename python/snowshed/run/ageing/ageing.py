@@ -159,7 +159,7 @@ class _Snow:
         self.gravity = float(scene["gravity"])
         self.masses = simulation.masses()
         self.plastic_strains = simulation.plastic_strains()
-        self.positions, densities = simulation.positions(), simulation.density()
+        self.positions, densities = simulation.positions(), simulation.densities()
         self.stack: Booleans = ~simulation.on_panel()
         self.columns = SnowColumns(
             self.positions[self.stack],
@@ -169,7 +169,7 @@ class _Snow:
             resolution_of(scene),
         )
         snows = [json.loads(snow) for snow in simulation.snows]
-        self._kinds = simulation.kinds()
+        self._kinds = simulation.material_ids()
         self._laws = [_law(snow) for snow in snows]
         self._p0 = np.array([snow["preconsolidation_pressure"] for snow in snows])[self._kinds]
         self.yields = np.array([law is not None for law in self._laws])[self._kinds]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
@@ -12,15 +11,16 @@ from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import read_csv
 from snowshed.methods.registry import resolution_of
-from snowshed.run.events import Reporter, run_events
+from snowshed.run.events import run_events
+from snowshed.run.progress import Reporter
 from snowshed.run.results import EVENT_COLUMNS, check_empty
 from snowshed.run.season.accumulation import Day, accumulate, pauses
-from snowshed.run.season.clearance import first_reached
+from snowshed.run.season.clearance import first_reached, panel_ends
 from snowshed.run.season.results import SeasonFolder
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
 from snowshed.run.season.table import season_table
-from snowshed.run.season.weather import Weather, read_season
+from snowshed.run.season.weather import Season, read_season
 from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class SeasonResult:
 
 
 def run_season(
-    season: Union[PathLike, Sequence[Weather]],
+    season: Season,
     scene: Union[Scene, ResolvedScene],
     out_dir: PathLike,
     *,
@@ -74,7 +74,7 @@ def run_season(
     Parameters
     ----------
     season
-        A season file (`read_season`), or its rows.
+        A season file or a pandas DataFrame (see `read_season`), or rows of `Weather`.
     scene
         Panel, ground, obstacles, snow and method (`season_scene` says what holds of it). The
         panel's friction is that of snow that slides.
@@ -100,6 +100,7 @@ def run_season(
     --------
     >>> from datetime import datetime
     >>> from tempfile import TemporaryDirectory
+    >>> from snowshed.run.season import Weather
     >>> row = Weather(2, datetime(2024, 12, 1), 0.1, 100.0, -4.0)
     >>> with TemporaryDirectory() as folder:
     ...     flat = Scene.preset("lab-40").set("panel.tilt", 20)
@@ -107,7 +108,7 @@ def run_season(
     0
     """
     settings = settings or SeasonSettings()
-    rows = read_season(season) if isinstance(season, (str, os.PathLike)) else season
+    rows = read_season(season)
     ready = scene.resolve() if isinstance(scene, Scene) else scene
     data: dict[str, Any] = ready.data
     if "panel" not in data:
@@ -232,7 +233,22 @@ def _write(
     write_text(folder.summary, text + "\n")
     if pictures:
         from snowshed.plot.figure_style import save
-        from snowshed.run.season.figure import season_figure
+        from snowshed.plot.season_figure import season_figure
 
-        outlines = _table_or_empty(folder.run.outlines.path, ("event", "x", "z"))
-        save(season_figure(result, outlines, scene.data), folder.figure)
+        figure = season_figure(
+            result.table,
+            _table_or_empty(folder.run.outlines.path, ("event", "x", "z")),
+            scene.data,
+            panel=panel_ends(scene.data),
+            burial_event=result.burial_event,
+            title=f"{result.releases} releases{_verdict(result)}",
+        )
+        save(figure, folder.figure)
+
+
+def _verdict(result: SeasonResult) -> str:
+    if result.burial_event is not None:
+        return f"; the stack reaches the panel's lower edge with event {result.burial_event}"
+    if result.simulated:
+        return "; the stack does not reach the panel's lower edge"
+    return ""

@@ -48,7 +48,7 @@ class Drive:
 
     def damp(self, exponent: float) -> None:
         """Let the velocities of all particles fall by the factor ``exp(-exponent)``."""
-        self.core.kick(math.expm1(-exponent) * self.core.velocities())
+        self.core.add_velocity(math.expm1(-exponent) * self.core.velocities())
 
     def run_to(self, time_s: float) -> None:
         """Take steps until a time of the event, s, and no further than the step that reaches it."""

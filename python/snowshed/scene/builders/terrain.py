@@ -15,8 +15,7 @@ from typing import Union
 
 import numpy as np
 
-import snowshed._core as _core
-from snowshed._core import InputError
+from snowshed._core import InputError, Simulation
 from snowshed.io.arrays import Floats, Integers
 from snowshed.io.atomic import replacing
 from snowshed.io.paths import PathLike
@@ -209,4 +208,4 @@ def _distances(mesh: Mesh, points: Floats, spacing: float) -> Floats:
             numerics=MpmSettings(dx=spacing, threads=1),
         )
         ready = scene.resolve()
-        return _core.Simulation(ready.json, ready.base_dir).obstacle_distance(points)
+        return Simulation(ready.json, ready.base_dir).obstacle_distance(points)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import datetime
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 from matplotlib import colormaps
@@ -25,63 +25,64 @@ from snowshed.plot.figure_style import (
     describe,
     quiet,
 )
-from snowshed.run.season.clearance import panel_ends
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from snowshed.run.season.driver import SeasonResult
-
 SIZE = (9.0, 10.2)  # inches
 MOST_NAMED = 8  # events in the legend
 
 
-def season_figure(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
+def season_figure(
+    table: pd.DataFrame,
+    outlines: pd.DataFrame,
+    scene: Mapping[str, Any],
+    *,
+    panel: Sequence[Sequence[float]],
+    burial_event: Optional[int],
+    title: str,
+) -> Figure:
     """Draw a season.
 
     Parameters
     ----------
-    result
-        As from `run_season`.
+    table
+        As in season.csv.
     outlines
         The profiles of the stack, as in outline.csv; without rows if nothing slid.
     scene
         The complete scene of the slide-offs.
+    panel
+        The panel's upper and lower edge, (x, z) in m.
+    burial_event
+        The event with which the snow reaches the panel's lower edge; None: none.
+    title
+        Above the figure, before the key numbers of the scene.
     """
     figure = blank(*SIZE)
-    panel, stack, side = figure.subplots(3, 1, height_ratios=(1.0, 1.1, 1.2))
-    moments = [datetime.fromisoformat(date) for date in result.table["date"]]
+    load, stack, side = figure.subplots(3, 1, height_ratios=(1.0, 1.1, 1.2))
+    moments = [datetime.fromisoformat(date) for date in table["date"]]
     dates: Floats = date2num(moments)  # type: ignore[no-untyped-call]
-    _draw_panel_snow(panel, dates, result)
-    _draw_stack(stack, dates, result, scene)
-    _draw_outlines(side, outlines, scene)
-    for axes in (panel, stack):
+    _draw_panel_snow(load, dates, table)
+    _draw_stack(stack, dates, table, float(scene["panel"]["height"]), burial_event)
+    _draw_outlines(side, outlines, panel)
+    for axes in (load, stack):
         locator: Any = AutoDateLocator()  # type: ignore[no-untyped-call]
         formatter: Any = ConciseDateFormatter(locator, show_offset=False)  # type: ignore[no-untyped-call]
         axes.xaxis.set_major_locator(locator)
         axes.xaxis.set_major_formatter(formatter)
-    stack.sharex(panel)
-    for axes in (panel, stack, side):
+    stack.sharex(load)
+    for axes in (load, stack, side):
         _plain(axes)
     first, last = (f"{moment:%Y-%m-%d}" for moment in (moments[0], moments[-1]))
-    title = f"Season from {first} to {last}, {result.releases} releases{_verdict(result)}"
     caption = scene_caption(dict(scene))
-    describe(figure, f"{title}\n{caption}")
+    describe(figure, f"Season from {first} to {last}, {title}\n{caption}")
     return figure
 
 
-def _verdict(result: SeasonResult) -> str:
-    if result.burial_event is not None:
-        return f"; the stack reaches the panel's lower edge with event {result.burial_event}"
-    if result.simulated:
-        return "; the stack does not reach the panel's lower edge"
-    return ""
-
-
-def _draw_panel_snow(axes: Axes, dates: Floats, result: SeasonResult) -> None:
+def _draw_panel_snow(axes: Axes, dates: Floats, table: pd.DataFrame) -> None:
     """Draw what pulls at the snow on the panel and what holds it, and when it lets go."""
-    table = result.table
     released = (table["released"] == "yes").to_numpy()
     axes.vlines(dates, 0.0, table["driving_pa"], color=STACK, linewidth=3.0, label="downslope pull")
     axes.plot(
@@ -106,9 +107,10 @@ def _draw_panel_snow(axes: Axes, dates: Floats, result: SeasonResult) -> None:
     axes.legend(frameon=False, fontsize=9, ncols=3, loc="upper left")
 
 
-def _draw_stack(axes: Axes, dates: Floats, result: SeasonResult, scene: Mapping[str, Any]) -> None:
+def _draw_stack(
+    axes: Axes, dates: Floats, table: pd.DataFrame, edge: float, burial_event: Optional[int]
+) -> None:
     """Draw the height of the stack against that of the panel's lower edge."""
-    table, edge = result.table, float(scene["panel"]["height"])
     below = table["clearance_m"].rsub(edge)  # the snow right below the edge
     axes.axhline(edge, color=INK, linewidth=1.2, linestyle=(0, (4, 3)))
     axes.annotate(
@@ -128,20 +130,19 @@ def _draw_stack(axes: Axes, dates: Floats, result: SeasonResult, scene: Mapping[
         name = "highest snow, settled (estimate)"
         settled = {**steps, "linewidth": 1.3, "linestyle": "--"}
         axes.step(dates, table["settled_height_m"], color=INK, label=name, **settled)
-    _mark_burial(axes, dates, result, below)
+    if burial_event is not None:
+        row = table["event"].fillna(0).tolist().index(burial_event)
+        _mark_burial(axes, dates[row], below.iloc[row], burial_event)
     axes.set_title("Stack: height above the ground, m", loc="left", color=INK, fontsize=11)
     axes.set_ylim(0.0, 1.25 * max(edge, float(table["stack_height_m"].max() or 0.0)))
     axes.legend(frameon=False, fontsize=9, loc="upper left", ncols=3)
 
 
-def _mark_burial(axes: Axes, dates: Floats, result: SeasonResult, below: pd.Series[float]) -> None:
-    if result.burial_event is None:
-        return
-    row = result.table["event"].fillna(0).tolist().index(result.burial_event)
-    axes.plot(dates[row], below.iloc[row], "o", color=BODY, markersize=8)
+def _mark_burial(axes: Axes, date: float, below: float, event: int) -> None:
+    axes.plot(date, below, "o", color=BODY, markersize=8)
     axes.annotate(
-        f"event {result.burial_event}: reached",
-        (dates[row], below.iloc[row]),
+        f"event {event}: reached",
+        (date, below),
         (-8, -4),
         textcoords="offset points",
         ha="right",
@@ -151,9 +152,9 @@ def _mark_burial(axes: Axes, dates: Floats, result: SeasonResult, below: pd.Seri
     )
 
 
-def _draw_outlines(axes: Axes, outlines: pd.DataFrame, scene: Mapping[str, Any]) -> None:
+def _draw_outlines(axes: Axes, outlines: pd.DataFrame, panel: Sequence[Sequence[float]]) -> None:
     """Draw the profile of the stack after every event, and the panel above it."""
-    axes.plot(*zip(*panel_ends(scene)), color=INK, linewidth=3.5, solid_capstyle="round")
+    axes.plot(*zip(*panel), color=INK, linewidth=3.5, solid_capstyle="round")
     axes.axhline(0.0, color=FAINT, linewidth=1.2)
     events = sorted(set(outlines["event"]))
     shades = colormaps["viridis"](np.linspace(FIRST, LAST, max(len(events), 1)))
