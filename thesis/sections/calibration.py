@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from snowshed._core import InputError
 
+from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import read_simulated
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, statistics
@@ -14,9 +14,10 @@ from snowshed.analysis.calibration.report import Calibration, calibrate, write
 from snowshed.io.formatting import number, percent
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import word
+from snowshed.scene.thesis_tables import CALIBRATED
 from snowshed.study.table import read_table
 from thesis import printed
-from thesis.claims.calibration import CALIBRATED, CALIBRATION, Recovery
+from thesis.claims.calibration import CALIBRATION, Recovery
 from thesis.claims.hypothesis_tests import judge
 from thesis.reproduction import Reproduction
 from thesis.section import PANEL_FRICTION, SAVED_DPI, Section, settings_grid

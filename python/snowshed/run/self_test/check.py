@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import nan
+from typing import Optional
 
 from snowshed._core import InputError, SimulationError
+from snowshed.run.progress import Progress, Reporter
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,15 @@ class Result:
         return abs(self.error) <= self.check.bar
 
 
-def run_checks(checks: Iterable[Check]) -> Iterator[Result]:
-    """Yield the result of each check as soon as it is there.
+def run_checks(checks: Sequence[Check], progress: Optional[Reporter] = None) -> list[Result]:
+    """Run checks one after another and return their results.
+
+    Parameters
+    ----------
+    checks
+        What to run.
+    progress
+        Called before each check.
 
     Examples
     --------
@@ -61,8 +70,16 @@ def run_checks(checks: Iterable[Check]) -> Iterator[Result]:
     >>> [(result.error, result.holds) for result in run_checks([half])]
     [(0.5, False)]
     """
-    for check in checks:
-        try:
-            yield Result(check, check.measure())
-        except (InputError, SimulationError, OSError) as error:
-            yield Result(check, nan, str(error))
+    results: list[Result] = []
+    for done, check in enumerate(checks):
+        if progress is not None:
+            progress(Progress(done / len(checks), done, len(checks), "checks", check.title))
+        results.append(_result(check))
+    return results
+
+
+def _result(check: Check) -> Result:
+    try:
+        return Result(check, check.measure())
+    except (InputError, SimulationError, OSError) as error:
+        return Result(check, nan, str(error))
