@@ -5,14 +5,16 @@ import importlib
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 from requirements import MODULES_OF, required
 
 from snowshed import InputError
 from snowshed.io import extras
 from snowshed.io.extras import require
 
-SOURCE = Path(extras.__file__).parent
+SOURCE = Path(extras.__file__).parents[1]
 SOURCES = sorted(SOURCE.rglob("*.py"))
+OUTSIDE = sorted((ROOT / "validation").rglob("*.py"))  # of the installed package
 OF_USERS = {MODULES_OF[name] for names in required()[1].values() for name in names}
 
 
@@ -35,14 +37,18 @@ def calls_of_require(source):
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "require":
             module, extra, _ = node.args
             if isinstance(extra, ast.Name):
-                dotted = ".".join(source.relative_to(SOURCE.parent).with_suffix("").parts)
+                dotted = ".".join(
+                    source.relative_to(SOURCE.parent if source in SOURCES else ROOT)
+                    .with_suffix("")
+                    .parts
+                )
                 yield module.value, getattr(importlib.import_module(dotted), extra.id)
             else:
                 yield module.value, extra.value
 
 
 def test_every_optional_library_is_asked_for_with_the_extra_that_brings_it():
-    asked = {call for source in SOURCES for call in calls_of_require(source)}
+    asked = {call for source in [*SOURCES, *OUTSIDE] for call in calls_of_require(source)}
     brought = {
         extra: {MODULES_OF[name] for name in names} for extra, names in required()[1].items()
     }

@@ -11,7 +11,7 @@ from snowshed.io.atomic import replacing
 from snowshed.io.extras import require
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import scene_parameters
-from snowshed.study.store import MEASURES
+from snowshed.study.store import MEASURED_TYPES
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def to_dataset(table: pd.DataFrame) -> Any:
     xarray = require("xarray", "study", "the NetCDF form")
     if table.empty:
         raise InputError("no run is done yet, and NetCDF needs one")
-    per_event = [*MEASURES, "error", *(["wall_s"] if "wall_s" in table else [])]
+    per_event = [*MEASURED_TYPES, "error", *(["wall_s"] if "wall_s" in table else [])]
     grids = table.set_index(["hash", "event"])[per_event].unstack("event")
     runs = table.drop(columns=["event", *per_event]).drop_duplicates("hash")
     grids = grids.reindex(runs["hash"])
@@ -124,7 +124,7 @@ def _filled(columns: Any) -> Any:
 def _units() -> dict[str, str]:
     """Return the units of parameters, from the core's schema, and of measures, from their names."""
     units = {parameter.path: parameter.unit for parameter in scene_parameters() if parameter.unit}
-    for name in (*MEASURES, "wall_s", "run_wall_s", "peak_memory_mb"):
+    for name in (*MEASURED_TYPES, "wall_s", "run_wall_s", "peak_memory_mb"):
         endings = [ending for ending in UNITS if name.endswith(f"_{ending}")]
         if endings:
             units[name] = UNITS[max(endings, key=len)]
