@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, cast
 
 from snowshed._core import InputError
 from snowshed.io.atomic import replacing
@@ -16,6 +16,7 @@ from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray
 
 SUFFIXES = {".csv": "csv", ".parquet": "parquet", ".nc": "netcdf"}
 UNITS = {"m": "m", "m3": "m3", "kg_m3": "kg/m3", "kg": "kg", "s": "s", "mb": "MB"}
@@ -52,7 +53,7 @@ def export(
         write(table, beside)
 
 
-def to_dataset(table: pd.DataFrame) -> Any:
+def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     """Return a study's table as an xarray Dataset with the dimensions run and event.
 
     What differs from event to event has both dimensions, all else (hash, parameters, settings) is
@@ -63,7 +64,7 @@ def to_dataset(table: pd.DataFrame) -> Any:
     InputError
         If xarray (extra ``study``) is not installed, or the table has no rows.
     """
-    xarray = require("xarray", "study", "the NetCDF form")
+    library = require("xarray", "study", "the NetCDF form")
     if table.empty:
         raise InputError("no run is done yet, and NetCDF needs one")
     per_event = [*MEASURED_TYPES, "error", *(["wall_s"] if "wall_s" in table else [])]
@@ -73,11 +74,11 @@ def to_dataset(table: pd.DataFrame) -> Any:
     data = {name: (("run", "event"), _filled(grids[name])) for name in per_event}
     coordinates = {name: ("run", _filled(runs[name])) for name in runs}
     coordinates["event"] = ("event", list(grids[per_event[0]].columns))
-    dataset = xarray.Dataset(data, coordinates)
+    dataset = library.Dataset(data, coordinates)
     for name, unit in _units().items():
         if name in dataset:
             dataset[name].attrs["units"] = unit
-    return dataset
+    return cast("xarray.Dataset", dataset)
 
 
 def _writer(file: Path, form: Optional[str]) -> Callable[[pd.DataFrame, Path], None]:
