@@ -24,6 +24,7 @@ from types import TracebackType
 from typing import BinaryIO, Optional
 
 from snowshed._core import SimulationError
+
 from snowshed.analysis.verification.measurements import Settings
 from snowshed.run.machine import peak_memory_mb
 from validation.case import Outcome

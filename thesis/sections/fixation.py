@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-
 from snowshed._core import InputError
+
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.report import evaluate
 from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import Simulated, compare, read_simulated
-from snowshed.analysis.calibration.measurements import QUANTITIES, Measurement
+from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import Surrogate
 from snowshed.io.atomic import replacing, write_text
 from snowshed.scene.scene import PathLike
+from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas as pd
