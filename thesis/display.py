@@ -1,4 +1,4 @@
-"""What the reproduction shows: one bar over all stages, and the verdicts."""
+"""The output of the reproduction: one bar over all stages, and the verdicts."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ IDENTITY = "reproduction.json"
 
 @dataclass(frozen=True)
 class ReproductionFolder:
-    """Where things are in a reproduction's folder; use `claim`."""
+    """The files in a reproduction's folder; use `claim`."""
 
     path: Path
 

@@ -1,4 +1,4 @@
-"""How much is computed: the thesis's own settings, or enough to see the way within minutes."""
+"""Sizes of the reproduction: the thesis's own settings, or a trial within minutes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MEASURED_FRICTION = 0.6
 
 @dataclass(frozen=True)
 class Size:
-    """How much is computed.
+    """The size of a reproduction.
 
     Attributes
     ----------

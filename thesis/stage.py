@@ -1,4 +1,4 @@
-"""What a stage of the reproduction is, and the stages that are studies."""
+"""Stages of the reproduction, and those that are studies."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ StageReporter = Callable[[float, str], None]
 
 @dataclass(frozen=True)
 class State:
-    """How far a stage is.
+    """Progress of a stage.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class State:
 
     @property
     def finished(self) -> bool:
-        """Whether nothing is left to compute."""
+        """True if nothing is left to compute."""
         return self.done + self.failed == self.count
 
     def in_words(self) -> str:
@@ -58,7 +58,7 @@ class Stage(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is asked for by."""
+        """The name by which ``--stage`` asks for it."""
 
     def state(self) -> State:
         """Return how far it is."""

@@ -48,7 +48,7 @@ class Bar:
 
     @property
     def holds(self) -> Optional[bool]:
-        """Whether the bar holds; None if nothing was measured that it is for."""
+        """True if the bar holds; None if nothing was measured that it is for."""
         if self.found is None:
             return None
         return self.found >= self.demanded if self.kind == "order" else self.found <= self.demanded

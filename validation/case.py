@@ -1,4 +1,4 @@
-"""What a case is: a problem with a known answer, and how it was solved.
+"""Cases: problems with known answers, and ways of solving them.
 
 A module in `validation.cases` makes one `Case`, or several. The runner takes every entry of its
 matrix of settings through `Case.measure`, in a process of its own, and the report compares.
@@ -51,7 +51,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one entry of the matrix gave.
+    """The results of one entry of the matrix.
 
     ``wall_s`` is the time of the solution alone (without seeding, imports or evaluation);
     ``updates`` counts particles times steps (for a material path: its increments).

@@ -1,4 +1,4 @@
-"""What accuracy costs: Pareto fronts, and the quickest way to each accuracy."""
+"""The cost of accuracy: Pareto fronts, and the quickest way to each accuracy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How errors fall with the size of cells, steps or increments, and of which order that is."""
+"""Orders of convergence: how errors fall with the size of cells, steps or increments."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from snowshed.io.arrays import Floats
 
 @dataclass(frozen=True)
 class Convergence:
-    """How an error falls with a setting, all others equal.
+    """The fall of an error with a setting, all others equal.
 
     Attributes
     ----------

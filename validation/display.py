@@ -1,4 +1,4 @@
-"""What ``python -m validation`` shows: the progress bar, and which bars hold."""
+"""The output of ``python -m validation``: the progress bar, and which bars hold."""
 
 from __future__ import annotations
 

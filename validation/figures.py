@@ -51,7 +51,7 @@ ZERO = 1e-17
 
 
 class KeyLine(NamedTuple):
-    """What is said beside a diagram about a point; without a letter, about those that follow."""
+    """Text beside a diagram about a point; without a letter, about those that follow."""
 
     letter: str
     cost: str
@@ -60,7 +60,7 @@ class KeyLine(NamedTuple):
 
 @dataclass(frozen=True)
 class Look:
-    """How settings are told apart: one by colour, one by marker, one by dashes.
+    """Styles that tell settings apart: one by colour, one by marker, one by dashes.
 
     Attributes
     ----------

@@ -53,7 +53,7 @@ FILE = Path(__file__).with_name("lab_stack.json")
 
 @dataclass(frozen=True)
 class Conversion:
-    """What reseeding did to a stack.
+    """A stack before and after reseeding.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Conversion:
 
 @dataclass
 class LabRun:
-    """What a run of the laboratory scene gave.
+    """The results of a run of the laboratory scene.
 
     Attributes
     ----------
@@ -161,9 +161,10 @@ def run_lab(settings: Settings) -> LabRun:
     """
     ready = lab_scene(settings).resolve()
     simulation = _core.Simulation(ready.json)
-    tape = _Tape(simulation, ready.data)
-    run = LabRun(brought_mass=_brought_mass(ready.data), particle_mass=_particle_mass(ready.data))
-    for _ in range(ready.data["events"]["count"]):
+    data: dict[str, Any] = ready.data
+    tape = _Tape(simulation, data)
+    run = LabRun(brought_mass=_brought_mass(data), particle_mass=_particle_mass(data))
+    for _ in range(data["events"]["count"]):
         reseeded = simulation.begin_event()
         if reseeded is not None:
             run.conversions.append(tape.measure_conversion(reseeded))

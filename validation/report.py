@@ -41,14 +41,14 @@ TEMPLATE = "verification.html.j2"
 
 @dataclass(frozen=True)
 class Stress:
-    """What the stress suite gave: one row per run, and the tables that sum them up."""
+    """Results of the stress suite: one row per run, and the tables that sum them up."""
 
     runs: pd.DataFrame
     tables: Sequence[SummaryTable]
 
     @property
     def failed(self) -> int:
-        """How many runs ended in a way that is not allowed."""
+        """Number of runs that ended in a way that is not allowed."""
         return int((self.runs["outcome"] == "failed").sum())
 
 

@@ -90,7 +90,7 @@ def run_suite(
 
 
 class Estimate:
-    """How long tasks will take: from what they took before, scaled by how it goes this time.
+    """Estimated duration of tasks: what they took before, scaled by how it goes this time.
 
     A task about which nothing is known counts as the mean of its case, or of all.
 

@@ -1,4 +1,4 @@
-"""Which settings say how a problem is solved; all others make another problem.
+"""Settings that say how a problem is solved; all others make another problem.
 
 An accuracy may be bought with a better scheme, not with an easier problem, so only ways of solving
 the same problem are compared with each other.

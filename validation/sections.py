@@ -1,4 +1,4 @@
-"""What the report says about each case: tables of texts, and figures."""
+"""The report's section on each case: tables of texts, and figures."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ WORK_PRECISION = (
 
 @dataclass(frozen=True)
 class Section:
-    """What the report says about a case.
+    """The report's section on a case.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Which cases there are: every module in `validation.cases` brings one or several."""
+"""The list of cases: every module in `validation.cases` brings one or several."""
 
 from __future__ import annotations
 

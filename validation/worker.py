@@ -34,7 +34,7 @@ Measure = Callable[[Settings], Outcome]
 
 @dataclass(frozen=True)
 class Answer:
-    """What a measurement gave: an outcome, or else the reason why there is none.
+    """The result of a measurement: an outcome, or else the reason why there is none.
 
     ``imported`` names the modules that it imported.
     """

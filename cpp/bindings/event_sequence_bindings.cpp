@@ -54,7 +54,7 @@ class PythonObserver : public EventObserver {
   py::object observer_;
 };
 
-bool run(EventSequence& sequence, const py::object& observer, double report_interval) {
+bool run_sequence(EventSequence& sequence, const py::object& observer, double report_interval) {
   PythonObserver passing_on(observer);
   py::gil_scoped_release release;
   return sequence.run(passing_on, report_interval);
@@ -83,7 +83,7 @@ void bind_event_sequence(py::module_& m) {
             return EventSequence::resume(parse_scene(json), base_dir, folder);
           },
           "scene_json"_a, "base_dir"_a, "folder"_a)
-      .def("run", &run, "observer"_a, "report_interval_s"_a)
+      .def("run", &run_sequence, "observer"_a, "report_interval_s"_a)
       .def("record_failure", &EventSequence::record_failure, "error"_a)
       .def("count_from", &EventSequence::count_from, "steps"_a, "wall_s"_a)
       .def(

@@ -5,6 +5,7 @@ import importlib
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 from requirements import MODULES_OF, required
 
 from snowshed import InputError
@@ -13,6 +14,7 @@ from snowshed.io.extras import require
 
 SOURCE = Path(extras.__file__).parents[1]
 SOURCES = sorted(SOURCE.rglob("*.py"))
+OUTSIDE = sorted((ROOT / "validation").rglob("*.py"))  # of the installed package
 OF_USERS = {MODULES_OF[name] for names in required()[1].values() for name in names}
 #: Made of scikit-learn; the registry of models asks for it before it imports them.
 ESTIMATORS = {
@@ -47,38 +49,39 @@ def calls_of_require(source):
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "require":
             module, extra, _ = node.args
             if isinstance(extra, ast.Name):
-                dotted = ".".join(source.relative_to(SOURCE.parent).with_suffix("").parts)
+                dotted = ".".join(
+                    source.relative_to(SOURCE.parent if source in SOURCES else ROOT)
+                    .with_suffix("")
+                    .parts
+                )
                 yield module.value, getattr(importlib.import_module(dotted), extra.id)
             else:
                 yield module.value, extra.value
 
 
 def test_every_optional_library_is_asked_for_with_the_extra_that_brings_it():
-    asked = {call for source in SOURCES for call in calls_of_require(source)}
+    asked = {call for source in [*SOURCES, *OUTSIDE] for call in calls_of_require(source)}
     brought = {
         extra: {MODULES_OF[name] for name in names} for extra, names in required()[1].items()
     }
-    assert {extra for _, extra in asked} == brought.keys()
+    # What `verify` brings the validation cases ask for, which are not in the package.
+    assert {extra for _, extra in asked} == brought.keys() - {"verify"}
     for module, extra in asked:
         assert module.partition(".")[0] in brought[extra]
+
+
+def imported_when_running(node):
+    """Yield the modules that code imports, those that only type checkers see left out."""
+    if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
+        return
+    yield from (one.name for one in node.names) if isinstance(node, ast.Import) else ()
+    yield from [node.module or ""] if isinstance(node, ast.ImportFrom) else ()
+    for inner in ast.iter_child_nodes(node):
+        yield from imported_when_running(inner)
 
 
 def test_no_optional_library_is_imported_without_asking():
     for source in SOURCES:
         of_users = OF_USERS - {"sklearn"} if source in ESTIMATORS else OF_USERS
-        for node in _imports(source):
-            names = [one.name for one in node.names] if isinstance(node, ast.Import) else []
-            names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-            assert not {name.partition(".")[0] for name in names} & of_users, source
-
-
-def _imports(source):
-    """Every import but those for type checkers alone."""
-    tree = ast.parse(source.read_text(encoding="utf-8"))
-    for_types = {
-        id(inner)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING"
-        for inner in ast.walk(node)
-    }
-    return [node for node in ast.walk(tree) if id(node) not in for_types]
+        names = imported_when_running(ast.parse(source.read_text(encoding="utf-8")))
+        assert not {name.partition(".")[0] for name in names} & of_users, source

@@ -13,7 +13,7 @@ import pytest
 from snowshed import Scene
 from snowshed.study import Study, session
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import FILE, MEASURES, WORDS
+from snowshed.study.store import FILE, MEASURED_TYPES, WORDS
 
 ALONE = {"jobs": 1, "threads": 1}
 
@@ -36,7 +36,7 @@ def outcome(hash_: str, status: str = "done", events: int = 2, error: str | None
             "wall_s": 0.5,
             **{
                 name: "rest" if name in WORDS else event * 10 + place
-                for place, name in enumerate(MEASURES)
+                for place, name in enumerate(MEASURED_TYPES)
             },
         }
         for event in range(1, events + 1)

@@ -97,9 +97,3 @@ def test_a_seed_is_one_sample_and_another_seed_another():
     for method in (latin_hypercube, sobol):
         assert method(spans, 8, seed=3) == method(spans, 8, seed=3)
         assert method(spans, 8, seed=3) != method(spans, 8, seed=4)
-
-
-def test_without_scipy_the_error_says_what_to_install(hide):
-    hide("scipy")
-    with pytest.raises(InputError, match=r'pip install "snowshed\[study\]"'):
-        sobol({"a": Span(0, 1)}, 4)

@@ -20,7 +20,7 @@ from snowshed.study import Run, Study, StudyError, read_table, resume
 from snowshed.study.compute import compute
 from snowshed.study.local import LocalWorkers
 from snowshed.study.outcome import Task
-from snowshed.study.store import MEASURES, Store
+from snowshed.study.store import MEASURED_TYPES, Store
 
 computed = study_helpers.computed  # a fixture
 
@@ -81,8 +81,8 @@ def test_the_table_holds_what_single_runs_give(computed, tmp_path):
     table = read_table(computed)
     for i, run in enumerate(tiny_study().runs()):
         run_events(ResolvedScene.parse(run.scene), tmp_path / str(i), pictures=False)
-        alone = read_events(tmp_path / str(i))[["event", *MEASURES]]
-        rows = table[table["hash"] == run.hash][["event", *MEASURES]].reset_index(drop=True)
+        alone = read_events(tmp_path / str(i))[["event", *MEASURED_TYPES]]
+        rows = table[table["hash"] == run.hash][["event", *MEASURED_TYPES]].reset_index(drop=True)
         pd.testing.assert_frame_equal(rows, alone, check_dtype=False)
     assert len(table) == 6
 

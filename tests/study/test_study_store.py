@@ -10,7 +10,7 @@ from study_helpers import contents, outcome, tiny_study
 from snowshed import InputError, _core
 from snowshed.study import StudyError, store
 from snowshed.study.owner import is_alive, ownership, release_dead
-from snowshed.study.store import FILE, MEASURES, Store
+from snowshed.study.store import FILE, MEASURED_TYPES, Store
 from snowshed.study.table import read_table
 
 RUNS = tiny_study().runs()
@@ -204,7 +204,7 @@ def test_runs_are_found_by_the_beginning_of_their_hash(opened):
 def test_measures_that_came_later_are_added_to_an_older_store(opened, monkeypatch):
     opened.record(outcome(HASHES[0]))
     opened.close()
-    monkeypatch.setattr(store, "MEASURES", {**MEASURES, "wetness": "REAL"})
+    monkeypatch.setattr(store, "MEASURED_TYPES", {**MEASURED_TYPES, "wetness": "REAL"})
     with Store.open(opened.folder) as newer:
         assert newer.read("SELECT height_m, wetness FROM event WHERE event = 1") == [(10.0, None)]
 

@@ -13,7 +13,7 @@ from snowshed import InputError, Shape
 from snowshed.run.results import EVENT_COLUMNS
 from snowshed.scene.components import Obstacle
 from snowshed.study import Factor, Study, export, read_table, to_dataset
-from snowshed.study.store import FILE, MEASURES, TIMING, Store
+from snowshed.study.store import FILE, MEASURED_TYPES, TIMING, Store
 
 computed = study_helpers.computed  # a fixture
 
@@ -177,4 +177,4 @@ def test_units_of_measures_are_known():
 
     units = _units()
     assert units["panel.tilt"] == "degrees" and units["volume_m3"] == "m3"
-    assert {name for name in MEASURES if name not in units} == {"steps", "ended"}
+    assert {name for name in MEASURED_TYPES if name not in units} == {"steps", "ended"}

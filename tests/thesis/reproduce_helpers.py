@@ -9,7 +9,7 @@ from thesis.size import QUICK
 
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import MEASURES, WORDS, Store
+from snowshed.study.store import MEASURED_TYPES, WORDS, Store
 
 #: Fewer values and folds than the quick reproduction has, with two seedings where it has one.
 TINY = replace(
@@ -63,7 +63,7 @@ def _events(scene):
     rows = []
     for event in range(1, scene["events"]["count"] + 1):
         height, length, head = stack(scene, event)
-        row = {name: "rest" if name in WORDS else 1.0 for name in MEASURES}
+        row = {name: "rest" if name in WORDS else 1.0 for name in MEASURED_TYPES}
         row.update(event=event, wall_s=0.1, steps=10, mass_kg=float(not stays))
         row.update(on_panel_kg=float(stays))
         row.update(height_m=height, length_m=length, head_m=head, tail_m=head + length)

@@ -42,7 +42,7 @@ class Recovery:
 
 
 def is_ranked_well(data: Recovery) -> Finding:
-    """Whether the ranking finds the snow that made the synthetic stacks."""
+    """Test whether the ranking finds the snow that made the synthetic stacks."""
     here = data.ranked
     for path, value in CALIBRATED.items():
         here = here[(here[path] / value - 1).abs() < 1e-9]
@@ -59,7 +59,7 @@ def is_ranked_well(data: Recovery) -> Finding:
 
 
 def is_in_the_ranges(data: Recovery) -> Finding:
-    """Whether the 95 % ranges of the posterior hold the true snow.
+    """Test whether the 95 % ranges of the posterior hold the true snow.
 
     One of three may miss it by chance, in one draw of the errors out of seven.
 

@@ -14,9 +14,10 @@ from snowshed.analysis.calibration.report import Calibration, calibrate, write
 from snowshed.io.formatting import number, percent
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import word
+from snowshed.scene.thesis_tables import CALIBRATED
 from snowshed.study.table import read_table
 from thesis import printed
-from thesis.claims.calibration import CALIBRATED, CALIBRATION, Recovery
+from thesis.claims.calibration import CALIBRATION, Recovery
 from thesis.claims.hypothesis_tests import judge
 from thesis.reproduction import Reproduction
 from thesis.section import PANEL_FRICTION, SAVED_DPI, Section, settings_grid

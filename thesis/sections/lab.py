@@ -8,6 +8,7 @@ from snowshed._core import InputError
 
 from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid, Picture
+from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.table import read_table
 from thesis import printed
 from thesis.claims import lab as claims
@@ -21,11 +22,10 @@ from thesis.studies import LAB_2D, LAB_3D, RELEASE
 if TYPE_CHECKING:
     import pandas as pd
 
-MEASURES = ("height", "length", "head", "tail")
 COLUMNS = {
     "panel.tilt": "tilt",
     "panel.friction": "friction",
-    **{f"{name}_m": name for name in MEASURES},
+    **{f"{name}_m": name for name in QUANTITIES},
 }
 TEXT = (
     "Five slabs slide off the model panel one after another; particles carry over from event to "
@@ -119,14 +119,14 @@ def stacks_grid(rows: pd.DataFrame) -> Grid:
             f"{friction:g}",
             f"{tilt:g}°",
             f"{event:g}",
-            *(plus_minus(of_one[name].mean(), of_one[name].std()) for name in MEASURES),
+            *(plus_minus(of_one[name].mean(), of_one[name].std()) for name in QUANTITIES),
         ]
         for (dimension, friction, tilt, event), of_one in grouped(
             rows.sort_values(list(keys)), *keys
         )
     ]
-    head = ["", "friction", "tilt", "event", *(f"{name}, m" for name in MEASURES)]
-    return Grid(head, table, "llll" + "r" * len(MEASURES))
+    head = ["", "friction", "tilt", "event", *(f"{name}, m" for name in QUANTITIES)]
+    return Grid(head, table, "llll" + "r" * len(QUANTITIES))
 
 
 def release_grid(rows: pd.DataFrame) -> Grid:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.report import evaluate
-from snowshed.analysis.sensitivity.single_parameter import PAIRS
 from snowshed.analysis.sensitivity.stored import read_stored
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import word
+from snowshed.scene.thesis_tables import PAIRS
 from thesis import printed
 from thesis.claims.hypothesis_tests import judge
 from thesis.claims.s_index import S_INDEX

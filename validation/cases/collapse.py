@@ -43,7 +43,7 @@ OWN = frozenset({"aspect", "friction_angle"})
 
 @dataclass(frozen=True)
 class Deposit:
-    """What a column became; run-out and height in units of the column's radius."""
+    """The deposit of a column; run-out and height in units of the column's radius."""
 
     runout: float
     height: float

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import cast
 
 from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.run.self_test.incline import GRAVITY, Incline
+from snowshed.scene.components import Condition
 from snowshed.scene.scene import Scene
 from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, absolute, apply_settings, relative
@@ -52,7 +54,7 @@ def slab_scene(settings: Settings, tilt: float) -> Scene:
     scene = Incline(tilt, dimension).scene(
         (length, THICKNESS) if dimension == 2 else (length, WIDTH, THICKNESS),
         float(settings["friction"]),
-        condition=str(settings["condition"]),
+        condition=cast(Condition, settings["condition"]),
         speed=float(settings.get("speed", 0.0)),
     )
     return apply_settings(scene, settings, OWN)

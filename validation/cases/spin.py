@@ -108,8 +108,8 @@ class Spinning:
     @property
     def energy(self) -> float:
         """Kinetic and elastic, J."""
-        books = self.drive.core.energy()
-        return books["kinetic_j"] + books["elastic_j"]
+        energy = self.drive.core.energy()
+        return energy["kinetic_j"] + energy["elastic_j"]
 
     @property
     def expansion(self) -> float:

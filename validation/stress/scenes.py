@@ -224,5 +224,6 @@ class _SceneOf:
         x, z = float(plane[0]), float(plane[1])
         return (x, z) if self.dimension == 2 else (x, y, z)
 
-    def _text(self, name: str) -> str:
-        return str(self.point[name])
+    def _text(self, name: str) -> Any:
+        """Return one of the words that the space of points lists for a parameter."""
+        return self.point[name]

@@ -1,4 +1,4 @@
-"""What the stress suite varies: each parameter with its range, its extremes and its reference."""
+"""The space of the stress suite: each parameter with its range, its extremes and its reference."""
 
 from __future__ import annotations
 

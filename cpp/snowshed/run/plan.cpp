@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "snowshed/core/timer.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/enum_names.hpp"

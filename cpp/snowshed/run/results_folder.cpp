@@ -54,7 +54,7 @@ void ResultsFolder::require_empty(const fs::path& folder) {
 ResultsFolder ResultsFolder::create(fs::path folder, const Scene& scene) {
   require_empty(folder);
   make_folder(folder);
-  write_atomic(folder / "scene.json", write_scene(scene) + "\n");
+  write_atomic(folder / "scene.json", write_scene(scene));
   return ResultsFolder(std::move(folder));
 }
 

@@ -45,9 +45,10 @@ EventFacts event_facts(const json& j, const std::string& path) {
   facts.wall = number("wall_s");
   facts.ended = to_text(require(j, "ended", path), path + "/ended");
   facts.laid_height = number("laid_height_m");
-  if (j.contains("energy") && j["energy"].is_object())
-    for (const auto& [name, joules] : j["energy"].items())
-      facts.energy.emplace_back(name, to_number(joules, path + "/energy/" + name, "a number"));
+  if (!j.contains("energy")) return facts;
+  for (const auto& [name, _] : named_energies({}))  // in the order of tables
+    facts.energy.emplace_back(name, to_number(require(j["energy"], name.c_str(), path + "/energy"),
+                                              path + "/energy/" + name, "a number"));
   return facts;
 }
 
@@ -97,7 +98,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
   j["status"] = status;
   if (!error.empty()) j["error"] = error;
-  write_atomic(file, pretty(j) + "\n");
+  write_atomic(file, pretty(j));
 }
 
 void RunRecord::keep_through(int event) {

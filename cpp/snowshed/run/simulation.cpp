@@ -76,7 +76,7 @@ void Simulation::add_snow(ParticleBatch batch) {
   batch.event = std::max(event_, 1);
   solver_->add(batch);
   event_mass_ += batch.mass * double(batch.positions.size());
-  laid_height_ += height_over_panel(batch.positions);
+  laid_height_ += panel_.height_of(batch.positions);
 }
 
 /// Later slabs lie on the snow that stayed on the panel; stray grains do not count.

@@ -49,10 +49,10 @@ Scene two_events(Between between = Between::carry) {
 TEST_F(EventSequenceTest, TellsWhatHappensInOrder) {
   Witness carried, reseeded;
   EXPECT_TRUE(EventSequence::create(two_events(), ".", path("a")).run(carried, 0));
-  EXPECT_EQ(carried.seen, "begun 1, time_limit 1, between 1, begun 2, time_limit 2, ");
+  EXPECT_EQ(carried.seen, "begun 1, rest 1, between 1, begun 2, rest 2, ");
   EXPECT_TRUE(
       EventSequence::create(two_events(Between::reseed), ".", path("b")).run(reseeded, never));
-  EXPECT_EQ(reseeded.seen, "begun 1, time_limit 1, between 1, reseeded 2, time_limit 2, ");
+  EXPECT_EQ(reseeded.seen, "begun 1, rest 1, between 1, reseeded 2, rest 2, ");
 }
 
 TEST_F(EventSequenceTest, GoesOnWhereItWasStopped) {

@@ -9,7 +9,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
@@ -19,14 +19,12 @@ from snowshed.io.csv_table import read_csv
 from snowshed.io.extras import require
 from snowshed.io.messages import shortened
 from snowshed.run.results import read_events
-from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
-    from typing import Optional
-
     import pandas as pd
 
 LARGEST_TABLE = 1_000_000  # rows of a Parquet file, which packs them well
@@ -44,7 +42,7 @@ class StackTable:
         The columns of a study's table: ``hash``, what varies by dotted paths, ``seed``, ``event``,
         the measures, and settings. Of a CSV file all cells are texts.
     axes
-        Dotted paths of what varies, or is written down though it does not; without the seed.
+        Dotted paths of what varies, or is written down though it does not.
     points
         One row per run, computed or not: ``hash``, the axes, and ``seeding.seed``.
     pending
@@ -135,10 +133,13 @@ class StackTable:
     @classmethod
     def of(cls, frame: pd.DataFrame, name: str = "table") -> StackTable:
         """Return the table of a DataFrame that has the columns of a study's table."""
-        axes = [str(path) for path in frame if "." in str(path) and path != SEED]
-        known = [path for path in ("hash", *axes) if path in frame]
-        points = frame[known].assign(**{SEED: frame["seed"]}) if "seed" in frame else frame[known]
-        return cls(frame, axes, points.drop_duplicates(ignore_index=True), name=name)
+        frame = frame.rename(columns=FORMER_NAMES)
+        axes = [str(path) for path in frame if "." in str(path)]
+        points = frame[[path for path in ("hash", *axes) if path in frame]]
+        if "seed" in frame:
+            points = points.assign(**{SEED: frame["seed"]})
+        points = _as_numbers(points.drop_duplicates(ignore_index=True), [*axes, SEED])
+        return cls(frame, axes, points, name=name)
 
     @classmethod
     def _of_results(cls, folder: Path) -> StackTable:
@@ -161,7 +162,8 @@ class StackTable:
             If there is no such column, or no row has the value.
         """
         frame = self.frame
-        for column, value in where.items():
+        for given, value in where.items():
+            column = FORMER_NAMES.get(given, given)
             if column not in frame:
                 raise InputError(f"{column}: no such column; the table has {self.columns}")
             cells = frame[column].astype(str)
@@ -243,6 +245,7 @@ class StackTable:
         }
         frame = self.frame.drop(columns=list(columns)).assign(**numbers)
         frame = frame.dropna(subset=list(quantities))
+        frame = _as_numbers(frame, [*self.axes, "seed", "event"])
         if frame.empty:
             raise InputError("nothing of it is computed yet; see `snowshed study status`")
         return frame
@@ -285,6 +288,19 @@ class StackTable:
                 )
             common[name] = values[0]
         return common
+
+
+def _as_numbers(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
+    """Return a table in which columns of texts that are all numbers are numbers."""
+    import pandas as pd
+
+    found = {}
+    for name in columns:
+        if name in frame and not pd.api.types.is_numeric_dtype(frame[name]):
+            numbers = pd.to_numeric(frame[name], errors="coerce")
+            if not numbers.isna().any():
+                found[name] = numbers
+    return frame.assign(**found)
 
 
 def _points(axes: Sequence[str], scenes: Mapping[str, Mapping[str, object]]) -> pd.DataFrame:

@@ -156,7 +156,7 @@ def check_alone(options: Mapping[str, Any]) -> None:
 
 @dataclass(frozen=True)
 class RecordedStack:
-    """What is recorded of stacks made with the same settings.
+    """Recorded errors of stacks made with the same settings.
 
     Attributes
     ----------

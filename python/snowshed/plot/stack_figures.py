@@ -28,13 +28,13 @@ from snowshed.plot.figure_style import (
     quiet,
 )
 from snowshed.snow.stack.measure import Extent, StackMeasure, level
+from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
 PICTURED_PARTICLES = 100_000  # at most; a regular choice of them beyond
-MEASURES = ("height", "length", "head", "tail")
 WIDTH, VIEW_WIDTH = 9.0, 8.1  # inches, of the figure and of the views in it
 LOWEST, HIGHEST = 1.6, 5.0  # inches, of a view
 
@@ -90,7 +90,7 @@ def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
         The scene as JSON text, for the caption.
     """
     figure = blank(WIDTH, 6.6)
-    for axes, name in zip(np.ravel(figure.subplots(2, 2, sharex=True)), MEASURES):
+    for axes, name in zip(np.ravel(figure.subplots(2, 2, sharex=True)), QUANTITIES):
         stack, body = table[f"{name}_m"], table[f"body_{name}_m"]
         axes.plot(table["event"], stack, "o-", color=STACK, linewidth=2, label="stack (97 %)")
         axes.plot(table["event"], body, "s--", color=BODY, markersize=4, label="largest body")

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.extras import require
 from snowshed.io.messages import shortened
 
 LARGEST_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
@@ -208,13 +207,14 @@ def sobol(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
 
 
 def _sample(method: str, spans: Mapping[str, Span], count: int, seed: int) -> Factor:
+    from scipy.stats import qmc
+
     if not 0 < count <= LARGEST_COUNT:
         raise InputError(f"count {count} is outside the allowed range (1 to {LARGEST_COUNT})")
     if seed < 0:
         raise InputError(f"seed {seed} is negative")
     if not spans:
         raise InputError("names no parameter; name at least one")
-    qmc = require("scipy.stats.qmc", "study", "sampling")
     points = getattr(qmc, method)(d=len(spans), seed=seed).random(count)
     return Factor(
         {

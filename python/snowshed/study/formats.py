@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, cast
 
 from snowshed._core import InputError
 from snowshed.io.atomic import replacing
@@ -12,11 +12,12 @@ from snowshed.io.extras import require
 from snowshed.io.units import unit_of_column
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import scene_parameters
-from snowshed.study.store import MEASURES
+from snowshed.study.store import MEASURED_TYPES
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray
 
 SUFFIXES = {".csv": "csv", ".parquet": "parquet", ".nc": "netcdf"}
 
@@ -52,7 +53,7 @@ def export(
         write(table, beside)
 
 
-def to_dataset(table: pd.DataFrame) -> Any:
+def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     """Return a study's table as an xarray Dataset with the dimensions run and event.
 
     What differs from event to event has both dimensions, all else (hash, parameters, settings) is
@@ -63,21 +64,21 @@ def to_dataset(table: pd.DataFrame) -> Any:
     InputError
         If xarray (extra ``study``) is not installed, or the table has no rows.
     """
-    xarray = require("xarray", "study", "the NetCDF form")
+    library = require("xarray", "study", "the NetCDF form")
     if table.empty:
         raise InputError("no run is done yet, and NetCDF needs one")
-    per_event = [*MEASURES, "error", *(["wall_s"] if "wall_s" in table else [])]
+    per_event = [*MEASURED_TYPES, "error", *(["wall_s"] if "wall_s" in table else [])]
     grids = table.set_index(["hash", "event"])[per_event].unstack("event")
     runs = table.drop(columns=["event", *per_event]).drop_duplicates("hash")
     grids = grids.reindex(runs["hash"])
     data = {name: (("run", "event"), _filled(grids[name])) for name in per_event}
     coordinates = {name: ("run", _filled(runs[name])) for name in runs}
     coordinates["event"] = ("event", list(grids[per_event[0]].columns))
-    dataset = xarray.Dataset(data, coordinates)
+    dataset = library.Dataset(data, coordinates)
     for name, unit in _units().items():
         if name in dataset:
             dataset[name].attrs["units"] = unit
-    return dataset
+    return cast("xarray.Dataset", dataset)
 
 
 def _writer(file: Path, form: Optional[str]) -> Callable[[pd.DataFrame, Path], None]:
@@ -100,7 +101,6 @@ def _write_parquet(table: pd.DataFrame, file: Path) -> None:
 
 
 def _write_netcdf(table: pd.DataFrame, file: Path) -> None:
-    require("scipy.io", "study", "the NetCDF format")
     to_dataset(table).to_netcdf(file, engine="scipy")
 
 
@@ -124,7 +124,7 @@ def _filled(columns: Any) -> Any:
 def _units() -> dict[str, str]:
     """Return the units of parameters, from the core's schema, and of measures, from their names."""
     units = {parameter.path: parameter.unit for parameter in scene_parameters() if parameter.unit}
-    for name in (*MEASURES, "wall_s", "run_wall_s", "peak_memory_mb"):
+    for name in (*MEASURED_TYPES, "wall_s", "run_wall_s", "peak_memory_mb"):
         if unit := unit_of_column(name):
             units[name] = unit
     return units

@@ -46,7 +46,7 @@ BUSY_S = 60.0  # s to wait for another process that is writing
 COUNTS = ("steps",)
 WORDS = ("ended",)
 #: What is measured after an event, with the type it has in the store.
-MEASURES: Mapping[str, str] = {
+MEASURED_TYPES: Mapping[str, str] = {
     name: "INTEGER" if name in COUNTS else "TEXT" if name in WORDS else "REAL"
     for name in EVENT_COLUMNS
     if name not in ("event", "wall_s")
@@ -77,7 +77,7 @@ TABLES = (
     "CREATE TABLE study_run (study TEXT NOT NULL REFERENCES study, position INTEGER NOT NULL,"
     " hash TEXT NOT NULL REFERENCES run, PRIMARY KEY (study, position)) WITHOUT ROWID",
     f"CREATE TABLE event (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
-    f" {_columns(MEASURES)}, PRIMARY KEY (hash, event)) WITHOUT ROWID",
+    f" {_columns(MEASURED_TYPES)}, PRIMARY KEY (hash, event)) WITHOUT ROWID",
     "CREATE TABLE event_timing (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
     " wall_s REAL, PRIMARY KEY (hash, event)) WITHOUT ROWID",
     f"CREATE TABLE run_timing (hash TEXT PRIMARY KEY REFERENCES run, {_columns(TIMING)})",
@@ -294,7 +294,7 @@ class Store:
                 return
             for row in outcome.events:
                 key = {"hash": outcome.hash, "event": row["event"]}
-                _insert(write, "event", {**key, **{name: row[name] for name in MEASURES}})
+                _insert(write, "event", {**key, **{name: row[name] for name in MEASURED_TYPES}})
                 _insert(write, "event_timing", {**key, "wall_s": row["wall_s"]})
             _insert(write, "run_timing", {"hash": outcome.hash, **outcome.timing})
 
@@ -383,8 +383,8 @@ def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
 def _add_new_measures(connection: sqlite3.Connection) -> None:
     """Give a store of earlier days the columns that events.csv has gained since."""
     present = {row[1] for row in connection.execute("PRAGMA table_info(event)")}
-    for name in MEASURES.keys() - present:
-        connection.execute(f"ALTER TABLE event ADD COLUMN {name} {MEASURES[name]}")
+    for name in MEASURED_TYPES.keys() - present:
+        connection.execute(f"ALTER TABLE event ADD COLUMN {name} {MEASURED_TYPES[name]}")
 
 
 def _pragma(connection: sqlite3.Connection, name: str) -> int:

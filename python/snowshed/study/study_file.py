@@ -42,7 +42,7 @@ Made = TypeVar("Made")
 
 FACTOR_KEYS = ("axes", "zip", "sample")
 KEYS = (
-    *("name", "description", "scene", "dimension", "events", "seeds", "accuracy"),
+    *("name", "scene", "dimension", "events", "seeds", "accuracy", "description"),
     *FACTOR_KEYS,
     "part",
 )

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed._core import InputError
 from snowshed.io.json_file import is_number
 from snowshed.io.messages import shortened
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
 from snowshed.study.factors import SEED
-from snowshed.study.store import COUNTS, MEASURES, TIMING, WORDS, Store, StoredRun
+from snowshed.study.store import COUNTS, MEASURED_TYPES, TIMING, WORDS, Store, StoredRun
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,7 +60,7 @@ def read_table(
         name = store.named(study)
         rows = list(_rows(store, name))
         axes = store.axes(name)
-    columns = ["hash", *axes, "seed", "event", *MEASURES, "error", "version", "dimension"]
+    columns = ["hash", *axes, "seed", "event", *MEASURED_TYPES, "error", "version", "dimension"]
     columns += [*ACCURACY, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
     return table.astype(dict.fromkeys(COUNTS, "Int64"))
@@ -82,21 +81,24 @@ def _rows(store: Store, study: str) -> Iterator[dict[str, Any]]:
 def _facts(run: StoredRun, axes: Sequence[str]) -> dict[str, Any]:
     """Return the columns that all events of a run share."""
     scene = with_current_names(json.loads(run.scene))
+    facts = scene_columns(scene, axes)
+    return {**facts, "hash": run.hash, "error": "", "version": run.version}
+
+
+def scene_columns(scene: Mapping[str, Any], axes: Sequence[str]) -> dict[str, Any]:
+    """Return the columns that a scene fills: some axes, the seed, dimension and settings."""
     return {
         **{path: _cell(value_at(scene, path)) for path in axes},
-        "hash": run.hash,
         "seed": value_at(scene, SEED),
-        "error": "",
-        "version": run.version,
         "dimension": scene["dimension"],
         **{name: value_at(scene, path) for name, path in ACCURACY.items()},
     }
 
 
 def _events(store: Store, study: str) -> dict[str, list[dict[str, Any]]]:
-    names = ("event", *MEASURES, "wall_s")
+    names = ("event", *MEASURED_TYPES, "wall_s")
     rows = store.read(
-        f"SELECT event.hash, event.event, {', '.join(MEASURES)}, wall_s"
+        f"SELECT event.hash, event.event, {', '.join(MEASURED_TYPES)}, wall_s"
         " FROM study_run JOIN event USING (hash) JOIN event_timing USING (hash, event)"
         " WHERE study = ? ORDER BY position, event.event",
         (study,),
@@ -118,30 +120,6 @@ def _run_timings(store: Store, study: str) -> list[tuple[Any, ...]]:
         " WHERE study = ?",
         (study,),
     )
-
-
-def varying_numbers(table: pd.DataFrame, paths: Iterable[str], purpose: str) -> list[str]:
-    """Return those of a table's axes that have several values; these must be numbers.
-
-    Parameters
-    ----------
-    table, paths
-        The table, and the axes in question.
-    purpose
-        What needs numbers, for messages.
-
-    Raises
-    ------
-    InputError
-        If values that vary are no numbers.
-    """
-    import pandas as pd
-
-    varying = [path for path in paths if table[path].astype(str).nunique() > 1]
-    for path in varying:
-        if not pd.api.types.is_numeric_dtype(table[path]) or table[path].dtype == bool:
-            raise InputError(f"{path}: holds {table[path].iloc[0]!r}; {purpose} needs numbers")
-    return varying
 
 
 def value_at(scene: Mapping[str, Any], path: str) -> Any:

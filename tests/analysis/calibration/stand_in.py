@@ -12,7 +12,7 @@ import pandas as pd
 
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import MEASURES, WORDS, Store
+from snowshed.study.store import MEASURED_TYPES, WORDS, Store
 
 SLOPE, PRESSURE, COHESION = (
     "snow.critical_state_slope",
@@ -81,8 +81,8 @@ def fill(folder, study, pending=0):
             table = table[table["panel.tilt"] == scene["panel"]["tilt"]]
             rows = []
             for stacks in table.to_dict("records"):
-                row = {name: "rest" if name in WORDS else 1.0 for name in MEASURES}
-                row.update({name: stacks[name] for name in stacks if name in MEASURES})
+                row = {name: "rest" if name in WORDS else 1.0 for name in MEASURED_TYPES}
+                row.update({name: stacks[name] for name in stacks if name in MEASURED_TYPES})
                 rows.append({**row, "event": stacks["event"], "wall_s": 0.1, "steps": 10})
             store.record(Outcome(run.hash, "done", rows, {}))
 

@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from stand_in import COHESION, PARAMETERS, fill, measured, write_measurements
 
 from snowshed import Scene
@@ -53,11 +54,14 @@ def test_tables_and_figures(evaluated):
         "height_rmse_m",
         "length_rmse_m",
     }
+    draws = xr.open_dataset(out / "posterior.nc")
+    assert draws.sizes["draw"] > 1000 and set(draws) >= {COHESION, "discrepancy_height"}
+    assert (ranges["r_hat"] < 1.1).all() and (ranges["ess_tail"] > 400).all()
     for name in ("relative-error", "rmse", "fit", "posterior"):
         assert (out / f"{name}.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("library", ["emcee", "sklearn"])
+@pytest.mark.parametrize("library", ["emcee", "sklearn", "arviz", "corner"])
 def test_without_a_library_the_error_says_what_to_install(
     evaluated, tmp_path, capsys, hide, library
 ):
@@ -66,7 +70,7 @@ def test_without_a_library_the_error_says_what_to_install(
     assert run("calibrate", evaluated / "stacks.csv", *options) == 2
     said = capsys.readouterr().err
     assert f"needs {library}" in said and 'pip install "snowshed[calibration]"' in said
-    assert said.count("\n") == 1
+    assert said.count("\n") == 1 and not (tmp_path / "out").exists()
 
 
 def test_what_it_prints(evaluated, capsys):
@@ -77,7 +81,8 @@ def test_what_it_prints(evaluated, capsys):
     print_calibration(calibrate(measurements, stacks, steps=100))
     shown = capsys.readouterr().out
     assert "Parameter sets by mean rescaled RMSE" in shown and "p₀, kPa" in shown
-    assert "the chains are worth" in shown  # 100 steps are too few
+    assert "ESS" in shown and "r_hat" in shown
+    assert "the Markov chains have not converged" in shown  # 100 steps are too few
     assert "error of the model in height" in shown
 
 

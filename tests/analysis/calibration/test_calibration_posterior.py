@@ -117,7 +117,7 @@ def posterior_with(surrogate, unit):
 
 
 def test_chains_that_have_not_converged_are_told(surrogate):
-    """Independent draws are worth their number; few ones, or chains that disagree, are too little."""
+    """Independent draws are worth their number; few, or chains that disagree, are too little."""
     unit = np.random.default_rng(1).uniform(0.4, 0.6, size=(8, 500, 3))
     good = posterior_with(surrogate, unit)
     assert good.converged and 3000 < good.effective < 5000

@@ -153,9 +153,7 @@ def test_missing_columns_and_few_rows_are_refused(tmp_path):
         read_rows(tmp_path / "none.csv")
     text = (tmp_path / "rows.csv").read_text()
     (tmp_path / "cut.csv").write_text(text[: text.rindex(",2,")])
-    with pytest.raises(
-        InputError, match=r"cut\.csv: not a table: line 97: 13 cells, but there are"
-    ):
+    with pytest.raises(InputError, match=r"cut\.csv, line 97: not a table: 13 cells in 15 columns"):
         read_rows(tmp_path / "cut.csv")
 
 

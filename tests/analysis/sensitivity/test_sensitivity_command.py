@@ -10,7 +10,7 @@ from snowshed.analysis.sensitivity import read_stored
 from snowshed.cli.main import main
 from snowshed.study import Study
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import MEASURES, WORDS, Store
+from snowshed.study.store import MEASURED_TYPES, WORDS, Store
 
 SLOPE, COHESION = "snow.critical_state_slope", "snow.cohesion"
 
@@ -33,7 +33,7 @@ def fill(folder, study, compute=lambda run: True):
             snow = json.loads(one.scene)["snow"]
             rows = []
             for event in (1, 2):
-                row = {name: "rest" if name in WORDS else 1.0 for name in MEASURES}
+                row = {name: "rest" if name in WORDS else 1.0 for name in MEASURED_TYPES}
                 row.update(event=event, wall_s=0.1, steps=10, height_m=height(snow, event))
                 row.update(body_height_m=2 * height(snow, event), length_m=0.3)
                 rows.append(row)

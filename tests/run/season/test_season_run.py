@@ -9,13 +9,13 @@ import sys
 import numpy as np
 import pandas as pd
 import pytest
-from snowshed.run.season.figure import season_figure
 
 from snowshed import InputError, Scene, _core
 from snowshed.cli.display.season import verdict
 from snowshed.cli.main import main
 from snowshed.run.season import SeasonSettings, accumulate, read_season, run_season
 from snowshed.run.season.clearance import below_panel, clearance, first_reached
+from snowshed.run.season.driver import drawn
 from snowshed.run.season.slabs import season_scene
 from snowshed.scene.builders.panel_edge import panel_edge
 
@@ -80,7 +80,7 @@ def test_the_figure_names_the_event_that_buries_the_panel(finished):
     scene = json.loads((folder / "run" / "scene.json").read_text())
     outlines = pd.read_csv(folder / "run" / "outline.csv")
     buried = dataclasses.replace(result, burial_event=2)
-    figure = season_figure(buried, outlines, scene)
+    figure = drawn(buried, outlines, scene)
     texts = [text.get_text() for text in figure.axes[1].texts]
     assert "event 2: reached" in texts
     assert "lower edge with event 2" in figure.get_suptitle()

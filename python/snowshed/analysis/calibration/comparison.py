@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.calibration.measurements import QUANTITIES, Measurement, to_table
+from snowshed.analysis.calibration.measurements import Measurement, to_table
+from snowshed.analysis.stack_table import StackTable
 from snowshed.scene.scene import PathLike
+from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
@@ -18,11 +20,6 @@ if TYPE_CHECKING:
 
 TILT = "panel.tilt"
 SET = "set"  # the column that numbers parameter sets, from 1
-#: Columns of a study's table by what counts as the stack.
-MEASURES: Mapping[str, Mapping[str, str]] = {
-    "stack": {quantity: f"{quantity}_m" for quantity in QUANTITIES},
-    "body": {quantity: f"body_{quantity}_m" for quantity in QUANTITIES},
-}
 
 
 @dataclass(frozen=True)
@@ -57,7 +54,7 @@ def read_simulated(
     Parameters
     ----------
     folder
-        Where the store is.
+        Where the store is, or a table that ``snowshed study export`` wrote.
     study
         Name of the study; not needed if the store holds but one.
     measure
@@ -69,39 +66,29 @@ def read_simulated(
         If there is no such study, it varies nothing that could be calibrated, or it does not say
         the panel's tilt.
     """
-    from snowshed.study.store import Store
-    from snowshed.study.table import read_table
-
-    if measure not in MEASURES:
-        raise InputError(f"measure: {measure!r} is unknown; allowed: {', '.join(MEASURES)}")
-    with Store.open(folder) as store:
-        pending = sum(run.status == "pending" for run in store.runs(store.named(study)))
+    table = StackTable.read(folder, study)
     try:
-        return replace(simulated(read_table(folder, study), measure), pending=pending)
+        return replace(simulated(table.frame, measure), pending=table.pending)
     except InputError as error:
-        text = str(error)
-        raise InputError(text if str(folder) in text else f"{folder}: {text}") from None
+        raise InputError(f"{folder}: {error}") from None
 
 
-def simulated(table: pd.DataFrame, measure: str = "stack") -> Simulated:
+def simulated(frame: pd.DataFrame, measure: str = "stack") -> Simulated:
     """Return the stacks in a study's table, as `snowshed.study.read_table` returns it."""
-    from snowshed.study.table import varying_numbers
-
-    if TILT not in table:
+    if TILT not in frame:
         raise InputError(f"no axis {TILT}; write axes.{TILT} = 40, also for a single tilt")
-    axes = [str(path) for path in table if "." in str(path) and path not in (TILT, SEED)]
-    varied = varying_numbers(table, axes, "calibration")
-    columns = {column: quantity for quantity, column in MEASURES[measure].items()}
-    if table[[*columns]].dropna().empty:
-        raise InputError("nothing of it is computed yet; see `snowshed study status`")
+    table = StackTable.of(frame)
+    axes = [path for path in table.axes if path not in (TILT, SEED)]
+    varied = table.varying(axes, "calibration")
+    measured = table.measured(measure, QUANTITIES)
     if not varied:
         raise InputError("nothing varies in it but tilt and seed, so that nothing is calibrated")
-    rows = table[[*varied, TILT, "seed", "event", *columns]]
-    rows = rows.rename(columns={**columns, TILT: "tilt"})
-    rows[SET] = rows.groupby(varied, sort=False).ngroup() + 1
-    sets = rows.drop_duplicates(SET).set_index(SET)[varied]
-    rows = rows.dropna().drop(columns=varied).reset_index(drop=True)
-    return Simulated(varied, sets, rows)
+    numbered = frame.assign(**{SET: frame.groupby(varied, sort=False).ngroup() + 1})
+    sets = numbered.drop_duplicates(SET).set_index(SET)[varied].astype(float)
+    rows = measured.assign(**{SET: numbered[SET]}).rename(columns={TILT: "tilt"})
+    return Simulated(
+        varied, sets, rows[["tilt", "seed", "event", *QUANTITIES, SET]].reset_index(drop=True)
+    )
 
 
 def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFrame:

@@ -231,8 +231,8 @@ def posterior_figure(posterior: Posterior, best: pd.Series[float]) -> Figure:
     scales = np.array([word(path).scale for path in paths])
     low, high = posterior.surrogate.low / scales, posterior.surrogate.high / scales
     with matplotlib.rc_context({**STYLE, "axes.grid": False}):
-        figure = blank(1.2 + 2.1 * len(paths), 1.4 + 2.0 * len(paths))
-        figure.set_layout_engine("none")  # corner places its diagrams itself
+        # Without a layout: corner places its diagrams itself.
+        figure = Figure(figsize=(1.2 + 2.1 * len(paths), 1.4 + 2.0 * len(paths)))
         corner.corner(
             posterior.samples / scales,
             bins=30,
@@ -242,6 +242,7 @@ def posterior_figure(posterior: Posterior, best: pd.Series[float]) -> Figure:
             truth_color=BEST,
             quantiles=[*LEVELS.values()],
             levels=(0.68, 0.95),
+            smooth=1.0,
             color=ALLOWED,
             plot_datapoints=False,
             hist_kwargs={"density": True},

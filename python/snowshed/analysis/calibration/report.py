@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import Simulated, compare, read_simulated
-from snowshed.analysis.calibration.measurements import QUANTITIES, Measurement
+from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import Surrogate
 from snowshed.io.atomic import replacing, write_text
 from snowshed.scene.scene import PathLike
+from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -144,24 +145,26 @@ def write(found: Calibration, folder: Path) -> None:
     from snowshed.analysis.calibration import figures
     from snowshed.plot.figure_style import save
 
-    folder.mkdir(parents=True, exist_ok=True)
     posterior, parameters = found.posterior, found.stacks.parameters
     bands = figures.predicted_bands(posterior)
-    for name, table in {
+    tables = {
         "ranking": found.ranked,
         "rmse-statistics": statistics(found.ranked).reset_index(),
         "comparison": found.comparison,
         "ranges": found.ranges,
         "posterior": posterior.table(),
         "surrogate": posterior.surrogate.accuracy(),
-    }.items():
-        write_text(folder / f"{name}.csv", table.to_csv(index=False))
-    with replacing(folder / "posterior.nc") as beside:
-        posterior.draws.to_netcdf(beside, engine="scipy")
-    for name, figure in {
+    }
+    drawings = {
         "relative-error": figures.relative_error_figure(found.ranked, parameters),
         "rmse": figures.rmse_figure(found.ranked, parameters),
         "fit": figures.fit_figure(found.comparison, int(found.best["set"]), posterior, bands),
         "posterior": figures.posterior_figure(posterior, found.best),
-    }.items():
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, table in tables.items():
+        write_text(folder / f"{name}.csv", table.to_csv(index=False))
+    with replacing(folder / "posterior.nc") as beside:
+        posterior.draws.to_netcdf(beside, engine="scipy")
+    for name, figure in drawings.items():
         save(figure, folder / f"{name}.png")

@@ -17,13 +17,14 @@ from snowshed._core import version as snowshed_version
 from snowshed.analysis.regression.damage import DAMAGED
 from snowshed.analysis.regression.domain import Domain
 from snowshed.analysis.regression.ensemble import Ensemble
-from snowshed.analysis.regression.rows import INPUTS, MEASURES, TARGETS
+from snowshed.analysis.regression.rows import INPUTS, TARGETS
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.scene.accuracy_settings import FORMER_NAMES
 from snowshed.scene.scene import PathLike
+from snowshed.snow.stack.quantities import measure_named
 
 FORMAT = "snowshed stack model"
 VERSION = 1
@@ -173,8 +174,7 @@ class _Reader:
         if not members:
             raise InputError("members: none")
         measure = _entry(facts, "measure", str)
-        if measure not in MEASURES:
-            raise InputError(f"measure: {measure!r} is unknown; allowed: {', '.join(MEASURES)}")
+        measure_named(measure)
         settings = _entry(facts, "settings", dict)
         if not all(isinstance(value, str) for value in settings.values()):
             raise InputError("settings: not texts")

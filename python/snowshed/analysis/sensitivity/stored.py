@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.analysis.stack_table import StackTable
 from snowshed.scene.scene import PathLike
 from snowshed.study.factors import SEED
 
@@ -15,11 +15,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TARGETS = ("height", "length")
-#: Columns of a study's table by what counts as the stack.
-MEASURES: Mapping[str, Mapping[str, str]] = {
-    "stack": {"height": "height_m", "length": "length_m"},
-    "body": {"height": "body_height_m", "length": "body_length_m"},
-}
 
 
 @dataclass(frozen=True)
@@ -66,12 +61,12 @@ class StoredRuns:
 def read_stored(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
 ) -> StoredRuns:
-    """Read a study from its store, as far as it is computed.
+    """Read the runs of a study, as far as they are computed.
 
     Parameters
     ----------
     folder
-        Where the store is.
+        Where the store is, or a table that ``snowshed study export`` wrote.
     study
         Name of the study; not needed if the store holds but one.
     measure
@@ -83,46 +78,16 @@ def read_stored(
     InputError
         If there is no such study, nothing of it is computed, or an axis does not hold numbers.
     """
-    from snowshed.study.store import Store
-    from snowshed.study.table import read_table
-
-    if measure not in MEASURES:
-        raise InputError(f"measure: {measure!r} is unknown; allowed: {', '.join(MEASURES)}")
-    with Store.open(folder) as store:
-        name = store.named(study)
-        axes = store.axes(name)
-        runs = store.runs(name)
-    points = _points(axes, {run.hash: json.loads(run.scene) for run in runs})
-    table = read_table(folder, name)
+    table = StackTable.read(folder, study)
     try:
-        return stored_runs(name, axes, points, table, measure)
+        return stored_runs(table, measure)
     except InputError as error:
-        raise InputError(f"{folder}: {name}: {error}") from None
+        raise InputError(f"{folder}: {table.name}: {error}") from None
 
 
-def stored_runs(
-    name: str, axes: Sequence[str], points: pd.DataFrame, table: pd.DataFrame, measure: str
-) -> StoredRuns:
-    """Return a study from its points and its table; for the columns see `StoredRuns`."""
-    from snowshed.study.table import varying_numbers
-
-    varying = varying_numbers(points, axes, "sensitivity")
-    axes = [path for path in axes if path == SEED or path in varying]
-    columns = {column: target for target, column in MEASURES[measure].items()}
-    measured = table[["hash", "event", *columns]].rename(columns=columns).dropna()
-    if measured.empty:
-        raise InputError("nothing of it is computed yet; see `snowshed study status`")
-    return StoredRuns(name, tuple(axes), points, points.merge(measured, on="hash"))
-
-
-def _points(axes: Sequence[str], scenes: Mapping[str, Mapping[str, Any]]) -> pd.DataFrame:
-    import pandas as pd
-
-    from snowshed.study.table import value_at
-
-    paths = list(dict.fromkeys([*axes, SEED]))
-    rows = [
-        {"hash": hash_, **{path: value_at(scene, path) for path in paths}}
-        for hash_, scene in scenes.items()
-    ]
-    return pd.DataFrame(rows, columns=["hash", *paths])
+def stored_runs(table: StackTable, measure: str = "stack") -> StoredRuns:
+    """Return the runs in a table of stacks."""
+    measured = table.measured(measure, TARGETS)[["hash", "event", *TARGETS]]
+    varying = table.varying(table.axes, "sensitivity")
+    axes = tuple(path for path in table.axes if path == SEED or path in varying)
+    return StoredRuns(table.name, axes, table.points, table.points.merge(measured, on="hash"))

@@ -101,7 +101,7 @@ class Measurement:
 
     @property
     def key(self) -> str:
-        """What was measured: the case and its settings.
+        """Key of what was measured: the case and its settings.
 
         Examples
         --------

@@ -25,10 +25,12 @@ def verify(context: click.Context) -> int:
             "verify checks this installation and takes no options; the suite of verification cases "
             f"comes with the source of snowshed: run `{suite}` there"
         )
-    from snowshed.cli.display import verify as display
+    from snowshed.cli.display.verify import print_facts, print_results
+    from snowshed.cli.progress import progress_bar
     from snowshed.run.self_test import CHECKS, run_checks
 
-    display.print_facts()
-    results = display.track(run_checks(CHECKS), CHECKS)
-    display.print_results(results)
+    print_facts()
+    with progress_bar(width=24, transient=True) as progress:
+        results = run_checks(CHECKS, progress)
+    print_results(results)
     return int(not all(result.holds for result in results))

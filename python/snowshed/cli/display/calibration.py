@@ -27,10 +27,8 @@ def print_calibration(found: Calibration) -> None:
     console = wide_console()
     console.print(_ranking(found))
     console.print(_ranges(found))
-    worst = found.posterior.diagnostics["r_hat"].max()
-    console.print(
-        f" {found.posterior.effective:.0f} independent samples or more (ESS), r_hat at most {worst:.3f}"
-    )
+    worst, worth = found.posterior.diagnostics["r_hat"].max(), found.posterior.effective
+    console.print(f" chains: ESS {worth:.0f} or more, r_hat {worst:.3f} or less")
     if any(found.ranges["open"]):
         console.print(" open, undecided: the range goes on beyond the grid")
     for warning in warnings(found):

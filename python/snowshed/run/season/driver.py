@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
@@ -25,6 +25,7 @@ from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
 # Part of a slab that may stay on the panel; beyond it the core lays the next slab on top.
 STAYING = 0.02
@@ -233,17 +234,33 @@ def _write(
     write_text(folder.summary, text + "\n")
     if pictures:
         from snowshed.plot.figure_style import save
-        from snowshed.plot.season_figure import season_figure
 
-        figure = season_figure(
-            result.table,
-            _table_or_empty(folder.run.outlines.path, ("event", "x", "z")),
-            scene.data,
-            panel=panel_ends(scene.data),
-            burial_event=result.burial_event,
-            title=f"{result.releases} releases{_verdict(result)}",
-        )
-        save(figure, folder.figure)
+        outlines = _table_or_empty(folder.run.outlines.path, ("event", "x", "z"))
+        save(drawn(result, outlines, scene.data), folder.figure)
+
+
+def drawn(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
+    """Return the figure of a season.
+
+    Parameters
+    ----------
+    result
+        As from `run_season`.
+    outlines
+        The profiles of the stack, as in outline.csv; without rows if nothing slid.
+    scene
+        The complete scene of the slide-offs.
+    """
+    from snowshed.plot.season_figure import season_figure
+
+    return season_figure(
+        result.table,
+        outlines,
+        scene,
+        panel=panel_ends(scene),
+        burial_event=result.burial_event,
+        title=f"{result.releases} releases{_verdict(result)}",
+    )
 
 
 def _verdict(result: SeasonResult) -> str:

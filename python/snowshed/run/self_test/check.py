@@ -1,12 +1,14 @@
-"""What a check is: something measured, and the largest error that is allowed."""
+"""Checks: something measured, and the largest error that is allowed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import nan
+from typing import Optional
 
 from snowshed._core import InputError, SimulationError
+from snowshed.run.progress import Progress, Reporter
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Result:
-    """What a check found.
+    """The result of a check.
 
     Attributes
     ----------
@@ -48,12 +50,19 @@ class Result:
 
     @property
     def holds(self) -> bool:
-        """Whether the error is within the bar."""
+        """True if the error is within the bar."""
         return abs(self.error) <= self.check.bar
 
 
-def run_checks(checks: Iterable[Check]) -> Iterator[Result]:
-    """Yield the result of each check as soon as it is there.
+def run_checks(checks: Sequence[Check], progress: Optional[Reporter] = None) -> list[Result]:
+    """Run checks one after another and return their results.
+
+    Parameters
+    ----------
+    checks
+        What to run.
+    progress
+        Called before each check.
 
     Examples
     --------
@@ -61,8 +70,16 @@ def run_checks(checks: Iterable[Check]) -> Iterator[Result]:
     >>> [(result.error, result.holds) for result in run_checks([half])]
     [(0.5, False)]
     """
-    for check in checks:
-        try:
-            yield Result(check, check.measure())
-        except (InputError, SimulationError, OSError) as error:
-            yield Result(check, nan, str(error))
+    results: list[Result] = []
+    for done, check in enumerate(checks):
+        if progress is not None:
+            progress(Progress(done / len(checks), done, len(checks), "checks", check.title))
+        results.append(_result(check))
+    return results
+
+
+def _result(check: Check) -> Result:
+    try:
+        return Result(check, check.measure())
+    except (InputError, SimulationError, OSError) as error:
+        return Result(check, nan, str(error))

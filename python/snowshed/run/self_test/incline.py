@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from snowshed.io.arrays import Floats
-from snowshed.scene.components import Body, Obstacle
+from snowshed.scene.components import Body, Condition, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
@@ -54,7 +54,12 @@ class Incline(NamedTuple):
         return GRAVITY * (math.sin(tilt) - friction * math.cos(tilt))
 
     def scene(
-        self, size: tuple[float, ...], friction: float, *, condition: str = "slip", speed: float = 0
+        self,
+        size: tuple[float, ...],
+        friction: float,
+        *,
+        condition: Condition = "slip",
+        speed: float = 0.0,
     ) -> Scene:
         """Return a scene with a block of snow that lies on the plane.
 

@@ -64,16 +64,13 @@ def column_error() -> float:
 
 def column_scene() -> Scene:
     """Return an elastic column between frictionless walls on a sticky floor."""
+    floor = Obstacle(shape=Shape.plane((0.0, 0.0), (0.0, 1.0)), condition="sticky")
     walls = [
-        Obstacle(shape=Shape.plane(point, normal), condition=condition, friction=0.0)
-        for point, normal, condition in (
-            ((0.0, 0.0), (0.0, 1.0), "sticky"),
-            ((0.0, 0.0), (1.0, 0.0), "slip"),
-            ((WIDTH, 0.0), (-1.0, 0.0), "slip"),
-        )
+        Obstacle(shape=Shape.plane((x, 0.0), (side, 0.0)), condition="slip", friction=0.0)
+        for x, side in ((0.0, 1.0), (WIDTH, -1.0))
     ]
     column = Body(shape=Shape.box((WIDTH / 2, HEIGHT / 2), (WIDTH, HEIGHT)))
-    scene = Scene(dimension=2, gravity=GRAVITY, obstacles=walls, bodies=[column])
+    scene = Scene(dimension=2, gravity=GRAVITY, obstacles=[floor, *walls], bodies=[column])
     return scene.update(
         {
             "snow.density": DENSITY,

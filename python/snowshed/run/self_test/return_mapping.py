@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from snowshed import _core
 from snowshed.scene.components import Snow
@@ -21,7 +21,7 @@ class Constants(NamedTuple):
 
 def calibrated() -> tuple[Constants, float]:
     """Return the thesis's calibrated snow, and its initial p0, Pa."""
-    snow = Snow.preset("calibrated").to_data()
+    snow: dict[str, Any] = Snow.preset("calibrated").to_data()
     return Constants(*(snow[name] for name in Constants._fields)), snow["preconsolidation_pressure"]
 
 

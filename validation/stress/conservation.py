@@ -1,4 +1,4 @@
-"""Mass, momentum and energy of a run, kept from outside the solver while it goes on."""
+"""Balances of momentum and energy, kept from outside the solver during a run."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ LEAST_DROP = 1e-2
 _SPENT = ("plastic_j", "friction_j", "sticking_j", "impact_j", "transfer_j", "sleep_j")
 
 
-class Books:
-    """What came in, what is there, and how far the two are apart.
+class Conservation:
+    """The balances of momentum and energy of a simulation.
 
     Energy comes in with thrown snow and as work of gravity. What is stored in motion and elastic
     strain can never be more; and with what was spent it must be exactly that. Errors are relative
@@ -39,7 +39,7 @@ class Books:
         self._momenta = 0.0  # kg m/s, sum of their magnitudes
 
     def begin(self, before: dict[str, float]) -> None:
-        """Take in the snow that an event has brought; `before` are the books before it."""
+        """Take in the snow that an event has brought; `before` is the energy before it."""
         after = self.simulation.energy()
         self._brought += _in_motion(after) - _in_motion(before)
         self._thrown += max(after["kinetic_j"] - before["kinetic_j"], 0.0)

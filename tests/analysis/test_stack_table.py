@@ -1,0 +1,64 @@
+"""The one table of stacks: the same stacks from a store, its exports and results folders."""
+
+import copy
+
+import numpy as np
+import pytest
+
+from snowshed import InputError, Scene, run_events
+from snowshed.analysis.sensitivity.stored import read_stored
+from snowshed.analysis.stack_table import StackTable
+from snowshed.study import Study, export
+
+SCENE = Scene.preset("lab-50").update(
+    {"dimension": 2, "numerics.dx": 0.02, "events.count": 2, "events.max_time": 0.4}
+)
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("stacks") / "store"
+    axes = {"panel.tilt": [40.0, 50.0], "snow.cohesion": [0.2]}
+    Study.product(SCENE, axes, name="tilts", seeds=[1, 2]).compute(folder, jobs=1, threads=1)
+    return folder
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_a_file_holds_the_stacks_of_its_store(store, tmp_path, ending):
+    export(store, tmp_path / f"table.{ending}")
+    ours = StackTable.read(store)
+    theirs = StackTable.read(tmp_path / f"table.{ending}")
+    for measure in ("stack", "body"):
+        one, other = (table.measured(measure, ["height", "length"]) for table in (ours, theirs))
+        for name in ("panel.tilt", "seed", "event", "height", "length"):
+            np.testing.assert_array_equal(one[name].to_numpy(float), other[name].to_numpy(float))
+    assert ours.varying(ours.axes, "this") == theirs.varying(theirs.axes, "this") == ["panel.tilt"]
+    stored, exported = read_stored(store), read_stored(tmp_path / f"table.{ending}")
+    assert stored.parameters == exported.parameters == ["panel.tilt"]
+    assert stored.rows["height"].tolist() == exported.rows["height"].tolist()
+
+
+def test_a_results_folder_is_the_run_of_the_study(store, tmp_path):
+    run_events(copy.deepcopy(SCENE).set("panel.tilt", 40.0), tmp_path / "out", pictures=False)
+    alone = StackTable.read(tmp_path / "out")
+    frame = StackTable.read(store).frame
+    same = frame[frame["hash"] == alone.frame["hash"].iloc[0]]
+    assert len(same) == 2 and set(same["panel.tilt"]) == {40.0} and set(same["seed"]) == {1}
+    heights = alone.measured("stack", ["height"])["height"]
+    assert heights.tolist() == pytest.approx(same["height_m"].tolist(), rel=1e-8)
+    assert alone.numbers("panel.tilt").tolist() == [40.0, 40.0]
+
+
+def test_what_is_no_table_of_stacks_is_named(store, tmp_path):
+    (tmp_path / "a.csv").write_text("event,height_m\n1,much\n2,0.1\n")
+    table = StackTable.read(tmp_path / "a.csv")
+    with pytest.raises(InputError, match="line 2, height_m: 'much' is not a positive number"):
+        table.numbers("height_m", positive=True)
+    with pytest.raises(InputError, match="no column length_m; it has event, height_m"):
+        table.measured("stack", ["height", "length"])
+    with pytest.raises(InputError, match="measure: 'heap' is unknown; allowed: stack, body"):
+        table.measured("heap", ["height"])
+    with pytest.raises(InputError, match="holds no study 'x'"):
+        StackTable.read(store, "x")
+    with pytest.raises(InputError, match=r"none\.csv: No such file"):
+        StackTable.read(tmp_path / "none.csv")
