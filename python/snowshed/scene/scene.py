@@ -343,8 +343,9 @@ def resolve_scene(scene: SceneLike) -> ResolvedScene:
 
     Examples
     --------
-    >>> resolve_scene({"slab": {"thickness": 0.1}, "panel": {}}).data["slab"]["thickness"]
-    0.1
+    >>> ball = {"type": "sphere", "center": [0, 1], "radius": 0.1}
+    >>> resolve_scene({"dimension": 2, "bodies": [{"shape": ball}]}).data["gravity"]
+    9.81
     """
     if isinstance(scene, ResolvedScene):
         return scene
