@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.io.arrays import Numbers
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.io.arrays import Numbers
 from snowshed.io.extras import require
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.array_arguments import finite, points, positive
 from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
