@@ -95,7 +95,7 @@ def test_a_failed_call_leaves_the_scene_as_it_was(tiny):
 def test_the_method_decides_what_the_settings_are(tiny):
     assert tiny.set("method", "mpm").resolve() == Scene.from_data(tiny.to_data()).resolve()
     assert "method" not in tiny.resolve().data
-    with pytest.raises(InputError, match="^/method: 'mps' is none of mpm; did you mean mpm"):
+    with pytest.raises(InputError, match=r"^/method: 'mps' is none of mpm; did you mean mpm"):
         tiny.set("method", "mps")
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
 from snowshed.run.results import read_events
-from snowshed.scene.scene import ResolvedScene, PathLike
+from snowshed.scene.scene import PathLike, ResolvedScene
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -26,7 +26,7 @@ from snowshed.run.conversion import conversion_row
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import cpu_name, peak_memory_mb
 from snowshed.run.results import Results, check_empty, measured_columns, read_events
-from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 
 if TYPE_CHECKING:

@@ -33,8 +33,8 @@ from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.json_file import is_number, read_object
 from snowshed.run.ageing import AGEING_COLUMNS
 from snowshed.run.conversion import CONVERSION_COLUMNS
+from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.scene.schema import with_current_names
-from snowshed.scene.scene import ResolvedScene, PathLike
 from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
