@@ -51,7 +51,8 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
   if (const auto told = shape_volume(body.shape, scene.dimension)) return *told;
   return naming(path, [&] {
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
-    const Vec3 size = shape->bounds().max - shape->bounds().min;
+    Vec3 size = shape->bounds().max - shape->bounds().min;
+    if (scene.dimension == 2) size.y() = 0;  // endless
     return measure(*shape, scene.dimension, std::max(scene.numerics.dx, size.maxCoeff() / 64));
   });
 }
