@@ -1,10 +1,9 @@
-# Every target sets up what it needs. A machine must bring a C++17 compiler, make and
-# Python >= 3.9 with its headers; the rest comes from the system where it is there, else from
-# wheels into .venv.
+# Every target installs what it needs. A machine must have a C++17 compiler, make and Python >= 3.9
+# with its headers. Everything else comes from the system, or from wheels into .venv.
 #
-# One CMake tree (build/release) serves the Python package, the tests and the benchmarks, so
-# the core is compiled once; only sanitizers, fuzzing and tidy need others. The files named
-# .venv/.* mark what has been done.
+# The Python package, the tests and the benchmarks share a CMake tree (build/release), so the core
+# is compiled once. Only sanitizers, fuzzing and tidy need other trees. The files .venv/.* mark
+# completed steps.
 
 PYTHON ?= python3
 VENV := .venv
@@ -15,12 +14,14 @@ FUZZED := build/fuzz
 DEMO := demo-results
 FUZZ_SECONDS ?= 60
 CLANG_FORMAT := 23.1.5
+VERIFY ?= --quick
+THESIS ?= --quick
 
-# Several tools must find cmake and ninja, which may be in .venv alone.
+# Several tools must find cmake and ninja, which may be only in .venv.
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
 PIP := $(BIN)/python -m pip --disable-pip-version-check install
-# Long work shows itself: what the compiler does, out of all that pip has to say.
+# Selects the compiler's progress and messages from pip's output.
 COMPILER_LINES := '/^ *\[[0-9]+\/[0-9]+\]|warning:|error/ { print; fflush() }'
 
 SHELL := bash
@@ -28,18 +29,20 @@ SHELL := bash
 
 CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/snowshed cpp/vdb -type f)
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
-PYTHON_FOLDERS = $(wildcard python tests tools examples benchmarks lua_compat)
+PYTHON_FOLDERS = $(wildcard python validation thesis tests tools examples benchmarks lua_compat)
 
-.PHONY: help build demo test test-cpp test-py test-slow sanitize sanitize-address sanitize-thread fuzz \
-  bench docs format lint tidy clean
+.PHONY: help build demo verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
+  sanitize-thread fuzz bench docs format lint tidy clean
 .NOTPARALLEL:
 
 help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
 	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
-	@echo "make test      all tests (test-cpp, test-py: one half; test-slow: those that take minutes)"
-	@echo "make sanitize  the tests once more, watched by AddressSanitizer, UBSan and ThreadSanitizer"
-	@echo "make fuzz      feed ever new damaged files to all readers (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
+	@echo "make verify    problems with known answers, a minute (VERIFY=--full: hours)"
+	@echo "make thesis    the thesis reproduced, some minutes (THESIS=--full: days)"
+	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
+	@echo "make sanitize  the tests with AddressSanitizer, UBSan and ThreadSanitizer"
+	@echo "make fuzz      fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
 	@echo "make bench     speed of the solver and of the laboratory events, kept in benchmarks/results"
 	@echo "make docs      the documentation as HTML"
 	@echo "make format    format all sources"
@@ -61,7 +64,7 @@ $(VENV)/.build-tools: $(VENV)/.created pyproject.toml tools/build_requirements.p
 	$(PIP) --quiet --requirement $(VENV)/requirements.txt
 	touch $@
 
-# Editable: changes of Python files count at once, changes of C++ files after `make build`.
+# Editable: changes of Python files take effect at once, changes of C++ files after `make build`.
 $(VENV)/.installed: $(VENV)/.build-tools $(CORE)
 	@echo "Building snowshed in $(TREE)"
 	@mkdir -p build
@@ -79,15 +82,25 @@ demo: build
 	@echo "Pictures:"
 	@ls $(DEMO)/*.png
 
+# Old results of the quick suite give way; those of the full one took hours and never do.
+verify: build $(VENV)/.dev-tools
+	$(if $(findstring --full,$(VERIFY)),,rm -rf verification-quick)
+	$(BIN)/python -m validation $(VERIFY) -o verification-$(patsubst --%,%,$(firstword $(VERIFY)))
+
+# What was interrupted goes on.
+thesis: build $(VENV)/.dev-tools
+	$(BIN)/python -m thesis $(THESIS) -o reproduction-$(patsubst --%,%,$(firstword $(THESIS)))
+
 # --- test ----------------------------------------------------------------------------------
 
-# Turns an option of the tree on; where that fails, the tree must stay good for `make build`.
+# Turns an option of the tree on. If that fails, turns it off again, so that `make build` still
+# works.
 enable = cmake -S . -B $(TREE) -D$(1)=ON > build/configure.log \
   || { cat build/configure.log; cmake -S . -B $(TREE) -D$(1)=OFF > /dev/null; exit 1; }
 
 test: test-cpp test-py
 
-# Two tests at a time; those that solve use all cores themselves, and must not wait by spinning.
+# Two tests run at a time. Those with a solver use all cores, so their threads must not spin.
 test-cpp test-py sanitize-address sanitize-thread: export OMP_WAIT_POLICY := passive
 
 test-cpp: build
@@ -104,8 +117,9 @@ test-slow: build $(VENV)/.dev-tools
 
 # --- robustness, see docs/robustness.md ----------------------------------------------------
 
-# Each sanitizer has a tree of its own. Left out: what takes minutes and runs no code that shorter
-# tests do not run, and Lua, whose limit of memory leaves no room for AddressSanitizer's.
+# Each sanitizer has its own tree. The test LongSlab is left out: it takes minutes and runs only
+# code that shorter tests run, too. Lua is left out: its memory limit leaves no room for
+# AddressSanitizer.
 build_sanitized = cmake -S . -B $(WATCHED)-$(1) -G Ninja -DSNOWSHED_SANITIZE=$(1) \
     -DSNOWSHED_BUILD_TESTS=ON -DSNOWSHED_BUILD_PYTHON=ON \
     -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
@@ -118,12 +132,13 @@ sanitize: sanitize-address sanitize-thread
 sanitize-address: $(VENV)/.dev-tools
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
 	$(call build_sanitized,address)
-	sh tools/sanitized_pytest.sh $(WATCHED)-address $(VENV) "asan ubsan" tests/test_*.py -k "not lua"
+	sh tools/sanitized_pytest.sh $(WATCHED)-address $(VENV) "asan ubsan" \
+	  tests/test_*.py tests/{cli,io,methods,run,scene,snow/stack}/test_*.py -k "not lua"
 
 sanitize-thread: $(VENV)/.dev-tools
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
 	$(call build_sanitized,thread)
-	sh tools/sanitized_pytest.sh $(WATCHED)-thread $(VENV) tsan tests/test_executable.py
+	sh tools/sanitized_pytest.sh $(WATCHED)-thread $(VENV) tsan tests/run/test_executable.py
 
 fuzz: $(VENV)/.build-tools
 	cmake -S . -B $(FUZZED) -G Ninja -DSNOWSHED_SANITIZE=address -DSNOWSHED_BUILD_FUZZ=ON \
@@ -149,21 +164,25 @@ format: $(VENV)/.cpp-tools $(VENV)/.dev-tools
 	$(BIN)/ruff check --fix $(PYTHON_FOLDERS)
 	$(BIN)/ruff format $(PYTHON_FOLDERS)
 
-lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools
+# Of the compiled core; mypy looks for it beside the package's other modules.
+python/snowshed/_core.pyi:
+	ln -s ../../cpp/bindings/_core.pyi $@
+
+lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools python/snowshed/_core.pyi
 	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
 	$(BIN)/ruff check $(PYTHON_FOLDERS)
 	$(BIN)/ruff format --check $(PYTHON_FOLDERS)
-	$(BIN)/mypy python/snowshed
+	$(BIN)/mypy python/snowshed validation thesis
 
 tidy: $(VENV)/.build-tools $(VENV)/.cpp-tools
 	sh tools/tidy.sh
 
-# The extra "dev" of pyproject.toml; snowshed itself is there already and stays as it is.
+# Installs the extra "dev" of pyproject.toml. snowshed itself is already installed and stays.
 $(VENV)/.dev-tools: $(VENV)/.installed pyproject.toml
 	$(PIP) --quiet "snowshed[dev]"
 	touch $@
 
-# Another version of clang-format would format everything anew.
+# Another version of clang-format would change the format of many files.
 $(VENV)/.cpp-tools: $(VENV)/.created
 	$(PIP) --quiet "clang-format==$(CLANG_FORMAT)" clang-tidy
 	touch $@

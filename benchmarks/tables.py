@@ -27,7 +27,7 @@ PRICES = {
     "ground with friction, separate": ("separate_contact", "base_3d"),
     "sticky ground that moves": ("moving_contact", "base_3d"),
     "several snows": ("several_snows", "cam_clay_elastic"),
-    "energy books, with those of several snows": ("energy_books", "cam_clay_elastic"),
+    "energy balance, with several snows": ("energy_balance", "cam_clay_elastic"),
     "sleep, of snow in motion": ("sleep_of_awake_snow", "base_3d"),
     "sleep, of snow at rest": ("sleep_at_rest", "cam_clay_elastic"),
 }

@@ -1,7 +1,7 @@
-# A library that only tests or benchmarks use: the system's, or else its release from the web.
+# Provides a library for tests or benchmarks: that of the system, or else its release from the web.
 include(FetchContent)
 
-# Nothing of it belongs into the installed package, and its own tests are its own affair.
+# Do not install these libraries and do not build their tests.
 set(INSTALL_GTEST OFF CACHE BOOL "" FORCE)
 set(BUILD_GMOCK OFF CACHE BOOL "" FORCE)
 set(BENCHMARK_ENABLE_INSTALL OFF CACHE BOOL "" FORCE)

@@ -1,5 +1,5 @@
-# Coverage-guided fuzzing with libFuzzer, which clang brings. Other compilers build the same
-# targets as programs that replay given inputs.
+# Coverage-guided fuzzing with libFuzzer, a part of clang. Other compilers build the same targets as
+# programs that replay given inputs.
 option(SNOWSHED_BUILD_FUZZ "Build the fuzz targets" OFF)
 if(NOT SNOWSHED_BUILD_FUZZ)
   return()
@@ -13,7 +13,7 @@ check_cxx_source_compiles("
   SNOWSHED_HAS_LIBFUZZER)
 unset(CMAKE_REQUIRED_FLAGS)
 if(SNOWSHED_HAS_LIBFUZZER)
-  add_compile_options(-fsanitize=fuzzer-no-link)  # counts what is covered, in all of the core
+  add_compile_options(-fsanitize=fuzzer-no-link)  # measures coverage of the whole core
 endif()
 
 function(snowshed_add_fuzz_target name source)

@@ -1,5 +1,5 @@
-# Eigen and nlohmann-json are headers only. The system's packages are preferred; where they
-# are missing, the Python wheels `cmeel-eigen` and `nlohmann-json` carry the same headers.
+# Finds Eigen and nlohmann-json, which are header-only. The system's packages are preferred. The
+# Python wheels `cmeel-eigen` and `nlohmann-json` contain the same headers.
 add_library(snowshed_headers INTERFACE)
 
 find_package(Python COMPONENTS Interpreter QUIET)

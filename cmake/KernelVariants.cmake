@@ -1,15 +1,15 @@
-# The kernels (cpp/snowshed/methods/mpm/kernels/*.cpp) are compiled once for each instruction set and the
-# best one is chosen at run time, so that one build runs on any machine and is fast on each.
+# The kernels (cpp/snowshed/methods/mpm/kernels/*.cpp) are compiled once for each instruction set. The
+# best variant is chosen at run time, so one build runs on any machine and is fast on each.
 set(SNOWSHED_KERNEL_FLAGS_baseline "")
 set(SNOWSHED_KERNEL_FLAGS_avx2 -mavx2 -mfma -mf16c -mbmi -mbmi2)
 set(SNOWSHED_KERNEL_FLAGS_avx512
   -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mbmi -mbmi2 -mprefer-vector-width=512)
 
 if(SNOWSHED_SANITIZE)
-  set(snowshed_default_variants baseline)  # all come from the same templates: one will do
+  set(snowshed_default_variants baseline)  # all variants come from the same templates
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(snowshed_default_variants baseline avx2 avx512)
-  set(SNOWSHED_KERNEL_FLAGS_baseline -O2)  # only for processors without AVX2: built in half the time
+  set(SNOWSHED_KERNEL_FLAGS_baseline -O2)  # builds in half the time; for processors without AVX2
 else()
   set(snowshed_default_variants baseline)
 endif()

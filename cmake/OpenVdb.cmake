@@ -1,4 +1,4 @@
-# OpenVDB, where it is there, for the program snowshed-vdb; all else is built without it.
+# Finds OpenVDB for the program snowshed-vdb. Everything else is built without it.
 set(SNOWSHED_WITH_OPENVDB AUTO CACHE STRING "Read and write OpenVDB files: AUTO, ON or OFF")
 set_property(CACHE SNOWSHED_WITH_OPENVDB PROPERTY STRINGS AUTO ON OFF)
 
@@ -13,7 +13,7 @@ if(NOT SNOWSHED_WITH_OPENVDB STREQUAL "OFF")
   find_path(SNOWSHED_BOOST_DIR boost/numeric/conversion/conversion_traits.hpp)
   set(snowshed_openvdb_headers ${SNOWSHED_OPENVDB_DIR} ${SNOWSHED_BOOST_DIR})
   set(snowshed_openvdb_libraries ${SNOWSHED_OPENVDB_LIBRARY} ${SNOWSHED_TBB_LIBRARY})
-  # Half precision, where OpenVDB does not bring its own.
+  # Some versions of OpenVDB take half precision from Imath.
   find_path(SNOWSHED_IMATH_DIR half.h PATH_SUFFIXES Imath)
   find_library(SNOWSHED_IMATH_LIBRARY NAMES Imath Imath-3_1)
   if(SNOWSHED_IMATH_DIR AND SNOWSHED_IMATH_LIBRARY)
@@ -28,7 +28,7 @@ if(NOT SNOWSHED_WITH_OPENVDB STREQUAL "OFF")
 endif()
 message(STATUS "OpenVDB: ${SNOWSHED_HAS_OPENVDB}")
 
-# Makes a target include and link OpenVDB; its own warnings are not ours.
+# Makes a target include and link OpenVDB, whose warnings are suppressed.
 function(snowshed_use_openvdb target)
   target_include_directories(${target} SYSTEM PUBLIC ${snowshed_openvdb_headers})
   target_link_libraries(${target} PUBLIC ${snowshed_openvdb_libraries})

@@ -1,6 +1,6 @@
-# A build that watches itself, for tests: SNOWSHED_SANITIZE=address finds errors of memory and
-# undefined behaviour, =thread finds data races. See docs/robustness.md.
-set(SNOWSHED_SANITIZE "" CACHE STRING "what to build with checks for: address (and undefined behaviour), thread, or nothing")
+# Sanitizers for tests: SNOWSHED_SANITIZE=address finds memory errors and undefined behaviour,
+# SNOWSHED_SANITIZE=thread finds data races. See docs/robustness.md.
+set(SNOWSHED_SANITIZE "" CACHE STRING "sanitizers: address (and undefined behaviour), thread, or empty")
 set_property(CACHE SNOWSHED_SANITIZE PROPERTY STRINGS "" address thread)
 
 set(snowshed_sanitizers_address -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
@@ -15,10 +15,10 @@ if(SNOWSHED_SANITIZE)
   set(snowshed_default_build_type Debug)  # assertions on
   set(snowshed_kernel_optimisation -O1)
   add_compile_options(${snowshed_sanitizers_${SNOWSHED_SANITIZE}} -O1 -g1 -fno-omit-frame-pointer
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # which these checks confuse
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # has false positives with sanitizers
   add_link_options(${snowshed_sanitizers_${SNOWSHED_SANITIZE}})
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
-  # ThreadSanitizer sees what threads wait for, but not the barriers of GCC's OpenMP runtime.
+  # ThreadSanitizer understands std::thread, but not the barriers of GCC's OpenMP runtime.
   if(SNOWSHED_SANITIZE STREQUAL "thread")
     add_compile_definitions(SNOWSHED_STD_THREADS)
   endif()

@@ -1,5 +1,6 @@
-# Most of the time goes into templates that each source would instantiate again, so the compiler
-# gets several sources at a time. Sanitized builds do not, and so keep every source complete.
+# Most of the build time goes into templates that each source instantiates again. The compiler
+# therefore gets several sources at a time. Sanitized builds compile each source alone, which shows
+# that every source includes what it needs.
 if(SNOWSHED_SANITIZE)
   set(snowshed_default_batches OFF)
 else()

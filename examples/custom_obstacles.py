@@ -1,10 +1,9 @@
-"""Snow from a panel on a flat roof, over the roof's edge and onto a post below.
+"""Snow slides from a panel on a flat roof over the roof's edge and onto a post below.
 
     python examples/custom_obstacles.py [FOLDER [DX]]
 
-Obstacles are composed of shapes: the roof is a box with a lip of a second box (a union), less a
-round gutter (a difference); the post is a capsule. Everything is in the plane of a 2D scene,
-vectors are (x, z).
+Obstacles are composed of shapes. The roof is the union of a box and a second box, its lip, minus a
+round gutter (a difference). The post is a capsule. The scene is 2D, so vectors are (x, z).
 """
 
 import sys
@@ -13,7 +12,7 @@ from snowshed import Obstacle, Panel, Scene, Shape, Slab, run_events
 
 
 def roof() -> Shape:
-    """Return a roof 3 m above the ground whose edge stands 0.6 m from the panel's centre."""
+    """Return a roof 3 m above the ground. Its edge is 0.6 m from the panel's centre."""
     slab = Shape.box(center=(-0.4, 2.85), size=(2.0, 0.3))
     lip = Shape.box(center=(0.55, 3.0), size=(0.1, 0.1))
     gutter = Shape.sphere(center=(0.35, 3.0), radius=0.08)
@@ -21,7 +20,7 @@ def roof() -> Shape:
 
 
 def main(folder: str = "custom-obstacles", dx: float = 0.02) -> None:
-    """Run the scene into `folder`, new or empty, and print what came to lie where."""
+    """Run the scene into `folder`, new or empty, and print the stack after each event."""
     scene = Scene(dimension=2, title="Over the edge of a roof")
     scene.panel = Panel(height=3.2, length=1.0, tilt=35, friction=0.1)
     scene.slab = Slab(thickness=0.1)

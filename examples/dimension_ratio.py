@@ -1,8 +1,8 @@
-"""The same stack in 3D and in 2D: the ratio of its heights, beside the thesis's 2/3.
+"""Compare the stack in 3D and in 2D: the ratio of the heights, which is 2/3 in the thesis.
 
     python examples/dimension_ratio.py [FOLDER [DX [EVENTS]]]
 
-About two minutes with dx = 0.01 m and five events. For results folders that are there already:
+This takes about two minutes with dx = 0.01 m and five events. To compare existing results folders:
 
     snowshed compare FOLDER/3d FOLDER/2d
 """

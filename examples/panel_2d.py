@@ -1,8 +1,8 @@
-"""A panel's stack in 2D, from a few numbers: five slide-offs, the table and the pictures.
+"""Simulate five slide-offs from a panel in 2D; write the table and the pictures.
 
     python examples/panel_2d.py [FOLDER [DX]]
 
-About ten seconds with the grid size of the thesis, dx = 0.01 m.
+This takes about ten seconds with the grid size of the thesis, dx = 0.01 m.
 """
 
 import sys
@@ -21,7 +21,7 @@ def main(folder: str = "panel-2d", dx: float = 0.01) -> None:
     )
     scene.set("ground.condition", "sticky")
     scene.update({"events": {"count": 5, "between": "carry"}, "numerics.dx": dx})
-    scene.set("panel.tilt", 45)  # values may be overridden; the last one wins
+    scene.set("panel.tilt", 45)  # overrides the tilt above; the last value counts
 
     table = run_events(scene, folder)
     print(table[["event", "height_m", "length_m", "head_m", "tail_m", "ended"]].to_string())

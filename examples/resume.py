@@ -1,8 +1,8 @@
-"""A run that is interrupted half-way and resumed: the results are those of one without a break.
+"""Interrupt a run and resume it; the results are those of an uninterrupted run.
 
     python examples/resume.py [FOLDER [DX]]
 
-Here the reporter of the progress presses Ctrl-C. On the command line the same is
+Here the progress callback interrupts the run as Ctrl-C would. The command line resumes a run with
 
     snowshed run FOLDER/scene.json -o FOLDER --resume
 """

@@ -14,7 +14,9 @@ else:
 #: The module of each requirement, but for NumPy.
 MODULES_OF = {
     "allpairspy": "allpairspy",
+    "arviz": "arviz",
     "click": "click",
+    "corner": "corner",
     "dask": "dask",
     "distributed": "distributed",
     "emcee": "emcee",

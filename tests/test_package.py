@@ -10,9 +10,9 @@ from requirements import MODULES_OF, required
 import snowshed
 
 MODULES = sorted(
-    f"snowshed.{module.name}"
-    for module in pkgutil.iter_modules(snowshed.__path__)
-    if module.name not in ("_core", "__main__")
+    module.name
+    for module in pkgutil.walk_packages(snowshed.__path__, "snowshed.")
+    if module.name not in ("snowshed._core", "snowshed.__main__")
 )
 
 

@@ -1,9 +1,8 @@
-"""The command ``snowshed reproduce thesis``."""
+"""The commands ``snowshed reproduce`` and ``python -m thesis``."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -24,7 +23,7 @@ def reproduce() -> None:
 
     \b
     Example:
-      snowshed reproduce thesis --quick -o thesis
+      snowshed reproduce thesis --quick -o reproduction
     """  # noqa: D301 - click wants the control character
 
 
@@ -67,7 +66,7 @@ def thesis(
 
     \b
     Example:
-      snowshed reproduce thesis --quick -o thesis
+      snowshed reproduce thesis --quick -o reproduction
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.regression.rows import read_rows
     from thesis.folder import ReproductionFolder
@@ -98,7 +97,7 @@ def _compute(stages: Sequence[Stage], folder: Path, jobs: Optional[int], quiet: 
     from thesis.reproduction import compute
 
     try:
-        with nullcontext() if quiet else progress_bar() as progress:
+        with progress_bar(quiet=quiet) as progress:
             compute(stages, jobs=jobs, progress=progress)
     except StudyError as error:
         raise Failed(str(error)) from None

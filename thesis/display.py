@@ -1,34 +1,32 @@
-"""What ``snowshed reproduce`` shows: one bar over all stages, and the verdicts."""
+"""The output of the reproduction: one bar over all stages, and the verdicts."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from typing import Optional
 
-from snowshed.cli.display.study import SPEED_PERIOD_S, in_words
-from snowshed.cli.terminal import one_bar, plain_table, wide_console
+from snowshed.cli import progress as bar
+from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.io.formatting import about
+from snowshed.run.progress import Progress, Reporter
 from thesis.claims.hypothesis_tests import CONTRADICTED, UNDECIDED, Judged
-from thesis.reproduction import Progress, Reporter
 
 WIDTH = 140  # columns, of what is not a terminal
 STYLES = {CONTRADICTED: "bold red", UNDECIDED: "dim"}
 
 
-@contextmanager
-def progress_bar() -> Iterator[Reporter]:
+def progress_bar(*, quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
     """Say how long all should take, and show one bar over all stages, on stderr."""
-    with one_bar(width=24, speed_period_s=SPEED_PERIOD_S) as bar:
+    return bar.progress_bar(
+        quiet=quiet, announce=_announcement, speed_period_s=bar.LONG_PERIOD_S, width=24
+    )
 
-        def report(progress: Progress) -> None:
-            if not bar.started:
-                expected = in_words(progress.expected_s)
-                bar.console.print(f"{progress.stages} stages; expected time: {expected}")
-            bar.show(
-                progress.fraction, f"stage {progress.stage}/{progress.stages}, {progress.doing}"
-            )
 
-        yield report
+def _announcement(progress: Progress) -> str:
+    expected = about(progress.expected_s or 0.0)
+    return f"{progress.count} stages; expected time: {expected}"
 
 
 def print_claims(claims: Sequence[Judged]) -> None:

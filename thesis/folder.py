@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from snowshed._core import InputError
+
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import read_object
 
@@ -25,7 +26,7 @@ IDENTITY = "reproduction.json"
 
 @dataclass(frozen=True)
 class ReproductionFolder:
-    """Where things are in a reproduction's folder; use `claim`."""
+    """The files in a reproduction's folder; use `claim`."""
 
     path: Path
 

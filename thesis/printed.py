@@ -1,4 +1,4 @@
-"""What the thesis prints in the tables of chapters 2 to 5."""
+"""Numbers that the thesis prints in the tables of chapters 2 to 5."""
 
 from __future__ import annotations
 

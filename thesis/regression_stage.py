@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.regression.nested import FoldProgress, available_jobs
+
 from snowshed.analysis.regression.rows import StackRows, read_rows
+from snowshed.run.pool import available_cores
+from snowshed.run.progress import Progress, Reporter
 from thesis.folder import ReproductionFolder
 from thesis.size import Size
 from thesis.stage import StageReporter, State, StudyStage
@@ -105,7 +106,7 @@ class RegressionStage:
         per_fold = sum(kind.cost_s for kind in kinds_named(KINDS).values())
         scale = scheme.inner_folds / KNOWN_INNER * (self._rows.count() / KNOWN_ROWS) ** 2
         left = 1 - state.done / state.count
-        return left * per_fold * scale * scheme.rounds * scheme.folds / (jobs or available_jobs())
+        return left * per_fold * scale * scheme.rounds * scheme.folds / (jobs or available_cores())
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
         """Regress what is left; raises RegressionInterrupted after Ctrl-C.
@@ -130,8 +131,8 @@ class RegressionStage:
         )
 
 
-def _told(report: StageReporter) -> Callable[[FoldProgress], None]:
-    def tell(progress: FoldProgress) -> None:
+def _told(report: StageReporter) -> Reporter:
+    def tell(progress: Progress) -> None:
         report(progress.fraction, f"{NAME}: {progress.done}/{progress.count} folds")
 
     return tell

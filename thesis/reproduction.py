@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Optional
 
 from snowshed.analysis.regression.dataset import geometry_table
+from snowshed.run.progress import Progress, Reporter
 from thesis import studies
 from thesis.folder import ReproductionFolder
 from thesis.regression_stage import GeometryRows, RegressionStage
@@ -22,32 +22,6 @@ MAKERS = {
     "calibration": studies.calibration,
     "geometry": studies.geometry,
 }
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far the computation is.
-
-    Attributes
-    ----------
-    stage, stages
-        Which stage is being computed, counted from 1, of how many.
-    doing
-        What is being computed.
-    fraction
-        Part of the time that was expected at the start, 0 to 1.
-    expected_s
-        That time, s.
-    """
-
-    stage: int
-    stages: int
-    doing: str
-    fraction: float
-    expected_s: float
-
-
-Reporter = Callable[[Progress], None]
 
 
 class Reproduction:
@@ -111,6 +85,7 @@ def compute(
         def tell(fraction: float, doing: str, number: int = number, before: float = before) -> None:
             if progress is not None:
                 done = (before + fraction * expected[number]) / whole
-                progress(Progress(number + 1, len(stages), doing, done, whole))
+                count = len(stages)
+                progress(Progress(done, number, count, "stages", doing, expected_s=whole))
 
         stage.compute(jobs, tell)

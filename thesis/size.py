@@ -1,4 +1,4 @@
-"""How much is computed: the thesis's own settings, or enough to see the way within minutes."""
+"""Sizes of the reproduction: the thesis's own settings, or a trial within minutes."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
 
 #: Of the panel where there is one value: the least static coefficient that the thesis measured.
 MEASURED_FRICTION = 0.6
@@ -13,7 +14,7 @@ MEASURED_FRICTION = 0.6
 
 @dataclass(frozen=True)
 class Size:
-    """How much is computed.
+    """The size of a reproduction.
 
     Attributes
     ----------
@@ -67,9 +68,9 @@ FULL = Size(
     fixation_seeds=2,
     grid_seeds=2,
     grid_events=5,
-    slopes=(0.4, 0.5, 0.6, 0.7),
-    pressures=(4e3, 5e3, 6e3, 7e3),
-    cohesions=(0.05, 0.1, 0.2),
+    slopes=CALIBRATION[SLOPE],
+    pressures=CALIBRATION[PRESSURE],
+    cohesions=CALIBRATION[COHESION],
     steps=2000,
     simulates_panels=True,
     folds=CrossValidation(),

@@ -1,4 +1,4 @@
-"""What a stage of the reproduction is, and the stages that are studies."""
+"""Stages of the reproduction, and those that are studies."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Optional, Protocol
 
 from snowshed._core import InputError
+
+from snowshed.run.progress import Progress
 from snowshed.study import Study, forecast
-from snowshed.study.session import Resources, StudyProgress, resume
+from snowshed.study.session import Resources, resume
 from snowshed.study.store import Store, StoredRun
 
 #: Takes the part of a stage's work that is done, 0 to 1, and what is being done.
@@ -19,7 +21,7 @@ StageReporter = Callable[[float, str], None]
 
 @dataclass(frozen=True)
 class State:
-    """How far a stage is.
+    """Progress of a stage.
 
     Attributes
     ----------
@@ -36,7 +38,7 @@ class State:
 
     @property
     def finished(self) -> bool:
-        """Whether nothing is left to compute."""
+        """True if nothing is left to compute."""
         return self.done + self.failed == self.count
 
     def in_words(self) -> str:
@@ -56,7 +58,7 @@ class Stage(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is asked for by."""
+        """The name by which ``--stage`` asks for it."""
 
     def state(self) -> State:
         """Return how far it is."""
@@ -99,8 +101,8 @@ class StudyStage:
         names = self._registered()
         for number, name in enumerate(names):
 
-            def tell(progress: StudyProgress, name: str = name, number: int = number) -> None:
-                words = f"{name}: {progress.done}/{progress.runs} simulations"
+            def tell(progress: Progress, name: str = name, number: int = number) -> None:
+                words = f"{name}: {progress.done}/{progress.count} simulations"
                 report((number + progress.fraction) / len(names), words)
 
             resume(self._runs, name, jobs=jobs, progress=tell)

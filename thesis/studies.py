@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from snowshed import Scene
@@ -13,6 +11,13 @@ from snowshed.analysis.regression.dataset import MODEL_BETWEEN
 from snowshed.analysis.regression.geometry import FRICTION, geometry_study
 from snowshed.analysis.sensitivity.designs import sensitivity_study
 from snowshed.scene.components import Snow
+from snowshed.scene.thesis_tables import (
+    COHESION,
+    LABORATORY_EVENTS,
+    LABORATORY_TILTS,
+    PRESSURE,
+    SLOPE,
+)
 from snowshed.study import Study
 from thesis.size import MEASURED_FRICTION, Size
 
@@ -22,9 +27,9 @@ GRID, TRUTH = "calibration", "calibration-truth"
 PANELS, TILTS = "geometry", "geometry-tilts"
 #: Seed of the synthetic truth: one that no run of the grid has.
 TRUTH_SEED = 101
-LAB_TILTS = (40.0, 50.0)
+LAB_TILTS = LABORATORY_TILTS
 RELEASE_TILT = 30.0
-LAB_EVENTS = 5
+LAB_EVENTS = LABORATORY_EVENTS
 
 
 def lab(size: Size) -> list[Study]:
@@ -69,24 +74,24 @@ def calibration(size: Size) -> list[Study]:
     [[24, 2], [192, 2]]
     """
     last = [Measurement(tilt, size.grid_events, 1, "height", 1.0, 1.0) for tilt in LAB_TILTS]
-    scene = _resized(_loaded(calibration_study(last, seeds=1)), size)
+    scene = _resized(calibration_study(last, seeds=1), size)
     axes = {
         "panel.tilt": list(LAB_TILTS),
-        "snow.critical_state_slope": list(size.slopes),
-        "snow.preconsolidation_pressure": list(size.pressures),
-        "snow.cohesion": list(size.cohesions),
+        SLOPE: list(size.slopes),
+        PRESSURE: list(size.pressures),
+        COHESION: list(size.cohesions),
     }
     seeds = list(range(1, size.grid_seeds + 1))
     grid = Study.product(scene, axes, name=GRID, seeds=seeds)
     snow = {"snow": Snow.preset("calibrated").to_data()}
-    known = _resized(_loaded(calibration_study(last, seeds=1)), size).update(snow)
+    known = _resized(calibration_study(last, seeds=1), size).update(snow)
     tilts = {"panel.tilt": list(LAB_TILTS)}
     return [grid, Study.product(known, tilts, name=TRUTH, seeds=[TRUTH_SEED])]
 
 
 def geometry(size: Size) -> list[Study]:
     """Return the panels of chapter 5, and those that Table 5.1.1 has besides the data set."""
-    panels = _loaded(geometry_study(MODEL_BETWEEN))
+    panels = geometry_study(MODEL_BETWEEN)
     panels = Study(panels.scene, panels.parts, PANELS, panels.seeds)
     others: dict[str, list[Any]] = {
         "panel.friction": [FRICTION],
@@ -104,17 +109,10 @@ def _lab_scene(size: Size, dimension: int) -> Scene:
 
 
 def _sensitivity(method: str, name: str, size: Size, seeds: int) -> Study:
-    study = _loaded(sensitivity_study(method, seeds=seeds))
+    study = sensitivity_study(method, seeds=seeds)
     return Study(_resized(study, size), study.parts, name, study.seeds)
 
 
 def _resized(study: Study, size: Size) -> Scene:
     settings = {"dimension": size.dimension, "numerics.dx": size.dx}
     return study.scene.update({**settings, "panel.friction": MEASURED_FRICTION})
-
-
-def _loaded(text: str) -> Study:
-    with TemporaryDirectory() as folder:
-        file = Path(folder) / "study.toml"
-        file.write_text(text, encoding="utf-8")
-        return Study.load(file)

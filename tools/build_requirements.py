@@ -1,6 +1,6 @@
 """Print what pip must install before snowshed can be built, one requirement a line.
 
-That is what pyproject.toml asks for, and cmake and ninja where the system has none.
+These are the build requirements of pyproject.toml, and cmake and ninja if the system has none.
 """
 
 import ast
@@ -13,7 +13,10 @@ CMAKE_NEEDED = (3, 20)
 
 
 def declared_requirements(pyproject: str) -> list:
-    """Return `requires` of [build-system]; Python 3.9 has no TOML parser, but reads the list."""
+    """Return the list `requires` of [build-system].
+
+    A regular expression finds it, since Python 3.9 has no TOML parser. Its text is Python, too.
+    """
     table = re.search(r"^\[build-system\]$(.*?)(?=^\[|\Z)", pyproject, re.M | re.S)
     requires = table and re.search(r"^requires\s*=\s*(\[.*?\])\s*$", table[1], re.M | re.S)
     if not requires:

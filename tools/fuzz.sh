@@ -1,15 +1,15 @@
 #!/bin/sh
-# Fuzzes each target of a build tree for so many seconds:  fuzz.sh TREE SECONDS
-# What reaches new code is kept in TREE/corpus, what fails in TREE/failures. Without libFuzzer the
-# targets only replay the seeds.
+# Fuzzes each target of a build tree for the given time:  fuzz.sh TREE SECONDS
+# Inputs that reach new code are kept in TREE/corpus, failing inputs in TREE/failures. Without
+# libFuzzer the targets only replay the seeds.
 set -eu
 tree=$1
 seconds=$2
 targets="scene stl obj ply npy checkpoint"
-# At most this much memory for a target in all, for one allocation, and time for one input.
+# Limits on the memory of a target, on the size of an allocation, and on the time of an input.
 limits="-rss_limit_mb=1024 -malloc_limit_mb=512 -timeout=20"
 export ASAN_OPTIONS=quarantine_size_mb=16
-# Each input passes through a file; in memory that takes no time.
+# Each input passes through a file, which is fastest in memory.
 test ! -w /dev/shm || export TMPDIR=/dev/shm
 
 "$tree/cpp/fuzz/fuzz_seeds" "$tree/seeds"
@@ -27,7 +27,7 @@ for target in $targets; do
       "$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$log" | tail -1) edges of code reached"
   else
     "$program" "$tree/seeds/$target" > "$log" 2>&1 || failed="$failed $target"
-    echo "$target: $(tail -1 "$log"), the seeds alone"
+    echo "$target: $(tail -1 "$log"), seeds only"
   fi
 done
 for target in $failed; do

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs a Debian or Ubuntu package where that is possible:  install_package.sh PACKAGE
+# Installs a Debian or Ubuntu package if possible:  install_package.sh PACKAGE
 set -eu
 
 if ! command -v apt-get > /dev/null || [ "$(id -u)" -ne 0 ]; then

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Makes a virtual environment with pip:  make_venv.sh PYTHON FOLDER
-# Debian and Ubuntu ship Python without the part of `venv` that brings pip.
+# Creates a virtual environment with pip:  make_venv.sh PYTHON FOLDER
+# On Debian and Ubuntu, the part of `venv` that installs pip is a separate package.
 set -eu
 python=$1
 venv=$2
@@ -16,7 +16,7 @@ usable && exit 0
 
 echo "python -m venv does not work here: trying virtualenv"
 "$python" -m virtualenv --quiet --clear "$venv" 2> /dev/null && usable && exit 0
-# A folder of our own, because systems guard theirs against pip.
+# Install to a folder of the build tree, since systems may forbid pip to change theirs.
 "$python" -m pip --quiet install --target build/virtualenv virtualenv &&
   PYTHONPATH=build/virtualenv "$python" -m virtualenv --quiet --clear "$venv" && usable && exit 0
 

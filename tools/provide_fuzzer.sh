@@ -1,6 +1,6 @@
 #!/bin/sh
-# Prints the name of a clang that builds fuzz targets, that is, with libFuzzer and OpenMP; the
-# system's packages are installed where they are missing and can be:  provide_fuzzer.sh
+# Prints the name of a clang with libFuzzer and OpenMP, which fuzz targets need:  provide_fuzzer.sh
+# Installs the system's packages if they are missing and can be installed.
 set -eu
 here=$(dirname "$0")
 probe=$(mktemp -d)

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Sees to it that a C++ header is there:  provide_header.sh HEADER PACKAGE [COMPILER FLAG...]
+# Installs the package of a C++ header unless the compiler finds the header:
+#   provide_header.sh HEADER PACKAGE [COMPILER FLAG...]
 set -eu
 header=$1
 package=$2

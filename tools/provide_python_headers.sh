@@ -1,5 +1,5 @@
 #!/bin/sh
-# Sees to it that extensions can be compiled for a Python:  provide_python_headers.sh PYTHON
+# Installs the headers of a Python unless they are there:  provide_python_headers.sh PYTHON
 set -eu
 folder=$("$1" -c 'import sysconfig; print(sysconfig.get_path("include"))')
 version=$("$1" -c 'import sys; print("%d.%d" % sys.version_info[:2])')

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Runs clang-tidy over the core, from a tree of its own: one source at a time, as clang-tidy looks.
+# Runs clang-tidy on the core, in a separate build tree that compiles one source at a time.
 set -eu
 tree=build/tidy
 
 cmake -S . -B "$tree" -DSNOWSHED_UNITY_BUILD=OFF -DCMAKE_EXPORT_COMPILE_COMMANDS=ON > /dev/null
-# The compiler's own omp.h, alone: clang brings the other headers of this kind itself.
+# Provide the compiler's omp.h alone; clang has its own versions of the other compiler headers.
 mkdir -p "$tree/openmp"
 cp "$(${CXX:-c++} -print-file-name=include/omp.h)" "$tree/openmp/"
 find cpp/apps cpp/snowshed -name '*.cpp' -print0 |

@@ -1,10 +1,9 @@
-"""The command ``snowshed verify``; all that takes long to import is imported when it runs."""
+"""The command ``python -m validation``; what takes long to import is imported when it runs."""
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -13,8 +12,8 @@ import click
 from snowshed.cli.exit_codes import Stopped
 
 if TYPE_CHECKING:
-    from snowshed.analysis.verification.case import Case
     from snowshed.analysis.verification.measurements import Measurement
+    from validation.case import Case
     from validation.folder import SuiteFolder
     from validation.report import Stress
 
@@ -40,7 +39,7 @@ PATH = click.Path(path_type=Path)
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
 )
-def verify(
+def validate(
     quick: bool,
     names: Sequence[str],
     stress: Optional[bool],
@@ -57,7 +56,7 @@ def verify(
 
     \b
     Example:
-      snowshed verify --quick -o verification
+      python -m validation --quick -o verification
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.verification.recorded import load_recorded, record
     from validation.folder import SuiteFolder
@@ -95,11 +94,11 @@ def _measure(
     cases: Sequence[Case], results: SuiteFolder, *, full: bool, quiet: bool
 ) -> list[Measurement]:
     from snowshed.analysis.verification.recorded import load_recorded
-    from validation.display import suite_progress
+    from validation.display import validation_bar
     from validation.runner import run_suite
 
     durations = {one.key: one.elapsed_s for one in load_recorded()}
-    with nullcontext() if quiet else suite_progress() as progress:
+    with validation_bar(quiet=quiet) as progress:
         return run_suite(
             cases, results.measurements, full=full, progress=progress, durations=durations
         )
@@ -107,12 +106,12 @@ def _measure(
 
 def _stress(results: SuiteFolder, *, full: bool, seed: int, quiet: bool) -> Stress:
     from validation import stress
-    from validation.display import stress_progress
+    from validation.display import validation_bar
     from validation.report import Stress
 
     runs = results.kept_stress(full=full, seed=seed)
     if runs is None:
-        with nullcontext() if quiet else stress_progress() as progress:
+        with validation_bar(quiet=quiet) as progress:
             runs = stress.run(full, seed, progress)
         results.keep_stress(runs, full=full, seed=seed)
     return Stress(runs, stress.summarise(runs))
@@ -121,7 +120,7 @@ def _stress(results: SuiteFolder, *, full: bool, seed: int, quiet: bool) -> Stre
 def _resume_command(
     quick: bool, names: Sequence[str], stress: bool, seed: int, folder: Path
 ) -> str:
-    words = ["snowshed", "verify", "--quick" if quick else "--full"]
+    words = ["python", "-m", "validation", "--quick" if quick else "--full"]
     words += [word for name in names for word in ("--case", name)]
     words += ["--stress", "--seed", str(seed)] if stress else ["--no-stress"]
     return shlex.join([*words, "--resume", "-o", str(folder)])

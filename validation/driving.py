@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Collection, Mapping, Sequence
 
-from snowshed import _core
-from snowshed.analysis.verification.case import Measured, Outcome, Settings
-from snowshed.io.arrays import Floats
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.record import Record
-from snowshed.scene.components import Numerics, Seeding, Snow
+from snowshed.methods.mpm import MpmSettings
+from snowshed.run.self_test import drive
+from snowshed.scene.components import Seeding, Snow
 from snowshed.scene.scene import Scene
+from validation.case import Outcome
 
 #: The sections in which a setting's name is looked for; other names stand at the scene's top.
-SECTIONS: Mapping[str, type[Record]] = {"numerics": Numerics, "seeding": Seeding, "snow": Snow}
-#: The most steps between two looks at the clock.
-LONGEST_STRETCH = 200
+SECTIONS: Mapping[str, type[Record]] = {"numerics": MpmSettings, "seeding": Seeding, "snow": Snow}
 
 
 def apply_settings(
@@ -64,7 +62,7 @@ def _path(name: str) -> str:
     return name
 
 
-class Drive:
+class Drive(drive.Drive):
     """The first event of a scene, run as far as asked; only its steps count as run time.
 
     Parameters
@@ -74,49 +72,25 @@ class Drive:
 
     Attributes
     ----------
-    core
-        The simulation.
     wall_s
         Time spent in steps so far, s.
-
-    Examples
-    --------
-    >>> from snowshed import Body, Shape
-    >>> scene = Scene(dimension=2, bodies=[Body(shape=Shape.sphere((0, 1), 0.05))])
-    >>> drive = Drive(apply_settings(scene, {"dx": 0.02, "precision": "double"}))
-    >>> drive.run_to(0.1)
-    >>> print(f"{drive.mean(drive.core.velocities())[2] / drive.core.time_s:.6f}")
-    -9.810000
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.core = _core.Simulation(scene.resolve().json)
-        self.core.begin_event()
-        self.masses = self.core.masses()
+        super().__init__(scene)
         self.wall_s = 0.0
 
     def step(self, count: int = 1) -> None:
         """Take steps."""
         started = time.perf_counter()
-        self.core.step(count)
+        super().step(count)
         self.wall_s += time.perf_counter() - started
 
     def damp(self, exponent: float) -> None:
         """Let the velocities of all particles fall by the factor ``exp(-exponent)``."""
         started = time.perf_counter()
-        self.core.kick(math.expm1(-exponent) * self.core.velocities())
+        super().damp(exponent)
         self.wall_s += time.perf_counter() - started
-
-    def run_to(self, time_s: float) -> None:
-        """Take steps until a time of the event, s, and no further than the step that reaches it."""
-        while self.core.time_s < time_s:
-            left = (time_s - self.core.time_s) / self.core.time_step_s if self.core.time_s else 1
-            self.step(max(1, min(LONGEST_STRETCH, int(left))))
-
-    def mean(self, values: Floats) -> Floats:
-        """Return the mean over all particles, weighted by mass, of rows of values."""
-        mean: Floats = self.masses @ values / self.masses.sum()
-        return mean
 
     def outcome(self, measured: Sequence[Measured]) -> Outcome:
         """Return what was measured together with what it cost."""

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Settings
+from snowshed.analysis.verification.measurements import Settings
 from snowshed.io.arrays import Floats
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.scene import Scene

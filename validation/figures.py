@@ -16,15 +16,14 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from snowshed.analysis.verification import wording
-from snowshed.analysis.verification.analysis import (
-    Convergence,
-    Solution,
-    key_of,
-    pareto_front,
-    varying,
-)
-from snowshed.analysis.verification.case import Quantity, Settings, Value
+from snowshed.analysis.verification.measurements import Settings, Value
+from snowshed.analysis.verification.solutions import Solution, key_of
+from snowshed.io import formatting
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank
+from validation.case import Quantity
+from validation.cheapest import pareto_front
+from validation.convergence import Convergence
+from validation.schemes import varying
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +51,7 @@ ZERO = 1e-17
 
 
 class KeyLine(NamedTuple):
-    """What is said beside a diagram about a point; without a letter, about those that follow."""
+    """Text beside a diagram about a point; without a letter, about those that follow."""
 
     letter: str
     cost: str
@@ -61,7 +60,7 @@ class KeyLine(NamedTuple):
 
 @dataclass(frozen=True)
 class Look:
-    """How settings are told apart: one by colour, one by marker, one by dashes.
+    """Styles that tell settings apart: one by colour, one by marker, one by dashes.
 
     Attributes
     ----------
@@ -202,7 +201,7 @@ def _draw_convergence(
     axes.set(xscale="log", yscale="log", title=_title(quantity))
     axes.set_xlabel((quantity.order_in or "").replace("_", " "))
     sizes = sorted({size for one in series for size in one.sizes})
-    axes.set_xticks(sizes, [wording.number(size) for size in sizes])
+    axes.set_xticks(sizes, [formatting.number(size) for size in sizes])
     axes.minorticks_off()
     _draw_slope(axes, series, quantity.least_order)
     _errors_on(axes, quantity)
@@ -232,7 +231,7 @@ def _draw_work_precision(
     axes.set(xscale="log", yscale="log", title=_title(quantity), xlabel="time of the solution")
     axes.margins(0.1)
     axes.set_xlim(_widened(*axes.get_xlim()))
-    _label(axes.xaxis, wording.duration)
+    _label(axes.xaxis, formatting.duration)
     _errors_on(axes, quantity)
     names, letters = varying(problem for problem, _ in problems), iter(ascii_uppercase)
     lines: list[KeyLine] = []
@@ -271,8 +270,8 @@ def _draw_front(
     lines = []
     for i, letter in zip(worth_naming(front, times, errors), letters):
         _name_point(axes, letter, times[i], errors[i])
-        error = wording.error(errors[i], relative=quantity.relative)
-        cost = f"{wording.duration(times[i])}, {error}"
+        error = quantity.error_in_words(errors[i])
+        cost = f"{formatting.duration(times[i])}, {error}"
         lines.append(KeyLine(letter, cost, wording.settings(found[i].settings, names)))
     return lines
 
@@ -358,8 +357,8 @@ def _errors_on(axes: Axes, quantity: Quantity) -> None:
     axes.set_ylabel("error, relative" if quantity.relative else "error")
     low, high = _widened(*axes.get_ylim())
     axes.set_ylim(low, high)
-    in_percent = quantity.relative and low > wording.SMALL
-    _label(axes.yaxis, wording.percent if in_percent else wording.number)
+    in_percent = quantity.relative and low > formatting.SMALL
+    _label(axes.yaxis, formatting.percent if in_percent else formatting.number)
     if quantity.bar is not None:
         axes.axhline(quantity.bar, color=BODY, linewidth=1.0, linestyle=(0, (6, 3)), zorder=1)
 

@@ -15,12 +15,13 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed import _core
 from snowshed._core import InputError
-from snowshed.analysis.verification.measurements import MeasurementFile
+
+from snowshed import _core
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import check_values, read_object
 from snowshed.run.results import check_empty
+from validation.measurement_file import MeasurementFile
 
 if TYPE_CHECKING:
     import pandas as pd

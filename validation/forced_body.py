@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Settings
+from snowshed.analysis.verification.measurements import Settings
 from snowshed.io.arrays import Floats
 from snowshed.scene.shape import Shape
 from validation.driving import Drive
@@ -70,7 +70,7 @@ class ForcedBody:
         }
         drive = Drive(elastic_scene(square, {**material, **self._settings}, OWN))
         points = in_plane(drive.core.positions())
-        drive.core.kick(from_plane(motion.velocity(points, time)))
+        drive.core.add_velocity(from_plane(motion.velocity(points, time)))
         return drive, points
 
     @property
@@ -81,7 +81,7 @@ class ForcedBody:
     def step(self) -> None:
         """Apply the body force and take a step."""
         force = self.motion.body_force(self._points, self.time)
-        self.drive.core.kick(from_plane(self._last_step * force + self._owed))
+        self.drive.core.add_velocity(from_plane(self._last_step * force + self._owed))
         self.drive.step()
         taken = self.drive.core.time_step_s
         self._owed = (taken - self._last_step) * force

@@ -19,12 +19,13 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.verification.case import Measured, Outcome, Settings, Value
+from snowshed.analysis.verification.measurements import Measured, Settings, Value
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.atomic import write_text
 from snowshed.run.conversion import outline_difference
 from snowshed.scene.scene import Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
+from validation.case import Outcome
 from validation.driving import absolute, apply_settings
 
 #: What is measured of a stack; body: of its largest connected body.
@@ -52,7 +53,7 @@ FILE = Path(__file__).with_name("lab_stack.json")
 
 @dataclass(frozen=True)
 class Conversion:
-    """What reseeding did to a stack.
+    """A stack before and after reseeding.
 
     Attributes
     ----------
@@ -88,7 +89,7 @@ class Conversion:
 
 @dataclass
 class LabRun:
-    """What a run of the laboratory scene gave.
+    """The results of a run of the laboratory scene.
 
     Attributes
     ----------
@@ -160,9 +161,10 @@ def run_lab(settings: Settings) -> LabRun:
     """
     ready = lab_scene(settings).resolve()
     simulation = _core.Simulation(ready.json)
-    tape = _Tape(simulation, ready.data)
-    run = LabRun(brought_mass=_brought_mass(ready.data), particle_mass=_particle_mass(ready.data))
-    for _ in range(ready.data["events"]["count"]):
+    data: dict[str, Any] = ready.data
+    tape = _Tape(simulation, data)
+    run = LabRun(brought_mass=_brought_mass(data), particle_mass=_particle_mass(data))
+    for _ in range(data["events"]["count"]):
         reseeded = simulation.begin_event()
         if reseeded is not None:
             run.conversions.append(tape.measure_conversion(reseeded))
@@ -204,7 +206,7 @@ class _Tape:
     def measure_present(self) -> StackMeasure:
         """Measure the stack as it is."""
         now = self._simulation
-        return self._measure(now.positions(), now.masses(), now.on_panel(), now.density())
+        return self._measure(now.positions(), now.masses(), now.on_panel(), now.densities())
 
     def measure_conversion(self, reseeded: Mapping[str, Any]) -> Conversion:
         """Measure what the core says of a conversion: the snow before and after."""

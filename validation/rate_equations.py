@@ -149,7 +149,7 @@ class RateEquations:
         return states
 
     def _yield_time(self, start: Floats, rate: Floats, end: float) -> float:
-        """When an elastic path reaches the yield surface, or `end`; y is convex along it."""
+        """Return when an elastic path reaches the yield surface, or `end`; y is convex along it."""
 
         def overshoot(time: float) -> float:
             return self.yield_function(self._elastic(start, rate, time))

@@ -2,7 +2,7 @@
 
 ==================== ========================================================================
 verification.html    the report
-results.csv          one row per measured quantity: `snowshed.analysis.verification.measurements.to_table`
+results.csv          one row per measured quantity (`verification.measurements.to_table`)
 results.json         the same, with orders of convergence, cheapest settings and bars
 stress.csv           one row per run of the stress suite, if it ran
 figures/             the figures of the report (.png)
@@ -19,12 +19,17 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed.analysis.verification import analysis, wording
-from snowshed.analysis.verification.case import Case
+from snowshed.analysis.verification import wording
 from snowshed.analysis.verification.measurements import Measurement, to_table
+from snowshed.analysis.verification.solutions import rows_of, solutions
+from snowshed.io import formatting
 from snowshed.io.atomic import write_text
 from snowshed.plot.html_page import template, write_pictures
 from validation import sections
+from validation.bars import Bar, compare
+from validation.case import Case
+from validation.cheapest import Cheapest, cheapest
+from validation.convergence import convergences
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,14 +41,14 @@ TEMPLATE = "verification.html.j2"
 
 @dataclass(frozen=True)
 class Stress:
-    """What the stress suite gave: one row per run, and the tables that sum them up."""
+    """Results of the stress suite: one row per run, and the tables that sum them up."""
 
     runs: pd.DataFrame
     tables: Sequence[SummaryTable]
 
     @property
     def failed(self) -> int:
-        """How many runs ended in a way that is not allowed."""
+        """Number of runs that ended in a way that is not allowed."""
         return int((self.runs["outcome"] == "failed").sum())
 
 
@@ -75,15 +80,15 @@ class Suite:
             "machine": _all({one.machine for one in self.measurements}),
             "date": _all({one.date for one in self.measurements}),
             "measurements": f"{len(self.measurements)}, {failed} failed",
-            "duration": wording.duration(math.fsum(one.elapsed_s for one in self.measurements)),
+            "duration": formatting.duration(math.fsum(one.elapsed_s for one in self.measurements)),
         }
 
 
-def write_report(suite: Suite, folder: Path) -> list[analysis.Bar]:
+def write_report(suite: Suite, folder: Path) -> list[Bar]:
     """Write the report's files into a folder; return what was demanded and what was found."""
     table = to_table(suite.measurements)
-    bars = analysis.bars(table, suite.cases)
-    answers = analysis.cheapest(table, suite.cases)
+    bars = compare(table, suite.cases)
+    answers = cheapest(table, suite.cases)
     about_cases = [
         sections.section(case, [m for m in suite.measurements if m.case == case.name], table)
         for case in suite.cases
@@ -100,7 +105,7 @@ def write_report(suite: Suite, folder: Path) -> list[analysis.Bar]:
     return bars
 
 
-def problems(suite: Suite, bars: Sequence[analysis.Bar]) -> list[str]:
+def problems(suite: Suite, bars: Sequence[Bar]) -> list[str]:
     """Return everything that is not as it should be, a line each."""
     titles = {case.name: case.title for case in suite.cases}
     lines = [
@@ -121,8 +126,8 @@ def problems(suite: Suite, bars: Sequence[analysis.Bar]) -> list[str]:
 
 def render(
     suite: Suite,
-    bars: Sequence[analysis.Bar],
-    answers: Sequence[analysis.Cheapest],
+    bars: Sequence[Bar],
+    answers: Sequence[Cheapest],
     about_cases: Sequence[sections.Section],
 ) -> str:
     """Return the report as HTML."""
@@ -141,8 +146,8 @@ def render(
 def json_text(
     suite: Suite,
     table: pd.DataFrame,
-    bars: Sequence[analysis.Bar],
-    answers: Sequence[analysis.Cheapest],
+    bars: Sequence[Bar],
+    answers: Sequence[Cheapest],
 ) -> str:
     """Return the results as JSON; numbers that are not finite are null."""
     data = {
@@ -163,8 +168,8 @@ def _orders(suite: Suite, table: pd.DataFrame) -> list[dict[str, Any]]:
         for case in suite.cases
         for quantity in case.quantities
         if quantity.order_in is not None
-        for one in analysis.convergences(
-            analysis.solutions(analysis.rows_of(table, case.name, quantity.name)),
+        for one in convergences(
+            solutions(rows_of(table, case.name, quantity.name)),
             quantity.order_in,
         )
     ]
@@ -182,4 +187,4 @@ def _plain(value: Any) -> Any:
 
 
 def _all(values: set[str]) -> str:
-    return ", ".join(sorted(values)) or wording.NOTHING
+    return ", ".join(sorted(values)) or formatting.NOTHING

@@ -9,15 +9,19 @@ from __future__ import annotations
 import datetime
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Optional
 
 from snowshed import _core
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Settings
-from snowshed.analysis.verification.measurements import Measurement, MeasurementFile, key_of
+from snowshed.analysis.verification import wording
+from snowshed.analysis.verification.measurements import Measured, Measurement, Settings, key_of
 from snowshed.run.machine import cpu_name
+from snowshed.run.progress import Progress, Reporter
+from validation.case import Case, Outcome
+from validation.measurement_file import MeasurementFile
 from validation.worker import Answer, Worker
+
+LONGEST = 60  # characters of what a progress bar says is being measured
 
 
 class Task(NamedTuple):
@@ -30,32 +34,6 @@ class Task(NamedTuple):
     def key(self) -> str:
         """The key of its measurement."""
         return key_of(self.case.name, self.settings)
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far the suite has come.
-
-    Attributes
-    ----------
-    task
-        What is being measured.
-    done, count
-        Measurements that are there, and how many there will be.
-    fraction
-        Estimated part of the time that is over, 0 to 1.
-    left_s
-        Estimated time that is left, s; None before anything is known about it.
-    """
-
-    task: Task
-    done: int
-    count: int
-    fraction: float
-    left_s: Optional[float]
-
-
-Reporter = Callable[[Progress], None]
 
 
 def tasks_of(cases: Iterable[Case], *, full: bool) -> list[Task]:
@@ -99,15 +77,20 @@ def run_suite(
     with Worker() as worker:
         for done, task in enumerate(due):
             if progress is not None:
-                count = len(tasks)
-                progress(Progress(task, count - len(due) + done, count, *estimate.after(done)))
+                fraction, left_s = estimate.after(done)
+                before = len(tasks) - len(due)
+                doing = f"{task.case.name}: {wording.settings(task.settings)}"[:LONGEST]
+                told = Progress(
+                    fraction, before + done, len(tasks), "measured", doing, left_s=left_s
+                )
+                progress(told)
             held[task.key] = _measurement(task, worker.measure(task.case.measure, task.settings))
             file.append(held[task.key])
     return [held[task.key] for task in tasks]
 
 
 class Estimate:
-    """How long tasks will take: from what they took before, scaled by how it goes this time.
+    """Estimated duration of tasks: what they took before, scaled by how it goes this time.
 
     A task about which nothing is known counts as the mean of its case, or of all.
 

@@ -1,4 +1,4 @@
-"""Which settings say how a problem is solved; all others make another problem.
+"""Settings that say how a problem is solved; all others make another problem.
 
 An accuracy may be bought with a better scheme, not with an easier problem, so only ways of solving
 the same problem are compared with each other.
@@ -6,15 +6,12 @@ the same problem are compared with each other.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
+from snowshed.analysis.verification.measurements import Settings
+from snowshed.analysis.verification.solutions import SAMPLING
 from snowshed.scene.accuracy_settings import ACCURACY
-
-if TYPE_CHECKING:
-    from snowshed.analysis.verification.case import Case, Settings
-
-#: Settings that make no other way of solving, only another sample of it.
-SAMPLING = ("seed", "seedings")
+from validation.case import Case
 
 
 def problem_of(case: Case, settings: Settings) -> Settings:
@@ -30,3 +27,16 @@ def problem_of(case: Case, settings: Settings) -> Settings:
     sizes = {quantity.order_in for quantity in case.quantities}
     ways = {*ACCURACY, *SAMPLING, *sizes}
     return {name: value for name, value in settings.items() if name not in ways}
+
+
+def varying(settings: Iterable[Settings]) -> list[str]:
+    """Return the names of the settings in which several choices differ, in order of appearance.
+
+    Examples
+    --------
+    >>> varying([{"dx": 0.1, "basis": "cubic"}, {"dx": 0.2, "basis": "cubic"}])
+    ['dx']
+    """
+    listed = list(settings)
+    names = dict.fromkeys(name for one in listed for name in one)
+    return [name for name in names if len({one.get(name) for one in listed}) > 1]

@@ -1,7 +1,8 @@
-"""What the report says about each case: tables of texts, and figures."""
+"""The report's section on each case: tables of texts, and figures."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional
@@ -9,23 +10,16 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.analysis.verification import wording
-from snowshed.analysis.verification.analysis import (
-    Bar,
-    Cheapest,
-    Convergence,
-    Solution,
-    by_problem,
-    convergences,
-    key_of,
-    rows_of,
-    solutions,
-    varying,
-)
-from snowshed.analysis.verification.case import Case, Quantity, Settings
-from snowshed.analysis.verification.measurements import Measurement
+from snowshed.analysis.verification.measurements import Measurement, Settings
+from snowshed.analysis.verification.solutions import Solution, key_of, rows_of, solutions
+from snowshed.io import formatting
 from snowshed.plot.html_page import Grid, Picture
 from validation import figures
-from validation.schemes import problem_of
+from validation.bars import Bar
+from validation.case import Case, Quantity
+from validation.cheapest import Cheapest, by_problem
+from validation.convergence import Convergence, convergences
+from validation.schemes import problem_of, varying
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,13 +27,13 @@ if TYPE_CHECKING:
 
 #: What a measurement costs, in words.
 COSTS: Mapping[str, Callable[[Measurement], str]] = {
-    "time": lambda one: wording.duration(one.wall_s),
-    "particles": lambda one: wording.count(one.particles or None),
-    "steps": lambda one: wording.count(one.steps or None),
-    "10⁶ updates/s": lambda one: wording.number(
+    "time": lambda one: formatting.duration(one.wall_s),
+    "particles": lambda one: formatting.count(one.particles or None),
+    "steps": lambda one: formatting.count(one.steps or None),
+    "10⁶ updates/s": lambda one: formatting.number(
         one.updates / one.wall_s / 1e6 if one.wall_s else None
     ),
-    "memory, MB": lambda one: wording.number(one.peak_memory_mb),
+    "memory, MB": lambda one: formatting.number(one.peak_memory_mb),
 }
 #: Stands for what the cell to the left says.
 SAME = "←"
@@ -54,7 +48,7 @@ WORK_PRECISION = (
 
 @dataclass(frozen=True)
 class Section:
-    """What the report says about a case.
+    """The report's section on a case.
 
     Attributes
     ----------
@@ -96,8 +90,8 @@ def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame
     shared = {k: v for k, v in (choices or [{}])[0].items() if k not in varying(choices)}
     return Section(
         case=case,
-        paragraphs=wording.paragraphs(case.description),
-        remarks=wording.paragraphs(case.remarks),
+        paragraphs=_paragraphs(case.description),
+        remarks=_paragraphs(case.remarks),
         common=wording.settings(shared),
         results=results_grid(case, measurements),
         orders=orders_grid(case, series),
@@ -113,7 +107,7 @@ def results_grid(case: Case, measurements: Sequence[Measurement]) -> Grid:
     given = {m.quantity for one in solved for m in one.measured}
     quantities = [_Columns.of(one, solved) for one in case.quantities if one.name in given]
     costs = {name: [words(one) for one in solved] for name, words in COSTS.items()}
-    costs = {name: texts for name, texts in costs.items() if set(texts) != {wording.NOTHING}}
+    costs = {name: texts for name, texts in costs.items() if set(texts) != {formatting.NOTHING}}
     rows = [
         [
             *(_cell(one.settings, name) for name in names),
@@ -141,7 +135,7 @@ def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Grid
             titles[name],
             wording.settings(one.settings, varying([other.settings for other in listed])) or "all",
             settings_in[name].replace("_", " "),
-            f"{wording.number(one.sizes[0])} … {wording.number(one.sizes[-1])}",
+            f"{formatting.number(one.sizes[0])} … {formatting.number(one.sizes[-1])}",
             ", ".join(_order(slope) for slope in one.pairwise),
             _order(one.order),
         ]
@@ -163,12 +157,12 @@ def extremes_grid(case: Case, found: Mapping[str, Sequence[Solution]]) -> Grid:
         middle = float(np.median([abs(one.error) for one in listed]))
         ends = [
             (
-                wording.error(abs(one.error), relative=quantity.relative),
+                quantity.error_in_words(abs(one.error)),
                 wording.settings(one.settings, names),
             )
             for one in (listed[0], listed[-1])
         ]
-        median = wording.error(middle, relative=quantity.relative)
+        median = quantity.error_in_words(middle)
         rows.append([quantity.title, *ends[0], median, *ends[1]])
     head = ("quantity", "smallest error", "with", "median", "largest error", "with")
     return Grid(head, rows, "lrlrrl")
@@ -198,18 +192,18 @@ def demanded(bar: Bar) -> str:
     """Return what is demanded, in words."""
     if bar.kind == "order":
         return f"order ≥ {bar.demanded:g} in {bar.quantity.order_in}".replace("_", " ")
-    return f"≤ {wording.error(bar.demanded, relative=bar.quantity.relative)}"
+    return f"≤ {bar.quantity.error_in_words(bar.demanded)}"
 
 
 def found(bar: Bar) -> str:
     """Return the worst that was found, in words."""
     if bar.found is None:
-        return wording.NOTHING
+        return formatting.NOTHING
     if np.isnan(bar.found):
         return "failed"
     if bar.kind == "order":
         return _order(bar.found)
-    return wording.error(bar.found, relative=bar.quantity.relative)
+    return bar.quantity.error_in_words(bar.found)
 
 
 def cheapest_grid(
@@ -217,7 +211,7 @@ def cheapest_grid(
 ) -> Grid:
     """Return the quickest settings for every wanted accuracy, a row for each problem."""
     wanted = sorted({one.wanted for one in answers}, reverse=True)
-    head = ("case", "quantity", "problem", *(wording.percent(one) for one in wanted))
+    head = ("case", "quantity", "problem", *(formatting.percent(one) for one in wanted))
     rows = [row for case in cases for row in _cheapest_rows(case, answers, measurements)]
     return Grid(head, rows, "l" * len(head))
 
@@ -247,7 +241,7 @@ class _Columns:
         if exact == {0.0} and all(m.value == m.error for m in measured if not np.isnan(m.exact)):
             return cls(quantity, quantity.title, ("error",))
         if len(exact) == 1:
-            heading = f"{quantity.title} (exact: {wording.number(exact.pop(), 4)})"
+            heading = f"{quantity.title} (exact: {formatting.number(exact.pop(), 4)})"
             return cls(quantity, heading, ("value", "error"))
         return cls(quantity, quantity.title, ("value", "exact", "error"))
 
@@ -255,10 +249,10 @@ class _Columns:
         """Return the cells of a measurement."""
         for measured in one.measured:
             if measured.quantity == self.quantity.name:
-                cells = [wording.number(measured.value, 4), wording.number(measured.exact, 4)]
-                error = wording.error(measured.error, relative=self.quantity.relative)
+                cells = [formatting.number(measured.value, 4), formatting.number(measured.exact, 4)]
+                error = self.quantity.error_in_words(measured.error)
                 return [*cells[: len(self.head) - 1], error]
-        return [wording.NOTHING] * len(self.head)
+        return [formatting.NOTHING] * len(self.head)
 
 
 def _pictures(
@@ -328,9 +322,9 @@ def _cheapest_rows(
 
 def _cheapest_cell(one: Cheapest, ways: Sequence[str]) -> str:
     if not one.reached:
-        return f"not reached; best {wording.percent(one.error)}"
+        return f"not reached; best {formatting.percent(one.error)}"
     with_what = wording.settings(one.solution.settings, ways)
-    return f"{wording.duration(one.solution.wall_s)}: {with_what}".rstrip(": ")
+    return f"{formatting.duration(one.solution.wall_s)}: {with_what}".rstrip(": ")
 
 
 def _cell(settings: Settings, name: str) -> str:
@@ -341,16 +335,21 @@ def _cell(settings: Settings, name: str) -> str:
         return "yes" if value else "no"
     if name == "dimension":
         return wording.setting(name, value)
-    return value.replace("_", " ") if isinstance(value, str) else wording.number(value, 4)
+    return value.replace("_", " ") if isinstance(value, str) else formatting.number(value, 4)
 
 
 def _text(value: Any) -> str:
     if isinstance(value, (bool, str)):
         return str(value)
     if isinstance(value, (int, np.integer)):
-        return wording.count(int(value))
-    return wording.number(float(value)) if isinstance(value, float) else str(value)
+        return formatting.count(int(value))
+    return formatting.number(float(value)) if isinstance(value, float) else str(value)
 
 
 def _order(slope: float) -> str:
-    return f"{slope:.2f}" if np.isfinite(slope) else wording.NOTHING
+    return f"{slope:.2f}" if np.isfinite(slope) else formatting.NOTHING
+
+
+def _paragraphs(text: str) -> list[str]:
+    """Return the paragraphs of a text, each in one line."""
+    return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text) if part.strip()]

@@ -1,4 +1,4 @@
-"""How much of a small vibration the transfers between particles and grid take away, in theory.
+"""Damping of small vibrations by the transfers between particles and grid, in theory.
 
 On a grid full of particles a wave exp(i k x) loses the factor s = (sin(k h/2)/(k h/2))^m in every
 interpolation with a spline, m = 3 for the quadratic one and 4 for the cubic one. Let V be the
@@ -23,12 +23,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from snowshed.analysis.verification.case import Settings
+from snowshed.analysis.verification.measurements import Settings
 
 
 @dataclass(frozen=True)
 class Smoothing:
-    """What one way of transferring velocities does to a wave of small amplitude.
+    """The effect of one way of transferring velocities on a wave of small amplitude.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Which cases there are: every module in `validation.cases` brings one or several."""
+"""The list of cases: every module in `validation.cases` brings one or several."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import pkgutil
 from collections.abc import Sequence
 
 from snowshed._core import InputError
-from snowshed.analysis.verification.case import Case
+
 from validation import cases
+from validation.case import Case
 
 
 def case_modules() -> list[str]:

@@ -1,4 +1,4 @@
-"""What the record of a damped vibration says: its frequency, and how it fades."""
+"""Frequency and damping of a recorded vibration."""
 
 from __future__ import annotations
 

@@ -24,15 +24,17 @@ from types import TracebackType
 from typing import BinaryIO, Optional
 
 from snowshed._core import SimulationError
-from snowshed.analysis.verification.case import Outcome, Settings
+
+from snowshed.analysis.verification.measurements import Settings
 from snowshed.run.machine import peak_memory_mb
+from validation.case import Outcome
 
 Measure = Callable[[Settings], Outcome]
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What a measurement gave: an outcome, or else the reason why there is none.
+    """The result of a measurement: an outcome, or else the reason why there is none.
 
     ``imported`` names the modules that it imported.
     """

@@ -23,11 +23,12 @@ struct Weights {
   }
 };
 
-/// First node that a coordinate in cells touches, and the weights from there.
-struct Place {
+/// The first node that a particle touches, and the weights of the nodes from there. Coordinates are
+/// in cells.
+struct Stencil {
   int node;
   Weights x, y, z;
-  Place(float px, float py, float pz, int ny, int nz)
+  Stencil(float px, float py, float pz, int ny, int nz)
       : node((base(px) * ny + base(py)) * nz + base(pz)),
         x(px - float(base(px))),
         y(py - float(base(py))),
@@ -73,23 +74,23 @@ void BareKernel::step() {
   const std::ptrdiff_t values = std::ptrdiff_t(sums_.size());
 #pragma omp parallel for schedule(static) num_threads(threads_)
   for (std::ptrdiff_t i = 0; i < values; ++i) sums_[i] = 0;
-  for (const int colour : {0, 1})  // slabs of one colour touch no node in common
-    for_each_slab(colour, 2, [this](int slab) { to_grid(slab); });
+  for (const int colour : {0, 1})  // slabs of one colour share no node
+    for_each_slab(colour, 2, [this](int slab) { particles_to_grid(slab); });
   for_each_slab(0, 1, [this](int slab) { update_nodes(slab); });
-  for_each_slab(0, 1, [this](int slab) { to_particles(slab); });
+  for_each_slab(0, 1, [this](int slab) { grid_to_particles(slab); });
 }
 
-void BareKernel::to_grid(int slab) {
+void BareKernel::particles_to_grid(int slab) {
   Node* nodes = reinterpret_cast<Node*>(sums_.data());
   for (std::size_t p = first_particle(slab); p < first_particle(slab + 1); ++p) {
-    const Place at(position_[0][p], position_[1][p], position_[2][p], nodes_y_, nodes_z_);
+    const Stencil at(position_[0][p], position_[1][p], position_[2][p], nodes_y_, nodes_z_);
     const float m = mass_[p], scale = -m / (density * dx);
     float e[6];
     for (int k = 0; k < 6; ++k) e[k] = 0.5f * strain_[k][p];
-    const float pressure = lame * (e[0] + e[1] + e[2]);
-    const float t[6] = {scale * (pressure + 2 * shear * e[0]),
-                        scale * (pressure + 2 * shear * e[1]),
-                        scale * (pressure + 2 * shear * e[2]),
+    const float volumetric = lame * (e[0] + e[1] + e[2]);
+    const float t[6] = {scale * (volumetric + 2 * shear * e[0]),
+                        scale * (volumetric + 2 * shear * e[1]),
+                        scale * (volumetric + 2 * shear * e[2]),
                         scale * 2 * shear * e[3],
                         scale * 2 * shear * e[4],
                         scale * 2 * shear * e[5]};
@@ -130,14 +131,14 @@ void BareKernel::update_nodes(int slab) {
   }
 }
 
-void BareKernel::to_particles(int slab) {
+void BareKernel::grid_to_particles(int slab) {
   const Node* nodes = reinterpret_cast<const Node*>(velocities_.data());
   for (std::size_t begin = first_particle(slab); begin < first_particle(slab + 1); begin += chunk) {
     const int n = int(std::min<std::size_t>(chunk, first_particle(slab + 1) - begin));
     alignas(64) float change[3][chunk], pic[3][chunk], grad[9][chunk];
     for (int l = 0; l < n; ++l) {
       const std::size_t p = begin + l;
-      const Place at(position_[0][p], position_[1][p], position_[2][p], nodes_y_, nodes_z_);
+      const Stencil at(position_[0][p], position_[1][p], position_[2][p], nodes_y_, nodes_z_);
       Node value{}, gx{}, gy{}, gz{};
       for (int i = 0; i < 3; ++i) {
         Node v_i{}, y_i{}, z_i{};
@@ -178,12 +179,12 @@ void BareKernel::to_particles(int slab) {
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
           h[i][j] = g[i][j] + g[i][0] * s[0][j] + g[i][1] * s[1][j] + g[i][2] * s[2][j];
-      const auto stretched = [&](int i, int j) {
+      const auto updated = [&](int i, int j) {  // (I + g) b (I + g)^T - I
         return s[i][j] + h[i][j] + h[j][i] + h[i][0] * g[j][0] + h[i][1] * g[j][1] +
                h[i][2] * g[j][2];
       };
-      b[0][l] = stretched(0, 0), b[1][l] = stretched(1, 1), b[2][l] = stretched(2, 2);
-      b[3][l] = stretched(0, 1), b[4][l] = stretched(0, 2), b[5][l] = stretched(1, 2);
+      b[0][l] = updated(0, 0), b[1][l] = updated(1, 1), b[2][l] = updated(2, 2);
+      b[3][l] = updated(0, 1), b[4][l] = updated(0, 2), b[5][l] = updated(1, 2);
       for (int d = 0; d < 3; ++d) {
         v[d][l] = pic[d][l] + flip_ratio * (v[d][l] + change[d][l] - pic[d][l]);
         x[d][l] += rate * pic[d][l];

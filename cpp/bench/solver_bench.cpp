@@ -1,7 +1,12 @@
-// Whole steps of the solver: particle updates per second on the slab of snow that other MPM codes
-// were measured on (2 x 0.5 x 1 m, dx 1/32 m, 8 particles per cell), and its two-dimensional kin;
-// the bare kernel beside it; the same slab with one feature more or less at a time; and cost
-// against the number of particles. Snow does not sleep here, except where that is the subject.
+// Benchmarks of whole steps of the solver, in particle updates per second:
+//
+// - the slab of snow on which other MPM codes were measured (2 x 0.5 x 1 m, dx 1/32 m, 8 particles
+//   per cell), and a two-dimensional slab;
+// - the bare kernel on the same slab;
+// - the same slab with one feature more or less at a time;
+// - the cost against the number of particles.
+//
+// Sleep is off, except in the benchmarks of sleep.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -18,7 +23,7 @@ namespace {
 constexpr double slab_dx = 1.0 / 32;
 constexpr int slab_cells[3] = {64, 16, 32};
 
-/// A lattice of cells x 2 particles along each direction; two-dimensional where cells[1] is 0.
+/// Returns a lattice of two particles per cell in each direction. It is 2D if cells[1] is 0.
 ParticleBatch slab(const int (&cells)[3], double dx, double density) {
   const double h = dx / 2;
   const bool flat = cells[1] == 0;
@@ -31,7 +36,7 @@ ParticleBatch slab(const int (&cells)[3], double dx, double density) {
   return batch;
 }
 
-/// One thing to measure; the defaults are the slab at rest on sticky ground.
+/// A benchmark case.
 struct Case {
   MpmOptions options;
   ParticleBatch batch;
@@ -95,15 +100,15 @@ void add(const std::string& name, Case c, const std::function<void(Case&)>& chan
 
 // --- the slab ---------------------------------------------------------------------------------
 
-const Vec3 in_flow(5, 0, -5);  // onto the ground at once: all of it yields
+const Vec3 in_flow(5, 0, -5);  // onto the ground, such that all snow yields
 
 void add_slabs() {
-  const auto as_it_is = [](Case&) {};
+  const auto unchanged = [](Case&) {};
   const auto in_double = [](Case& c) { c.options.numerics.precision = Precision::float64; };
-  add("slab_3d/float_at_rest", slab_3d(), as_it_is, {1, 2});
-  add("slab_3d/float_in_plastic_flow", slab_3d(in_flow), as_it_is, {1, 2});
+  add("slab_3d/float_at_rest", slab_3d(), unchanged, {1, 2});
+  add("slab_3d/float_in_plastic_flow", slab_3d(in_flow), unchanged, {1, 2});
   add("slab_3d/double_at_rest", slab_3d(), in_double, {1, 2});
-  add("slab_2d/float_at_rest", slab_2d(), as_it_is, {1, 2});
+  add("slab_2d/float_at_rest", slab_2d(), unchanged, {1, 2});
   add("slab_2d/double_at_rest", slab_2d(), in_double, {1, 2});
   for (int threads : {1, 2})
     benchmark::RegisterBenchmark(("bare_kernel_3d/float/" + std::to_string(threads)).c_str(),
@@ -118,9 +123,9 @@ void add_slabs() {
         ->Unit(benchmark::kMillisecond);
 }
 
-// --- the price of each feature ----------------------------------------------------------------
+// --- the cost of each feature -----------------------------------------------------------------
 
-/// The base is elastic snow in free fall: nothing but the transfers and a stress.
+/// Returns the base case, elastic snow in free fall: only the transfers and a stress.
 Case plain() {
   Case c = slab_3d(Vec3(0, 0, -1));
   c.options.snows[0].model = SnowModel::elastic;
@@ -145,30 +150,30 @@ void add_prices() {
   const auto price = [](const std::string& feature, Case c, const std::function<void(C&)>& change) {
     add("price/" + feature, std::move(c), change, {1});
   };
-  const auto nothing = [](C&) {};
-  price("base_3d", plain(), nothing);
+  const auto unchanged = [](C&) {};
+  price("base_3d", plain(), unchanged);
   price("base_2d", plain(), [](C& c) {
     c.options.dimension = 2;
     c.batch = slab({256, 0, 256}, slab_dx, c.options.snows[0].density);
   });
   price("cam_clay_elastic", plain(), [](C& c) { c.options.snows[0].model = SnowModel::cam_clay; });
-  price("ground_cam_clay_in_flow", slab_3d(in_flow), nothing);
+  price("ground_cam_clay_in_flow", slab_3d(in_flow), unchanged);
   price("ground_elastic_in_flow", slab_3d(in_flow),
         [](C& c) { c.options.snows[0].model = SnowModel::elastic; });
   price("double", plain(), [](C& c) { c.options.numerics.precision = Precision::float64; });
   price("cubic", plain(), [](C& c) { c.options.numerics.basis = Basis::cubic; });
   price("apic", plain(), [](C& c) { c.options.numerics.transfer = Transfer::apic; });
-  price("sticky_contact", on(Condition::sticky), nothing);
-  price("slip_contact", on(Condition::slip), nothing);
-  price("separate_contact", on(Condition::separate), nothing);
-  price("moving_contact", on(Condition::sticky, true), nothing);
+  price("sticky_contact", on(Condition::sticky), unchanged);
+  price("slip_contact", on(Condition::slip), unchanged);
+  price("separate_contact", on(Condition::separate), unchanged);
+  price("moving_contact", on(Condition::sticky, true), unchanged);
   price("several_snows", plain(), [](C& c) { c.options.snows.assign(2, Snow()); });
-  price("energy_books", plain(), [](C& c) {
+  price("energy_balance", plain(), [](C& c) {
     c.options.snows.assign(2, Snow());
     c.options.energy = true;
   });
   price("sleep_of_awake_snow", plain(), [](C& c) { c.options.numerics.sleep_speed = 0.02; });
-  // Without weight it is at rest at once.
+  // Without gravity the slab is at rest from the start.
   price("sleep_at_rest", slab_3d(), [](C& c) {
     c.options.numerics.sleep_speed = 0.02;
     c.options.gravity = 0;

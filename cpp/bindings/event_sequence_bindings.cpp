@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "simulation_handle.hpp"
 #include "snowshed/run/event_sequence.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
@@ -69,7 +70,7 @@ py::list finished_events(const EventSequence& sequence) {
 
 void bind_event_sequence(py::module_& m) {
   using namespace py::literals;
-  py::class_<EventSequence>(m, "EventSequence")
+  py::class_<EventSequence, std::shared_ptr<EventSequence>>(m, "EventSequence")
       .def_static(
           "create",
           [](const std::string& json, const std::string& base_dir, const std::string& folder) {
@@ -91,8 +92,12 @@ void bind_event_sequence(py::module_& m) {
             s.record().machine = std::move(facts);
           },
           "facts"_a)
-      .def_property_readonly("simulation", &EventSequence::simulation,
-                             py::return_value_policy::reference_internal)
+      .def_property_readonly(
+          "simulation",
+          [](const std::shared_ptr<EventSequence>& s) {  // which the simulation keeps alive
+            return std::make_unique<SimulationHandle>(
+                std::shared_ptr<Simulation>(s, &s->simulation()));
+          })
       .def_property_readonly("finished_events", &finished_events);
 }
 

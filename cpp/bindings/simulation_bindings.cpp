@@ -2,7 +2,10 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "field_arrays.hpp"
+#include "simulation_handle.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/particles/quantities.hpp"
 #include "snowshed/run/run_record.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
@@ -89,12 +92,6 @@ py::object frame(const Simulation& sim) {
   return d;
 }
 
-py::array_t<std::int64_t> material_ids(const Simulation& sim) {
-  std::vector<std::uint8_t> material_ids = sim.solver().state().material_ids;
-  material_ids.resize(sim.solver().size());  // of one snow: all zero
-  return column<std::int64_t>(material_ids);
-}
-
 std::vector<std::string> snows(const Simulation& sim) {
   std::vector<std::string> json;
   for (const Snow& snow : sim.snows()) json.push_back(write_snow(snow));
@@ -116,103 +113,218 @@ py::array_t<double> obstacle_distance(const Simulation& sim, const py::array_t<d
   return column<double>(distances);
 }
 
+/// The names, units and meanings of the quantities that files and fields hold.
+py::list quantity_list() {
+  py::list all;
+  for (const Quantity& q : quantities()) all.append(py::make_tuple(q.name, q.unit, q.meaning));
+  return all;
+}
+
+py::dtype dtype_of(FieldType type) {
+  return with_field_type(type, [](auto zero) { return py::dtype::of<decltype(zero)>(); });
+}
+
+py::list field_list(const Simulation& sim) {
+  py::list all;
+  for (const FieldInfo& f : sim.solver().fields())
+    all.append(py::make_tuple(f.name, f.unit, f.meaning, dtype_of(f.type), f.stored));
+  return all;
+}
+
+py::array order_by_id(const Simulation& sim) {
+  const std::vector<std::uint32_t>& order = sim.solver().order_by_id();
+  return column<std::int64_t>(order);
+}
+
+/// Ordered by id.
+py::array on_panel(const Simulation& sim) {
+  const FieldView view = sim.solver().field("position");
+  std::vector<Vec3> positions;
+  for (const std::uint32_t place : sim.solver().order_by_id())
+    positions.push_back(Vec3::Map(view.at<double>(place)));
+  return column<bool>(sim.on_panel(positions));
+}
+
 py::object affine(const Simulation& sim) {
-  const std::vector<Mat3> matrices = sim.solver().state().affine;
-  if (matrices.empty()) return py::none();
-  py::array_t<double> a({py::ssize_t(matrices.size()), py::ssize_t(3), py::ssize_t(3)});
-  auto out = a.mutable_unchecked<3>();
-  for (py::ssize_t i = 0; i < a.shape(0); ++i)
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) out(i, r, c) = matrices[std::size_t(i)](r, c);
-  return a;
+  for (const FieldInfo& info : sim.solver().fields())
+    if (info.name == "affine") return array_by_id(sim.solver(), info.name);
+  return py::none();
+}
+
+void add_snow(Simulation& sim, const py::array_t<double>& positions, double mass,
+              const std::array<double, 3>& velocity, int material_id) {
+  ParticleBatch batch;
+  batch.positions = vectors(positions, "positions");
+  batch.mass = mass;
+  batch.velocity = Vec3(velocity[0], velocity[1], velocity[2]);
+  batch.material_id = material_id;
+  sim.add_snow(std::move(batch));
+}
+
+using Handle = SimulationHandle;
+
+/// The class as Python sees it; every call goes through the guard.
+class SimulationClass {
+ public:
+  explicit SimulationClass(py::module_& m) : class_(m, "Simulation") {}
+
+  py::class_<Handle>& operator*() { return class_; }
+
+  /// A method that only reads: f(simulation, arguments...).
+  template <class F, class... Extra>
+  void reads(const char* name, F f, const Extra&... extra) {
+    class_.def(name, guarded(name, Handle::Access::read, +f), extra...);
+  }
+  template <class F, class... Extra>
+  void changes(const char* name, F f, const Extra&... extra) {
+    class_.def(name, guarded(name, Handle::Access::change, +f), extra...);
+  }
+  template <class F>
+  void property(const char* name, F f) {
+    class_.def_property_readonly(name, guarded(name, Handle::Access::read, +f));
+  }
+  /// A field by the name of its own method, ordered by id.
+  void column(const char* name, const char* field) {
+    class_.def(name, [name, field](Handle& handle) {
+      return handle.use(name, Handle::Access::read, [field](const auto& simulation) {
+        return array_by_id(simulation->solver(), field);
+      });
+    });
+  }
+
+ private:
+  template <class Result, class Sim, class... Arguments>
+  static auto guarded(const char* name, Handle::Access access, Result (*f)(Sim&, Arguments...)) {
+    return [name, access, f](Handle& handle, Arguments... arguments) -> Result {
+      return handle.use(name, access, [&](const auto& simulation) -> Result {
+        return f(*simulation, std::forward<Arguments>(arguments)...);
+      });
+    };
+  }
+
+  py::class_<Handle> class_;
+};
+
+void bind_run(SimulationClass& c) {
+  using namespace py::literals;
+  c.changes("begin_event", [](Simulation& s) { return reseeding_dict(s.begin_event()); });
+  c.changes(
+      "run",
+      [](Simulation& s, const py::function& callback, double interval) {
+        return run(s, callback, interval);
+      },
+      "callback"_a, "interval_s"_a = 0.5);
+  c.changes(
+      "step",
+      [](Simulation& s, int count) {
+        py::gil_scoped_release release;
+        s.step(count);
+      },
+      "count"_a = 1);
+  c.changes("add_snow", &add_snow, "positions"_a, "mass"_a, "velocity"_a, "material_id"_a);
+  c.changes(
+      "add_velocity",
+      [](Simulation& s, const py::array_t<double>& changes) {
+        s.add_velocity(vectors(changes, "velocity changes"));
+      },
+      "velocity_changes"_a);
+  c.changes(
+      "settle",
+      [](Simulation& s, const std::vector<double>& drops,
+         const std::vector<double>& plastic_changes) { s.settle(drops, plastic_changes); },
+      "drops"_a, "plastic_changes"_a);
+}
+
+void bind_files(SimulationClass& c) {
+  using namespace py::literals;
+  (*c).def_static(
+      "load",
+      [](const std::string& path) { return std::make_unique<Handle>(Simulation::load(path)); },
+      "path"_a);
+  c.reads("save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a);
+  c.changes(
+      "set_snapshots",
+      [](Simulation& s, const std::string& dir, double interval) {
+        s.write_snapshots(dir, interval);
+      },
+      "dir"_a, "interval_s"_a);
+  c.reads(
+      "write_vtk", [](const Simulation& s, const std::string& path) { s.write_vtp(path); },
+      "path"_a);
+}
+
+void bind_fields(SimulationClass& c) {
+  using namespace py::literals;
+  c.reads("fields", &field_list);
+  c.reads(
+      "field",
+      [](const Simulation& s, const std::string& name) { return array_of(s.solver().field(name)); },
+      "name"_a);
+  c.reads(
+      "field_by_id",
+      [](const Simulation& s, const std::string& name) { return array_by_id(s.solver(), name); },
+      "name"_a);
+  c.reads("order_by_id", &order_by_id);
+  c.column("positions", "position");
+  c.column("velocities", "velocity");
+  c.column("masses", "mass");
+  c.column("densities", "density");
+  c.column("pressures", "pressure");
+  c.column("plastic_strains", "volumetric_plastic_strain");
+  c.column("events", "event");
+  c.column("material_ids", "material_id");
+  c.reads("affine", &affine);
+  c.reads("on_panel", &on_panel);
+  c.reads(
+      "on_panel_at",
+      [](const Simulation& s, const py::array_t<double>& positions, double laid_height) {
+        return column<bool>(s.on_panel(vectors(positions, "positions"), laid_height));
+      },
+      "positions"_a, "laid_height"_a);
+}
+
+void bind_facts(SimulationClass& c) {
+  using namespace py::literals;
+  c.reads("energy", &energy);
+  c.reads("panel_frame", &frame);
+  c.reads("obstacle_distance", &obstacle_distance, "points"_a);
+  c.property("event", [](const Simulation& s) { return s.event(); });
+  c.property("event_count", [](const Simulation& s) { return s.scene().events.count; });
+  c.property("event_running", [](const Simulation& s) { return s.event_running(); });
+  c.property("time_s", [](const Simulation& s) { return s.event_time(); });
+  c.property("total_steps", [](const Simulation& s) { return s.solver().counters().steps; });
+  c.property("rejected_steps", [](const Simulation& s) { return s.solver().counters().rejected; });
+  c.property("particle_updates",
+             [](const Simulation& s) { return s.solver().counters().particle_updates; });
+  c.property("slept_updates",
+             [](const Simulation& s) { return s.solver().counters().slept_updates; });
+  c.property("sorts", [](const Simulation& s) { return s.solver().counters().sorts; });
+  c.property("particle_count", [](const Simulation& s) { return s.solver().size(); });
+  c.property("time_step_s", [](const Simulation& s) { return s.solver().time_step(); });
+  c.property("scene", [](const Simulation& s) { return write_scene(s.scene()); });
+  c.property("snows", &snows);
+  c.property("threads", [](const Simulation& s) { return s.threads(); });
+  c.property("resolution", [](const Simulation& s) { return s.resolution(); });
+  c.property("dimension", [](const Simulation& s) { return s.scene().dimension; });
+  c.property("ground_tilt_deg",
+             [](const Simulation& s) { return s.scene().ground ? s.scene().ground->tilt : 0.0; });
 }
 
 }  // namespace
 
 void bind_simulation(py::module_& m) {
   using namespace py::literals;
-  py::class_<Simulation>(m, "Simulation")
-      .def(py::init([](const std::string& json, const std::string& base_dir) {
-             return std::make_unique<Simulation>(parse_scene(json), base_dir);
-           }),
-           "scene_json"_a, "base_dir"_a = ".")
-      .def_static(
-          "load", [](const std::string& path) { return Simulation::load(path); }, "path"_a)
-      .def(
-          "save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a)
-      .def("begin_event", [](Simulation& s) { return reseeding_dict(s.begin_event()); })
-      .def("run", &run, "callback"_a, "interval_s"_a = 0.5)
-      .def("step", &Simulation::step, "count"_a = 1, py::call_guard<py::gil_scoped_release>())
-      .def(
-          "kick",
-          [](Simulation& s, const py::array_t<double>& changes) {
-            s.add_velocity(vectors(changes, "velocity changes"));
-          },
-          "velocity_changes"_a)
-      .def("settle", &Simulation::settle, "drops"_a, "plastic_changes"_a)
-      .def(
-          "set_snapshots",
-          [](Simulation& s, const std::string& dir, double interval) {
-            s.write_snapshots(dir, interval);
-          },
-          "dir"_a, "interval_s"_a)
-      .def(
-          "write_vtk", [](const Simulation& s, const std::string& path) { s.write_vtp(path); },
-          "path"_a)
-      .def("energy", &energy)
-      .def("panel_frame", &frame)
-      .def("positions", [](const Simulation& s) { return rows(s.solver().state().positions); })
-      .def("velocities", [](const Simulation& s) { return rows(s.solver().state().velocities); })
-      .def("affine", &affine)
-      .def("pressures",
-           [](const Simulation& s) { return column<double>(s.solver().state().pressures); })
-      .def("plastic_strains",
-           [](const Simulation& s) { return column<double>(s.solver().state().plastic_strains); })
-      .def("masses", [](const Simulation& s) { return column<double>(s.solver().state().masses); })
-      .def("events",
-           [](const Simulation& s) { return column<std::int64_t>(s.solver().state().events); })
-      .def("kinds", &material_ids)
-      .def("density",
-           [](const Simulation& s) { return column<double>(s.solver().state().densities); })
-      .def("on_panel",
-           [](const Simulation& s) {
-             return column<bool>(s.on_panel(s.solver().state().positions));
-           })
-      .def(
-          "on_panel_at",
-          [](const Simulation& s, const py::array_t<double>& positions, double laid_height) {
-            return column<bool>(s.on_panel(vectors(positions, "positions"), laid_height));
-          },
-          "positions"_a, "laid_height"_a)
-      .def("obstacle_distance", &obstacle_distance, "points"_a)
-      .def_property_readonly("event", &Simulation::event)
-      .def_property_readonly("event_count",
-                             [](const Simulation& s) { return s.scene().events.count; })
-      .def_property_readonly("event_running", &Simulation::event_running)
-      .def_property_readonly("time_s", &Simulation::event_time)
-      .def_property_readonly("total_steps",
-                             [](const Simulation& s) { return s.solver().counters().steps; })
-      .def_property_readonly("rejected_steps",
-                             [](const Simulation& s) { return s.solver().counters().rejected; })
-      .def_property_readonly(
-          "particle_updates",
-          [](const Simulation& s) { return s.solver().counters().particle_updates; })
-      .def_property_readonly(
-          "slept_updates", [](const Simulation& s) { return s.solver().counters().slept_updates; })
-      .def_property_readonly("sorts",
-                             [](const Simulation& s) { return s.solver().counters().sorts; })
-      .def_property_readonly("particle_count",
-                             [](const Simulation& s) { return s.solver().size(); })
-      .def_property_readonly("time_step_s",
-                             [](const Simulation& s) { return s.solver().time_step(); })
-      .def_property_readonly("scene", [](const Simulation& s) { return write_scene(s.scene()); })
-      .def_property_readonly("snows", &snows)
-      .def_property_readonly("threads", &Simulation::threads)
-      .def_property_readonly("resolution", &Simulation::resolution)
-      .def_property_readonly("dimension", [](const Simulation& s) { return s.scene().dimension; })
-      .def_property_readonly("ground_tilt_deg", [](const Simulation& s) {
-        return s.scene().ground ? s.scene().ground->tilt : 0.0;
-      });
+  m.def("quantities", &quantity_list, "(name, unit, meaning) of what particles may have.");
+  SimulationClass c(m);
+  (*c).def(
+      py::init([](const std::string& json, const std::string& base_dir) {
+        return std::make_unique<Handle>(std::make_shared<Simulation>(parse_scene(json), base_dir));
+      }),
+      "scene_json"_a, "base_dir"_a = ".");
+  bind_run(c);
+  bind_files(c);
+  bind_fields(c);
+  bind_facts(c);
 }
 
 }  // namespace snowshed

@@ -1,27 +1,29 @@
-// A file as a checkpoint: refused, or a simulation that can be looked at, saved and taken on, into
-// the next event too, unless its snow is in a state that cannot go on.
+// Fuzz target of checkpoints. A file must be refused, or give a simulation that can be inspected,
+// saved and continued, also into the next event. A SimulationError is allowed, since the state in
+// the file may be one from which no step is possible.
 #include "fuzzing.hpp"
 #include "snowshed/run/simulation.hpp"
 
 namespace snowshed {
 namespace {
 
-/// Scenes of more particles are sound too, but take longer than a mutation is worth.
-constexpr double enough_particles = 2000;
+/// Scenes with more particles are valid, too, but take too long for one mutation.
+constexpr double max_added_particles = 2000;
 
-void go_on(Simulation& simulation) {
+void continue_run(Simulation& simulation) {
   const bool more = simulation.event() < simulation.scene().events.count;
-  if (!simulation.event_running() && more && simulation.cost().total_particles < enough_particles)
+  if (!simulation.event_running() && more &&
+      simulation.cost().total_particles < max_added_particles)
     simulation.begin_event();
   if (simulation.event_running()) simulation.step(3);
 }
 
-void use(Simulation& simulation, const std::filesystem::path& copy) {
+void exercise(Simulation& simulation, const std::filesystem::path& copy) {
   simulation.solver().state();
   simulation.solver().energy();
   simulation.save(copy);
   try {
-    go_on(simulation);
+    continue_run(simulation);
   } catch (const SimulationError&) {
   }
 }
@@ -32,6 +34,6 @@ void use(Simulation& simulation, const std::filesystem::path& copy) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace snowshed;
   const InputFile file(data, size, ".bin");
-  allow_refusal([&] { use(*Simulation::load(file.path()), file.path()); });
+  allow_refusal([&] { exercise(*Simulation::load(file.path()), file.path()); });
   return 0;
 }

@@ -1,5 +1,5 @@
-// Mutations that keep the container of a checkpoint whole: random bytes hardly ever have the right
-// lengths and checksum, and would show nothing of what lies within.
+// Mutations that keep the container of a checkpoint valid. Random bytes hardly ever have the right
+// lengths and checksum, so the reader would refuse them before it looks at the content.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -9,15 +9,15 @@
 
 #include "snowshed/io/checksum.hpp"
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace snowshed {
 namespace {
 
-/// A section in the layout of binary_archive.hpp; nothing here need be valid.
+/// A section in the layout of binary_archive.hpp. None of its values need be valid.
 struct ArchiveSection {
   std::uint32_t type;
-  std::uint64_t element;  // bytes of one
+  std::uint64_t element;  // bytes of an element
   std::string name, data;
 };
 
@@ -37,7 +37,7 @@ std::string bytes_of(T value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-/// Those sections, from the first on, that lie within the bytes.
+/// Returns the sections, from the first on, as long as they lie within the bytes.
 std::vector<ArchiveSection> sections_of(const std::string& bytes) {
   std::vector<ArchiveSection> sections;
   if (bytes.size() < archive_header + archive_trailer) return sections;
@@ -55,7 +55,7 @@ std::vector<ArchiveSection> sections_of(const std::string& bytes) {
   return sections;
 }
 
-/// An archive of these sections, with the lengths and the checksum that go with them.
+/// Returns an archive of these sections with matching lengths and checksum.
 std::string archive_of(const std::vector<ArchiveSection>& sections) {
   const auto pad = [](std::string text) {
     text.resize(padded(text.size()));
@@ -75,7 +75,7 @@ std::string archive_of(const std::vector<ArchiveSection>& sections) {
   return bytes + bytes_of(sum.value());
 }
 
-/// The same bytes as a file of their length with a checksum that fits.
+/// Returns the bytes with their own length and a matching checksum.
 std::string with_valid_frame(std::string bytes) {
   bytes.resize(padded(std::max(bytes.size(), archive_header + archive_trailer)));
   const auto length = bytes_of(std::uint64_t(bytes.size()));
@@ -85,15 +85,15 @@ std::string with_valid_frame(std::string bytes) {
   return bytes.replace(bytes.size() - archive_trailer, archive_trailer, bytes_of(sum.value()));
 }
 
-std::string mutate(std::string bytes, std::size_t most) {
+std::string mutate(std::string bytes, std::size_t max_size) {
   const std::size_t size = bytes.size();
-  bytes.resize(std::max(size, most));
-  bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), size, most));
+  bytes.resize(std::max(size, max_size));
+  bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), size, max_size));
   return bytes;
 }
 
-/// Changes one section as a whole: its content, its name, its type, or whether it is there.
-void mutate_a_section(std::vector<ArchiveSection>& sections, std::mt19937& random) {
+/// Changes the content, name or type of one section, or removes or repeats it.
+void mutate_section(std::vector<ArchiveSection>& sections, std::mt19937& random) {
   constexpr std::size_t growth = 64;
   const std::size_t i = random() % sections.size();
   ArchiveSection& section = sections[i];
@@ -119,20 +119,20 @@ void mutate_a_section(std::vector<ArchiveSection>& sections, std::mt19937& rando
 }  // namespace snowshed
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t most, unsigned seed) {
+                                               std::size_t max_size, unsigned seed) {
   using namespace snowshed;
   std::mt19937 random(seed);
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   std::vector<ArchiveSection> sections = sections_of(bytes);
   std::string mutated;
   if (sections.empty() || random() % 8 == 0) {
-    mutated = mutate(bytes, most);
+    mutated = mutate(bytes, max_size);
     if (random() % 4 != 0) mutated = with_valid_frame(std::move(mutated));
   } else {
-    mutate_a_section(sections, random);
+    mutate_section(sections, random);
     mutated = archive_of(sections);
   }
-  if (mutated.size() > most) return size;
+  if (mutated.size() > max_size) return size;
   std::copy(mutated.begin(), mutated.end(), data);
   return mutated.size();
 }

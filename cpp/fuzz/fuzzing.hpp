@@ -1,5 +1,5 @@
-// What the fuzz targets share. A target is the function LLVMFuzzerTestOneInput: libFuzzer calls it
-// with ever new bytes, replay_main.cpp with those of given files.
+// Helpers shared by the fuzz targets. A target is a function LLVMFuzzerTestOneInput. libFuzzer
+// calls it with mutated bytes, replay_main.cpp with the bytes of given files.
 #pragma once
 
 #include <unistd.h>
@@ -15,7 +15,7 @@
 
 namespace snowshed {
 
-/// The bytes as a file, for readers that take nothing else; gone afterwards.
+/// A temporary file with the given bytes, for readers that take only files.
 class InputFile {
  public:
   InputFile(const std::uint8_t* data, std::size_t size, const std::string& extension)
@@ -35,17 +35,17 @@ class InputFile {
 };
 
 /// Runs `read`, which may refuse its input with a located InputError. Any other exception leaves
-/// this function, and ends the program as a find.
+/// this function and ends the program, which libFuzzer reports.
 template <class Read>
 void allow_refusal(Read read) {
   try {
     read();
   } catch (const InputError& error) {
-    if (error.where().empty()) throw std::logic_error("an InputError without a place");
+    if (error.where().empty()) throw std::logic_error("an InputError without a location");
   }
 }
 
-/// What must hold for every input that was not refused.
+/// Ends the program unless `condition` holds, which it must for every input that was not refused.
 inline void require(bool condition, const char* what) {
   if (!condition) throw std::logic_error(what);
 }

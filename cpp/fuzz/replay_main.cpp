@@ -1,4 +1,5 @@
-// Runs a fuzz target over given files, and the files of given folders, without a fuzzing engine.
+// Runs a fuzz target on the given files and on the files of given folders, without a fuzzing
+// engine.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

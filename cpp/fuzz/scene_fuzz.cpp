@@ -1,4 +1,5 @@
-// Text as a scene: refused, or a scene that its own JSON gives back.
+// Fuzz target of scenes. A text must be refused, or give a scene that is the same again when it is
+// written and read.
 #include "fuzzing.hpp"
 #include "snowshed/run/cost_estimate.hpp"
 #include "snowshed/scene/scene_json.hpp"

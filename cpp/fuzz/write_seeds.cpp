@@ -1,5 +1,5 @@
-// Writes what fuzzing starts from:  fuzz_seeds FOLDER
-// A folder of small valid inputs for each target, and a dictionary of the scene's words.
+// Writes the seed inputs of fuzzing:  fuzz_seeds FOLDER
+// For each target, FOLDER gets a folder of small valid inputs and a dictionary of words.
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -30,7 +30,7 @@ std::string raw(const std::vector<Number>& numbers) {
   return bytes;
 }
 
-/// Every kind of thing a scene may hold; Y(y) is the component that vectors have in 3D alone.
+/// A scene with every feature. Y(y) is the y component of a vector, which 2D scenes lack.
 const char* const rich_scene = R"({"snowshed": 1, "dimension": %D, "title": "seed",
   "snow": {"model": "elastic", "density": 250, "cohesion": 0.1},
   "panel": {"height": 0.5, "length": 1, "width": 1, "tilt": 45, "condition": "separate"},
@@ -55,7 +55,7 @@ const char* const rich_scene = R"({"snowshed": 1, "dimension": %D, "title": "see
               "velocity": [0, Y(0) -1], "event": 2, "snow": {"density": 150}}],
   "seeding": {"particles_per_voxel": 6, "pattern": "jittered", "seed": 7, "allow_sparse": true},
   "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "basis": "cubic",
-               "step_factor": 0.5, "strain_limit": 0.1, "threads": 1},
+               "courant_factor": 0.5, "strain_limit": 0.1, "threads": 1},
   "events": {"count": 2, "between": "reseed", "max_time": 3, "rest_speed": 0.02, "rest_time": 0.1},
   "output": {"snapshot_interval": 0.1, "energy": true, "checkpoint_interval": 60}})";
 
@@ -75,10 +75,10 @@ void write_scenes(const fs::path& folder) {
                                R"( "center": [0, 0, 1], "radius": 1e-1}}]})");
 }
 
-/// The keys and choices of a scene, quoted as they are in it.
+/// Returns the keys and choices of a scene, quoted as in JSON.
 std::set<std::string> scene_words() {
   std::set<std::string> words;
-  const auto interpolate_nodes = [&](const auto& self, const nlohmann::json& node) -> void {
+  const auto collect_words = [&](const auto& self, const nlohmann::json& node) -> void {
     for (const auto& [key, value] : node.items()) {
       if (key == "properties")
         for (const auto& [name, property] : value.items()) words.insert("\"" + name + "\"");
@@ -88,7 +88,7 @@ std::set<std::string> scene_words() {
       if (value.is_structured()) self(self, value);
     }
   };
-  interpolate_nodes(interpolate_nodes, nlohmann::json::parse(scene_schema()));
+  collect_words(collect_words, nlohmann::json::parse(scene_schema()));
   return words;
 }
 
@@ -99,7 +99,7 @@ const std::vector<std::string> extreme_numbers = {
 
 void write_dictionary(const fs::path& file, std::set<std::string> words) {
   words.insert(extreme_numbers.begin(), extreme_numbers.end());
-  std::string lines;  // libFuzzer's form: in each a quoted word, with hexadecimal escapes
+  std::string lines;  // libFuzzer's format: a quoted word a line, with hexadecimal escapes
   for (const std::string& word : words)
     lines += std::regex_replace(nlohmann::json(word).dump(), std::regex("\\\\n"), "\\x0A") + "\n";
   write(file, lines);
@@ -230,7 +230,8 @@ void write_npy(const fs::path& folder) {
   write(folder / "deep.npy", npy("\2\0"s, "<f8", "(2, 2, 2)") + raw(deep));
 }
 
-/// A handful of particles, at rest between events or in flight past all that a scene may have.
+/// Returns a scene of a few particles: plain and between two events, or with many features and in
+/// the middle of an event.
 Scene scene_of_checkpoint(int dimension, bool running) {
   Scene scene = parse_scene(R"({"snowshed": 1, "bodies": [{"shape": {"type": "sphere", "center":)"
                             R"( [0, 0, 0.25], "radius": 0.1}, "event": 0}], "ground": {},)"
@@ -240,8 +241,8 @@ Scene scene_of_checkpoint(int dimension, bool running) {
   scene.events.rest_time = 0.005;
   if (!running) return scene;
   scene.events.between = Between::reseed;
-  scene.numerics.precision = Precision::float64;
-  scene.numerics.transfer = Transfer::apic;
+  scene.mpm().precision = Precision::float64;
+  scene.mpm().transfer = Transfer::apic;
   scene.output.energy = true;
   scene.domain.emplace(Domain{Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   ObstacleSpec plate;

@@ -17,7 +17,7 @@ std::string name_of(const openvdb::io::GridDescriptor& grid) {
 
 }  // namespace
 
-// The order of io::File::open.
+// These calls are in the order of io::File::open.
 GridFile::GridFile(const std::string& path) : stream_(path, std::ios::binary) {
   stream_.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
   openvdb::io::setStreamMetadataPtr(stream_, metadata_, /*transfer=*/false);
@@ -41,7 +41,7 @@ openvdb::FloatGrid::Ptr GridFile::read(const std::string& name) {
   if (descriptor.isInstance())
     throw InputError("", "it shares the tree of another grid; name that one, '" +
                              descriptor.instanceParentName() + "'");
-  // What the stream knows of another grid must not count for this one.
+  // The stream may still hold the settings of another grid; those of this one replace them.
   stream_.seekg(descriptor.getGridPos());
   const auto grid = openvdb::FloatGrid::create();
   grid->setSaveFloatAsHalf(descriptor.saveFloatAsHalf());
@@ -65,12 +65,13 @@ const openvdb::io::GridDescriptor& GridFile::find(const std::string& name) const
 }
 
 std::string GridFile::list() const {
-  constexpr std::size_t most = 10;
+  constexpr std::size_t max_listed = 10;
   std::string text;
-  for (std::size_t i = 0; i < std::min(most, grids_.size()); ++i)
+  for (std::size_t i = 0; i < std::min(max_listed, grids_.size()); ++i)
     text += (i ? ", '" : "; the file holds '") + name_of(grids_[i]) + "' (" + grids_[i].gridType() +
             ")";
-  if (grids_.size() > most) text += " and " + std::to_string(grids_.size() - most) + " more";
+  if (grids_.size() > max_listed)
+    text += " and " + std::to_string(grids_.size() - max_listed) + " more";
   return grids_.empty() ? "; the file holds none" : text;
 }
 

@@ -1,8 +1,8 @@
-// The grids of one OpenVDB file that is not to be trusted.
+// The grids of an untrusted OpenVDB file.
 #pragma once
 
 #include <openvdb/openvdb.h>
-// After the above, on which it depends.
+// These headers depend on the one above.
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/io.h>
@@ -13,22 +13,23 @@
 
 namespace snowshed {
 
-/// OpenVDB's own io::File takes a file that ends too early for one full of zeros; here the stream
-/// throws std::ios_base::failure.
+/// Reads grids as openvdb::io::File does, but notices the end of the file. io::File reads zeros
+/// from a file that ends too early; here the stream throws std::ios_base::failure.
 class GridFile : private openvdb::io::Archive {
  public:
-  /// Reads what precedes the grids. Throws InputError, openvdb::Exception or
+  /// Reads the header and the list of grids. Throws InputError, openvdb::Exception or
   /// std::ios_base::failure.
   explicit GridFile(const std::string& path);
 
-  /// The grid of floats with that name; with an empty one, the only grid of floats.
+  /// Returns the grid of floats with that name. An empty name stands for the only grid of floats.
   openvdb::FloatGrid::Ptr read(const std::string& name);
 
  private:
   const openvdb::io::GridDescriptor& find(const std::string& name) const;
+  /// Returns the end of a message, with the names and types of the grids.
   std::string list() const;
 
-  // The stream keeps a pointer to this pointer.
+  // The stream refers to this member.
   openvdb::io::StreamMetadata::Ptr metadata_{new openvdb::io::StreamMetadata};
   std::ifstream stream_;
   std::vector<openvdb::io::GridDescriptor> grids_;

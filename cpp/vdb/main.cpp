@@ -1,4 +1,5 @@
-// snowshed-vdb: what reads and writes OpenVDB files for snowshed, in a process of its own.
+// snowshed-vdb: the program that reads and writes OpenVDB files for snowshed, in a separate
+// process.
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
@@ -25,23 +26,23 @@ constexpr const char* usage =
     "Started by snowshed to read and write OpenVDB files; for everyday use see `snowshed vdb`.\n"
     "Exit codes: 0 done, 2 refused; standard output then says why.\n";
 
-void limit(int resource, rlim_t most) {
-  rlimit both{};
-  if (::getrlimit(resource, &both) != 0) return;
-  both.rlim_cur = std::min(most, both.rlim_max);
-  ::setrlimit(resource, &both);
+void set_limit(int resource, rlim_t value) {
+  rlimit limit{};
+  if (::getrlimit(resource, &limit) != 0) return;
+  limit.rlim_cur = std::min(value, limit.rlim_max);
+  ::setrlimit(resource, &limit);
 }
 
-/// A damaged file can ask OpenVDB for any amount of memory and time. What sound files need, many
-/// times over: they hold a bit or more for each byte in memory, and take far less than a second
-/// for 10 MB.
+/// Limits memory and time, of which OpenVDB may need any amount for a damaged file. The limits are
+/// many times the needs of a sound file. A sound file has at least a bit for each byte in memory,
+/// and 10 MB of it are read in far less than a second.
 void limit_by_size_of(const std::string& path) {
   std::error_code error;
   const auto bytes = rlim_t(std::filesystem::file_size(path, error));
   if (error) return;
-  limit(RLIMIT_AS, (rlim_t(2) << 30) + 8 * bytes);
-  limit(RLIMIT_CPU, 2 + bytes / 10'000'000);
-  limit(RLIMIT_CORE, 0);
+  set_limit(RLIMIT_AS, (rlim_t(2) << 30) + 8 * bytes);
+  set_limit(RLIMIT_CPU, 2 + bytes / 10'000'000);
+  set_limit(RLIMIT_CORE, 0);
 }
 
 void read(const std::string& path, const std::string& grid) {
@@ -54,14 +55,15 @@ void read(const std::string& path, const std::string& grid) {
 
 void write(const std::string& path) {
   const snowshed::WriteRequest request = snowshed::read_request(std::cin);
-  const auto summary = snowshed::write_particles(path, request.cloud, request.how);
+  const auto summary = snowshed::write_particles(path, request.cloud, request.settings);
   std::cout << nlohmann::json{{"surface_voxels", summary.surface_voxels},
                               {"density_voxels", summary.density_voxels},
                               {"volume_m3", summary.volume},
                               {"mass_kg", summary.mass}};
 }
 
-/// Nothing but the reason goes to standard output, where whoever started this looks for it.
+/// Writes the reason, and nothing else, to standard output. The process that started this one reads
+/// it there.
 int refuse(const std::string& why) {
   std::cout << why << std::flush;
   return 2;

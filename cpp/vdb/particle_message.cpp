@@ -10,24 +10,24 @@ namespace snowshed {
 namespace {
 
 template <class T>
-std::vector<T> take(std::istream& in, std::size_t count) {
+std::vector<T> read_values(std::istream& in, std::size_t count) {
   std::vector<T> values(count);
   if (!in.read(reinterpret_cast<char*>(values.data()), std::streamsize(count * sizeof(T))))
     throw InputError("", "the particles end too early");
   return values;
 }
 
-PointArray take_attribute(std::istream& in, const nlohmann::json& told, std::size_t particles) {
+PointArray read_attribute(std::istream& in, const nlohmann::json& header, std::size_t particles) {
   PointArray array;
-  array.name = told.at(0);
-  array.components = told.at(2);
+  array.name = header.at(0);
+  array.components = header.at(2);
   if (array.components != 1 && array.components != 3)
     throw InputError(array.name, "1 or 3 components are allowed");
   const std::size_t count = particles * std::size_t(array.components);
-  if (told.at(1) == "float32")
-    array.values = take<float>(in, count);
-  else if (told.at(1) == "int32" && array.components == 1)
-    array.values = take<std::int32_t>(in, count);
+  if (header.at(1) == "float32")
+    array.values = read_values<float>(in, count);
+  else if (header.at(1) == "int32" && array.components == 1)
+    array.values = read_values<std::int32_t>(in, count);
   else
     throw InputError(array.name, "float32, or one int32 for each particle, is allowed");
   return array;
@@ -38,22 +38,22 @@ PointArray take_attribute(std::istream& in, const nlohmann::json& told, std::siz
 WriteRequest read_request(std::istream& in) try {
   std::string line;
   std::getline(in, line);
-  const auto told = nlohmann::json::parse(line);
+  const auto header = nlohmann::json::parse(line);
   WriteRequest request;
-  request.how.dimension = told.at("dimension");
-  request.how.voxel = told.at("voxel");
-  request.how.width = told.at("width");
-  request.how.radius =
-      particle_radius(request.how.dimension, request.how.voxel, told.at("particles_per_voxel"));
-  const std::size_t particles = told.at("particles");
+  request.settings.dimension = header.at("dimension");
+  request.settings.voxel = header.at("voxel");
+  request.settings.width = header.at("width");
+  request.settings.radius = particle_radius(request.settings.dimension, request.settings.voxel,
+                                            header.at("particles_per_voxel"));
+  const std::size_t particles = header.at("particles");
   if (double(particles) > max_particles) throw InputError("particles", "at most 2e8 are written");
-  const std::vector<double> x = take<double>(in, 3 * particles);
+  const std::vector<double> x = read_values<double>(in, 3 * particles);
   for (std::size_t n = 0; n < particles; ++n)
-    request.cloud.positions.emplace_back(x[3 * n], request.how.dimension == 2 ? 0.0 : x[3 * n + 1],
-                                         x[3 * n + 2]);
-  request.cloud.masses = take<double>(in, particles);
-  for (const auto& attribute : told.at("attributes"))
-    request.cloud.attributes.push_back(take_attribute(in, attribute, particles));
+    request.cloud.positions.emplace_back(
+        x[3 * n], request.settings.dimension == 2 ? 0.0 : x[3 * n + 1], x[3 * n + 2]);
+  request.cloud.masses = read_values<double>(in, particles);
+  for (const auto& attribute : header.at("attributes"))
+    request.cloud.attributes.push_back(read_attribute(in, attribute, particles));
   return request;
 } catch (const nlohmann::json::exception& error) {
   throw InputError("", std::string("not a description of particles: ") + error.what());

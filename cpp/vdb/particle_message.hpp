@@ -1,4 +1,4 @@
-// Particles as they come from Python: a line of JSON, then plain arrays.
+// The message with which Python sends particles: a line of JSON, then plain arrays.
 #pragma once
 
 #include <istream>
@@ -9,13 +9,13 @@ namespace snowshed {
 
 struct WriteRequest {
   ParticleCloud cloud;
-  VdbWriting how;
+  VdbWriteSettings settings;
 };
 
-/// Reads {"particles", "dimension", "voxel", "particles_per_voxel", "width", "attributes":
-/// [[name, "float32" or "int32", components], …]} and after the line break the positions (n x 3
-/// doubles), the masses (n doubles) and the attributes in turn, as the machine writes numbers.
-/// Throws InputError.
+/// Reads a message. The line is {"particles", "dimension", "voxel", "particles_per_voxel", "width",
+/// "attributes": [[name, "float32" or "int32", components], …]}. After the line break follow the
+/// positions (n x 3 doubles), the masses (n doubles) and the attributes in turn, in the machine's
+/// byte order. Throws InputError if the message is not of this form.
 WriteRequest read_request(std::istream& in);
 
 }  // namespace snowshed

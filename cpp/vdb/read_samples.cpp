@@ -12,10 +12,10 @@
 namespace snowshed {
 namespace {
 
-template <class... Parts>
-[[noreturn]] void fail(const Parts&... parts) {
+template <class... Values>
+[[noreturn]] void fail(const Values&... values) {
   std::ostringstream text;
-  (text << ... << parts);
+  (text << ... << values);
   throw InputError("", text.str());
 }
 
@@ -31,7 +31,7 @@ VdbKind kind_of(const openvdb::FloatGrid& grid) {
   }
 }
 
-/// The edge of a voxel; the lattice must be uniform and along the axes, as all of snowshed's are.
+/// Returns the edge of a voxel. Voxels must be cubes along the axes, as are those of snowshed.
 double spacing_of(const openvdb::FloatGrid& grid) {
   const openvdb::math::Transform& to_world = grid.transform();
   if (!to_world.isLinear()) fail("its transform is not linear; resample it to uniform voxels");
@@ -49,6 +49,7 @@ double spacing_of(const openvdb::FloatGrid& grid) {
   return spacing;
 }
 
+/// Returns the box around the active voxels, one voxel wider on every side.
 openvdb::CoordBBox box_of(const openvdb::FloatGrid& grid) {
   openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   if (box.empty()) fail("it has no active voxels");
@@ -62,11 +63,14 @@ openvdb::CoordBBox box_of(const openvdb::FloatGrid& grid) {
   return box;
 }
 
+/// Returns the width of the narrow band of a level set.
 double band_of(const openvdb::FloatGrid& grid, double spacing) {
   const double band = grid.background();
   if (!(band >= spacing) || !std::isfinite(band))
-    fail("a level set with the background ", band, "; it must be one voxel (", spacing,
-         ") or more, the width of the band of distances");
+    fail("a level set with the background ", band,
+         "; the background is the width of the narrow band and must be"
+         " one voxel (",
+         spacing, ") or more");
   return band;
 }
 

@@ -1,4 +1,4 @@
-// A grid of an OpenVDB file as plain samples.
+// The samples of a grid of an OpenVDB file.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ struct VdbSamples {
   std::vector<float> values;
 };
 
-/// The samples of a level set or a fog volume in the box around its active voxels, one voxel
-/// wider. Throws InputError, openvdb::Exception or std::ios_base::failure.
+/// Returns the samples of a level set or a fog volume in the box around its active voxels, one
+/// voxel wider on every side. Throws InputError, openvdb::Exception or std::ios_base::failure.
 VdbSamples read_samples(const std::string& path, const std::string& grid);
 
 }  // namespace snowshed

@@ -20,7 +20,7 @@ namespace {
 using openvdb::Coord;
 using openvdb::FloatGrid;
 
-constexpr double half_band = 3;  // voxels, as OpenVDB's own tools make it
+constexpr double half_band = 3;  // voxels, the default of OpenVDB's tools
 
 openvdb::math::Transform::Ptr lattice(double spacing, const Vec3& origin) {
   auto transform = openvdb::math::Transform::createLinearTransform(spacing);
@@ -28,18 +28,18 @@ openvdb::math::Transform::Ptr lattice(double spacing, const Vec3& origin) {
   return transform;
 }
 
-/// Of the sheet -width/2 <= y <= width/2 above the plane, the signed distance to the part whose
-/// section has the signed distance `d`.
-double drawn_out(double d, double y, double width) {
+/// Returns the signed distance to a section that is extruded to -width/2 <= y <= width/2, at a
+/// point with the signed distance `d` to the section in the plane.
+double extruded(double d, double y, double width) {
   const double outside = std::abs(y) - width / 2;
   return d > 0 && outside > 0 ? std::hypot(d, outside) : std::max(d, outside);
 }
 
-FloatGrid::Ptr surface_grid(const GridSamples& samples, const VdbWriting& how) {
+FloatGrid::Ptr surface_grid(const GridSamples& samples, const VdbWriteSettings& settings) {
   const double band = half_band * samples.spacing;
-  const bool flat = how.dimension == 2;
-  // In 2D as many layers along y as the strip and a margin need, its middle on y = 0.
-  const int side = flat ? int(std::ceil(how.width / 2 / samples.spacing + half_band)) : 0;
+  const bool flat = settings.dimension == 2;
+  // In 2D the layers along y cover the strip and a margin; the middle one is at y = 0.
+  const int side = flat ? int(std::ceil(settings.width / 2 / samples.spacing + half_band)) : 0;
   const int layers = flat ? 2 * side + 1 : int(samples.counts[1]);
   auto grid = FloatGrid::create(float(band));
   grid->setName("surface");
@@ -51,59 +51,62 @@ FloatGrid::Ptr surface_grid(const GridSamples& samples, const VdbWriting& how) {
       for (int k = 0; k < int(samples.counts[2]); ++k) {
         const std::size_t row = std::size_t(i) * samples.counts[1] + (flat ? 0 : std::size_t(j));
         double value = samples.values[row * samples.counts[2] + std::size_t(k)];
-        if (flat) value = drawn_out(value, (j - side) * samples.spacing, how.width);
+        if (flat) value = extruded(value, (j - side) * samples.spacing, settings.width);
         if (std::abs(value) < band) nodes.setValueOn(Coord(i, j - side, k), float(value));
       }
   openvdb::tools::signedFloodFill(grid->tree());
   return grid;
 }
 
-/// Shares of the two nodes on either side of a coordinate in units of the spacing.
-struct Shares {
+/// Linear weights of the two nodes on either side of a coordinate in units of the spacing.
+struct LinearWeights {
   int low;
-  double part[2];
-  explicit Shares(double u) : low(int(std::floor(u))) {
-    part[1] = u - low;
-    part[0] = 1 - part[1];
+  double weight[2];
+  explicit LinearWeights(double u) : low(int(std::floor(u))) {
+    weight[1] = u - low;
+    weight[0] = 1 - weight[1];
   }
 };
 
-/// Adds a mass per node to the eight (in 2D four in each layer) nodes around `x`.
+/// Calls add(node, weight) for the eight nodes around `x`, in 2D (layers > 0) for four in each
+/// layer.
 template <class Add>
-void broadcast(const Vec3& x, double spacing, int layers, Add add) {
-  const Shares a(x.x() / spacing), b(x.y() / spacing), c(x.z() / spacing);
+void scatter(const Vec3& x, double spacing, int layers, Add add) {
+  const LinearWeights a(x.x() / spacing), b(x.y() / spacing), c(x.z() / spacing);
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < 2; ++k) {
-      const double share = a.part[i] * c.part[k];
+      const double weight = a.weight[i] * c.weight[k];
       if (layers == 0) {
-        for (int j = 0; j < 2; ++j) add(Coord(a.low + i, b.low + j, c.low + k), share * b.part[j]);
+        for (int j = 0; j < 2; ++j)
+          add(Coord(a.low + i, b.low + j, c.low + k), weight * b.weight[j]);
       } else {
-        for (int j = 0; j < layers; ++j) add(Coord(a.low + i, j - layers / 2, c.low + k), share);
+        for (int j = 0; j < layers; ++j) add(Coord(a.low + i, j - layers / 2, c.low + k), weight);
       }
     }
 }
 
-FloatGrid::Ptr density_grid(const ParticleCloud& cloud, const VdbWriting& how) {
-  const int layers = how.dimension == 2 ? std::max(1, int(std::lround(how.width / how.voxel))) : 0;
-  // Summed in double: single precision would lose a part of the mass for each particle.
+FloatGrid::Ptr density_grid(const ParticleCloud& cloud, const VdbWriteSettings& settings) {
+  const int layers =
+      settings.dimension == 2 ? std::max(1, int(std::lround(settings.width / settings.voxel))) : 0;
+  // The sums are in double precision, since in single precision each particle would lose mass.
   openvdb::DoubleGrid sums;
   auto nodes = sums.getAccessor();
-  const double volume = std::pow(how.voxel, how.dimension);
+  const double volume = std::pow(settings.voxel, settings.dimension);
   for (std::size_t n = 0; n < cloud.positions.size(); ++n)
-    broadcast(cloud.positions[n], how.voxel, layers, [&](const Coord& at, double share) {
-      if (share > 0) nodes.setValueOn(at, nodes.getValue(at) + share * cloud.masses[n] / volume);
+    scatter(cloud.positions[n], settings.voxel, layers, [&](const Coord& at, double weight) {
+      if (weight > 0) nodes.setValueOn(at, nodes.getValue(at) + weight * cloud.masses[n] / volume);
     });
   auto grid = FloatGrid::create(0.0f);
   grid->setName("density");
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-  grid->setTransform(lattice(how.voxel, Vec3::Zero()));
+  grid->setTransform(lattice(settings.voxel, Vec3::Zero()));
   auto out = grid->getAccessor();
   for (auto node = sums.cbeginValueOn(); node; ++node)
     out.setValueOn(node.getCoord(), float(node.getValue()));
   return grid;
 }
 
-/// The name that Houdini expects of a quantity.
+/// Returns the name that Houdini expects for a quantity.
 std::string attribute_name(const std::string& name) { return name == "velocity" ? "v" : name; }
 
 using PointTree = openvdb::points::PointDataTree;
@@ -134,39 +137,42 @@ void add_attribute(PointTree& tree, const PointIndex& index, const PointArray& a
   }
 }
 
-openvdb::points::PointDataGrid::Ptr point_grid(const ParticleCloud& cloud, const VdbWriting& how) {
+openvdb::points::PointDataGrid::Ptr point_grid(const ParticleCloud& cloud,
+                                               const VdbWriteSettings& settings) {
   std::vector<openvdb::Vec3f> positions;
   for (const Vec3& x : cloud.positions) positions.emplace_back(x.x(), x.y(), x.z());
   const openvdb::points::PointAttributeVector<openvdb::Vec3f> all(positions);
-  const auto transform = lattice(how.voxel, Vec3::Zero());
+  const auto transform = lattice(settings.voxel, Vec3::Zero());
   const auto index = openvdb::tools::createPointIndexGrid<PointIndex>(all, *transform);
   auto grid =
       openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
                                            openvdb::points::PointDataGrid>(*index, all, *transform);
   grid->setName("particles");
   for (const PointArray& array : cloud.attributes) add_attribute(grid->tree(), *index, array);
-  openvdb::points::appendAttribute<float>(grid->tree(), "pscale", float(how.radius));
+  openvdb::points::appendAttribute<float>(grid->tree(), "pscale", float(settings.radius));
   return grid;
 }
 
 }  // namespace
 
 VdbSummary write_particles(const std::string& path, const ParticleCloud& cloud,
-                           const VdbWriting& how) {
-  GridSamples samples = particles_to_samples(cloud.positions, how.dimension, how.voxel, how.radius);
-  const FloatGrid::Ptr surface = surface_grid(samples, how), density = density_grid(cloud, how);
+                           const VdbWriteSettings& settings) {
+  GridSamples samples =
+      particles_to_samples(cloud.positions, settings.dimension, settings.voxel, settings.radius);
+  const FloatGrid::Ptr surface = surface_grid(samples, settings),
+                       density = density_grid(cloud, settings);
   openvdb::io::File file(path);
-  file.write(openvdb::GridCPtrVec{surface, density, point_grid(cloud, how)});
+  file.write(openvdb::GridCPtrVec{surface, density, point_grid(cloud, settings)});
   file.close();
   VdbSummary summary;
   summary.surface_voxels = surface->activeVoxelCount();
   summary.density_voxels = density->activeVoxelCount();
-  // As that of a body is measured, so that one made of the file has the same.
-  summary.volume =
-      measure(*make_sampled_grid(std::move(samples), "surface"), how.dimension, how.voxel) *
-      (how.dimension == 2 ? how.width : 1.0);
+  // Measured like a body of a scene, so that a body made from the file has the same volume.
+  summary.volume = measure(*make_sampled_grid(std::move(samples), "surface"), settings.dimension,
+                           settings.voxel) *
+                   (settings.dimension == 2 ? settings.width : 1.0);
   for (auto node = density->cbeginValueOn(); node; ++node)
-    summary.mass += node.getValue() * std::pow(how.voxel, 3);
+    summary.mass += node.getValue() * std::pow(settings.voxel, 3);
   return summary;
 }
 

@@ -1,4 +1,4 @@
-// Particles as an OpenVDB file: the solid they fill, its density, and the points themselves.
+// Writing particles as an OpenVDB file: the solid that they fill, its density, and the points.
 #pragma once
 
 #include <string>
@@ -15,32 +15,33 @@ struct ParticleCloud {
   std::vector<PointArray> attributes;  // of floats or 32-bit integers, with 1 or 3 components
 };
 
-struct VdbWriting {
+struct VdbWriteSettings {
   int dimension = 3;
-  double voxel = 0;   // m, of the simulation
-  double radius = 0;  // m, of a particle: see particle_radius
-  double width = 0;   // m, in 2D: of the strip about y = 0 that stands for the plane
+  double voxel = 0;   // m, cell size of the simulation
+  double radius = 0;  // m, of a particle, see particle_radius
+  double width = 0;   // m, in 2D: width of the extruded strip about y = 0
 };
 
-/// What was written.
+/// Summary of a written file.
 struct VdbSummary {
-  std::size_t surface_voxels = 0, density_voxels = 0;  // active ones
+  std::size_t surface_voxels = 0, density_voxels = 0;  // active voxels
   double volume = 0;                                   // m3, of the solid
-  double mass = 0;                                     // kg, of the density volume
+  double mass = 0;                                     // kg, integral of the density
 };
 
-/// Writes three grids, lengths in metres, z upward:
+/// Writes three grids with lengths in metres and z upward:
 ///
-/// - "surface", level set: `particles_to_level_set`, its samples as they are, in a band of three
-///   voxels of half the size of the simulation's;
-/// - "density", fog volume, kg/m3: masses spread linearly over the eight nodes around each
-///   particle, of the simulation's voxel size, so that the sum over the voxels is the mass;
-/// - "particles": point data, with the radius as "pscale" and "velocity" as "v", the names that
+/// - "surface", a level set: the samples of `particles_to_level_set` in a band of three voxels. Its
+///   voxels have half the size of the simulation's.
+/// - "density", a fog volume in kg/m3: each particle's mass is distributed linearly to the eight
+///   nodes around it, so that the density integrates to the mass. Its voxels have the simulation's
+///   size.
+/// - "particles", point data: the radius is "pscale" and the velocity is "v", the names that
 ///   Houdini expects.
 ///
-/// In 2D, solid and density are drawn out along y over `width`; points stay in the plane.
-/// Throws InputError where `particles_to_level_set` does, openvdb::Exception if it cannot write.
+/// In 2D, solid and density are extruded along y over `width`; points stay in the plane. Throws
+/// InputError as `particles_to_level_set`, and openvdb::Exception if it cannot write.
 VdbSummary write_particles(const std::string& path, const ParticleCloud& cloud,
-                           const VdbWriting& how);
+                           const VdbWriteSettings& settings);
 
 }  // namespace snowshed

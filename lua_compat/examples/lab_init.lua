@@ -8,7 +8,7 @@ dimension(3)
 gravity(9.81) -- m/s2, along -z
 grid_size(0.01) -- m
 
--- Calibrated snow (Table 4.3.1), in the thesis's symbols: kg/m3, Pa.
+-- Calibrated snow (Table 4.3.1) in the thesis's symbols; units kg/m3 and Pa.
 material {
   rho = 210,
   E = 1e6,

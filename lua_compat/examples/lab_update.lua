@@ -1,3 +1,3 @@
--- What differs from lab_init.lua: a steeper panel. Later values override earlier ones.
+-- A steeper panel than in lab_init.lua. Later values override earlier ones.
 
 panel { tilt = 50 }

@@ -1,4 +1,4 @@
--- The sensitivity analysis of the thesis (Table 3.2.1), its reference snow and geometry.
+-- The sensitivity analysis of the thesis (Table 3.2.1): reference snow and geometry.
 --
 --   snowshed lua sensitivity_init.lua -o reference
 --   snowshed lua sensitivity_init.lua sensitivity_update.lua --to-json scenes

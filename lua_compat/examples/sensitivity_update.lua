@@ -1,6 +1,6 @@
--- The parameters update loop: every combination of the values of Table 3.2.1, 243 runs.
+-- The loop over the parameters: all 243 combinations of the values of Table 3.2.1.
 
--- Pa, none, Pa, none, none
+-- E and p0 in Pa; M, xi and beta have no unit.
 local E = { 1e6, 2e6, 3e6 }
 local M = { 0.3, 0.5, 0.7 }
 local p0 = { 2000, 5000, 8000 }

@@ -7,8 +7,8 @@ title "Panel above a yard"
 dimension(2)
 grid_size(0.02)
 
-material "calibrated" -- a set of the thesis
-material { rho = 250 } -- and what differs
+material "calibrated" -- the calibrated snow of the thesis,
+material { rho = 250 } -- with another density
 
 panel { height = 0.5, length = 1, tilt = 45, friction = 0.2 }
 slab { thickness = 0.06 }
@@ -25,7 +25,7 @@ for i = 0, 2 do
   }
 end
 
--- The heap: a disc, cut off at the ground.
+-- The heap is a disc that is cut off at the ground.
 body {
   name = "heap",
   shape = difference {
@@ -36,4 +36,4 @@ body {
 }
 
 events { count = 2 }
-frames { interval = 0.1, count = 50 } -- s; so an event lasts 5 s at the most
+frames { interval = 0.1, count = 50 } -- s; an event lasts at most 5 s

@@ -10,6 +10,7 @@ Examples
 """
 
 import os
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 # The solver's threads meet twice a step. By default OpenMP's runtime makes the early ones spin for
 # a long time, which on a busy machine takes the processor from the thread they wait for. The
@@ -20,9 +21,14 @@ if "OMP_WAIT_POLICY" not in os.environ:
 from snowshed._core import InputError, SimulationError
 from snowshed._core import version as __version__
 from snowshed.analysis.dimension_ratio import dimension_ratio
-from snowshed.run.events import Progress, run_events
+from snowshed.io.renamed import renamed as _renamed
+from snowshed.methods.mpm import MpmSettings
+from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.progress import Progress
 from snowshed.run.results import read_events
+from snowshed.run.results_reader import Results
+from snowshed.run.simulation import Simulation
 from snowshed.scene.components import (
     Body,
     Domain,
@@ -30,7 +36,6 @@ from snowshed.scene.components import (
     Ground,
     Layer,
     Motion,
-    Numerics,
     Obstacle,
     Output,
     Panel,
@@ -48,19 +53,21 @@ __all__ = [
     "Events",
     "Extent",
     "Ground",
-    "ResolvedScene",
     "InputError",
     "Interrupted",
     "Layer",
     "Motion",
-    "Numerics",
+    "MpmSettings",
     "Obstacle",
     "Output",
     "Panel",
     "Progress",
+    "ResolvedScene",
+    "Results",
     "Scene",
     "Seeding",
     "Shape",
+    "Simulation",
     "SimulationError",
     "Slab",
     "Snow",
@@ -72,3 +79,6 @@ __all__ = [
     "read_events",
     "run_events",
 ]
+
+if not _TYPE_CHECKING:
+    __getattr__ = _renamed(__name__, {"InitialisedScene": ResolvedScene, "Numerics": MpmSettings})

@@ -8,6 +8,7 @@ from bad_scenes import bad_scene  # noqa: F401
 
 from snowshed import _core, read_events
 from snowshed.cli import main as cli
+from snowshed.cli.commands.run import panel
 from snowshed.cli.main import main
 from snowshed.cli.scene_options import PREFIXED, SHORT_NAMES, option_name
 from snowshed.scene.schema import scene_parameters
@@ -42,8 +43,8 @@ def test_every_parameter_has_an_option_of_its_own():
     paths = {parameter.path for parameter in scene_parameters()}
     assert set(SHORT_NAMES) <= paths
     assert set(PREFIXED) <= {path.partition(".")[0] for path in paths}
-    own = {name for o in cli.panel.params for name in o.opts}
-    assert len(own) == sum(len(o.opts) for o in cli.panel.params)
+    own = {name for o in panel.params for name in o.opts}
+    assert len(own) == sum(len(o.opts) for o in panel.params)
     assert set(names) <= own
 
 
@@ -67,6 +68,22 @@ def test_options_of_every_kind(capsys):
     assert data["domain"] == {"min": [-9, -9], "max": [9, 9]}
     assert data["obstacles"][0]["name"] == "post"
     assert data["events"]["between"] == "reseed"
+
+
+def test_former_options_are_taken_and_hidden(capsys):
+    assert main(["scene", "--preset", "lab-50", "--step-factor", "0.5"]) == 0
+    assert json.loads(capsys.readouterr().out)["numerics"]["courant_factor"] == 0.5
+    assert (
+        main(["scene", "--preset", "lab-50", "--step-factor", "0.5", "--courant-factor", "0.5"])
+        == 2
+    )
+    assert "means the same as" in capsys.readouterr().err
+    assert main(["scene", "--accuracy", "5%", "--step-factor", "0.5"]) == 2
+    assert "--step-factor: --accuracy chooses" in capsys.readouterr().err
+    assert main(["scene", "--preset", "lab-50", "--step-factor", "7"]) == 2
+    assert "/numerics/courant_factor): 7 is outside" in capsys.readouterr().err
+    main(["scene", "--help"])
+    assert "--step-factor" not in capsys.readouterr().out
 
 
 def test_help_names_unit_and_default(capsys):

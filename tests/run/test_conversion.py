@@ -78,7 +78,7 @@ def test_reseeded_snow_lies_at_rest_and_keeps_its_event():
             assert set(present) == set(range(1, event + 1))
             reseeded = present < event
             assert (simulation.velocities()[reseeded] == 0).all()
-            assert np.allclose(simulation.density()[reseeded], 210)
+            assert np.allclose(simulation.densities()[reseeded], 210)
         assert simulation.run(lambda info: True) in ("rest", "time_limit")
 
 

@@ -40,7 +40,7 @@ def test_layers_bring_their_own_snow_in_their_events(tmp_path):
     total = (table.mass_kg + table.on_panel_kg).tolist()
     assert total == pytest.approx(np.cumsum(brought), rel=1e-5)
     simulation = _core.Simulation.load(str(folder / "checkpoint.bin"))
-    kinds, masses = simulation.kinds(), simulation.masses()
+    kinds, masses = simulation.material_ids(), simulation.masses()
     assert [json.loads(snow)["density"] for snow in simulation.snows] == [100, 210, 150]
     of_each = [masses[kinds == kind].sum() for kind in range(3)]
     assert of_each == pytest.approx([2 * area * 2, 2 * area * 4.2, area * 3], rel=1e-5)
@@ -65,7 +65,10 @@ def test_reseeding_converts_each_snow_by_itself(tmp_path):
 def test_one_snow_needs_no_kinds(finished):
     simulation = _core.Simulation.load(str(finished / "checkpoint.bin"))
     assert len(simulation.snows) == 1
-    assert not simulation.kinds().any() and len(simulation.kinds()) == simulation.particle_count
+    assert (
+        not simulation.material_ids().any()
+        and len(simulation.material_ids()) == simulation.particle_count
+    )
     first = next((finished / "particles").glob("*.vtp"))
     assert b'Name="snow"' not in first.read_bytes()
 
@@ -78,8 +81,8 @@ def test_bodies_may_have_snow_of_their_own():
     simulation = _core.Simulation(scene.resolve().json)
     simulation.begin_event()
     right = simulation.positions()[:, 0] > 0.5
-    assert simulation.density()[right] == pytest.approx(100)
-    assert simulation.density()[~right] == pytest.approx(210)
+    assert simulation.densities()[right] == pytest.approx(100)
+    assert simulation.densities()[~right] == pytest.approx(210)
 
 
 @pytest.mark.parametrize(

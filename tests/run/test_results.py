@@ -96,6 +96,17 @@ def test_columns_of_the_events_table(finished):
     ]
 
 
+def test_a_folder_of_the_last_version_is_reopened(tmp_path):
+    scene = tiny_scene(**{"numerics.courant_factor": 0.5, "events.count": 1}).resolve()
+    run_events(scene, tmp_path / "out", pictures=False)
+    file = tmp_path / "out" / "scene.json"
+    file.write_text(file.read_text().replace("courant_factor", "step_factor"))
+    assert len(run_events(scene, tmp_path / "out", resume=True, pictures=False)) == 1
+    file.write_text(file.read_text().replace('"step_factor": 0.5', '"step_factor": 0.4'))
+    with pytest.raises(InputError, match="differs in /numerics/courant_factor"):
+        run_events(scene, tmp_path / "out", resume=True)
+
+
 def test_no_results(tmp_path):
     with pytest.raises(InputError, match="no results"):
         read_events(tmp_path)

@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 
 from snowshed import (
-    ResolvedScene,
     InputError,
     Obstacle,
     Panel,
+    ResolvedScene,
     Scene,
     Shape,
     Snow,
     _core,
 )
 from snowshed.io.record import Record
-from snowshed.scene.schema import properties, resolve, scene_parameters
+from snowshed.scene.schema import properties, resolve, scene_parameters, scene_schema
 
-SCHEMA = json.loads(_core.scene_schema())
+SCHEMA = scene_schema()
 
 
 def check_mirror(record: type[Record], node: dict, seen: set) -> None:
@@ -25,7 +25,7 @@ def check_mirror(record: type[Record], node: dict, seen: set) -> None:
     assert set(record.keys()) == set(inner), record
     seen.add(record)
     for key, child in inner.items():
-        kind = record.record_type(key)
+        kind = record().record_type(key)
         full = resolve(SCHEMA, child)
         child = full.get("items", child)
         assert (kind is not None) == bool(properties(SCHEMA, child)), key
@@ -77,6 +77,47 @@ def test_wrong_paths_are_named(tiny, path, message):
 def test_values_that_are_not_finite(tiny):
     with pytest.raises(InputError, match="/panel/tilt: nan is not a finite number"):
         tiny.set("panel.tilt", float("nan")).resolve()
+
+
+def test_a_failed_call_leaves_the_scene_as_it_was(tiny):
+    before = tiny.to_data()
+    for change in (
+        lambda: tiny.set("domain.mn", 1),
+        lambda: tiny.set("domain.min", "far"),
+        lambda: tiny.append("obstacles", {"nam": "post"}),
+        lambda: tiny.update({"panel.tilt": 30, "domain": {"min": (0, 0), "mx": (1, 1)}}),
+    ):
+        with pytest.raises(InputError):
+            change()
+    assert tiny.to_data() == before and tiny.domain is None
+
+
+def test_the_method_decides_what_the_settings_are(tiny):
+    assert tiny.set("method", "mpm").resolve() == Scene.from_data(tiny.to_data()).resolve()
+    assert "method" not in tiny.resolve().data
+    with pytest.raises(InputError, match="^/method: 'mps' is none of mpm; did you mean mpm"):
+        tiny.set("method", "mps")
+
+
+def test_the_former_name_of_the_courant_factor_is_read(tmp_path, tiny):
+    data = {**tiny.to_data(), "numerics": {"dx": 0.02, "step_factor": 0.5}}
+    (tmp_path / "scene.json").write_text(json.dumps(data))
+    for load in (Scene.load, ResolvedScene.load):
+        ready = load(tmp_path / "scene.json")
+        ready = ready.resolve() if isinstance(ready, Scene) else ready
+        assert ready.data["numerics"]["courant_factor"] == 0.5
+    assert tiny.set("numerics.step_factor", 0.4).numerics.courant_factor == 0.4
+
+
+def test_former_names_warn_and_give_what_they_stood_for(tiny):
+    import snowshed
+
+    with pytest.warns(DeprecationWarning, match="InitialisedScene is now ResolvedScene"):
+        assert snowshed.InitialisedScene is ResolvedScene
+    with pytest.warns(DeprecationWarning, match="Numerics is now MpmSettings"):
+        assert snowshed.scene.Numerics is snowshed.MpmSettings
+    with pytest.warns(DeprecationWarning, match=r"is now Scene\.resolve"):
+        assert tiny.initialise() == tiny.resolve()
 
 
 def test_errors_of_the_core_name_the_path(tiny):

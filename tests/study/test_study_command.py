@@ -9,9 +9,9 @@ import study_helpers
 from study_helpers import outcome, tiny_study
 
 from snowshed import Scene
-from snowshed.cli.display.study import announcement, description
+from snowshed.cli.display.study import announcement
 from snowshed.cli.main import main
-from snowshed.study.session import StudyProgress
+from snowshed.run.progress import Progress
 from snowshed.study.store import Store
 
 scripted = study_helpers.scripted  # a fixture
@@ -159,8 +159,8 @@ def test_help_of_other_commands_does_not_load_the_studies():
 
 
 def progress(**values):
-    whole = {"runs": 12, "done": 0, "failed": 0, "running": 0, "elsewhere": 0}
-    return StudyProgress(**{**whole, "fraction": 0.0, "at_once": 2, "expected_s": 95.0, **values})
+    whole = {"fraction": 0.0, "done": 0, "count": 12, "unit": "runs", "at_once": 2}
+    return Progress(**{**whole, "expected_s": 95.0, **values})
 
 
 def test_what_is_said_while_a_study_runs():
@@ -168,7 +168,7 @@ def test_what_is_said_while_a_study_runs():
     assert announcement(progress(done=10, failed=1)) == (
         "1 run to compute (11 of 12 are there already), 2 at once; expected time: about 95 s"
     )
-    assert description(progress(done=3, running=2)) == "3/12 runs, 2 running"
-    assert description(progress(done=3, failed=1, elsewhere=4)) == (
+    assert progress(done=3, running=2).description == "3/12 runs, 2 running"
+    assert progress(done=3, failed=1, elsewhere=4).description == (
         "3/12 runs, 1 failed, 4 in other processes"
     )

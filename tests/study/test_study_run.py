@@ -15,7 +15,7 @@ import pytest
 import study_helpers
 from study_helpers import ALONE, contents, snowshed_command, tiny_scene, tiny_study
 
-from snowshed import ResolvedScene, Obstacle, Shape, _core, read_events, run_events
+from snowshed import Obstacle, ResolvedScene, Shape, _core, read_events, run_events
 from snowshed.study import Run, Study, StudyError, read_table, resume
 from snowshed.study.compute import compute
 from snowshed.study.local import LocalWorkers
@@ -117,7 +117,7 @@ def test_a_worker_computes_one_task_after_another(tmp_path):
             assert (outcome.hash, outcome.status) == (task.hash, "done")
             assert [row["event"] for row in outcome.events] == [1, 2]
             assert outcome.timing["run_wall_s"] > 0
-        assert len(workers._processes) == 1
+        assert len(workers.pool.process_ids) == 1
     finally:
         workers.close()
 
@@ -129,9 +129,9 @@ def test_a_killed_worker_is_replaced_and_the_others_do_not_notice(tmp_path):
         other = task_of(tiny_scene(), tmp_path / "other")
         workers.submit(doomed)
         workers.submit(other)
-        victim = workers._processes[0]._process
+        victim = workers.pool.process_ids[0]
         wait_for(lambda: (tmp_path / "doomed" / "results" / "scene.json").exists())
-        victim.kill()
+        os.kill(victim, signal.SIGKILL)
         outcomes = {}
         while len(outcomes) < 2:
             outcomes.update((outcome.hash, outcome) for outcome in workers.collect(10))
@@ -142,7 +142,6 @@ def test_a_killed_worker_is_replaced_and_the_others_do_not_notice(tmp_path):
         assert outcome_of(workers).status == "done"
     finally:
         workers.close()
-    assert victim.poll() == -signal.SIGKILL
 
 
 def test_a_stopped_worker_leaves_a_checkpoint_and_another_ends_with_the_same_bits(tmp_path):
@@ -214,7 +213,7 @@ def test_without_shared_files_a_run_works_in_a_temporary_folder(tmp_path):
 
 def test_workers_that_cannot_start_are_no_fault_of_the_runs(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "executable", "/bin/false")
-    with pytest.raises(StudyError, match=r"no worker starts \(exit code 1\)"):
+    with pytest.raises(StudyError, match="no worker starts: it ended with code 1"):
         tiny_study().run(tmp_path / "store", **ALONE)
 
 

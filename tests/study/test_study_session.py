@@ -204,7 +204,7 @@ def test_runs_of_a_process_that_died_are_taken_over(scripted, tmp_path):
 def test_progress_tells_the_whole_story(scripted, tmp_path):
     seen = []
     STUDY.run(tmp_path / "store", progress=seen.append)
-    assert (seen[0].runs, seen[0].done, seen[0].fraction) == (3, 0, 0.0)
+    assert (seen[0].count, seen[0].done, seen[0].fraction) == (3, 0, 0.0)
     assert seen[0].expected_s > 0
     assert [progress.done for progress in seen] == sorted(progress.done for progress in seen)
     assert (seen[-1].done, seen[-1].running, seen[-1].fraction) == (3, 0, 1.0)

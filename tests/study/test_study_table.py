@@ -1,5 +1,7 @@
 """The table of a study, and the files it is exported to."""
 
+import sqlite3
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -11,7 +13,7 @@ from snowshed import InputError, Shape
 from snowshed.run.results import EVENT_COLUMNS
 from snowshed.scene.components import Obstacle
 from snowshed.study import Factor, Study, export, read_table, to_dataset
-from snowshed.study.store import MEASURES, TIMING, Store
+from snowshed.study.store import FILE, MEASURES, TIMING, Store
 
 computed = study_helpers.computed  # a fixture
 
@@ -47,10 +49,21 @@ def test_every_row_says_how_it_was_computed(computed):
     assert not {"wall_s", *TIMING} & set(table.columns)
     settings = table.iloc[0][["seed", "dimension", "dx", "precision", "transfer", "flip_ratio"]]
     assert settings.tolist() == [1, 2, 0.02, "float", "flip", 0.99]
-    assert {"version", "basis", "step_factor", "particles_per_voxel", "pattern"} <= set(table)
+    assert {"version", "basis", "courant_factor", "particles_per_voxel", "pattern"} <= set(table)
     timed = read_table(computed, timing=True)
     assert (timed.wall_s > 0).all() and (timed.run_wall_s > 0).all()
     assert (timed.threads == 1).all() and (timed.particles > 0).all()
+
+
+def test_a_store_of_the_last_version_is_read_by_the_names_of_today(tmp_path):
+    study = Study.product(tiny_scene(), {"numerics.step_factor": [0.5]}, name="tiny")
+    folder = store_with(tmp_path / "store", study, "done")
+    with sqlite3.connect(folder / FILE) as store:
+        ((scene,),) = store.execute("SELECT scene FROM run").fetchall()
+        store.execute("UPDATE run SET scene = ?", (scene.replace("courant", "step"),))
+    store.close()
+    table = read_table(folder)
+    assert table["numerics.step_factor"].tolist() == table["courant_factor"].tolist() == [0.5, 0.5]
 
 
 def test_failed_and_missing_runs(mixed):

@@ -7,8 +7,10 @@ import re
 import signal
 import subprocess
 import sys
+import sysconfig
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 import thesis
@@ -17,6 +19,7 @@ from reproduce_helpers import geometry_table
 from thesis import studies
 
 from snowshed import Scene
+from snowshed.cli.commands import reproduce as source
 from snowshed.cli.main import main
 from snowshed.study import Study
 
@@ -48,6 +51,30 @@ def test_the_command_line_starts_without_it():
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "False"
+
+
+def test_without_the_source_it_says_where_it_is(tmp_path, capsys, monkeypatch):
+    for name in [name for name in sys.modules if name.partition(".")[0] == "thesis"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setattr(source, "SOURCE", tmp_path)
+    monkeypatch.setattr(
+        sys, "path", [one for one in sys.path if Path(one or ".").resolve() != ROOT]
+    )
+    assert run("-o", tmp_path / "out") == 2
+    assert capsys.readouterr().err == (
+        "error: reproduce comes with the source of snowshed, not with the installed package: "
+        "run `make thesis` there\n"
+    )
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_of_the_same_name_is_not_taken_for_the_source(tmp_path):
+    (tmp_path / "thesis").mkdir()
+    program = Path(sysconfig.get_path("scripts")) / "snowshed"
+    command = [program, "reproduce", "thesis", "--help"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("Usage: snowshed reproduce thesis [OPTIONS]")
 
 
 def test_bad_input(tmp_path, capsys):

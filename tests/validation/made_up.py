@@ -5,7 +5,11 @@ import signal
 import sys
 import time
 
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity
+from validation.case import Case, Outcome, Quantity
+from validation.command import validate
+
+from snowshed.analysis.verification.measurements import Measured
+from snowshed.cli.main import main
 
 MEGABYTES = 150
 
@@ -63,3 +67,8 @@ def made_up_case(*, entries=None, quantities=(HEIGHT, DRIFT), remarks="PIC damps
         measure=measure,
         remarks=remarks,
     )
+
+
+def program(*arguments):
+    """Run ``python -m validation`` in this process and return its exit code."""
+    return main([str(one) for one in arguments], command=validate, name="python -m validation")

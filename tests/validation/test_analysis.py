@@ -6,24 +6,20 @@ from math import inf, isnan, nan
 import numpy as np
 import pytest
 from made_up import made_up_case
+from validation.bars import compare
+from validation.case import Quantity
+from validation.cheapest import by_problem, cheapest, pareto_front
+from validation.convergence import convergences, observed_order, pairwise_orders
+from validation.schemes import varying
 
-from snowshed.analysis.verification.analysis import (
+from snowshed.analysis.verification.measurements import Measured, Measurement, to_table
+from snowshed.analysis.verification.solutions import (
     Solution,
     assured_errors,
-    bars,
-    by_problem,
-    cheapest,
-    convergences,
-    observed_order,
-    pairwise_orders,
-    pareto_front,
     quickest,
     rows_of,
     solutions,
-    varying,
 )
-from snowshed.analysis.verification.case import Measured, Quantity
-from snowshed.analysis.verification.measurements import Measurement, to_table
 
 
 def table_of(*results, quantity="height"):
@@ -175,13 +171,13 @@ def test_a_bar_holds_if_the_worst_it_is_for_is_small_enough():
         ({"dx": 0.2, "transfer": "apic"}, 0.5, 1.0),
     )
     meant = {"dx": 0.1, "transfer": "apic"}
-    (bar,) = bars(table, [case_with(bar=0.05, bar_for=meant)])
+    (bar,) = compare(table, [case_with(bar=0.05, bar_for=meant)])
     assert (bar.kind, bar.demanded, bar.found, bar.count) == ("error", 0.05, 0.04, 2)
     assert bar.settings == {"dx": 0.1, "transfer": "apic", "seed": 1}
     assert bar.holds is True
-    (strict,) = bars(table, [case_with(bar=0.03, bar_for=meant)])
+    (strict,) = compare(table, [case_with(bar=0.03, bar_for=meant)])
     assert strict.holds is False
-    (other,) = bars(table, [case_with(bar=0.03, bar_for={"basis": "cubic"})])
+    (other,) = compare(table, [case_with(bar=0.03, bar_for={"basis": "cubic"})])
     assert (other.holds, other.found, other.count) == (None, None, 0)
 
 
@@ -189,7 +185,7 @@ def test_a_bar_holds_if_the_worst_it_is_for_is_small_enough():
 def test_a_failed_measurement_holds_no_bar(error):
     table = table_of(({"dx": 0.2}, 0.04, 1.0), ({"dx": 0.1}, error, 0.0), ({"dx": 0.4}, 0.1, 1.0))
     facts = {"bar": 9.0, "order_in": "dx", "least_order": 0.1}
-    assert [bar.holds for bar in bars(table, [case_with(**facts)])] == [False, False]
+    assert [bar.holds for bar in compare(table, [case_with(**facts)])] == [False, False]
 
 
 def test_every_series_must_converge_fast_enough():
@@ -199,16 +195,16 @@ def test_every_series_must_converge_fast_enough():
         ({"dx": 0.4, "transfer": "flip"}, 0.1, 1.0),
     )
     facts = {"order_in": "dx", "least_order": 1.8}
-    (bar,) = bars(table, [case_with(**facts)])
+    (bar,) = compare(table, [case_with(**facts)])
     assert (bar.kind, bar.found, bar.count) == ("order", pytest.approx(1.0), 2)
     assert bar.settings == {"transfer": "pic"}
     assert bar.holds is False
     # A bar on the finest grid's error leaves the order one over all grids.
     meant = {"dx": 0.1, "transfer": "apic"}
-    error, order = bars(table, [case_with(bar=0.02, bar_for=meant, **facts)])
+    error, order = compare(table, [case_with(bar=0.02, bar_for=meant, **facts)])
     assert error.holds and order.holds
     assert order.meant == {"transfer": "apic"}
-    (one_size,) = bars(table, [case_with(bar_for={"transfer": "flip"}, **facts)])
+    (one_size,) = compare(table, [case_with(bar_for={"transfer": "flip"}, **facts)])
     assert one_size.holds is None
 
 
@@ -221,5 +217,5 @@ def test_cases_and_quantities_are_kept_apart():
         ]
     )
     case = case_with(bar=0.1)
-    assert [bar.holds for bar in bars(table, [case])] == [True]
-    assert [bar.holds for bar in bars(table, [replace(case, name="other")])] == [False]
+    assert [bar.holds for bar in compare(table, [case])] == [True]
+    assert [bar.holds for bar in compare(table, [replace(case, name="other")])] == [False]

@@ -132,7 +132,7 @@ def test_smaller_steps_come_nearer_to_smallest(monkeypatch):
     monkeypatch.setattr(manufactured, "SMALLEST", 0.9 / 16)
     settings = manufactured.steps_matrix(False)[0]
     found = [
-        manufactured.measure_steps({**settings, "step_factor": factor}).measured
+        manufactured.measure_steps({**settings, "courant_factor": factor}).measured
         for factor in (0.9, 0.45)
     ]
     assert [one.quantity for one in found[0]] == ["step", "displacement"]

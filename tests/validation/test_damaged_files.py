@@ -4,14 +4,13 @@ import json
 
 import pandas as pd
 import pytest
-from made_up import made_up_case
+from made_up import made_up_case, program
 from validation import stress, suite
 from validation.folder import SuiteFolder
 
 from snowshed import InputError
 from snowshed.analysis.verification.measurements import Measured, Measurement
 from snowshed.analysis.verification.recorded import load_recorded
-from snowshed.cli.main import main
 
 WHOLE = Measurement("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
 
@@ -77,7 +76,7 @@ def test_a_damaged_file_of_recorded_measurements(content, message, tmp_path, cap
     with pytest.raises(InputError, match=r"recorded\.json: ") as caught:
         load_recorded(path)
     assert message in str(caught.value)
-    assert main(["verify", "--record", str(path), "-o", str(tmp_path / "out")]) == 2
+    assert program("--record", path, "-o", tmp_path / "out") == 2
     assert capsys.readouterr().err.startswith(f"error: {path}: ")
     assert not (tmp_path / "out").exists()
 
@@ -120,7 +119,7 @@ def test_resuming_in_a_damaged_folder_is_one_line_and_code_2(name, tmp_path, cap
     monkeypatch.setattr(stress, "run", lambda *_: pytest.fail("the damage was not found"))
     SuiteFolder.create(tmp_path / "out")
     (tmp_path / "out" / name).write_text("snow\n")
-    assert main(["verify", "-q", "--resume", "-o", str(tmp_path / "out")]) == 2
+    assert program("-q", "--resume", "-o", tmp_path / "out") == 2
     said = capsys.readouterr().err
     assert said.startswith(f"error: {tmp_path / 'out' / name}:") and said.count("\n") == 1
     assert not (tmp_path / "out" / "verification.html").exists()

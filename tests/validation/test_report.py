@@ -8,14 +8,15 @@ import pytest
 from made_up import DRIFT, HEIGHT, made_up_case
 from pages import Page
 from validation import sections
+from validation.case import Quantity
 from validation.figures import Look, worth_naming
+from validation.measurement_file import MeasurementFile
 from validation.report import Stress, Suite, write_report
 from validation.runner import run_suite
 from validation.stress import SummaryTable
 
-from snowshed.analysis.verification import wording
-from snowshed.analysis.verification.case import Quantity
-from snowshed.analysis.verification.measurements import MeasurementFile, to_table
+from snowshed.analysis.verification.measurements import to_table
+from snowshed.io import formatting
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -205,7 +206,7 @@ def test_quantities_that_were_not_measured_have_no_column(tmp_path):
 
 def test_settings_that_are_not_given_are_named():
     assert sections._cell({"dx": 0.1}, "flip_ratio") == "default"
-    assert sections._cell({"dx": 0.1}, "aspect") == wording.NOTHING
+    assert sections._cell({"dx": 0.1}, "aspect") == formatting.NOTHING
     assert sections._cell({"dimension": 3}, "dimension") == "3D"
 
 
@@ -214,8 +215,8 @@ def test_tables_of_texts_are_as_wide_as_their_heads():
     grid = sections.frame_grid(frame)
     assert grid.head == ["a b", "c", "d"]
     assert grid.align == "rlr"
-    million = f"1.23{wording.TIMES}10⁶"
-    assert grid.rows == [["1.23", "x", million], [wording.NOTHING, "y", "12,345"]]
+    million = f"1.23{formatting.TIMES}10⁶"
+    assert grid.rows == [["1.23", "x", million], [formatting.NOTHING, "y", "12,345"]]
 
 
 @pytest.mark.parametrize(
@@ -223,4 +224,4 @@ def test_tables_of_texts_are_as_wide_as_their_heads():
     [(1e-6, "10⁻⁶"), (-0.5, "-0.5"), (1e5, "100,000"), (999.9, "1,000"), (1e-4, "0.0001")],
 )
 def test_numbers_in_words(value, text):
-    assert wording.number(value) == text
+    assert formatting.number(value) == text

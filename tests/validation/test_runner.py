@@ -10,18 +10,13 @@ from pathlib import Path
 
 import pytest
 from made_up import MEGABYTES, made_up_case
+from snowshed._core import InputError
 from validation import runner, suite
 from validation.folder import SuiteFolder
+from validation.measurement_file import MeasurementFile
 from validation.runner import Estimate, run_suite, tasks_of
 
-from snowshed._core import InputError
-from snowshed.analysis.verification.case import Measured
-from snowshed.analysis.verification.measurements import (
-    Measurement,
-    MeasurementFile,
-    settings_of,
-    to_table,
-)
+from snowshed.analysis.verification.measurements import Measured, Measurement, settings_of, to_table
 
 FAILURES = {
     "raises": "ValueError: no such snow (made_up.py:",
@@ -99,7 +94,7 @@ def test_what_was_measured_is_not_measured_again(file, monkeypatch):
     seen = []
     entries.append({"dx": 0.2})
     run_suite([made_up_case(entries=entries)], file, progress=seen.append)
-    assert [p.task.settings for p in seen] == [{"mode": "raises"}, {"dx": 0.2}]  # failures again
+    assert [p.doing for p in seen] == ["made_up: mode raises", "made_up: dx 0.2"]  # failures again
     assert [(p.done, p.count) for p in seen] == [(1, 3), (2, 3)]
     assert len(file.read()) == 4
     monkeypatch.setattr(runner._core, "version", "another")

@@ -1,4 +1,4 @@
-"""Runs, their books and the verdict on them."""
+"""Runs, their balances and the verdict on them."""
 
 import math
 from typing import Any, cast
@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from validation.stress import run_trials, summarise
-from validation.stress.books import Books
+from validation.stress.conservation import Conservation
 from validation.stress.design import Trial, trials
 from validation.stress.judge import GAIN_BOUND, judge
 from validation.stress.scenes import build
@@ -36,52 +36,52 @@ class Ledger:
         return self.velocity
 
 
-def books_of(ledger: Ledger, **laid: float) -> Books:
-    books = Books(cast(_core.Simulation, ledger), gravity=10.0, dx=0.1)
+def balances_of(ledger: Ledger, **laid: float) -> Conservation:
+    balances = Conservation(cast(_core.Simulation, ledger), gravity=10.0, dx=0.1)
     before = ledger.energy()
     ledger.values.update(laid)
-    books.begin(before)
-    return books
+    balances.begin(before)
+    return balances
 
 
-def test_books_are_relative_to_what_came_in() -> None:
+def test_balances_are_relative_to_what_came_in() -> None:
     ledger = Ledger()
-    books = books_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
+    balances = balances_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
     ledger.values.update(
         kinetic_j=15.0, gravitational_j=70.0, plastic_j=30.0, transfer_j=3.0, sleep_j=1.0
     )
-    books.sample()  # 50 J came in; 15 J are there, 34 J were spent: 1 J is missing
-    errors = books.energy_errors()
+    balances.sample()  # 50 J came in; 15 J are there, 34 J were spent: 1 J is missing
+    errors = balances.energy_errors()
     assert errors["energy_error"] == pytest.approx(1 / 50)
     assert errors["energy_gain"] == 0
     assert errors["stored_excess"] == pytest.approx((15 - 50) / 50)
     ledger.values.update(kinetic_j=40.0, elastic_j=12.0)  # 2 J more than came in
-    books.sample()
-    errors = books.energy_errors()
+    balances.sample()
+    errors = balances.energy_errors()
     assert errors["stored_excess"] == errors["final_excess"] == pytest.approx(2 / 50)
     assert errors["energy_gain"] == pytest.approx((2 + 34) / 50)
 
 
-def test_books_of_a_second_event_count_what_it_brought() -> None:
+def test_balances_of_a_second_event_count_what_it_brought() -> None:
     ledger = Ledger()
-    books = books_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
+    balances = balances_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
     ledger.values.update(kinetic_j=0.0, gravitational_j=90.0, sticking_j=30.0)
-    books.sample()
+    balances.sample()
     before = ledger.energy()
     ledger.values.update(kinetic_j=5.0, gravitational_j=150.0)
-    books.begin(before)
-    books.sample()
-    assert books.energy_errors()["energy_error"] == pytest.approx(0.0, abs=1e-15)
+    balances.begin(before)
+    balances.sample()
+    assert balances.energy_errors()["energy_error"] == pytest.approx(0.0, abs=1e-15)
 
 
 def test_momentum_is_that_of_free_flight() -> None:
     ledger = Ledger()
     ledger.velocity = np.array([[1.0, 0, 0], [0, 0, 2.0]])
-    books = books_of(ledger)
+    balances = balances_of(ledger)
     ledger.velocity = np.array([[1.0, 0, -5.0], [0, 0, -3.0]])  # 0.5 s later
-    assert books.momentum_error(0.5) == pytest.approx(0.0, abs=1e-15)
+    assert balances.momentum_error(0.5) == pytest.approx(0.0, abs=1e-15)
     ledger.velocity[0, 0] = 1.5
-    assert books.momentum_error(0.5) == pytest.approx(0.5 / (1 + 6 + 20))
+    assert balances.momentum_error(0.5) == pytest.approx(0.5 / (1 + 6 + 20))
 
 
 SOUND: dict[str, Any] = {
@@ -125,25 +125,25 @@ def test_bad_input_is_refused_without_measures() -> None:
     assert judge(record) == ("refused", "")
 
 
-def test_free_fall_differs_from_the_books_by_what_symplectic_euler_does() -> None:
+def test_free_fall_differs_from_the_balance_by_what_symplectic_euler_does() -> None:
     """It falls too far, by g t dt/2: a block that has not reached the ground shows nothing else."""
     point = {**reference(), "kind": "throw", "speed": 0.1, "precision": "double"}
     scene = build(point, max_time=0.005)
     assert scene.events is not None
     scene.events.count = 1
     simulation = _core.Simulation(scene.resolve().json)
-    books = Books(simulation, gravity=9.81, dx=0.02)
+    balances = Conservation(simulation, gravity=9.81, dx=0.02)
     before = simulation.energy()
     simulation.begin_event()
-    books.begin(before)
+    balances.begin(before)
     simulation.run(lambda report: True)
-    books.sample()
+    balances.sample()
     time, dt = simulation.time_s, simulation.time_step_s
-    assert books.momentum_error(time) < 1e-12
+    assert balances.momentum_error(time) < 1e-12
     came_in = 0.5 * 0.1**2 + 9.81 * (0.08 * time + 0.5 * 9.81 * time**2)
     too_far = 0.5 * 9.81 * time * dt
     expected = 9.81 * too_far / came_in
-    assert books.energy_errors()["energy_error"] == pytest.approx(expected, rel=0.05)
+    assert balances.energy_errors()["energy_error"] == pytest.approx(expected, rel=0.05)
 
 
 @pytest.fixture(scope="module")

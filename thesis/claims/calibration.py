@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed.io.formatting import percent
 from snowshed.plot.labels import setting
+from snowshed.scene.thesis_tables import CALIBRATED
 from thesis.claims.hypothesis_tests import (
     CONFIRMED,
     CONTRADICTED,
@@ -20,12 +21,6 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-#: The calibrated snow (Table 4.3.1).
-CALIBRATED: Mapping[str, float] = {
-    "snow.critical_state_slope": 0.5,
-    "snow.preconsolidation_pressure": 7e3,
-    "snow.cohesion": 0.2,
-}
 #: The best part of the sets, among which a known snow should be found.
 BEST_PART = 0.25
 
@@ -47,7 +42,7 @@ class Recovery:
 
 
 def is_ranked_well(data: Recovery) -> Finding:
-    """Whether the ranking finds the snow that made the synthetic stacks."""
+    """Test whether the ranking finds the snow that made the synthetic stacks."""
     here = data.ranked
     for path, value in CALIBRATED.items():
         here = here[(here[path] / value - 1).abs() < 1e-9]
@@ -64,7 +59,7 @@ def is_ranked_well(data: Recovery) -> Finding:
 
 
 def is_in_the_ranges(data: Recovery) -> Finding:
-    """Whether the 95 % ranges of the posterior hold the true snow.
+    """Test whether the 95 % ranges of the posterior hold the true snow.
 
     One of three may miss it by chance, in one draw of the errors out of seven.
 

@@ -1,8 +1,8 @@
 """Claims of section 3.4: what stacks do, on average over all other parameters.
 
-The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the standard
-deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last. Values of
-the other parameters are a design, no sample: the seeding is all that is by chance.
+The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the
+standard deviation that the seeding gives ``mean_m``. Where the event is not named, it is the last.
+Values of the other parameters are a design, no sample: the seeding is all that is by chance.
 """
 
 from __future__ import annotations
@@ -45,17 +45,17 @@ def effect(table: pd.DataFrame, parameter: str, target: str) -> Estimate:
 
 
 def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
-    """Whether the stack grows over the range of a parameter."""
+    """Test whether the stack grows over the range of a parameter."""
     return positive(effect(table, parameter, target), _change(parameter, target), "m")
 
 
 def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
-    """Whether the stack shrinks over the range of a parameter."""
+    """Test whether the stack shrinks over the range of a parameter."""
     return negative(effect(table, parameter, target), _change(parameter, target), "m")
 
 
 def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
-    """Whether the stacks of all events shrink from the first value of a parameter to the second."""
+    """Test whether all stacks shrink from the first value of a parameter to the second."""
     findings = []
     for event, rows in _by_event(_of(table, "length"), parameter):
         low, high = (Estimate(row["mean_m"], row["noise_m"]) for _, row in rows.iloc[:2].iterrows())
@@ -65,7 +65,7 @@ def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
 
 
 def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
-    """Whether the stack changes little over the ranges of both hardening parameters."""
+    """Test whether the stack changes little over the ranges of both hardening parameters."""
     findings = []
     for parameter in (HARDENING, MODULUS):
         mean = _last(_of(table, target), parameter)["mean_m"].mean()
@@ -75,7 +75,7 @@ def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
 
 
 def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
-    """Whether the events change the stack more than any parameter does over its range."""
+    """Test whether the events change the stack more than any parameter does over its range."""
     first, last = _ends(_of(table, target))
     found = {one: effect(table, one, target) for one in dict.fromkeys(table["parameter"])}
     rival = max(found, key=lambda one: abs(found[one].value))
@@ -86,7 +86,7 @@ def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
 
 
 def second_event_adds_most_length(table: pd.DataFrame) -> Finding:
-    """Whether the second event adds more length than the third."""
+    """Test whether the second event adds more length than the third."""
     rows = _of(table, "length")
     events = sorted(rows["event"].unique())
     if len(events) < 3:
@@ -98,7 +98,7 @@ def second_event_adds_most_length(table: pd.DataFrame) -> Finding:
 
 
 def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
-    """Whether heights scatter more at the highest value of each yield parameter than at the lowest.
+    """Test whether heights scatter more at the highest value of a yield parameter than the lowest.
 
     They scatter over the values of the other parameters.
     """
@@ -112,7 +112,7 @@ def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
 
 
 def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
-    """Whether heights scatter more after the last event than after the first."""
+    """Test whether heights scatter more after the last event than after the first."""
     findings = []
     for parameter in YIELD:
         by_event = [rows for _, rows in _by_event(_of(table, "height"), parameter)]
@@ -126,7 +126,7 @@ def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
 
 
 def cohesion_drives(table: pd.DataFrame) -> Finding:
-    """Whether heights of all events hardly scatter over M and p0 where beta is small."""
+    """Test whether heights of all events hardly scatter over M and p0 where beta is small."""
     findings = []
     for event, rows in _by_event(_of(table, "height"), COHESION):
         for _, row in rows[rows["value"] < DRIVES * (1 - 1e-9)].iterrows():

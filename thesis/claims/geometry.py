@@ -133,12 +133,12 @@ def _relative(values: Floats) -> Floats:
 
 
 def grows_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
-    """Whether a target grows with an input."""
+    """Test whether a target grows with an input."""
     return positive(*_slope(table, varied, target))
 
 
 def falls_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
-    """Whether a target falls with an input."""
+    """Test whether a target falls with an input."""
     return negative(*_slope(table, varied, target))
 
 
@@ -149,7 +149,7 @@ def _slope(table: pd.DataFrame, varied: str, target: str) -> tuple[Estimate, str
 
 
 def slopes_are_the_same(table: pd.DataFrame) -> Finding:
-    """Whether H/L falls with the panel's height at every event alike."""
+    """Test whether H/L falls with the panel's height at every event alike."""
     slopes = []
     for _, rows in table.groupby("event"):
         slope = fit(rows, "panel_height", "ratio", straight).slopes[0]
@@ -165,7 +165,7 @@ def slopes_are_the_same(table: pd.DataFrame) -> Finding:
 
 
 def is_logarithmic(table: pd.DataFrame) -> Finding:
-    """Whether a logarithm of the panel's length fits H/L better than a straight line."""
+    """Test whether a logarithm of the panel's length fits H/L better than a straight line."""
     line = fit(table, "panel_length", "ratio", straight).variance
     logarithm = fit(table, "panel_length", "ratio", np.log).variance
     better = line / logarithm
@@ -179,7 +179,7 @@ def is_logarithmic(table: pd.DataFrame) -> Finding:
 
 
 def is_linear_in_height(table: pd.DataFrame) -> Finding:
-    """Whether a parabola bends H/L away from a straight line by a small part of its change."""
+    """Test whether a parabola bends H/L away from a straight line by a small part of its change."""
     middle = (table["panel_height"].min() + table["panel_height"].max()) / 2
     found = fit(table, "panel_height", "ratio", straight, lambda x: (x - middle) ** 2)
     slope, bend = found.slopes
@@ -189,7 +189,7 @@ def is_linear_in_height(table: pd.DataFrame) -> Finding:
 
 
 def hardly_depends_on_tilt(table: pd.DataFrame) -> Finding:
-    """Whether the mean H/L of any two tilts differs little."""
+    """Test whether the mean H/L of any two tilts differs little."""
     first, *others = sorted(table["panel_tilt"].unique())
     if not others:
         raise LookupError("several tilts")

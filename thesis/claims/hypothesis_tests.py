@@ -1,4 +1,4 @@
-"""How a claim is judged: a number, its noise, and what the claim says of the number."""
+"""Tests of claims: a number, its noise, and what the claim says of the number."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def mean_of(found: Sequence[Estimate]) -> Estimate:
 
 @dataclass(frozen=True)
 class Finding:
-    """What the data say of a claim.
+    """The verdict of the data on a claim.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Claim(Generic[Data]):
-    """What the thesis says.
+    """A claim of the thesis.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ class Judged:
 
 
 def judge(claims: Sequence[Claim[Data]], data: Data) -> list[Judged]:
-    """Judge claims about the same data; what the data lack leaves a claim open."""
+    """Test claims against the same data; missing data leave a claim undecided."""
     return [Judged(one.source, one.text, one.rule, _found(one, data)) for one in claims]
 
 
@@ -135,7 +135,7 @@ def _found(claim: Claim[Data], data: Data) -> Finding:
 
 
 def positive(found: Estimate, what: str, unit: str = "") -> Finding:
-    """Judge the claim that a number is above zero.
+    """Test the claim that a number is above zero.
 
     Examples
     --------
@@ -148,12 +148,12 @@ def positive(found: Estimate, what: str, unit: str = "") -> Finding:
 
 
 def negative(found: Estimate, what: str, unit: str = "") -> Finding:
-    """Judge the claim that a number is below zero."""
+    """Test the claim that a number is below zero."""
     return Finding(_sign(-found.value, found.noise), _sentence(what, found, unit))
 
 
 def small(found: Estimate, bound: float, what: str, unit: str = "") -> Finding:
-    """Judge the claim that a number is hardly anything: not above a bound, whatever its sign.
+    """Test the claim that a number is hardly anything: not above a bound, whatever its sign.
 
     Examples
     --------
@@ -165,7 +165,7 @@ def small(found: Estimate, bound: float, what: str, unit: str = "") -> Finding:
 
 
 def near(found: Estimate, aim: float, bound: float, what: str, unit: str = "") -> Finding:
-    """Judge the claim that a number is about another one: not farther from it than a bound."""
+    """Test the claim that a number is about another one: not farther from it than a bound."""
     away = Estimate(found.value - aim, found.noise)
     return Finding(small(away, bound, "").verdict, _sentence(what, found, unit))
 

@@ -81,25 +81,25 @@ def _growth(run: pd.DataFrame, column: str) -> float:
 
 
 def head_walks_back(rows: pd.DataFrame) -> Finding:
-    """Whether the head moves toward the panel from the first event to the last."""
+    """Test whether the head moves toward the panel from the first event to the last."""
     moved = mean_over_runs(rows, lambda run: _growth(run, "head"))
     return negative(moved, "head, last event minus first", "m")
 
 
 def tail_stays(rows: pd.DataFrame) -> Finding:
-    """Whether the tail moves by less than a tenth of the stack's length after the first event."""
+    """Test whether the tail moves by less than a tenth of the length after the first event."""
     moved = mean_over_runs(rows, lambda run: _growth(run, "tail") / run["length"].iloc[-1])
     return small(moved, TAIL_STAYS, "tail, last event minus first, of the last length", "%")
 
 
 def head_makes_the_length(rows: pd.DataFrame) -> Finding:
-    """Whether the head contributes more to the growth of the length than the tail."""
+    """Test whether the head contributes more to the growth of the length than the tail."""
     more = mean_over_runs(rows, lambda run: -_growth(run, "head") - _growth(run, "tail"))
     return positive(more, "growth by the head minus growth by the tail", "m")
 
 
 def length_grows_most_at_second(rows: pd.DataFrame) -> Finding:
-    """Whether the second event adds more length than each later one."""
+    """Test whether the second event adds more length than each later one."""
     leads = [
         mean_over_runs(
             rows, lambda run, at=event: _added(run, "length", 2) - _added(run, "length", at)
@@ -110,7 +110,7 @@ def length_grows_most_at_second(rows: pd.DataFrame) -> Finding:
 
 
 def height_grows_always(rows: pd.DataFrame) -> Finding:
-    """Whether the height grows at every event, on average over the runs."""
+    """Test whether the height grows at every event, on average over the runs."""
     growths = [
         mean_over_runs(rows, lambda run, at=event: _added(run, "height", at))
         for event in _later(rows)
@@ -135,7 +135,7 @@ def _least(found: Sequence[Estimate]) -> Estimate:
 
 
 def height_slope_falls(rows: pd.DataFrame) -> Finding:
-    """Whether the height grows less in the second half of the events than in the first."""
+    """Test whether the height grows less in the second half of the events than in the first."""
 
     def flattening(run: pd.DataFrame) -> float:
         added = run["height"].diff().dropna().to_numpy(float)
@@ -146,7 +146,7 @@ def height_slope_falls(rows: pd.DataFrame) -> Finding:
 
 
 def steeper_throws_further(rows: pd.DataFrame) -> Finding:
-    """Whether the middle of the stack lies further out below the steepest panel."""
+    """Test whether the middle of the stack lies further out below the steepest panel."""
     tilts = sorted(rows["tilt"].unique())
     if len(tilts) < 2:
         raise LookupError("stacks of two tilts")
@@ -162,19 +162,19 @@ def steeper_throws_further(rows: pd.DataFrame) -> Finding:
 
 
 def mean_height(rows: pd.DataFrame) -> Finding:
-    """Whether the mean height over the events is about that of the laboratory."""
+    """Test whether the mean height over the events is about that of the laboratory."""
     found = mean_over_runs(rows, lambda run: float(run["height"].mean()))
     return near(found, MEAN_HEIGHT, HEIGHT_ABOUT, "mean height over the events", "m")
 
 
 def mean_length(rows: pd.DataFrame) -> Finding:
-    """Whether the mean length over the events is about that of the laboratory."""
+    """Test whether the mean length over the events is about that of the laboratory."""
     found = mean_over_runs(rows, lambda run: float(run["length"].mean()))
     return near(found, MEAN_LENGTH, LENGTH_ABOUT, "mean length over the events", "m")
 
 
 def ratio_of_dimensions(both: tuple[pd.DataFrame, pd.DataFrame]) -> Finding:
-    """Whether the last stack's height in 3D is about two thirds of that in 2D.
+    """Test whether the last stack's height in 3D is about two thirds of that in 2D.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def ratio_of_dimensions(both: tuple[pd.DataFrame, pd.DataFrame]) -> Finding:
 
 
 def slabs_stop_at_30_degrees(rows: pd.DataFrame) -> Finding:
-    """Whether a slab at 30 degrees stays on a panel of any of the frictions.
+    """Test whether a slab at 30 degrees stays on a panel of any of the frictions.
 
     Whether it *sometimes* does cannot be told by one coefficient, which stops all slabs or none.
 

@@ -103,13 +103,13 @@ def mean_error(data: Regressed, model: str) -> Estimate:
 
 
 def rbf_is_better(data: Regressed) -> Finding:
-    """Whether the RBF kernel's median absolute error on validation sets is the smaller one."""
+    """Test whether the RBF kernel's median absolute error on validation sets is the smaller one."""
     lead = validation(data, "linear") - validation(data, "rbf")
     return positive(lead, "validation score, linear minus RBF")
 
 
 def rbf_is_so_much_better(data: Regressed) -> Finding:
-    """Whether the linear kernel's validation score is about 2.5 times the RBF kernel's."""
+    """Test whether the linear kernel's validation score is about 2.5 times the RBF kernel's."""
     linear, rbf = validation(data, "linear"), validation(data, "rbf")
     ratio = linear.value / rbf.value
     noise = ratio * math.hypot(linear.noise / linear.value, rbf.noise / rbf.value)
@@ -118,7 +118,7 @@ def rbf_is_so_much_better(data: Regressed) -> Finding:
 
 
 def score_is_the_thesis(data: Regressed) -> Finding:
-    """Whether the RBF kernel's validation score is about 0.005."""
+    """Test whether the RBF kernel's validation score is about 0.005."""
     found = near(
         validation(data, "rbf"), VALIDATION_SCORE, ABOUT * VALIDATION_SCORE, "validation score, RBF"
     )
@@ -126,13 +126,13 @@ def score_is_the_thesis(data: Regressed) -> Finding:
 
 
 def rbf_overfits_more(data: Regressed) -> Finding:
-    """Whether the RBF kernel loses more from the development sets to the validation sets."""
+    """Test whether the RBF kernel loses more from the development sets to the validation sets."""
     more = overfitting(data, "rbf") - overfitting(data, "linear")
     return positive(more, "validation minus development score, RBF minus linear")
 
 
 def linear_chooses_more_widely(data: Regressed) -> Finding:
-    """Whether the C that is chosen for the linear kernel varies more than for the RBF kernel."""
+    """Test whether the chosen C varies more for the linear kernel than for the RBF kernel."""
     linear, rbf = (float(np.log10(_folds(data, one)["C"]).std()) for one in ("linear", "rbf"))
     words = f"deviation of log₁₀ C: {linear:.2f} for the linear kernel, {rbf:.2f} for RBF"
     if linear == rbf or math.isnan(linear + rbf):
@@ -141,14 +141,14 @@ def linear_chooses_more_widely(data: Regressed) -> Finding:
 
 
 def is_sub_centimetre(data: Regressed) -> Finding:
-    """Whether the RBF models' mean absolute error is below 0.01."""
+    """Test whether the RBF models' mean absolute error is below 0.01."""
     error = mean_error(data, "rbf")
     left = Estimate(SUB_CENTIMETRE, 0.0) - error
     return Finding(positive(left, "").verdict, f"mean absolute error of H/L: {error.in_words()}")
 
 
 def error_is_the_thesis(data: Regressed, model: str) -> Finding:
-    """Whether a model's mean absolute error is about that of Table 5.3.2."""
+    """Test whether a model's mean absolute error is about that of Table 5.3.2."""
     aim = THESIS_ERRORS[model][0]
     words = f"mean absolute error (thesis {aim})"
     found = near(mean_error(data, model), aim, ABOUT * aim, words)
@@ -156,7 +156,7 @@ def error_is_the_thesis(data: Regressed, model: str) -> Finding:
 
 
 def quartiles_are_the_thesis(data: Regressed) -> Finding:
-    """Whether the quartiles of the predictions are those of Table 5.3.1."""
+    """Test whether the quartiles of the predictions are those of Table 5.3.1."""
     findings = []
     for model, printed in THESIS_QUARTILES.items():
         ours = data.quartiles.loc[model, ["Q1", "Q2", "Q3", "Q4"]].to_numpy(float)

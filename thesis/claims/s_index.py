@@ -1,6 +1,7 @@
 """Claims of section 3.3, about the single-parameter index S.
 
-The data are the table of `snowshed.analysis.sensitivity.local_index`. S is taken after the last event.
+The data are the table of `snowshed.analysis.sensitivity.local_index`. S is that after the last
+event.
 """
 
 from __future__ import annotations
@@ -51,17 +52,17 @@ def _named(parameter: str, target: str) -> str:
 
 
 def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
-    """Whether S of a parameter is above zero."""
+    """Test whether S of a parameter is above zero."""
     return positive(index(table, parameter, target), _named(parameter, target))
 
 
 def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
-    """Whether S of a parameter is below zero."""
+    """Test whether S of a parameter is below zero."""
     return negative(index(table, parameter, target), _named(parameter, target))
 
 
 def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
-    """Whether |S| of both hardening parameters is below `HARDLY`."""
+    """Test whether |S| of both hardening parameters is below `HARDLY`."""
     return all_of(
         [small(index(table, one, target), HARDLY, _named(one, target))
          for one in (HARDENING, MODULUS)]
@@ -69,7 +70,7 @@ def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
 
 
 def cohesion_is_strongest(table: pd.DataFrame) -> Finding:
-    """Whether |S| of beta exceeds that of every other parameter."""
+    """Test whether |S| of beta exceeds that of every other parameter."""
     others = [one for one in _parameters(table) if one != COHESION]
     found = {one: _magnitude(index(table, one, "height")) for one in others}
     rival = max(found, key=lambda one: found[one].value)
@@ -78,7 +79,7 @@ def cohesion_is_strongest(table: pd.DataFrame) -> Finding:
 
 
 def length_less_than_height(table: pd.DataFrame) -> Finding:
-    """Whether the mean |S| over the parameters is smaller for the length than for the height."""
+    """Test whether the mean |S| over the parameters is smaller for the length than the height."""
     parameters = _parameters(table)
     found = [
         _magnitude(index(table, one, "height")) - _magnitude(index(table, one, "length"))
@@ -88,13 +89,13 @@ def length_less_than_height(table: pd.DataFrame) -> Finding:
 
 
 def cohesion_gains_with_mass(table: pd.DataFrame) -> Finding:
-    """Whether S of beta for the height is larger after the last event than after the first."""
+    """Test whether S of beta for the height is larger after the last event than after the first."""
     gain = index(table, COHESION, "height") - index(table, COHESION, "height", last=False)
     return positive(gain, "S of β for the height, last event minus first")
 
 
 def slope_needs_mass(table: pd.DataFrame) -> Finding:
-    """Whether M matters for the height after the last event, and hardly after those before."""
+    """Test whether M matters for the height after the last event, and hardly after those before."""
     *before, last = indices(table, SLOPE, "height")
     what = _named(SLOPE, "height")
     beyond = _magnitude(last) - Estimate(HARDLY, 0.0)
@@ -107,7 +108,7 @@ def slope_needs_mass(table: pd.DataFrame) -> Finding:
 
 
 def length_effects_gain_with_mass(table: pd.DataFrame) -> Finding:
-    """Whether S of M and of beta for the length falls from the first event to the last."""
+    """Test whether S of M and of beta for the length falls from the first event to the last."""
     return all_of(
         [
             negative(

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-
 from snowshed._core import InputError
+
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.report import evaluate
 from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
@@ -87,7 +87,8 @@ def with_noise(table: pd.DataFrame, noise: pd.DataFrame, seeds: int) -> pd.DataF
     table
         From `snowshed.analysis.sensitivity.fixation`.
     noise
-        From `snowshed.analysis.sensitivity.seeding_noise`, relative to the stack; of any study like it.
+        From `snowshed.analysis.sensitivity.seeding_noise`, relative to the stack; any study like
+        that of the table will do.
     seeds
         Seedings of each point.
     """

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-
 from snowshed._core import InputError
+
 from snowshed.analysis.regression.dataset import geometry_table as shipped_rows
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.io.csv_table import read_csv

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.scene.components import Body, Events, Ground, Snow
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from snowshed.snow.stack.connected_components import largest_body
+from validation.case import Case, Outcome, Quantity
 from validation.driving import apply_settings, relative
 from validation.granular_column import (
     critical_state_slope,
@@ -42,7 +43,7 @@ OWN = frozenset({"aspect", "friction_angle"})
 
 @dataclass(frozen=True)
 class Deposit:
-    """What a column became; run-out and height in units of the column's radius."""
+    """The deposit of a column; run-out and height in units of the column's radius."""
 
     runout: float
     height: float
@@ -172,9 +173,9 @@ def matrix(full: bool) -> list[Settings]:
         for scheme in (
             {"flip_ratio": 0.95},
             {"flip_ratio": 0.999},
-            {"step_factor": 0.3},
+            {"courant_factor": 0.3},
             # The same share of PIC per second as 0.99 at three times the step: 0.99^(1/3).
-            {"step_factor": 0.3, "flip_ratio": 0.9967},
+            {"courant_factor": 0.3, "flip_ratio": 0.9967},
             {"sleep_speed": 0.005},
             {"sleep_speed": 0.02},
         )

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import cast
 
-import numpy as np
-
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
-from snowshed.io.arrays import Floats
-from snowshed.scene.components import Body, Obstacle
+from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.run.self_test.incline import GRAVITY, Incline
+from snowshed.scene.components import Condition
 from snowshed.scene.scene import Scene
-from snowshed.scene.shape import Shape
+from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, absolute, apply_settings, relative
 
-GRAVITY = 9.81  # m/s2, the scenes' default
 TILT = 40.0  # degrees
 THICKNESS, WIDTH = 0.05, 0.1  # m; the width in 3D only
 #: Settings of a slab that are no parameters of the scene.
@@ -51,58 +48,15 @@ STOPS: Sequence[Settings] = (
 )
 
 
-class Incline(NamedTuple):
-    """Directions on a plane that falls in the direction of +x; (x, z) in 2D, (x, y, z) in 3D."""
-
-    tilt: float  # degrees
-    dimension: int
-
-    @property
-    def slope(self) -> list[float]:
-        """Unit vector down the slope."""
-        tilt = math.radians(self.tilt)
-        return self._in_plane(math.cos(tilt), -math.sin(tilt))
-
-    @property
-    def normal(self) -> list[float]:
-        """Unit vector off the plane."""
-        tilt = math.radians(self.tilt)
-        return self._in_plane(math.sin(tilt), math.cos(tilt))
-
-    @property
-    def along(self) -> Floats:
-        """The slope as positions and velocities count it, always (x, y, z)."""
-        slope = self.slope
-        return np.array([slope[0], 0.0, slope[-1]])
-
-    def _in_plane(self, x: float, z: float) -> list[float]:
-        return [x, z] if self.dimension == 2 else [x, 0.0, z]
-
-    def coulomb(self, friction: float) -> float:
-        """Return the acceleration of a sliding block, g (sin tilt - mu cos tilt), m/s2."""
-        tilt = math.radians(self.tilt)
-        return GRAVITY * (math.sin(tilt) - friction * math.cos(tilt))
-
-
 def slab_scene(settings: Settings, tilt: float) -> Scene:
     """Return a slab that lies on an incline, at rest or with a ``speed`` down the slope."""
-    dimension = int(settings["dimension"])
-    incline, length = Incline(tilt, dimension), float(settings["length"])
-    size = (length, THICKNESS) if dimension == 2 else (length, WIDTH, THICKNESS)
-    slab = Shape.transform(
-        Shape.box([0.0] * dimension, size),
-        axis=None if dimension == 2 else (0, 1, 0),
-        angle=tilt,
-        translate=[THICKNESS / 2 * part for part in incline.normal],
+    dimension, length = int(settings["dimension"]), float(settings["length"])
+    scene = Incline(tilt, dimension).scene(
+        (length, THICKNESS) if dimension == 2 else (length, WIDTH, THICKNESS),
+        float(settings["friction"]),
+        condition=cast(Condition, settings["condition"]),
+        speed=float(settings.get("speed", 0.0)),
     )
-    plane = Obstacle(
-        shape=Shape.plane([0.0] * dimension, incline.normal),
-        condition=str(settings["condition"]),
-        friction=float(settings["friction"]),
-    )
-    speed = float(settings.get("speed", 0.0))
-    velocity = [speed * part for part in incline.slope]
-    scene = Scene(dimension=2, obstacles=[plane], bodies=[Body(shape=slab, velocity=velocity)])
     return apply_settings(scene, settings, OWN)
 
 

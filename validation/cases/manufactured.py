@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
+from validation.case import Case, Outcome, Quantity
 from validation.elastic_bodies import TRANSFERS
 from validation.forced_body import ForcedBody, root_mean_square
 from validation.manufactured_motions import WAVE_SPEED, AxialWaves, Motion, Vortex
@@ -99,7 +100,7 @@ SMALLEST = 0.9 / 32
 def measure_steps(settings: Settings) -> Outcome:
     """Compare the displacements at the end with those of a very small step, and with the motion."""
     body, off, exact = _end(settings)
-    _, limit, _ = _end({**settings, "step_factor": SMALLEST})
+    _, limit, _ = _end({**settings, "courant_factor": SMALLEST})
     step = root_mean_square(off - limit) / root_mean_square(exact)
     error = root_mean_square(off) / root_mean_square(exact)
     return body.drive.outcome(
@@ -133,7 +134,7 @@ def steps_matrix(full: bool) -> list[Settings]:
         variants += [{"motion": "vortex", "amplitude": 1.0, **one} for one in (FLIP_99, APIC, PIC)]
         factors = (0.9, 0.45, 0.225)
     return [
-        {**SCHEME, **STEP_STUDY, **variant, "step_factor": factor}
+        {**SCHEME, **STEP_STUDY, **variant, "courant_factor": factor}
         for variant in variants
         for factor in factors
     ]
@@ -226,10 +227,12 @@ IN_TIME = Case(
             "step",
             "rms effect of the time step on the displacement",
             bar_for={"motion": "vortex", "amplitude": 1.0, "transfer": "flip", "flip_ratio": 1.0},
-            order_in="step_factor",
+            order_in="courant_factor",
             least_order=0.9,
         ),
-        Quantity("displacement", "rms error of displacement over its rms", order_in="step_factor"),
+        Quantity(
+            "displacement", "rms error of displacement over its rms", order_in="courant_factor"
+        ),
     ),
     matrix=steps_matrix,
     measure=measure_steps,

@@ -10,10 +10,11 @@ from typing import Callable, NamedTuple
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
 from snowshed.io.extras import require
-from snowshed.scene.components import Snow
+from snowshed.run.self_test.return_mapping import calibrated
+from validation.case import Case, Outcome, Quantity
 from validation.driving import relative
 from validation.rate_equations import RateEquations, evenly
 
@@ -27,22 +28,6 @@ COARSE = (1e-3, 1e-4, 1e-5)
 FINE = (1e-6, 2.5e-8)
 #: Where backward Euler itself, and where it extrapolated, is asked for the bar.
 BAR, BAR_AT, EXTRAPOLATED_BAR_AT = 1e-6, 2.5e-8, 1e-5
-
-
-class Constants(NamedTuple):
-    """What both laws are made of."""
-
-    youngs_modulus: float
-    poissons_ratio: float
-    critical_state_slope: float
-    cohesion: float
-    hardening_factor: float
-
-
-def calibrated() -> tuple[Constants, float]:
-    """Return the thesis's calibrated snow, and its initial p0, Pa."""
-    snow = Snow.preset("calibrated").to_data()
-    return Constants(*(snow[name] for name in Constants._fields)), snow["preconsolidation_pressure"]
 
 
 @dataclass(frozen=True)

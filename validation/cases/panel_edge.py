@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
-
 from snowshed._core import SimulationError
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
-from snowshed.scene.components import Panel, Slab
+from snowshed.scene.components import Condition, Panel, Slab
 from snowshed.scene.scene import Scene
+from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, apply_settings, relative
 from validation.rigid_slab import RigidSlab
 
@@ -48,7 +49,7 @@ def panel_scene(settings: Settings) -> Scene:
     """Return a panel with a slab in its middle, and nothing below."""
     panel = Panel(height=PANEL_HEIGHT, length=PANEL_LENGTH, width=2 * WIDTH, tilt=TILT)
     panel.friction = float(settings["friction"])
-    panel.condition = str(settings["condition"])
+    panel.condition = cast(Condition, settings["condition"])
     slab = Slab(thickness=THICKNESS, length=float(settings["length"]), width=WIDTH)
     return apply_settings(Scene(dimension=2, panel=panel, slab=slab), settings, OWN)
 

@@ -9,12 +9,13 @@ from typing import Union
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
 from snowshed.io.extras import require
-from snowshed.scene.components import Body, Obstacle
+from snowshed.scene.components import Body, Condition, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
+from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, apply_settings, relative
 from validation.rate_equations import RateEquations
 
@@ -165,7 +166,7 @@ def column_scene(settings: Settings) -> Scene:
     return apply_settings(scene, settings, OWN)
 
 
-def _wall(corner: Floats, axis: int, side: int, condition: str) -> Obstacle:
+def _wall(corner: Floats, axis: int, side: int, condition: Condition) -> Obstacle:
     """Return a half-space with a face through `corner`, open towards `side` of an axis."""
     normal = [0.0] * len(corner)
     normal[axis] = float(side)

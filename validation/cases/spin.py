@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
+from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, relative
 from validation.elastic_bodies import TRANSFERS, elastic_scene, from_plane, in_plane
 
@@ -86,7 +87,7 @@ class Spinning:
         x, z = in_plane(self.drive.core.positions()).T
         self.radii = np.hypot(x, z)
         self._inertia = self._moment_of_inertia_in_cell(settings)
-        self.drive.core.kick(from_plane(RATE * np.stack([z, -x], axis=1)))
+        self.drive.core.add_velocity(from_plane(RATE * np.stack([z, -x], axis=1)))
 
     @staticmethod
     def _moment_of_inertia_in_cell(settings: Settings) -> float:
@@ -107,8 +108,8 @@ class Spinning:
     @property
     def energy(self) -> float:
         """Kinetic and elastic, J."""
-        books = self.drive.core.energy()
-        return books["kinetic_j"] + books["elastic_j"]
+        energy = self.drive.core.energy()
+        return energy["kinetic_j"] + energy["elastic_j"]
 
     @property
     def expansion(self) -> float:
@@ -124,7 +125,7 @@ class Spinning:
             places, speeds = in_plane(core.positions()), in_plane(core.velocities())
             outwards = places / np.hypot(*places.T)[:, np.newaxis]
             along = np.sum(outwards * speeds, axis=1)[:, np.newaxis]
-            core.kick(from_plane(-DAMPED * along * outwards))
+            core.add_velocity(from_plane(-DAMPED * along * outwards))
 
 
 def per_turn(kept: float, time: float) -> float:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
+from validation.case import Case, Outcome, Quantity
 from validation.driving import relative
 from validation.lab_stack import (
     MEASURES,
@@ -43,10 +44,10 @@ SCHEMES: Sequence[Settings] = (
     {"precision": "double"},
     {"particles_per_voxel": 4},
     {"particles_per_voxel": 12},
-    {"step_factor": 0.3},
+    {"courant_factor": 0.3},
     # The same share of PIC per second as 0.99 at three times the step: 0.99^(1/3).
-    {"step_factor": 0.3, "flip_ratio": 0.9967},
-    {"step_factor": 0.3, "transfer": "apic"},
+    {"courant_factor": 0.3, "flip_ratio": 0.9967},
+    {"courant_factor": 0.3, "transfer": "apic"},
 )
 
 #: Below which speed snow may sleep, m/s; 0: never.
@@ -158,7 +159,7 @@ slab and at 0.005 m it does not. Lengths are 2 to 9 % larger.
 The damping of FLIP is the second large error. The share of PIC, 1 - flip_ratio, is taken in every
 step, so the damping per second depends on the time step. At dx 0.01 m after five slabs a flip_ratio
 of 0.95, 0.99 or 0.999 gives heights of 0.20, 0.14 and 0.11 m, and lengths of 0.31, 0.41 and 0.72 m.
-A third of the time step (step_factor 0.3) does almost what 0.95 does: 0.20 and 0.33 m. With
+A third of the time step (courant_factor 0.3) does almost what 0.95 does: 0.20 and 0.33 m. With
 flip_ratio raised to 0.9967 along with it, the same share per second, the stack is what it was. APIC
 is not so sensitive: 0.14 and 0.44 m, and with a third of the step 0.15 and 0.39 m. Stacks can be
 compared only at equal flip_ratio and equal time step.

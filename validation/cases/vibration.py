@@ -7,12 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.case import Case, Measured, Outcome, Quantity, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
 from snowshed.scene.components import Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.cantilever import Cantilever
+from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, relative
 from validation.elastic_bodies import TRANSFERS, elastic_scene, from_plane, in_plane
 from validation.smoothing import Smoothing
@@ -58,7 +59,7 @@ class Vibrating:
         self.drive, self._mode, self._frequency = drive, mode, frequency
         self._start = in_plane(drive.core.positions())
         self._norm = float(drive.masses @ np.sum(mode**2, axis=1))
-        drive.core.kick(from_plane(2 * math.pi * frequency * height * mode))
+        drive.core.add_velocity(from_plane(2 * math.pi * frequency * height * mode))
 
     def swing(self, periods: float, steps: int) -> Swing:
         """Let it vibrate, look every so many steps, and return the vibration."""

@@ -2,7 +2,7 @@
 
 Hundreds of small scenes (thousands with ``full``) at the extremes of every parameter, singly, in
 pairs and at random. Each must come to rest or run to its limit with finite state, exact mass and
-closed books, or stop with an error that names its cause and leaves a checkpoint.
+closed balances, or stop with an error that names its cause and leaves a checkpoint.
 """
 
 from validation.stress.suite import run, run_trials

@@ -1,4 +1,4 @@
-"""Which points of the space are tried: singly, pairwise, at random."""
+"""The points of the space that are tried: singly, pairwise, at random."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run must do: rest or run on soundly, or stop with a clear error. All else is a failure."""
+"""The verdict on a run: it must run on soundly, or stop with a clear error; all else fails."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OUTCOMES = {
 #: Largest change of the mass by reseeding; without it mass is exact, bit by bit.
 MASS_BOUND = 1e-9
 
-#: Largest |stored + spent - brought in| relative to what came in. The books are of first order in
+#: Largest |stored + spent - brought in| relative to what came in. The balance is of first order in
 #: the time step, and soft snow takes steps that are not small beside its fall or its blow.
 ENERGY_BOUND = 0.2
 

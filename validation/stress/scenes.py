@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from snowshed.methods.mpm import MpmSettings
 from snowshed.scene.components import (
     Body,
     Events,
     Ground,
-    Numerics,
     Obstacle,
     Output,
     Panel,
@@ -175,14 +175,14 @@ class _SceneOf:
             allow_sparse=True,
         )
 
-    def _numerics(self) -> Numerics:
-        return Numerics(
+    def _numerics(self) -> MpmSettings:
+        return MpmSettings(
             dx=self.dx,
             precision=self._text("precision"),
             transfer=self._text("transfer"),
             flip_ratio=float(self.point["flip_ratio"]),
             basis=self._text("basis"),
-            step_factor=float(self.point["step_factor"]),
+            courant_factor=float(self.point["courant_factor"]),
             strain_limit=float(self.point["strain_limit"]),
             sleep_speed=float(self.point["sleep_speed"]),
             threads=1,
@@ -224,5 +224,6 @@ class _SceneOf:
         x, z = float(plane[0]), float(plane[1])
         return (x, z) if self.dimension == 2 else (x, y, z)
 
-    def _text(self, name: str) -> str:
-        return str(self.point[name])
+    def _text(self, name: str) -> Any:
+        """Return one of the words that the space of points lists for a parameter."""
+        return self.point[name]

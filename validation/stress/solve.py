@@ -11,11 +11,11 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed import _core
-from validation.stress.books import Books
+from validation.stress.conservation import Conservation
 from validation.stress.scenes import build, longest_event
 from validation.stress.space import Point
 
-#: Steps between two looks at the books.
+#: Steps between two samples of the balances.
 STEPS_PER_SAMPLE = 16
 
 #: An event may take this many times the planned steps, where steps shorten, before it is cut.
@@ -64,7 +64,7 @@ def solve(point: Point, steps: int) -> Record:
 
 
 class _Run:
-    """A simulation with its books."""
+    """A simulation with its balances of momentum and energy."""
 
     def __init__(self, point: Point, steps: int) -> None:
         self.free = point["kind"] == "collide"
@@ -72,10 +72,12 @@ class _Run:
         self.first_step = _first_step(point)
         limit = min(longest_event(point), steps * self.first_step)
         scene = build(point, limit).resolve()
-        self.gravity = float(scene.data["gravity"])
-        self.count = int(scene.data["events"]["count"])
+        data: dict[str, Any] = scene.data
+        self.gravity = float(data["gravity"])
+        self.count = int(data["events"]["count"])
         self.simulation = _core.Simulation(scene.json)
-        self.books = Books(self.simulation, self.gravity, float(scene.data["numerics"]["dx"]))
+        dx = float(data["numerics"]["dx"])
+        self.conservation = Conservation(self.simulation, self.gravity, dx)
         self.smallest_dt = math.inf
         self.fastest = 0.0
         self.duration = 0.0
@@ -98,7 +100,7 @@ class _Run:
         if conversion is not None:
             after = float(np.sum(conversion["masses_after"]))
             self.mass_error = max(self.mass_error, abs(after / old_mass - 1.0))
-        self.books.begin(before)
+        self.conservation.begin(before)
         laid = self.simulation.masses()
         start, first = self.duration, self.simulation.total_steps
 
@@ -107,16 +109,16 @@ class _Run:
             self.duration = start + report["time_s"]
             taken = report["steps"] - first
             if taken % STEPS_PER_SAMPLE == 1:
-                self.books.sample()
+                self.conservation.sample()
             return bool(taken < self.most_steps)
 
         ended = self.simulation.run(watch, 0.0)
-        self.books.sample()
+        self.conservation.sample()
         self.duration = start + self.simulation.time_s
         if not np.array_equal(laid, self.simulation.masses()):
             self.mass_error = math.inf
         if self.free:
-            error = self.books.momentum_error(self.simulation.time_s)
+            error = self.conservation.momentum_error(self.simulation.time_s)
             self.momentum_error = max(self.momentum_error, error)
         return "step_limit" if ended == "interrupted" else ended
 
@@ -135,7 +137,7 @@ class _Run:
             "fastest_m_s": float(speeds.max()) if speeds.size else 0.0,
             "mass_error": self.mass_error,
             "momentum_error": self.momentum_error if self.free else math.nan,
-            **self.books.energy_errors(),
+            **self.conservation.energy_errors(),
             "finite": _is_finite(simulation),
             "checkpoint": _can_be_saved(simulation),
         }
@@ -150,7 +152,7 @@ def _first_step(point: Point) -> float:
 
 
 def _is_finite(simulation: _core.Simulation) -> bool:
-    density = simulation.density()
+    density = simulation.densities()
     values = (
         simulation.positions(),
         simulation.velocities(),

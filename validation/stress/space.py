@@ -1,4 +1,4 @@
-"""What the stress suite varies: each parameter with its range, its extremes and its reference."""
+"""The space of the stress suite: each parameter with its range, its extremes and its reference."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Range("flip_ratio", "FLIP ratio", "", 0.0, 1.0, 0.99),
     Choice("basis", "Basis", ("quadratic", "cubic")),
     Choice("precision", "Precision", ("float", "double")),
-    Range("step_factor", "Step factor", "", 0.01, 1.0, 0.9, log=True),
+    Range("courant_factor", "Courant factor", "", 0.01, 1.0, 0.9, log=True),
     Range("strain_limit", "Strain limit", "", 1e-3, 0.5, 0.2, log=True),
     Choice("sleep_speed", "Sleep speed, m/s", (0.02, 0.0, 0.1)),
     Choice("between", "Between the two events", ("carry", "reseed")),

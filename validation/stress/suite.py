@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Optional
 
 import pandas as pd
 
+from snowshed.run.progress import Progress, Reporter
 from validation.stress.design import Trial, trials
 from validation.stress.judge import judge
 from validation.stress.worker import worker
 
-#: Called with the number of runs made, the number of all, and how many have failed.
-Progress = Callable[[int, int, int], None]
 
-
-def run(full: bool, seed: int = 1, progress: Optional[Progress] = None) -> pd.DataFrame:
+def run(full: bool, seed: int = 1, progress: Optional[Reporter] = None) -> pd.DataFrame:
     """Make all runs of the quick or the full stress suite.
 
     Parameters
@@ -43,7 +41,7 @@ def run(full: bool, seed: int = 1, progress: Optional[Progress] = None) -> pd.Da
     return run_trials(trials(full, seed), progress)
 
 
-def run_trials(plan: Sequence[Trial], progress: Optional[Progress] = None) -> pd.DataFrame:
+def run_trials(plan: Sequence[Trial], progress: Optional[Reporter] = None) -> pd.DataFrame:
     """Make the given runs; the table is that of `run`."""
     rows: list[dict[str, Any]] = []
     failed = 0
@@ -62,5 +60,6 @@ def run_trials(plan: Sequence[Trial], progress: Optional[Progress] = None) -> pd
                 }
             )
             if progress is not None:
-                progress(len(rows), len(plan), failed)
+                done, count = len(rows), len(plan)
+                progress(Progress(done / count, done, count, "stress runs", failed=failed))
     return pd.DataFrame(rows)

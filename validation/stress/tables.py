@@ -1,4 +1,4 @@
-"""The tables of the report: what was tried, how it ended, how the books closed, what it cost."""
+"""Tables of the report: what was tried, how it ended, errors of the balances, and costs."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def summarise(frame: pd.DataFrame) -> list[SummaryTable]:
         _parameters(frame),
         _outcomes(frame),
         _errors(frame),
-        _books(frame),
+        _balances(frame),
         _cost(frame),
         _savings(frame),
         _failures(frame),
@@ -105,7 +105,7 @@ def _errors(frame: pd.DataFrame) -> SummaryTable:
     return SummaryTable("errors", "Errors", remark, table.sort_values("runs", ascending=False))
 
 
-def _books(frame: pd.DataFrame) -> SummaryTable:
+def _balances(frame: pd.DataFrame) -> SummaryTable:
     ran = frame[frame.outcome.isin(["rest", "time_limit", "step_limit", "stopped"])]
     measures = {
         "mass_error": ("mass, change", f"{MASS_BOUND:g}"),
@@ -128,11 +128,11 @@ def _books(frame: pd.DataFrame) -> SummaryTable:
     remark = (
         "Largest error of each run, looked at every 16 steps. Energy is relative to all that came "
         "in with thrown snow and as work of gravity, momentum to the sum of all momenta. The last "
-        "rows matter most: energy that comes from nowhere. What the books miss is of first order "
-        "in the time step; it is largest where few steps cover the whole motion, in soft snow, "
-        "and in blows at many times the speed of sound in the snow."
+        "rows matter most: energy that comes from nowhere. What the balance misses is of first "
+        "order in the time step; it is largest where few steps cover the whole motion, in soft "
+        "snow, and in blows at many times the speed of sound in the snow."
     )
-    return SummaryTable("books", "Mass, momentum and energy", remark, pd.DataFrame(rows))
+    return SummaryTable("balances", "Mass, momentum and energy", remark, pd.DataFrame(rows))
 
 
 def _cost(frame: pd.DataFrame) -> SummaryTable:

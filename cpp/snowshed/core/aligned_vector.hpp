@@ -1,25 +1,48 @@
 // A vector on cache-line boundaries, whose elements `resize` leaves uninitialised: the kernels
-// write them before anything reads them.
+// write them before anything reads them. Others may hold its memory beyond the vector's own use.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <memory>
 #include <new>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace snowshed {
 
+/// The count of those who hold a piece of memory; stands just before its first element.
+class alignas(64) MemoryHolders {
+ public:
+  static MemoryHolders& of(const void* first_element) {
+    return static_cast<MemoryHolders*>(const_cast<void*>(first_element))[-1];
+  }
+  void add() { count_.fetch_add(1, std::memory_order_relaxed); }
+  void release() {
+    if (count_.fetch_sub(1, std::memory_order_acq_rel) == 1)
+      ::operator delete(this, std::align_val_t(alignof(MemoryHolders)));
+  }
+
+ private:
+  std::atomic<std::ptrdiff_t> count_{1};
+};
+
 template <class T>
 struct AlignedAllocator {
   using value_type = T;
-  static constexpr std::align_val_t alignment{64};
+  static_assert(std::is_trivially_destructible_v<T>, "others may still read its elements");
 
   AlignedAllocator() = default;
   template <class U>
   AlignedAllocator(const AlignedAllocator<U>&) {}
 
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
-  void deallocate(T* p, std::size_t) { ::operator delete(p, alignment); }
+  T* allocate(std::size_t n) {
+    void* memory = ::operator new(sizeof(MemoryHolders) + n * sizeof(T),
+                                  std::align_val_t(alignof(MemoryHolders)));
+    return reinterpret_cast<T*>(::new (memory) MemoryHolders + 1);
+  }
+  void deallocate(T* p, std::size_t) { MemoryHolders::of(p).release(); }
 
   template <class U>
   void construct(U* p) {
@@ -42,5 +65,15 @@ struct AlignedAllocator {
 
 template <class T>
 using AlignedVector = std::vector<T, AlignedAllocator<T>>;
+
+/// The elements of a vector; the pointer keeps their memory when the vector lets go of it, to grow
+/// or to be destroyed. Null where the vector never held any.
+template <class T>
+std::shared_ptr<const T> share(const AlignedVector<T>& vector) {
+  if (vector.capacity() == 0) return nullptr;
+  MemoryHolders& holders = MemoryHolders::of(vector.data());
+  holders.add();
+  return {vector.data(), [&holders](const T*) { holders.release(); }};
+}
 
 }  // namespace snowshed

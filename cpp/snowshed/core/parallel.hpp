@@ -1,5 +1,6 @@
 // Loops over threads. What an iteration writes is its own, so results never depend on how many
-// threads there are or which of them runs what.
+// threads there are or which of them runs what. Where iterations throw, the loop throws what the
+// first of them (by index) threw; others may have run before it comes to that.
 #pragma once
 
 #include <omp.h>
@@ -7,10 +8,49 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
+#include <limits>
+#include <mutex>
 #include <thread>
 #include <vector>
 
 namespace snowshed {
+
+/// The number of threads for a run: as many as wanted; with 0 as many as OpenMP would start, which
+/// is OMP_NUM_THREADS or else all cores.
+inline int threads_to_use(int wanted) { return wanted > 0 ? wanted : omp_get_max_threads(); }
+
+/// The exception of the first iteration, by index, of those that threw on any thread. An exception
+/// that left a parallel region would end the process.
+class FirstException {
+ public:
+  void keep(std::ptrdiff_t iteration) noexcept {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    if (iteration >= iteration_) return;
+    iteration_ = iteration;
+    exception_ = std::current_exception();
+  }
+  void rethrow() const {
+    if (exception_) std::rethrow_exception(exception_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::ptrdiff_t iteration_ = std::numeric_limits<std::ptrdiff_t>::max();
+  std::exception_ptr exception_;
+};
+
+/// f(i) for i in [begin, end) of a loop that other threads share; ends with the first that throws.
+template <class F>
+void run_piece(std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t stride, F& f,
+               FirstException& thrown) noexcept {
+  std::ptrdiff_t i = begin;
+  try {
+    for (; i < end; i += stride) f(i);
+  } catch (...) {
+    thrown.keep(i);
+  }
+}
 
 #ifdef SNOWSHED_STD_THREADS
 /// Stands in for OpenMP where ThreadSanitizer watches, which understands std::thread. Iterations
@@ -18,13 +58,14 @@ namespace snowshed {
 /// same memory are on different threads.
 template <class F>
 void run_in_turn(std::ptrdiff_t n, int threads, F& f) {
-  const auto share = [&f, n, threads](std::ptrdiff_t thread) {
-    for (std::ptrdiff_t i = thread; i < n; i += threads) f(i);
-  };
+  FirstException thrown;
+  const auto share = [&](std::ptrdiff_t thread) { run_piece(thread, n, threads, f, thrown); };
   std::vector<std::thread> others;
+  others.reserve(threads);
   for (int thread = 1; thread < threads; ++thread) others.emplace_back(share, thread);
   share(0);
   for (std::thread& other : others) other.join();
+  thrown.rethrow();
 }
 #endif
 
@@ -47,7 +88,8 @@ inline std::vector<LoopShare> equal_shares(std::ptrdiff_t n, int threads) {
 
 /// f(i) for i in [0, n); threads take `grain` iterations at a time. Each has its own share of the
 /// range, so that it finds in its cache what it left there the last time, and helps with those of
-/// the others when it has done its own.
+/// the others when it has done its own. Where memory for this is short, it throws before the first
+/// iteration.
 template <class F>
 void parallel_for(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f) {
 #ifdef SNOWSHED_STD_THREADS
@@ -58,17 +100,19 @@ void parallel_for(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f
     return;
   }
   std::vector<LoopShare> shares = equal_shares(n, threads);
+  FirstException thrown;
 #pragma omp parallel num_threads(threads)
   for (int k = 0; k < threads; ++k) {
     LoopShare& share = shares[(omp_get_thread_num() + k) % threads];
     std::ptrdiff_t i;
     while ((i = share.next.fetch_add(grain, std::memory_order_relaxed)) < share.end)
-      for (const std::ptrdiff_t end = std::min(i + grain, share.end); i < end; ++i) f(i);
+      run_piece(i, std::min(i + grain, share.end), 1, f, thrown);
   }
+  thrown.rethrow();
 #endif
 }
 
-/// The same in one equal piece per thread: for many cheap iterations.
+/// The same in one equal piece per thread: for many cheap iterations. Allocates nothing.
 template <class F>
 void parallel_for_each(std::ptrdiff_t n, int threads, F f) {
 #ifdef SNOWSHED_STD_THREADS
@@ -78,8 +122,10 @@ void parallel_for_each(std::ptrdiff_t n, int threads, F f) {
     for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
     return;
   }
+  FirstException thrown;
 #pragma omp parallel for schedule(static) num_threads(threads)
-  for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
+  for (int t = 0; t < threads; ++t) run_piece(n * t / threads, n * (t + 1) / threads, 1, f, thrown);
+  thrown.rethrow();
 #endif
 }
 

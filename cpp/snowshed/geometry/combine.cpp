@@ -8,7 +8,7 @@
 namespace snowshed {
 namespace {
 
-/// The operand with the smallest distance, and that distance. There is at least one.
+/// Returns the shape with the smallest distance, and that distance. `shapes` must not be empty.
 std::pair<const LevelSet*, double> nearest(const std::vector<Shape>& shapes, const Vec3& x) {
   const LevelSet* best = shapes.front().get();
   double smallest = best->distance(x);

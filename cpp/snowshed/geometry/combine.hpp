@@ -1,4 +1,4 @@
-// Solids made from other solids. The normal is that of the operand whose surface is nearest.
+// Solids made from other solids. The normal is that of the operand with the nearest surface.
 #pragma once
 
 #include <vector>
@@ -7,23 +7,24 @@
 
 namespace snowshed {
 
-/// Everything in any of the shapes (at least one). The distance is exact outside and a lower
-/// bound of the depth inside; the inradius is the largest operand's, a lower bound.
+/// Returns the union of the shapes, of which there must be at least one. Outside, the distance is
+/// exact; inside, it is a lower bound of the depth. The inradius is that of the largest operand,
+/// a lower bound.
 Shape unite(std::vector<Shape> shapes);
 
-/// `first` without `others`. The distance is a lower bound of its magnitude;
-/// the inradius is that of `first`, an upper bound.
+/// Returns `first` without `others`. The magnitude of the distance is a lower bound; the inradius
+/// is that of `first`, an upper bound.
 Shape subtract(Shape first, std::vector<Shape> others);
 
-/// The points rotation * x + translation for x in `shape`.
+/// Returns the points rotation * x + translation for x in `shape`.
 Shape transform(Shape shape, const Mat3& rotation, const Vec3& translation);
 
-/// Every point within `offset` >= 0 metres of `shape`.
+/// Returns all points within `offset` >= 0 metres of `shape`.
 Shape dilate(Shape shape, double offset);
 
-/// `shape` as a two-dimensional scene sees it: the same distances, normals turned into the
-/// plane y = 0. The distance to a solid that is not constant in y is a lower bound of that
-/// to its section.
+/// Returns the cross-section of `shape` with the plane y = 0, for two-dimensional scenes. Distances
+/// are those of `shape`; normals are projected onto the plane. If the solid is not constant in y,
+/// its distance is a lower bound of the distance to the cross-section.
 Shape cross_section(Shape shape);
 
 }  // namespace snowshed

@@ -15,8 +15,8 @@ Vec3 gradient(Difference difference, double step) {
 }  // namespace
 
 Vec3 LevelSet::normal(const Vec3& x) const {
-  // A distance has gradient norm 1 except on the medial axis, where the central difference
-  // shrinks, or vanishes by symmetry; one-sided differences then pick one of the nearest points.
+  // The gradient of a distance has norm 1 except on the medial axis. There the central difference
+  // is smaller or vanishes by symmetry, and a one-sided difference picks one of the nearest points.
   constexpr double smallest_trusted = 0.1;
   const double step = 1e-6 * std::max(1.0, x.cwiseAbs().maxCoeff());
   const auto central = [&](const Vec3& h) { return (distance(x + h) - distance(x - h)) / 2; };

@@ -26,20 +26,21 @@ class LevelSet {
  public:
   virtual ~LevelSet() = default;
 
-  /// Signed distance at x, metres; at least a lower bound of its magnitude far away.
+  /// Returns the signed distance at x, metres. Far from the surface its magnitude may be a lower
+  /// bound.
   virtual double distance(const Vec3& x) const = 0;
 
-  /// Unit normal: the direction in which the distance grows fastest, defined inside too.
-  /// The default takes central differences of `distance`.
+  /// Returns the unit normal at x, the direction in which the distance grows fastest. It is defined
+  /// inside the solid, too. The default implementation takes central differences of `distance`.
   virtual Vec3 normal(const Vec3& x) const;
 
   virtual Bounds bounds() const = 0;
 
-  /// Greatest depth below the surface, metres (infinite for a half-space).
-  /// Contact uses it to recognise bodies thinner than the grid can see.
+  /// Returns the greatest depth below the surface, metres (infinite for a half-space). Contact uses
+  /// it to recognise obstacles that are too thin for the grid to resolve.
   virtual double inradius() const = 0;
 
-  /// The solid itself where it is a box: lets seeding tile it exactly.
+  /// Returns the solid as a box if it is one. Seeding tiles boxes exactly.
   virtual std::optional<OrientedBox> oriented_box() const { return std::nullopt; }
 };
 

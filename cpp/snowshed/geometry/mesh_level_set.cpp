@@ -27,9 +27,9 @@ class Mesh final : public LevelSet {
     const Nearest n = hierarchy_.nearest(x);
     const Vec3 outward = x - n.point;
     const double length = outward.norm();
-    // On the surface the direction to it is lost in rounding.
-    const double lost = 1e-9 * (1 + x.cwiseAbs().maxCoeff());
-    if (length > lost) return outward * std::copysign(1 / length, side(x, n));
+    // Close to the surface the direction to the nearest point is lost in rounding.
+    const double rounding = 1e-9 * (1 + x.cwiseAbs().maxCoeff());
+    if (length > rounding) return outward * std::copysign(1 / length, side(x, n));
     const Vec3 pseudo = normals_.at(n.triangle, n.feature);
     return pseudo.norm() > 0 ? Vec3(pseudo.normalized()) : Vec3::UnitZ();
   }
@@ -62,7 +62,8 @@ class Mesh final : public LevelSet {
 
   Ball ball_at(const Vec3& center) const { return {center, std::max(0.0, -distance(center))}; }
 
-  /// Climbs to a local maximum of the depth, by steps along the axes and away from the surface.
+  /// Returns the ball at a local maximum of the depth, found from `ball` by steps along the axes
+  /// and away from the surface.
   Ball deepest_near(Ball ball) const {
     constexpr int max_steps = 200;
     double step = ball.radius;
@@ -80,17 +81,17 @@ class Mesh final : public LevelSet {
     return ball;
   }
 
-  /// The largest ball inside, up to radius `most`, that touches the triangle at its centroid
-  /// (Ma, Bae & Choi 2012, "3D medial axis point approximation using nearest neighbors"): a
-  /// ball that holds another point of the surface is shrunk until that point is on it.
-  /// Gives up once the radius falls below `least`.
-  Ball touching_ball(std::uint32_t triangle, double least, double most) const {
+  /// Returns the largest ball inside the mesh, of radius at most `max_radius`, that touches the
+  /// triangle at its centroid (Ma, Bae & Choi 2012, "3D medial axis point approximation using
+  /// nearest neighbors"). A ball that contains another point of the surface is shrunk until that
+  /// point lies on it. The search ends once the radius falls below `min_radius`.
+  Ball touching_ball(std::uint32_t triangle, double min_radius, double max_radius) const {
     constexpr int max_steps = 30;
     const Triangle& t = mesh_.triangles[triangle];
     const Vec3 touch = (mesh_.vertices[t[0]] + mesh_.vertices[t[1]] + mesh_.vertices[t[2]]) / 3;
     const Vec3 inward = -normals_.face(triangle);
-    double radius = most;
-    for (int step = 0; step < max_steps && radius > least; ++step) {
+    double radius = max_radius;
+    for (int step = 0; step < max_steps && radius > min_radius; ++step) {
       const Nearest n = hierarchy_.nearest(touch + radius * inward);
       if (std::sqrt(n.squared_distance) > radius * (1 - 1e-6))
         return ball_at(touch + radius * inward);

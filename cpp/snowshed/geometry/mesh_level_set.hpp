@@ -6,13 +6,13 @@
 
 namespace snowshed {
 
-/// The solid inside `mesh`, which must satisfy require_solid. The nearest point is found with
-/// a bounding volume hierarchy, the sign with angle-weighted pseudo-normals (Baerentzen &
-/// Aanaes 2005, "Signed distance computation using the angle weighted pseudonormal").
+/// Returns the solid inside `mesh`, which must satisfy require_solid. A bounding volume hierarchy
+/// finds the nearest point; angle-weighted pseudo-normals give the sign (Baerentzen & Aanaes 2005,
+/// "Signed distance computation using the angle weighted pseudonormal").
 ///
-/// The inradius is estimated: of the balls that touch the surface from inside at the centroids
-/// of about 200 triangles the largest is moved to where it is locally deepest. A lower bound,
-/// close for compact solids and exact for those of constant thickness.
+/// The inradius is a lower bound: close for compact solids, exact for those of constant thickness.
+/// The estimate starts from the balls that touch the surface from inside at the centroids of about
+/// 200 triangles. The largest of them is moved to where the depth has a local maximum.
 Shape make_mesh(TriangleMesh mesh);
 
 }  // namespace snowshed

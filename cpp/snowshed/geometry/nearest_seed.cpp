@@ -11,7 +11,7 @@ NearestSeed::NearestSeed(const Vec3& origin, double spacing,
       counts_{std::int64_t(counts[0]), std::int64_t(counts[1]), std::int64_t(counts[2])},
       nearest_(counts[0] * counts[1] * counts[2], none) {}
 
-void NearestSeed::broadcast(const std::vector<Vec3>& seeds) {
+void NearestSeed::propagate(const std::vector<Vec3>& seeds) {
   seeds_ = &seeds;
   std::fill(nearest_.begin(), nearest_.end(), none);
   for (std::uint32_t s = 0; s < seeds.size(); ++s) offer_to_cell(s);
@@ -36,7 +36,7 @@ void NearestSeed::offer_to_cell(std::uint32_t seed) {
   }
 }
 
-/// Visits every node after its neighbours on the side the sweep comes from.
+/// Visits every node after those neighbours of it from which the sweep comes.
 void NearestSeed::sweep(int di, int dj, int dk) {
   const auto start = [](int d, std::int64_t n) { return d > 0 ? 0 : n - 1; };
   Index n;

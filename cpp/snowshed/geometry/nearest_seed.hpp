@@ -1,4 +1,4 @@
-// Distances on a regular grid to points and to surfaces, by sweeping.
+// Distances from the nodes of a regular grid to points and to surfaces, by sweeping.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace snowshed {
 
-/// The nodes of a grid, and the nearest of a set of seed points at each (Danielsson 1980,
-/// "Euclidean distance mapping"): sweeps in all directions hand seeds on from node to node.
+/// A grid that stores the nearest seed point at each node. Sweeps in all directions pass the seeds
+/// on from node to node (Danielsson 1980, "Euclidean distance mapping").
 class NearestSeed {
  public:
   struct Index {
@@ -21,10 +21,11 @@ class NearestSeed {
 
   NearestSeed(const Vec3& origin, double spacing, const std::array<std::size_t, 3>& counts);
 
+  /// Returns the position of a node in arrays of values, with k running fastest.
   std::size_t at(const Index& n) const {
     return static_cast<std::size_t>((n.i * counts_[1] + n.j) * counts_[2] + n.k);
   }
-  /// The lowest corner of the cell around x.
+  /// Returns the lowest corner of the cell that contains x.
   Index cell_of(const Vec3& x) const {
     const Vec3 u = (x - origin_) / spacing_;
     return {std::int64_t(std::floor(u.x())), std::int64_t(std::floor(u.y())),
@@ -50,7 +51,7 @@ class NearestSeed {
         for (std::int64_t k = counts_[2] - 1; k >= 0; --k) visit(Index{i, j, k});
   }
 
-  /// Calls visit(node, next) for all neighbours along the axes.
+  /// Calls visit(node, next) for all pairs of neighbours along the axes.
   template <class Visit>
   void for_each_edge(Visit visit) const {
     for_each_node([&](const Index& n) {
@@ -59,11 +60,11 @@ class NearestSeed {
     });
   }
 
-  /// Offers the seeds, of which there must be one, to the corners of their cells and sweeps
-  /// them over the grid, in place of earlier ones. They must live as long as distances are asked
-  /// for.
-  void broadcast(const std::vector<Vec3>& seeds);
+  /// Finds the nearest of `seeds` at every node; earlier seeds are forgotten. There must be at
+  /// least one seed. `seeds` must outlive the calls of `distance`.
+  void propagate(const std::vector<Vec3>& seeds);
 
+  /// Returns the distance from a node to its nearest seed, metres.
   double distance(const Index& n) const {
     return ((*seeds_)[nearest_[at(n)]] - position(n)).norm();
   }
@@ -82,7 +83,7 @@ class NearestSeed {
   const std::vector<Vec3>* seeds_ = nullptr;
 };
 
-/// Where `values` changes sign along the grid's edges, by linear interpolation.
+/// Returns the points on the grid's edges where `values` changes sign, by linear interpolation.
 std::vector<Vec3> zero_crossings(const NearestSeed& grid, const std::vector<float>& values);
 
 }  // namespace snowshed

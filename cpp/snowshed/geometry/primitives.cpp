@@ -10,7 +10,7 @@ namespace {
 
 Vec3 any_perpendicular(const Vec3& axis) { return axis.unitOrthogonal(); }
 
-/// `v` normalised, or `fallback` where it has no direction.
+/// Returns `v` normalised, or `fallback` if `v` is zero.
 Vec3 direction(const Vec3& v, const Vec3& fallback) {
   const double length = v.norm();
   return length > 0 ? Vec3(v / length) : fallback;
@@ -115,11 +115,11 @@ class Cylinder final : public LevelSet {
   double inradius() const override { return std::min(radius_, half_length_); }
 
  private:
-  /// Position relative to the mantle and the caps; positive beyond them.
+  /// Position relative to the axis, the lateral surface and the caps.
   struct Offsets {
-    double along;
-    Vec3 across;
-    double radial, axial;
+    double along;          // coordinate along the axis, from the centre
+    Vec3 across;           // vector from the axis
+    double radial, axial;  // distances to the lateral surface and to the caps, positive outside
   };
 
   Offsets offsets(const Vec3& x) const {

@@ -1,4 +1,4 @@
-// Normals of a closed mesh that tell inside from outside.
+// Normals of a closed mesh, which give the sign of its distance.
 #pragma once
 
 #include <algorithm>
@@ -27,12 +27,13 @@ class PseudoNormals {
     std::sort(edges_.begin(), edges_.end());
   }
 
+  /// Returns the unit normal of a face.
   Vec3 face(std::uint32_t triangle) const {
     const auto& [a, b, c] = corners(triangle, 0);
     return (b - a).cross(c - a).normalized();
   }
 
-  /// Pointing outward; not of unit length.
+  /// Returns the outward pseudo-normal of a feature of a triangle; it is not of unit length.
   Vec3 at(std::uint32_t triangle, Feature feature) const {
     const int f = static_cast<int>(feature);
     if (f < 3) return vertices_[mesh_.triangles[triangle][f]];
@@ -47,13 +48,14 @@ class PseudoNormals {
     Vec3 a, b, c;
   };
 
-  /// The corners of a triangle in order, from the i-th on.
+  /// Returns the corners of a triangle in order, the i-th first.
   Corners corners(std::uint32_t triangle, int i) const {
     const Triangle& t = mesh_.triangles[triangle];
     return {mesh_.vertices[t[i]], mesh_.vertices[t[(i + 1) % 3]], mesh_.vertices[t[(i + 2) % 3]]};
   }
 
-  /// The same for the two triangles that share the edge from corner i to the next.
+  /// Returns a number that identifies the edge from corner i to the next. It is the same for both
+  /// triangles that share the edge.
   std::uint64_t key(std::uint32_t triangle, int i) const {
     const Triangle& t = mesh_.triangles[triangle];
     const std::uint64_t a = t[i], b = t[(i + 1) % 3];

@@ -12,8 +12,8 @@ namespace {
 
 using Index = NearestSeed::Index;
 
-/// Lowers rebuilt magnitudes that exceed a neighbour's by more than the spacing: those of a file
-/// that are not quite distances would else make a step at the edge of the band.
+/// Lowers each rebuilt magnitude that exceeds a neighbour's by more than the spacing. Without this,
+/// values of a file that are not quite distances would make a step at the edge of the band.
 void limit_slope(GridSamples& samples, const NearestSeed& grid, double band) {
   const auto lower = [&](const Index& n, int step) {
     float& value = samples.values[grid.at(n)];
@@ -21,8 +21,8 @@ void limit_slope(GridSamples& samples, const NearestSeed& grid, double band) {
     for (const Index& from :
          {Index{n.i + step, n.j, n.k}, {n.i, n.j + step, n.k}, {n.i, n.j, n.k + step}}) {
       if (!grid.contains(from)) continue;
-      const double most = std::abs(samples.values[grid.at(from)]) + samples.spacing;
-      if (std::abs(value) > most) value = static_cast<float>(std::copysign(most, value));
+      const double limit = std::abs(samples.values[grid.at(from)]) + samples.spacing;
+      if (std::abs(value) > limit) value = static_cast<float>(std::copysign(limit, value));
     }
   };
   for (int round = 0; round < 2; ++round) {
@@ -31,7 +31,7 @@ void limit_slope(GridSamples& samples, const NearestSeed& grid, double band) {
   }
 }
 
-/// Whether values change sign over one spacing by more than a distance can.
+/// Returns whether values change sign more steeply than a distance can.
 bool cross_too_steeply(const GridSamples& samples, const NearestSeed& grid) {
   bool found = false;
   grid.for_each_edge([&](const Index& n, const Index& next) {
@@ -47,8 +47,8 @@ void rebuild_distance(GridSamples& samples, double band, const std::string& wher
   NearestSeed grid(samples.origin, samples.spacing, samples.counts);
   const std::vector<Vec3> surface = zero_crossings(grid, samples.values);
   if (surface.empty()) throw InputError(where, "no value is negative: the solid is empty");
-  grid.broadcast(surface);
-  if (cross_too_steeply(samples, grid)) band = 0;  // then none of them is a distance
+  grid.propagate(surface);
+  if (cross_too_steeply(samples, grid)) band = 0;  // none of the values is a distance
   grid.for_each_node([&](const Index& n) {
     float& value = samples.values[grid.at(n)];
     if (std::abs(value) < band) return;

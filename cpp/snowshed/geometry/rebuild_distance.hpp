@@ -1,4 +1,4 @@
-// Signed distances where a file has none: beyond a narrow band, or all over a density.
+// Signed distances where a file has none: outside the narrow band of a level set, and in a density.
 #pragma once
 
 #include <string>
@@ -7,11 +7,13 @@
 
 namespace snowshed {
 
-/// Replaces the values of magnitude `band` or more (0: all of them) by distances to the surface
-/// where the values change sign; their signs stay. So are all values that change sign more steeply
-/// than distances can. The surface is known at its crossings with the
-/// edges of the grid, so that rebuilt distances are too large, by a third of the spacing at most,
-/// by a fifth from three spacings away on.
+/// Replaces values of magnitude `band` or more by signed distances to the surface, on which the
+/// values change sign. Their signs stay. All values are replaced if `band` is 0, or if the values
+/// change sign more steeply than a distance can.
+///
+/// Only the crossings of the surface with the edges of the grid are known. Rebuilt distances are
+/// therefore too large: by at most a third of the spacing, and by at most a fifth from three
+/// spacings away on.
 ///
 /// Throws InputError at `where` if the values do not change sign.
 void rebuild_distance(GridSamples& samples, double band, const std::string& where);

@@ -1,4 +1,4 @@
-// Where a moving obstacle is, and how fast.
+// The pose and velocity of a moving obstacle.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ struct MotionSpec {
   double end = 1.0e9;                    // s
 };
 
-/// Pose and velocity of a rigid body at one instant; the body frame is the world frame
-/// before the motion starts. Positions in metres, velocities in m/s.
+/// Pose and velocity of a rigid body at one instant, in metres and m/s. Before the motion starts,
+/// the body frame is the world frame.
 struct RigidPose {
   Mat3 rotation = Mat3::Identity();
   Vec3 pivot = Vec3::Zero();        // in the body frame
@@ -29,21 +29,21 @@ struct RigidPose {
   Vec3 to_world(const Vec3& x) const { return moved_pivot + rotation * (x - pivot); }
   Vec3 normal_to_world(const Vec3& n) const { return rotation * n; }
 
-  /// Velocity of the body's material point at the world position x.
+  /// Returns the velocity of the body's material point at the world position x.
   Vec3 velocity(const Vec3& x) const {
     return linear_velocity + angular_velocity.cross(x - moved_pivot);
   }
 };
 
-/// The motion of a MotionSpec: constant velocity and spin about a pivot that moves along,
-/// from `start` until just before `end`; at rest before and after.
+/// The motion of a MotionSpec: a constant velocity, and a constant spin about a pivot that moves
+/// with that velocity. The body moves for start <= t < end and is at rest before and after.
 class RigidMotion {
  public:
   explicit RigidMotion(const MotionSpec& spec) : spec_(spec) {}
 
   bool is_moving(double t) const { return t >= spec_.start && t < spec_.end; }
 
-  /// Everything at time t, seconds; take it once per time step.
+  /// Returns pose and velocity at time t, seconds. Callers take it once per time step.
   RigidPose at(double t) const {
     const double elapsed = std::max(0.0, std::min(t, spec_.end) - spec_.start);
     RigidPose pose;

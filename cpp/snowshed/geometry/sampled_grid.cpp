@@ -11,8 +11,8 @@
 namespace snowshed {
 namespace {
 
-/// Neighbouring samples of a distance differ by at most the spacing; this much more is allowed
-/// for distances that were computed approximately.
+/// Neighbouring samples of an exact distance differ by at most the spacing. Approximate distances
+/// may differ by this factor more.
 constexpr double slope_tolerance = 1.25;
 
 std::size_t index_of(const GridSamples& s, std::size_t i, std::size_t j, std::size_t k) {
@@ -96,30 +96,30 @@ class SampledGrid final : public LevelSet {
   double inradius() const override { return deepest_; }
 
  private:
-  /// `u`: position in units of the spacing, within the grid.
+  /// Returns the trilinear interpolant at `u`, a position within the grid in units of the spacing.
   double interpolate(const Vec3& u) const {
     std::size_t low[3], high[3];
-    double part[3];
+    double fraction[3];
     for (int axis = 0; axis < 3; ++axis) {
       const std::size_t last = samples_.counts[axis] - 1;
       low[axis] = std::min(static_cast<std::size_t>(u[axis]), last);
       high[axis] = std::min(low[axis] + 1, last);
-      part[axis] = u[axis] - static_cast<double>(low[axis]);
+      fraction[axis] = u[axis] - static_cast<double>(low[axis]);
     }
     const auto along_z = [&](std::size_t i, std::size_t j) {
       const double a = samples_.values[index_of(samples_, i, j, low[2])];
-      return a + part[2] * (samples_.values[index_of(samples_, i, j, high[2])] - a);
+      return a + fraction[2] * (samples_.values[index_of(samples_, i, j, high[2])] - a);
     };
     const auto along_yz = [&](std::size_t i) {
       const double a = along_z(i, low[1]);
-      return flat_ ? a : a + part[1] * (along_z(i, high[1]) - a);
+      return flat_ ? a : a + fraction[1] * (along_z(i, high[1]) - a);
     };
     const double a = along_yz(low[0]);
-    return a + part[0] * (along_yz(high[0]) - a);
+    return a + fraction[0] * (along_yz(high[0]) - a);
   }
 
-  /// A cell reaches inside only if one of its corners is negative; beyond the grid the
-  /// solid goes on for as far as the outermost samples are negative.
+  /// Computes the bounds. A cell contains a part of the solid only if one of its corners is
+  /// negative. Beyond the grid the solid continues by at most its greatest depth.
   void find_bounds() {
     bounds_ = no_bounds();
     for_each_sample(samples_, [&](std::size_t i, std::size_t j, std::size_t k) {

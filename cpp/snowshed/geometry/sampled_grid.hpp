@@ -11,7 +11,7 @@
 namespace snowshed {
 
 /// Signed distances in metres at origin + spacing * (i, j, k), stored with k running fastest.
-/// A count of 1 along y stands for a solid that is constant in y.
+/// A count of 1 along y means that the solid is constant in y.
 struct GridSamples {
   Vec3 origin = Vec3::Zero();
   double spacing = 0.0;
@@ -19,12 +19,13 @@ struct GridSamples {
   std::vector<float> values;
 };
 
-/// The solid where the trilinear interpolant of the samples is negative. Beyond the grid the
-/// value is that at the clamped point plus the distance to it.
+/// Returns the solid in which the trilinear interpolant of the samples is negative. A point beyond
+/// the grid is clamped to it; its value is that of the clamped point plus the distance between
+/// both.
 ///
-/// Throws InputError at `where` if the counts do not fit the values, a value is not finite,
-/// none is negative, or neighbours differ by clearly more than the spacing, which no signed
-/// distance does.
+/// Throws InputError at `where` if the counts do not fit the values, if a value is not finite, if
+/// no value is negative, or if neighbours differ by clearly more than the spacing, since a signed
+/// distance cannot.
 Shape make_sampled_grid(GridSamples samples, const std::string& where);
 
 }  // namespace snowshed

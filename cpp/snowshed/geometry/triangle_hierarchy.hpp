@@ -1,4 +1,4 @@
-// The point of a triangle mesh that is nearest to a given one.
+// The nearest point of a triangle mesh to a given point.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace snowshed {
 
-/// The part of a triangle that is nearest to a point: one of its vertices, one of the edges
-/// from vertex i to i + 1, or the face.
+/// The feature of a triangle that is nearest to a point: a vertex, the edge from vertex i to i + 1,
+/// or the face.
 enum class Feature : std::uint8_t { vertex0, vertex1, vertex2, edge0, edge1, edge2, face };
 
 struct Nearest {
@@ -23,8 +23,8 @@ struct Nearest {
   Feature feature = Feature::face;
 };
 
-/// Nearest point of triangle abc to p, by the Voronoi region p lies in
-/// (Ericson 2005, "Real-Time Collision Detection", 5.1.5).
+/// Returns the nearest point of triangle abc to p and its feature, from the Voronoi region that
+/// contains p (Ericson 2005, "Real-Time Collision Detection", 5.1.5).
 inline std::pair<Vec3, Feature> nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
                                                     const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -45,7 +45,7 @@ inline std::pair<Vec3, Feature> nearest_on_triangle(const Vec3& p, const Vec3& a
   return {a + vb / sum * ab + vc / sum * ac, Feature::face};
 }
 
-/// Bounding volume hierarchy over the triangles, halved at the median: its depth is log2 n.
+/// Bounding volume hierarchy over the triangles, split at the median; its depth is log2 n.
 class TriangleHierarchy {
  public:
   explicit TriangleHierarchy(const TriangleMesh& mesh)
@@ -54,6 +54,7 @@ class TriangleHierarchy {
     build(0, static_cast<std::uint32_t>(order_.size()));
   }
 
+  /// Returns the nearest point of the mesh to x.
   Nearest nearest(const Vec3& x) const {
     Nearest best;
     std::uint32_t stack[2 * max_depth];
@@ -82,8 +83,8 @@ class TriangleHierarchy {
   static constexpr int max_depth = 40;
   static constexpr std::uint32_t leaf_size = 4;
 
-  /// The first child follows its parent; leaves have no second child and hold
-  /// order_[begin, end).
+  /// A node holds the triangles order_[begin, end). Its first child follows it in nodes_, its
+  /// second child is nodes_[second]. Leaves have second = 0.
   struct Node {
     Bounds bounds;
     std::uint32_t begin, end, second;
@@ -93,6 +94,7 @@ class TriangleHierarchy {
     return mesh_.vertices[mesh_.triangles[triangle][i]];
   }
 
+  /// Builds the subtree of the triangles order_[begin, end) and returns its root.
   std::uint32_t build(std::uint32_t begin, std::uint32_t end) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
     Bounds bounds = no_bounds();

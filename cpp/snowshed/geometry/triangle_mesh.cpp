@@ -11,7 +11,7 @@
 namespace snowshed {
 namespace {
 
-// Beyond this, squares and products of coordinates lose their meaning.
+// Beyond this, products of coordinates lose their precision.
 constexpr double largest_coordinate = 1e9;  // m
 
 struct DirectedEdge {
@@ -93,7 +93,7 @@ void merge_identical_vertices(TriangleMesh& mesh) {
 
 double enclosed_volume(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return 0;
-  const Vec3 apex = mesh.vertices[mesh.triangles.front()[0]];  // near, so that little cancels
+  const Vec3 apex = mesh.vertices[mesh.triangles.front()[0]];  // a near one limits cancellation
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3 a = mesh.vertices[t[0]] - apex, b = mesh.vertices[t[1]] - apex,

@@ -16,12 +16,13 @@ namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 16;
 // Linux transfers no more than 2 GiB per call; smaller pieces are as fast.
-constexpr std::size_t largest_write = std::size_t{1} << 30;
+constexpr std::size_t max_write = std::size_t{1} << 30;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-/// Unique among the threads and processes that may write the same file at once.
-std::filesystem::path beside(const std::filesystem::path& path) {
+/// Returns a name in the same folder, unique among the threads and processes that may write the
+/// same file at once.
+std::filesystem::path temporary_name(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};
   std::filesystem::path name = path;
   name += "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".partial";
@@ -42,8 +43,8 @@ int retry_open(const std::filesystem::path& path, int flags) {
   return descriptor;
 }
 
-/// Without this a power cut may undo the rename. Some file systems refuse to flush a folder;
-/// the file itself is safe already, so that is not an error.
+/// Flushes the folder of `path`. Without this a power cut may undo the rename. Some file systems
+/// refuse to flush a folder. That is no error, since the file itself is already safe.
 void sync_folder(const std::filesystem::path& path) {
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const int descriptor = retry_open(folder, O_RDONLY | O_DIRECTORY);
@@ -57,12 +58,12 @@ void sync_folder(const std::filesystem::path& path) {
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   int flags = O_WRONLY;
   if (!is_device_or_pipe(path_)) {
-    temporary_ = beside(path_);
+    temporary_ = temporary_name(path_);
     flags |= O_CREAT | O_EXCL;
   }
   descriptor_ = retry_open(temporary_.empty() ? path_ : temporary_, flags);
   if (descriptor_ < 0) {
-    temporary_.clear();  // it is not ours to remove
+    temporary_.clear();  // this object did not create it and must not remove it
     fail("cannot create the file");
   }
   buffer_.reserve(buffer_bytes);
@@ -97,8 +98,7 @@ void AtomicFile::flush() {
 
 void AtomicFile::write_through(const char* data, std::size_t bytes) {
   while (bytes > 0) {
-    const ssize_t written =
-        ::write(descriptor_, data, bytes < largest_write ? bytes : largest_write);
+    const ssize_t written = ::write(descriptor_, data, bytes < max_write ? bytes : max_write);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail("cannot write");
     data += written;
@@ -107,7 +107,7 @@ void AtomicFile::write_through(const char* data, std::size_t bytes) {
 }
 
 void AtomicFile::sync() {
-  // Devices, pipes and some network folders cannot be flushed and say so with EINVAL or ENOTSUP.
+  // Devices, pipes and some network folders cannot be flushed.
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS)
     fail("cannot write");
 }
@@ -119,7 +119,7 @@ void AtomicFile::discard() noexcept {
 }
 
 void AtomicFile::fail(const char* action) {
-  const int error = errno;  // before `discard` overwrites it
+  const int error = errno;  // `discard` may overwrite it
   discard();
   throw FileError(path_.string() + ": " + action + ": " + reason(error));
 }

@@ -1,4 +1,4 @@
-// Files that appear complete or not at all: written beside, flushed, then renamed.
+// Atomic files: written under a temporary name, flushed, then renamed.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,12 @@
 
 namespace snowshed {
 
-/// A file under construction. Bytes go to a temporary in the same folder; `commit` puts it in
-/// place of `path`. Destroyed without a commit, or after an error, it leaves nothing behind and
-/// an older file at `path` as it was. All errors are FileError with the path and the reason.
+/// A file that appears at `path` complete or not at all. Bytes go to a temporary file in the same
+/// folder; `commit` renames it to `path`. Without a commit, or after an error, the temporary is
+/// removed and an older file at `path` stays as it was. All errors are FileError with the path and
+/// the reason.
 ///
-/// Where `path` is a device or a pipe there is nothing to rename: it is written directly.
+/// A device or a pipe cannot be replaced by renaming; it is written directly.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -37,12 +38,12 @@ class AtomicFile {
   [[noreturn]] void fail(const char* action);
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  // empty: `path_` is written directly
+  std::filesystem::path temporary_;  // empty if `path_` is written directly
   int descriptor_ = -1;
   std::vector<char> buffer_;
 };
 
-/// The whole content at once.
+/// Writes the whole content of a file atomically.
 void write_atomic(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace snowshed

@@ -15,18 +15,18 @@
 #include "snowshed/io/checksum.hpp"
 
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
-#error "archives are written in the order of the machine, which must be little-endian"
+#error "archives are written in the byte order of the machine, which must be little-endian"
 #endif
 
 namespace snowshed {
 namespace {
 
 constexpr std::uint32_t format_version = 1;
-// Not text, and damaged visibly by any conversion of line ends.
+// These bytes are not text, and any conversion of line ends damages them.
 constexpr char magic[8] = {'\x89', 'S', 'N', 'O', 'W', '\r', '\n', '\x1a'};
 
 constexpr std::size_t word = sizeof(std::uint64_t);
-constexpr std::size_t longest_name = 255;
+constexpr std::size_t max_name_length = 255;
 
 struct Header {
   char magic[8];
@@ -46,7 +46,7 @@ constexpr std::size_t smallest_file = sizeof(Header) + word;
 
 constexpr std::uint64_t padded(std::uint64_t bytes) { return (bytes + word - 1) / word * word; }
 
-/// Bytes of one element; 0 for a number that names no type.
+/// Returns the bytes of one element; 0 for an unknown type.
 std::size_t element_size(ElementType type) {
   switch (type) {
     case ElementType::text:
@@ -72,10 +72,10 @@ const char* type_name(ElementType type) {
   return names[static_cast<std::uint32_t>(type) - 1];
 }
 
-/// Pads and sums up what passes through to the file.
-class SummedFile {
+/// A file that pads what is written and adds a checksum.
+class ChecksummedFile {
  public:
-  explicit SummedFile(const std::filesystem::path& path) : file_(path) {}
+  explicit ChecksummedFile(const std::filesystem::path& path) : file_(path) {}
 
   void write(const void* data, std::size_t bytes) {
     const std::size_t whole = bytes / word * word;
@@ -109,7 +109,7 @@ void BinaryWriter::add_text(const std::string& name, std::string text) {
 }
 
 void BinaryWriter::add_section(Section section) {
-  if (section.name.empty() || section.name.size() > longest_name)
+  if (section.name.empty() || section.name.size() > max_name_length)
     throw std::invalid_argument("archive section name '" + section.name +
                                 "' must have 1 to 255 characters");
   for (const Section& other : sections_)
@@ -125,7 +125,7 @@ void BinaryWriter::save(const std::filesystem::path& path,
   for (const Section& s : sections_)
     header.length += sizeof(SectionHeader) + padded(s.name.size()) + padded(s.bytes);
 
-  SummedFile file(path);
+  ChecksummedFile file(path);
   file.write(&header, sizeof header);
   for (const Section& s : sections_) {
     const SectionHeader section{static_cast<std::uint32_t>(s.type),
@@ -193,7 +193,7 @@ void BinaryReader::read_file() {
                      "the archive of " + std::to_string(size_) + " bytes does not fit into memory");
   words_.reset(new std::uint64_t[padded(size_) / word]);
   file.read(reinterpret_cast<char*>(words_.get()), static_cast<std::streamsize>(size_));
-  // Shorter than a moment ago: whatever is wrong with the rest comes out below.
+  // The file may have become shorter since its size was read; check_header finds that.
   if (!file) size_ = static_cast<std::size_t>(file.gcount());
 }
 
@@ -234,7 +234,7 @@ void BinaryReader::read_sections() {
   if (position != size_ - word) fail(position, "bytes follow the last section");
 }
 
-/// Every length is held against what is left of the file before it is used.
+/// Reads a section. Every length is checked against the rest of the file before it is used.
 BinaryReader::Section BinaryReader::read_section(std::size_t start, std::size_t& end) const {
   const std::size_t limit = size_ - word;
   if (limit - start < sizeof(SectionHeader)) fail(start, "a section is cut off");
@@ -243,11 +243,11 @@ BinaryReader::Section BinaryReader::read_section(std::size_t start, std::size_t&
   const std::size_t element = element_size(static_cast<ElementType>(header.type));
   if (element == 0) fail(start, "unknown element type " + std::to_string(header.type));
   const std::size_t name_start = start + sizeof(SectionHeader);
-  if (header.name_length == 0 || header.name_length > longest_name ||
+  if (header.name_length == 0 || header.name_length > max_name_length ||
       padded(header.name_length) > limit - name_start)
     fail(start, "a section name of " + std::to_string(header.name_length) + " characters");
   const std::size_t offset = name_start + padded(header.name_length);
-  // Compared without padding or products, neither of which can then overflow.
+  // These comparisons use no padding and no products, which could overflow.
   if (header.bytes > limit - offset || header.bytes % element != 0 ||
       header.count != header.bytes / element)
     fail(start, "a section of " + std::to_string(header.count) + " elements in " +

@@ -1,6 +1,6 @@
-// Named, typed arrays in one checked file: the container of checkpoints.
+// Named, typed arrays in one file with a checksum: the container of checkpoints.
 //
-// Layout, little-endian, every part padded with zeros to eight bytes:
+// Layout, little-endian; names and data are padded with zeros to a multiple of eight bytes:
 //   header   magic[8], version u32, sections u32, length of the file u64
 //   section  type u32, length of the name u32, elements u64, bytes u64, name, data
 //   trailer  checksum u64 of all the above
@@ -19,7 +19,7 @@
 
 namespace snowshed {
 
-/// Element types; the numbers are part of the format.
+/// Element types. Their numbers are part of the file format.
 enum class ElementType : std::uint32_t {
   text = 1,
   float32 = 2,
@@ -32,7 +32,7 @@ enum class ElementType : std::uint32_t {
   uint64 = 9,
 };
 
-/// The element type that stores T; a compile error where there is none.
+/// Returns the element type that stores T. It is a compile error if there is none.
 template <class T>
 constexpr ElementType element_type() {
   if constexpr (std::is_same_v<T, char>)
@@ -57,8 +57,8 @@ constexpr ElementType element_type() {
   }
 }
 
-/// Collects sections, then writes them in one go. Arrays given by reference or pointer are not
-/// copied: they must stay alive and unchanged until `save`. A name may be used once.
+/// Collects sections and writes them at once. Arrays given by reference or pointer are not copied;
+/// they must stay alive and unchanged until `save`. Each name may be used once.
 class BinaryWriter {
  public:
   template <class T>
@@ -71,7 +71,7 @@ class BinaryWriter {
     add(name, values.data(), values.size());
   }
 
-  /// Takes the array over.
+  /// Adds an array and takes ownership of it.
   template <class T, class Allocator>
   void add(const std::string& name, std::vector<T, Allocator>&& values) {
     own(name, std::make_shared<std::vector<T, Allocator>>(std::move(values)));
@@ -84,8 +84,8 @@ class BinaryWriter {
 
   void add_text(const std::string& name, std::string text);
 
-  /// Writes the file atomically; FileError where that fails. May be called again. `check`, where
-  /// given, is called with the path of what was written before that replaces an older file.
+  /// Writes the file atomically. Throws FileError if that fails. May be called again. `check`, if
+  /// given, is called with the path of the new file before that file replaces an older one.
   void save(const std::filesystem::path& path,
             const std::function<void(const std::filesystem::path&)>& check = {}) const;
 
@@ -96,7 +96,7 @@ class BinaryWriter {
     std::uint64_t count;
     std::uint64_t bytes;
     const void* data;
-    std::shared_ptr<const void> owner;  // of `data`, where the writer has taken it over
+    std::shared_ptr<const void> owner;  // of `data`, if the writer owns it
   };
 
   template <class Container>
@@ -120,31 +120,32 @@ struct ArrayView {
   const T& operator[](std::size_t i) const { return data[i]; }
 };
 
-/// A loaded archive. The file is not trusted: whatever is wrong with it is an InputError that
-/// names the file, the byte and the fault, found before anything is allocated from its counts.
+/// A loaded archive. The file is untrusted. Every fault gives an InputError that names the file,
+/// the byte and the fault. Counts are checked before memory is allocated for them.
 class BinaryReader {
  public:
-  /// FileError where the file cannot be read at all.
+  /// Loads and checks an archive. Throws FileError if the file cannot be read at all.
   static BinaryReader load(const std::filesystem::path& path);
 
   bool has(std::string_view name) const { return find(name) != nullptr; }
   std::vector<std::string> names() const;
 
-  /// The array called `name`, in place. InputError if it is absent or of another type.
+  /// Returns the array called `name` without a copy. Throws InputError if it is absent or of
+  /// another type.
   template <class T>
   ArrayView<T> view(std::string_view name) const {
     const Section& section = require(name, element_type<T>());
     return {reinterpret_cast<const T*>(bytes() + section.offset), section.count};
   }
 
-  /// A copy of the array called `name`.
+  /// Returns a copy of the array called `name`.
   template <class T>
   std::vector<T> get(std::string_view name) const {
     const ArrayView<T> values = view<T>(name);
     return std::vector<T>(values.begin(), values.end());
   }
 
-  /// As above; InputError unless it has `count` elements.
+  /// Returns a copy of the array called `name`. Throws InputError unless it has `count` elements.
   template <class T>
   std::vector<T> get(std::string_view name, std::size_t count) const {
     require_count(name, count);
@@ -159,7 +160,7 @@ class BinaryReader {
 
   std::string text(std::string_view name) const;
 
-  /// InputError at the first infinity or NaN, in whatever array it is.
+  /// Throws InputError at the first infinity or NaN of any array.
   void require_finite() const;
 
   const std::filesystem::path& path() const { return path_; }
@@ -193,7 +194,7 @@ class BinaryReader {
 
   std::filesystem::path path_;
   std::unique_ptr<std::uint64_t[]> words_;  // the whole file, aligned for any element type
-  std::size_t size_ = 0;                    // bytes
+  std::size_t size_ = 0;                    // bytes in the file
   std::vector<Section> sections_;
 };
 

@@ -1,4 +1,4 @@
-// A fast 64-bit checksum against damage of files; no protection against malice.
+// A fast 64-bit checksum that finds damage of files. It is no protection against manipulation.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace snowshed {
 
-/// Runs over whole 64-bit words. Each step is a bijection of the state for a given word, and of
-/// the word for a given state, so damage within one word never goes unseen.
+/// A checksum of 64-bit words. Each step is a bijection of the state for a given word, and of the
+/// word for a given state. Damage within one word is therefore always found.
 class Checksum {
  public:
-  /// `bytes` must be a multiple of eight.
+  /// Adds data; `bytes` must be a multiple of eight.
   void update(const void* data, std::size_t bytes) {
     const char* begin = static_cast<const char*>(data);
     for (std::size_t i = 0; i < bytes; i += sizeof(std::uint64_t)) {

@@ -15,7 +15,7 @@
 namespace snowshed {
 namespace {
 
-// A host program may have set a locale with decimal commas; files always have points.
+// A host program may have set a locale with decimal commas; files always have decimal points.
 
 std::optional<double> to_number(const std::string& text) {
   std::istringstream stream(text);
@@ -26,7 +26,8 @@ std::optional<double> to_number(const std::string& text) {
   return value;
 }
 
-/// The shortest text that reads back as the same number, so that times can be compared exactly.
+/// Returns the shortest text that reads back as the same number, so that times can be compared
+/// exactly.
 std::string to_text(double value) {
   std::string text;
   for (int digits = 6; digits <= 17; ++digits) {
@@ -50,7 +51,7 @@ std::optional<std::string> attribute(std::string_view element, const std::string
   return xml_unescape(value.substr(0, end));
 }
 
-/// The entry in one line of the file; none in lines of other elements.
+/// Returns the entry in a line of the file, if it has one.
 std::optional<PvdSeries::Entry> parse_line(const std::string& line, const std::string& where) {
   if (line.find("<DataSet ") == std::string::npos) return {};
   const auto time = attribute(line, "timestep");

@@ -1,4 +1,4 @@
-// A time series of snapshots (.pvd) that ParaView opens as one animation.
+// Time series of snapshots (.pvd), which ParaView opens as one animation.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace snowshed {
 
-/// The list of snapshots of a run. The file is whole after every `append`.
+/// The list of snapshots of a run. The file is complete after every `append`.
 class PvdSeries {
  public:
   struct Entry {
@@ -17,17 +17,17 @@ class PvdSeries {
     std::string file;  // relative to the folder of the series
   };
 
-  /// A new series; no file is written before the first `append`.
+  /// Starts a new series. No file is written before the first `append`.
   explicit PvdSeries(std::filesystem::path path) : path_(std::move(path)) {}
 
-  /// Goes on with the series at `path`, without its entries at or after the time `before`: a
-  /// resumed run writes those again. A series without a file is empty; one that is not such a
-  /// file is an InputError with its line.
+  /// Returns the series at `path` without its entries at or after the time `before`, which a
+  /// resumed run writes again. The series is empty if there is no file. Throws InputError with the
+  /// line if the file is not a .pvd series.
   static PvdSeries reopen(std::filesystem::path path,
                           double before = std::numeric_limits<double>::infinity());
 
-  /// Adds a snapshot and rewrites the file atomically. Times must be finite and not decrease
-  /// (std::invalid_argument).
+  /// Adds a snapshot and rewrites the file atomically. Throws std::invalid_argument if the time is
+  /// not finite or decreases.
   void append(double time, const std::string& file);
 
   const std::vector<Entry>& entries() const { return entries_; }

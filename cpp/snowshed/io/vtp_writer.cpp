@@ -22,10 +22,10 @@ constexpr const char* vtk_type() {
   if constexpr (std::is_same_v<T, std::uint8_t>) return "UInt8";
 }
 
-/// The raw data that follow the XML: each block is preceded by its length.
-class Appended {
+/// The raw data that follow the XML. Each block is preceded by its length.
+class AppendedData {
  public:
-  /// The XML element that refers to the block added by it.
+  /// Adds a block and returns the XML element that refers to it.
   template <class T>
   std::string add(const std::string& name, int components, const T* data, std::size_t count) {
     blocks_.push_back({data, count * sizeof(T)});
@@ -54,7 +54,7 @@ class Appended {
 };
 
 std::string point_data(const std::vector<PointArray>& arrays, std::size_t points,
-                       Appended& appended) {
+                       AppendedData& appended) {
   std::string xml;
   for (const PointArray& array : arrays)
     std::visit(
@@ -70,7 +70,8 @@ std::string point_data(const std::vector<PointArray>& arrays, std::size_t points
   return xml;
 }
 
-/// Every point is a cell of its own, so that filters on cells (threshold, clip) see particles.
+/// Writes the file. Every point is a cell, so that filters on cells (threshold, clip) see
+/// particles.
 template <class Index, class Real>
 void write(const std::filesystem::path& path, const std::vector<std::array<Real, 3>>& points,
            const std::vector<PointArray>& arrays) {
@@ -78,7 +79,7 @@ void write(const std::filesystem::path& path, const std::vector<std::array<Real,
   std::vector<Index> index(count + 1);  // 0, 1, …: connectivity; from 1 on: ends of the cells
   std::iota(index.begin(), index.end(), Index{0});
 
-  Appended appended;
+  AppendedData appended;
   const std::string n = std::to_string(count);
   const Real* coordinates = points.empty() ? nullptr : points.front().data();
   std::string xml =

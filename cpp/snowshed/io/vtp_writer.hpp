@@ -10,7 +10,7 @@
 
 namespace snowshed {
 
-/// A quantity at each point: `components` consecutive values a point.
+/// A quantity with `components` consecutive values at each point.
 struct PointArray {
   std::string name;
   int components = 1;
@@ -19,7 +19,7 @@ struct PointArray {
       values;
 };
 
-/// Writes each point (metres) as a vertex, atomically. FileError where that fails;
+/// Writes each point (metres) as a vertex, atomically. Throws FileError if that fails, and
 /// std::invalid_argument if an array's length is not `components` times the number of points.
 void write_vtp(const std::filesystem::path& path, const std::vector<std::array<float, 3>>& points,
                const std::vector<PointArray>& arrays);

@@ -1,4 +1,4 @@
-// Text inside XML attributes.
+// Text of XML attributes.
 #pragma once
 
 #include <string>
@@ -6,9 +6,11 @@
 
 namespace snowshed {
 
+/// Returns `text` with the five reserved characters replaced by entities.
 std::string xml_escape(std::string_view text);
 
-/// The reverse; an entity it does not know stays as it is.
+/// Returns `text` with the entities of xml_escape replaced by their characters. Other entities
+/// stay.
 std::string xml_unescape(std::string_view text);
 
 }  // namespace snowshed

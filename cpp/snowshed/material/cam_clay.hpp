@@ -18,8 +18,8 @@ struct PQ {
   V p, q;
 };
 
-/// The constants are scalars, the same for all lanes of a state, or lanes themselves, where each
-/// particle has its own.
+/// Constants and return mapping of a Cam-Clay material. C is a scalar if all particles of a pack
+/// share the constants, and a SIMD pack if each particle has its own.
 template <class C>
 struct CamClay {
   using T = Scalar<C>;
@@ -31,8 +31,9 @@ struct CamClay {
 
   static constexpr bool plastic = true;
 
-  /// Constants from E (Pa), nu, M, beta, xi. M is kept off zero: the frictionless limit, in which
-  /// snow still has its tensile and preconsolidation pressures but carries no shear.
+  /// Returns the constants from E (Pa), nu, M, beta, xi. M is at least 1e-4. This stands for the
+  /// frictionless limit, in which snow carries no shear but keeps its tensile strength and its
+  /// preconsolidation pressure.
   static CamClay from(double youngs_modulus, double poissons_ratio, double critical_state_slope,
                       double cohesion, double hardening_factor, int dimension) {
     const double slope = critical_state_slope > 1e-4 ? critical_state_slope : 1e-4;
@@ -45,12 +46,12 @@ struct CamClay {
     return c;
   }
 
-  /// The volumetric plastic strain at which p0 has the given value (inverse of 1.2.7).
+  /// Returns the volumetric plastic strain at which p0 has the given value (inverse of 1.2.7).
   double initial_plastic_strain(double p0) const {
     return -std::asinh(p0 / double(hardening)) / double(xi);
   }
 
-  /// (1.2.7); `slope` receives d p0 / d e_v.
+  /// Returns p0 of (1.2.7), Pa; `slope` receives d p0 / d e_v.
   template <class V>
   SNOWSHED_INLINE V preconsolidation(const V& ev, V& slope) const {
     const auto k = hyperbolic(max(V(-xi * ev), broadcast<V>(T(0))));
@@ -63,19 +64,19 @@ struct CamClay {
     return preconsolidation(ev, slope);
   }
 
-  /// (1.2.6), Pa^2.
+  /// Returns y of (1.2.6), Pa^2.
   template <class V>
   SNOWSHED_INLINE V yield(const PQ<V>& s, const V& p0) const {
     return (T(1) + T(2) * beta) * s.q * s.q + m2 * (s.p + beta * p0) * (s.p - p0);
   }
 
-  /// Brings an elastic trial back to the yield surface; returns whether any lane yielded.
-  /// Backward Euler with hardening: with D the change of e_v,
+  /// Returns an elastic trial to the yield surface by backward Euler with hardening. The return
+  /// value says whether any particle of the pack yielded. With D the change of e_v,
   ///   p = p_tr + K_d D,   q = q_tr N / (N - c D),   y(p, q, p0(e_v + D)) = 0,
-  /// where N = 2p - (1 - beta) p0 is y_p/M^2 and c = 6 mu (1 + 2 beta)/M^2.
-  /// D is bracketed: from zero (the trial, y > 0) to where the flow would turn purely deviatoric
-  /// (N = 0, y < 0), or, where softening takes p0 to zero first, to the origin. Newton steps that
-  /// leave the bracket are replaced by bisection.
+  /// where N = 2p - (1 - beta) p0 is y_p/M^2 and c = 6 mu (1 + 2 beta)/M^2. D is bracketed. At one
+  /// end D = 0, the trial, and y > 0. At the other the flow becomes purely deviatoric (N = 0, y <
+  /// 0), or the stress is zero if softening reduces p0 to zero before. Newton steps that leave the
+  /// bracket are replaced by bisection.
   template <class V>
   SNOWSHED_INLINE bool return_map(PQ<V>& s, V& ev) const {
     const V p0 = preconsolidation(ev);
@@ -99,9 +100,9 @@ struct CamClay {
     return {T(0.5) * hardening * (growth + ratio), T(0.5) * hardening * (growth - ratio + T(2))};
   }
 
-  /// The same at u + w from the values at u, by the addition theorems with their series in w: exact
-  /// to rounding while |w| <= near_enough. A fraction of the cost of an exponential.
-  static constexpr T near_enough = T(0.01);
+  /// Returns the values at u + w from those at u, by the addition theorems with series in w. They
+  /// are exact to rounding for |w| <= series_limit, at a fraction of the cost of an exponential.
+  static constexpr T series_limit = T(0.01);
   template <class V>
   static SNOWSHED_INLINE Hyperbolic<V> shifted(const Hyperbolic<V>& k, const V& w) {
     const V w2 = w * w;
@@ -110,21 +111,23 @@ struct CamClay {
     return {k.sinh * cosh_w + k.cosh * sinh_w, k.cosh * cosh_w + k.sinh * sinh_w};
   }
 
+  /// Replaces the trial by the returned state for the particles in `yields`.
   template <class V, class M>
   __attribute__((noinline)) void project(PQ<V>& s, V& ev, const M& yields) const {
     const V zero = broadcast<V>(T(0));
     const PQ<V> trial = s;
     const V p0_old = preconsolidation(ev);
     const V to_origin = -trial.p / elastic.bulk;  // D at which p = 0
-    const V n_trial =
-        T(2) * trial.p - (T(1) - beta) * p0_old;  // where the trial lies of the centre
+    // N of the trial: positive if the trial lies on the compressive side of the centre.
+    const V n_trial = T(2) * trial.p - (T(1) - beta) * p0_old;
     const auto compacts = n_trial > T(0);
 
-    // The far end of the bracket. Compaction: p = 0 lies past the centre. Dilation: p0 reaches
-    // zero at D = -e_v (when e_v < 0).
+    // The far end of the bracket. In compaction p = 0 lies past the centre. In dilation p0 reaches
+    // zero at D = -e_v (if e_v < 0).
     const V far = select(compacts, to_origin, max(V(-ev), zero));
-    // No strength is left at the end: either p0 stays zero on the way to p = 0, or tension
-    // outlasts the softening. The stress drops to the origin and e_v takes what is left over.
+    // Loose snow has no strength left at the end: either p0 stays zero on the way to p = 0, or the
+    // tension remains after softening to p0 = 0. Its stress becomes zero and e_v takes the rest of
+    // the volume.
     const V p0_origin = preconsolidation(V(ev + to_origin));
     const V one = broadcast<V>(T(1));
     const V is_loose = select(compacts, V(select(p0_origin <= T(0), one, zero)),
@@ -135,34 +138,34 @@ struct CamClay {
     const V p = trial.p + elastic.bulk * d;
     const V p0 = preconsolidation(V(ev + d));
     const V p_on = clamp(p, V(-beta * p0), p0);
-    // Exactly on the surface, and never more shear than the trial had.
+    // q lies exactly on the surface and never exceeds that of the trial.
     const V q_on = min(
         trial.q, sqrt(max(V(m2 / (T(1) + T(2) * beta) * (p_on + beta * p0) * (p0 - p_on)), zero)));
-    const auto free = is_loose > T(0);
-    s.p = select(yields, select(free, zero, p_on), trial.p);
-    s.q = select(yields, select(free, zero, q_on), trial.q);
-    // e_v takes exactly the volume that the elastic strain gave up: p = p_tr + K_d D.
-    ev = select(yields, V(ev + select(free, to_origin, V((p_on - trial.p) / elastic.bulk))), ev);
+    const auto loose = is_loose > T(0);
+    s.p = select(yields, select(loose, zero, p_on), trial.p);
+    s.q = select(yields, select(loose, zero, q_on), trial.q);
+    // e_v takes exactly the volume that the elastic strain lost: p = p_tr + K_d D.
+    ev = select(yields, V(ev + select(loose, to_origin, V((p_on - trial.p) / elastic.bulk))), ev);
   }
 
-  /// Safeguarded Newton for D; lanes with `skip` > 0 are left at zero.
+  /// Returns the root D by safeguarded Newton steps; zero for particles with `skip` > 0.
   template <class V>
   SNOWSHED_INLINE V root(const PQ<V>& trial, const V& ev, const V& p0_old, const V& n_trial,
                          const V& far, const V& skip) const {
     constexpr T tolerance = sizeof(T) == 4 ? T(3e-7) : T(1e-15);
     const V zero = broadcast<V>(T(0));
     const C c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
-    // Close to the root a change of pressures that rounding hides ends the search.
-    const V unseen = T(0.2) * tolerance * (abs(trial.p) + beta * p0_old);
+    // Close to the root, the search ends once the change of pressure is below rounding.
+    const V rounding = T(0.2) * tolerance * (abs(trial.p) + beta * p0_old);
     V near = zero, end = far;
-    // Snow that spread far beyond its strength (u < -1) keeps none: no need to follow it further.
+    // Snow that dilated far beyond the loss of its strength (u < -1) has none; u is clamped there.
     const auto at_trial = hyperbolic(max(V(-xi * ev), broadcast<V>(T(-1))));
-    const bool stays_near = !any(abs(V(xi * far)) > near_enough);
+    const bool series_suffices = !any(abs(V(xi * far)) > series_limit);
 
-    // First guess: N (q_tr/q_s - 1) + c D = 0, which is y = 0 written for the shear q_s that the
-    // surface allows, with N linear in D and q_s as at the trial, or that of snow near the tips
-    // where the trial lies beyond them. Never past the centre line; zero, the trial itself, where
-    // hardly any shear is to be given up.
+    // First guess: N (q_tr/q_s - 1) + c D = 0. This is y = 0 written for the shear q_s on the
+    // surface, with N linear in D. q_s is that at the pressure of the trial; if the trial lies
+    // beyond the tips of the ellipse, it is that near the tips. The guess never passes the centre
+    // line. It is zero, the trial itself, if q hardly decreases.
     const V inside =
         max(V((trial.p + beta * p0_old) * (p0_old - trial.p)), V(T(0.05) * p0_old * p0_old));
     const V q_s = sqrt(V(m2 / (T(1) + T(2) * beta) * inside));
@@ -173,7 +176,7 @@ struct CamClay {
     auto active = skip <= T(0);
     for (int iteration = 0; iteration < 100; ++iteration) {
       V p0, p0_slope;
-      if (stays_near) {
+      if (series_suffices) {
         const auto k = shifted(at_trial, V(-xi * d));
         p0 = max(k.sinh, zero);
         p0_slope = select(k.sinh > T(0), V(-xi * k.cosh), zero);
@@ -191,7 +194,7 @@ struct CamClay {
       const V shear = (T(1) + T(2) * beta) / m2 * q * q;
       const V y = shear + (p + beta * p0) * (p - p0);
       const auto before_centre = n * n_trial > T(0);
-      // As near to zero as rounding lets y come; not where it overflows.
+      // The root is found where y is zero to rounding. The comparison fails where y overflows.
       const V size = shear + (abs(p) + beta * p0) * (abs(p) + p0);
       const auto found = before_centre & (abs(y) < tolerance * size);
       const V y_slope = T(2) * (T(1) + T(2) * beta) / m2 * q * q_slope +
@@ -208,7 +211,7 @@ struct CamClay {
       const V change = abs(V(next - d));
       const auto moved =
           (change > tolerance * abs(next)) &
-          ((change * (elastic.bulk - p0_slope) > unseen) | (abs(y) > T(0.01) * size));
+          ((change * (elastic.bulk - p0_slope) > rounding) | (abs(y) > T(0.01) * size));
       active = active & !found;
       d = select(active, next, d);
       active = active & moved;

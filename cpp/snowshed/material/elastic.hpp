@@ -1,5 +1,5 @@
-// Pure elasticity: the case that leaves plasticity out. It has the shape of a plastic law whose
-// return map never does anything, and costs nothing.
+// Pure elasticity. It has the interface of a plastic law without a return mapping, which thus costs
+// nothing.
 #pragma once
 
 #include "snowshed/material/elasticity.hpp"

@@ -7,16 +7,17 @@
 
 SNOWSHED_VARIANT_BEGIN
 
-/// Elastic constants in `dimension` D. Two dimensions are plane strain with all invariants taken
-/// in the plane, as in the thesis: p = -tr(tau)/D. T is a scalar, or lanes that each have theirs.
+/// Elastic constants in d dimensions. Two dimensions are plane strain with all invariants taken in
+/// the plane, as in the thesis: p = -tr(tau)/d. T is a scalar, or a SIMD pack if each particle has
+/// its own constants.
 template <class T>
 struct Elasticity {
   T lambda{};  ///< Lame's first parameter, Pa
   T mu{};      ///< shear modulus, Pa
   T bulk{};    ///< K_d = lambda + 2 mu/d, Pa
 
-  /// From Young's modulus (Pa) and Poisson's ratio. The thesis's (1.1.34) prints mu on both
-  /// sides; E is meant.
+  /// Returns the constants from Young's modulus (Pa) and Poisson's ratio. The thesis's (1.1.34)
+  /// prints mu on both sides; E is meant.
   static Elasticity from(double youngs_modulus, double poissons_ratio, int dimension) {
     const double lambda =
         youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio));

@@ -1,12 +1,11 @@
-// The parameters of snow, and the laws it may follow.
+// The parameters of snow and its constitutive laws.
 #pragma once
 
 namespace snowshed {
 
 enum class SnowModel { cam_clay, elastic };
 
-/// The number of different snows a scene may have: a particle stores which one is its own in a
-/// byte.
+/// The largest number of different snows in a scene. A particle stores its material_id in a byte.
 inline constexpr int max_materials = 256;
 
 /// Cohesive Modified Cam-Clay snow (Gaume et al. 2018; thesis 1.2.5-1.2.7).

@@ -1,13 +1,13 @@
-// Symmetric tensors in D dimensions, and the two functions of them that Hencky elasticity needs:
-// the logarithm and the exponential, both taken relative to the identity so that single precision
-// keeps small strains.
+// Symmetric tensors in D dimensions with their logarithm and exponential, the two functions that
+// Hencky elasticity needs. Both are taken relative to the identity, so that single precision keeps
+// small strains.
 #pragma once
 
 #include "snowshed/core/simd_math.hpp"
 
 SNOWSHED_VARIANT_BEGIN
 
-/// D = 2: xx, zz, xz. D = 3: xx, yy, zz, xy, xz, yz.
+/// A symmetric tensor. Its components are xx, zz, xz (D = 2) or xx, yy, zz, xy, xz, yz (D = 3).
 template <class V, int D>
 struct Sym {
   static constexpr int size = D * (D + 1) / 2;
@@ -28,7 +28,7 @@ SNOWSHED_INLINE V trace(const Sym<V, D>& a) {
   return t;
 }
 
-/// a : a
+/// Returns a : a.
 template <class V, int D>
 SNOWSHED_INLINE V norm_squared(const Sym<V, D>& a) {
   V diagonal = a.c[0] * a.c[0] + a.c[1] * a.c[1];
@@ -65,12 +65,12 @@ SNOWSHED_INLINE V determinant(const Sym<V, D>& a) {
 
 namespace detail {
 
-/// Below this norm the power series is used instead of an eigen-decomposition; snow, whose
-/// elastic strain is bounded by p0/E, practically always is.
+/// Below this norm the power series is used instead of an eigen-decomposition. The strains of snow
+/// practically always are this small, since p0/E bounds them.
 inline constexpr double series_norm = 0.04;
 
-/// sum over n >= 1 of coefficient(n) A^n, by the Cayley-Hamilton recurrence on the powers of A:
-/// A^n = x A^2 + y A + z I needs one matrix product in all.
+/// Returns the sum over n >= 1 of coefficient(n) A^n by the Cayley-Hamilton recurrence
+/// A^n = x A^2 + y A + z I. It needs one matrix product in all.
 template <int Terms, class V, int D, class Coefficient>
 SNOWSHED_INLINE Sym<V, D> power_series(const Sym<V, D>& a, Coefficient coefficient) {
   using T = Scalar<V>;
@@ -112,7 +112,8 @@ SNOWSHED_INLINE Sym<V, D> power_series(const Sym<V, D>& a, Coefficient coefficie
   return r;
 }
 
-/// One Jacobi rotation that zeroes a(P, Q); q collects the eigenvectors as columns.
+/// Applies the Jacobi rotation that zeroes a(P, Q) to `a` and to the eigenvectors, the columns of
+/// q.
 template <int P, int Q, class V, int D>
 SNOWSHED_INLINE void jacobi_rotate(Sym<V, D>& a, V (&q)[D][D]) {
   using T = Scalar<V>;
@@ -138,8 +139,9 @@ SNOWSHED_INLINE void jacobi_rotate(Sym<V, D>& a, V (&q)[D][D]) {
   }
 }
 
-/// f applied to the eigenvalues of a, by cyclic Jacobi (quadratically convergent: six sweeps are
-/// past round-off for any symmetric 3 x 3 in double).
+/// Returns the tensor function f(a) by applying f to the eigenvalues of a, found by cyclic Jacobi
+/// rotations. These converge quadratically; six sweeps reach round-off for any symmetric 3 x 3
+/// tensor in double precision.
 template <class V, int D, class F>
 __attribute__((noinline)) Sym<V, D> spectral(Sym<V, D> a, F f) {
   using T = Scalar<V>;
@@ -169,7 +171,8 @@ __attribute__((noinline)) Sym<V, D> spectral(Sym<V, D> a, F f) {
 
 }  // namespace detail
 
-/// The Hencky strain (1/2) log(b) of the left Cauchy-Green tensor b = I + a (thesis 1.1.29).
+/// Returns the Hencky strain (1/2) log(b) of the left Cauchy-Green tensor b = I + a (thesis
+/// 1.1.29).
 template <class V, int D>
 SNOWSHED_INLINE Sym<V, D> hencky_strain(const Sym<V, D>& a) {
   using T = Scalar<V>;
@@ -179,7 +182,7 @@ SNOWSHED_INLINE Sym<V, D> hencky_strain(const Sym<V, D>& a) {
   return detail::spectral(a, [](const V& x) { return V(T(0.5) * log1p(x)); });
 }
 
-/// a = b - I = exp(2 e) - I of the Hencky strain e.
+/// Returns b - I = exp(2 e) - I for the Hencky strain e.
 template <class V, int D>
 SNOWSHED_INLINE Sym<V, D> cauchy_green_minus_identity(const Sym<V, D>& e) {
   using T = Scalar<V>;

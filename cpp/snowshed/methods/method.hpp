@@ -1,13 +1,30 @@
-// The contract between a method and what runs it: particles are added and removed, steps are taken,
-// fields and energies are read, and the state is saved and restored.
+// The contract between a method and what runs it: particles are added and replaced, steps are
+// taken, fields and energies are read, and the state is saved and restored.
+//
+// What a method promises:
+// - A call that throws leaves the snow, the time, the counters and the energies as they were, so
+//   that the same call may be made again or another instead. What is read back by id is the same;
+//   only the order of the particles in memory may differ. This holds for lack of memory too.
+// - One exception: `step` can find only afterwards that a particle is no longer sound. Then the
+//   step has been taken and the method has *failed*: it may be looked at, but everything that
+//   would alter, advance or save it throws SimulationError, so that nobody writes a broken state
+//   over a good checkpoint. `load` makes it whole again.
+// - Errors: InputError for arguments that are not allowed, SimulationError where the simulation
+//   cannot go on, std::bad_alloc for lack of memory.
+// - The results do not depend on the number of threads, to the last bit.
+//
+// Particles have ids, in the order in which they were added. For the outside they are ordered by
+// id, wherever the method keeps them.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/energy_balance.hpp"
+#include "snowshed/particles/field_view.hpp"
 
 namespace snowshed {
 
@@ -53,46 +70,77 @@ struct StepCounters {
   double smallest_dt = 0;             // s
 };
 
-/// What a method is to the rest of the program. Dimension and precision are chosen once, where the
-/// method is made.
+/// What a method is to the rest of the program; see the top of this file for what holds when a call
+/// throws. Dimension and precision are chosen once, where the method is made.
 class Method {
  public:
   virtual ~Method() = default;
 
-  virtual void add(const ParticleBatch&) = 0;
-  /// Adds all particles of several batches, in their order, or none of them.
-  virtual void add(const std::vector<ParticleBatch>&) = 0;
-  /// Puts the particles of several batches in place of all there are, or leaves these as they are.
-  virtual void replace(const std::vector<ParticleBatch>&) = 0;
-  virtual void clear() = 0;  ///< removes all particles
+  // --- the snow; between steps -----------------------------------------------------------------
 
-  /// Adds to the velocity of each particle, ordered by id; the energy books count it as added.
+  /// Adds the particles of all batches, or none. The energy balance counts what they bring as
+  /// added. Throws InputError for a batch that the scene does not allow, SimulationError where a
+  /// position lies outside the space that the method can address.
+  virtual void add(const std::vector<ParticleBatch>& batches) = 0;
+  void add(const ParticleBatch& batch) { add(std::vector<ParticleBatch>{batch}); }
+
+  /// Removes all particles and adds those of the batches, or leaves all as it is. New particles get
+  /// new ids; the time goes on. The energy balance counts what goes and what comes as added, with
+  /// its sign. Throws as `add`.
+  virtual void replace(const std::vector<ParticleBatch>& batches) = 0;
+
+  /// Adds to the velocity of each particle, ordered by id (m/s); the energy balance counts it as
+  /// added. Throws InputError for another number of changes than particles, or if not finite.
   virtual void add_velocity(const std::vector<Vec3>& velocity_changes) = 0;
 
   /// Lowers each particle, ordered by id, by a height (m) and adds to its volumetric plastic
-  /// strain, if its law has one. Elastic strains and velocities stay. The energy books count it as
-  /// added.
+  /// strain, if its law has one. Elastic strains and velocities stay. The energy balance counts it
+  /// as added. Throws as `add_velocity`.
   virtual void settle(const std::vector<double>& drops,
                       const std::vector<double>& plastic_changes) = 0;
 
-  /// One step. Throws SimulationError when it cannot go on; the particles are then as they were
-  /// before the step, except after "not finite".
+  // --- time ------------------------------------------------------------------------------------
+
+  /// Takes one step, of a length that the method chooses. Throws SimulationError when it cannot go
+  /// on: without snow, where the time step falls to nothing, and where a particle is lost, all
+  /// three with the state as it was; and where a particle is not finite or strained beyond what can
+  /// be resolved, with the method failed (see the top).
   virtual void step() = 0;
 
-  /// Whether the state is only the particles, so that a checkpoint taken now resumes to the same
-  /// bits. True before every sort: at least once in `steps_between_sorts` steps.
+  /// Whether all that the method keeps follows from what `save` writes, so that a checkpoint taken
+  /// now resumes to the same bits. A checkpoint taken elsewhere is sound, too, but resumes to other
+  /// last bits. A method is at a safe point again after a bounded number of steps.
   virtual bool at_safe_point() const = 0;
 
-  virtual std::size_t size() const = 0;
   virtual double time() const = 0;       ///< s
   virtual double time_step() const = 0;  ///< s, of the last step
   virtual const StepCounters& counters() const = 0;
-  virtual ParticleState state() const = 0;
-  virtual MotionSummary motion(double speed) const = 0;
-  virtual EnergyBalance energy() const = 0;
-  virtual std::size_t bytes() const = 0;  ///< held by particles and grid
 
+  /// The quantities of the particles that can be read one by one, and whether they are stored.
+  virtual std::vector<FieldInfo> fields() const = 0;
+  /// One of them, in the order of storage: the particles' memory where it is stored, otherwise a
+  /// copy computed now. Throws InputError where there is no such field.
+  virtual FieldView field(const std::string& name) const = 0;
+  /// Where the particles are stored, ordered by id.
+  virtual const std::vector<std::uint32_t>& order_by_id() const = 0;
+
+  // --- what the snow is and does; also of a method that has failed -----------------------------
+
+  virtual std::size_t size() const = 0;  ///< particles
+  virtual ParticleState state() const = 0;
+  virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
+  /// The energy balance; all zero unless the method was made to keep it.
+  virtual EnergyBalance energy() const = 0;
+  virtual std::size_t bytes() const = 0;  ///< held by the particles and what the steps need
+
+  // --- checkpoints -----------------------------------------------------------------------------
+
+  /// Adds the state to an archive, whose sections may refer to the method's memory until it is
+  /// written: no other call may come between. Throws SimulationError if the method has failed.
   virtual void save(BinaryWriter&) const = 0;
+
+  /// Takes over the state from an archive that a method of the same scene has saved. Throws
+  /// InputError where the archive is not sound.
   virtual void load(const BinaryReader&) = 0;
 };
 

@@ -1,4 +1,4 @@
-// Finding the points near a place.
+// Search for the points near a position.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace snowshed {
 
-/// Points sorted into cubic cells of a given edge; a hash table finds the cells, so that memory
-/// goes with the number of points and not with the space they spread over.
+/// Points sorted into cubic cells of a given edge. A hash table finds the cells, so the memory
+/// depends on the number of points and not on the volume that they occupy.
 class PointGrid {
  public:
-  /// `edge` > 0, metres; fewer than 2^32 points.
+  /// Sorts the points, of which there must be fewer than 2^32. `edge` > 0 is in metres.
   PointGrid(const std::vector<Vec3>& points, double edge);
 
   /// Calls visit(index, point) for every point within one cell edge of x and some farther ones.
@@ -37,7 +37,7 @@ class PointGrid {
     Vec3 point;
     std::uint32_t index;
   };
-  /// Points sorted_[begin, end) of the cell with this key; empty slots have begin == end.
+  /// The points sorted_[begin, end) of the cell with this key. Empty slots have begin == end.
   struct Range {
     std::uint64_t key = 0;
     std::uint32_t begin = 0, end = 0;
@@ -46,13 +46,13 @@ class PointGrid {
   Cell cell_of(const Vec3& x) const;
 
   static std::uint64_t key(const Cell& cell) {
-    // 21 bits each; cells 2^21 apart share a list, which costs time but nothing else.
+    // 21 bits for each index. Cells 2^21 apart share a list, which only costs time.
     const auto bits = [](std::int64_t i) { return static_cast<std::uint64_t>(i) & 0x1fffff; };
     return bits(cell.x) << 42 | bits(cell.y) << 21 | bits(cell.z);
   }
 
-  /// The slot that holds the key, or the empty one where it would go. Cells along z start in
-  /// neighbouring slots, as they are looked up together.
+  /// Returns the slot that holds the key, or the empty slot for it. Cells along z start in
+  /// neighbouring slots because they are looked up together.
   std::size_t slot_of(std::uint64_t key) const {
     const std::size_t mask = table_.size() - 1;
     std::size_t slot = (((key >> 21) * 0x9e3779b97f4a7c15u >> 20) + key) & mask;

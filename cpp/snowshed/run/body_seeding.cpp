@@ -53,7 +53,8 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
     Vec3 size = shape->bounds().max - shape->bounds().min;
     if (scene.dimension == 2) size.y() = 0;  // endless
-    return measure(*shape, scene.dimension, std::max(scene.numerics.dx, size.maxCoeff() / 64));
+    return measure(*shape, scene.dimension,
+                   std::max(resolution(scene.numerics), size.maxCoeff() / 64));
   });
 }
 
@@ -61,7 +62,7 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
 double seed_body(const BodySpec& body, const Scene& scene, const std::string& path,
                  const std::filesystem::path& base_dir, std::uint64_t seed, ParticleBatch& batch) {
   const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
-  const double dx = scene.numerics.dx;
+  const double dx = resolution(scene.numerics);
   const Snow& snow = snow_of(scene, body);
   batch.positions = snowshed::seed(*shape, scene.dimension, dx, scene.seeding.particles_per_voxel,
                                    scene.seeding.pattern, seed);
@@ -104,8 +105,8 @@ std::vector<double> count_particles(const Scene& scene, const std::filesystem::p
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodySpec& body = scene.bodies[i];
     const double volume = body_volume(body, scene, body_path(i), base_dir);
-    const double count =
-        volume / std::pow(scene.numerics.dx, scene.dimension) * scene.seeding.particles_per_voxel;
+    const double count = volume / std::pow(resolution(scene.numerics), scene.dimension) *
+                         scene.seeding.particles_per_voxel;
     if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
     if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
     for (int event = 1; event <= scene.events.count; ++event)

@@ -123,7 +123,7 @@ void add_times(const Scene& scene, CostEstimate& estimate_cost) {
 /// New snow is awake from its release to rest, older snow in part, once something lands on it.
 double count_updates(const Scene& scene, const CostEstimate& estimate_cost) {
   double old_awake = 1.0;
-  if (scene.numerics.sleep_speed > 0.0)
+  if (scene.mpm().sleep_speed > 0.0)
     old_awake =
         woken_share * std::max(0.0, 1.0 - estimate_cost.first_landing / estimate_cost.event_time);
   double particles = 0.0, old = 0.0;
@@ -136,7 +136,7 @@ double count_updates(const Scene& scene, const CostEstimate& estimate_cost) {
 
 std::vector<double> count_particles(const Scene& scene) {
   std::vector<double> counts;
-  const double voxel = std::pow(scene.numerics.dx, scene.dimension);
+  const double voxel = std::pow(scene.mpm().dx, scene.dimension);
   for (int event = 1; event <= scene.events.count; ++event)
     counts.push_back(
         std::round(snow_volume(scene, event) / voxel * scene.seeding.particles_per_voxel));
@@ -160,10 +160,10 @@ std::string gigabytes(double bytes) {
 double stable_time_step(const Scene& scene) {
   double limit = std::numeric_limits<double>::infinity();
   for (const Snow& snow : assemble_snows(scene))
-    limit = std::min(limit,
-                     elastic_time_step(snow.youngs_modulus, snow.poissons_ratio, snow.density,
-                                       scene.dimension, scene.numerics.dx, scene.numerics.basis));
-  return next_time_step(limit, 0.0, scene.numerics.dx, scene.numerics.step_factor);
+    limit =
+        std::min(limit, elastic_time_step(snow.youngs_modulus, snow.poissons_ratio, snow.density,
+                                          scene.dimension, scene.mpm().dx, scene.mpm().basis));
+  return next_time_step(limit, 0.0, scene.mpm().dx, scene.mpm().courant_factor);
 }
 
 CostEstimate estimate_cost(const Scene& scene) {
@@ -182,7 +182,7 @@ CostEstimate estimate_cost(const Scene& given, std::vector<double> particles) {
   estimate_cost.steps =
       scene.events.count * std::ceil(estimate_cost.event_time / estimate_cost.time_step);
   estimate_cost.updates = count_updates(scene, estimate_cost);
-  const auto [per_particle, per_voxel] = storage(scene.dimension, scene.numerics.precision);
+  const auto [per_particle, per_voxel] = storage(scene.dimension, scene.mpm().precision);
   const double voxels =
       grid_spread * estimate_cost.total_particles / scene.seeding.particles_per_voxel;
   estimate_cost.bytes = per_particle * estimate_cost.total_particles + per_voxel * voxels;

@@ -23,15 +23,15 @@ void list_features(const Scene& s, Plan& plan) {
     (used ? plan.used : plan.left_out).push_back(name);
   };
   feature(s.dimension == 3, "third dimension");
-  feature(s.numerics.precision == Precision::float64, "double precision");
+  feature(s.mpm().precision == Precision::float64, "double precision");
   const std::vector<Snow> snows = assemble_snows(s);
   const bool yields = std::any_of(snows.begin(), snows.end(), [](const Snow& snow) {
     return snow.model == SnowModel::cam_clay;
   });
   feature(yields, "plasticity and hardening (Cam-Clay)");
   feature(snows.size() > 1, "several snows");
-  feature(s.numerics.transfer == Transfer::apic, "APIC affine velocities");
-  feature(s.numerics.basis == Basis::cubic, "cubic B-splines");
+  feature(s.mpm().transfer == Transfer::apic, "APIC affine velocities");
+  feature(s.mpm().basis == Basis::cubic, "cubic B-splines");
   bool conditions[3] = {s.domain.has_value(), false, false}, moving = false;
   for (const ObstacleSpec& o : assemble_obstacles(s)) {
     conditions[int(o.condition)] = true;
@@ -42,7 +42,7 @@ void list_features(const Scene& s, Plan& plan) {
   feature(moving, "moving obstacles");
   feature(s.domain.has_value(), "domain walls");
   feature(s.events.between == Between::reseed && s.events.count > 1, "reseeding between events");
-  feature(s.numerics.sleep_speed > 0, "sleep of snow at rest");
+  feature(s.mpm().sleep_speed > 0, "sleep of snow at rest");
   feature(s.output.energy, "energy books");
   feature(s.output.snapshot_interval > 0, "snapshots during events");
 }
@@ -52,7 +52,7 @@ double measured_speed(Scene scene, const std::filesystem::path& base_dir,
                       const CostEstimate& cost) {
   const double n = cost.particles.empty() ? 0.0 : cost.particles.front();
   if (n > measured_particles)
-    scene.numerics.dx *= std::pow(n / measured_particles, 1.0 / scene.dimension);
+    scene.mpm().dx *= std::pow(n / measured_particles, 1.0 / scene.dimension);
   scene.seeding.pattern = SeedPattern::jittered;  // seeds fast
   Simulation sim(scene, base_dir);
   sim.begin_event();

@@ -83,7 +83,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
   j["threads"] = sim.threads();
-  j["scalar"] = name_of(sim.scene().numerics.precision);
+  j["scalar"] = name_of(sim.scene().mpm().precision);
   j["dimension"] = sim.scene().dimension;
   j["events"] = sim.event() - int(sim.event_running());
   j["particles"] = method.size();

@@ -1,13 +1,12 @@
 #include "snowshed/run/simulation.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/parallel.hpp"
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 #include "snowshed/run/body_seeding.hpp"
@@ -39,14 +38,12 @@ std::unique_ptr<Method> Simulation::empty_method() const {
   o.dimension = scene_.dimension;
   o.gravity = scene_.gravity;
   o.snows = snows_;
-  o.numerics = scene_.numerics;
+  o.numerics = scene_.mpm();
   o.energy = scene_.output.energy;
   return make_mpm(o, obstacles_);
 }
 
-int Simulation::threads() const {
-  return scene_.numerics.threads > 0 ? scene_.numerics.threads : omp_get_num_procs();
-}
+int Simulation::threads() const { return threads_to_use(scene_.mpm().threads); }
 
 std::optional<Reseeding> Simulation::begin_event() {
   if (running_) throw SimulationError("the present event has not ended yet");
@@ -73,6 +70,13 @@ void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
   solver_->replace(added);
 } catch (const SimulationError& error) {  // beyond the addressable grid
   throw InputError("/", error.what());
+}
+
+void Simulation::add_snow(ParticleBatch batch) {
+  batch.event = std::max(event_, 1);
+  solver_->add(batch);
+  event_mass_ += batch.mass * double(batch.positions.size());
+  laid_height_ += panel_.height_of(batch.positions);
 }
 
 /// Later slabs lie on the snow that stayed on the panel; stray grains do not count.

@@ -54,8 +54,13 @@ class Simulation {
   /// that a checkpoint resumes to the same bits, and returns `paused`. Call again to go on.
   RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
 
+  /// Adds particles of the present event, beside those that begin_event lays; before the first
+  /// event they are of that. `batch.event` is set here.
+  void add_snow(ParticleBatch batch);
+
   /// Takes `count` steps of the present event, whether the snow rests or not. For those who drive
-  /// the snow themselves: between steps, `kick` adds to the velocities, particles ordered by id.
+  /// the snow themselves: between steps, `add_velocity` adds to the velocities, particles ordered
+  /// by id.
   void step(int count = 1);
   void add_velocity(const std::vector<Vec3>& velocity_changes) {
     solver_->add_velocity(velocity_changes);
@@ -85,7 +90,7 @@ class Simulation {
   int threads() const;
 
   /// The smallest length that is resolved, m.
-  double resolution() const { return scene_.numerics.dx; }
+  double resolution() const { return snowshed::resolution(scene_.numerics); }
 
   /// How high all snow laid so far would lie on the panel had none of it left, m.
   double laid_height() const { return laid_height_; }

@@ -1,10 +1,11 @@
-// 1. The distance to the nearest particle at every grid node, less radius + closing, is the
-//    union of dilated balls.
-// 2. Its zero crossings on the grid edges sample the dilated surface.
-// 3. The distance to these, shifted by `closing`, erodes the dilated union again. Shifting the
-//    first distance instead would only make the balls smaller and open the gaps once more.
-// 4. Particles that lie apart, too small for the grid to show, get balls that it does show.
-// All distances come from sweeping the nearest seed point over the grid.
+// 1. The union of dilated balls is, at every grid node, the distance to the nearest particle minus
+//    radius + closing.
+// 2. The zero crossings of this distance on the grid edges sample the dilated surface.
+// 3. The distance to these crossings, shifted by `closing`, erodes the dilated union again.
+//    Shifting the first distance instead would only shrink the balls and open the gaps again.
+// 4. An isolated particle is too small for the grid to resolve. It gets a ball that is large
+//    enough.
+// All distances are those of NearestSeed.
 #include "snowshed/sampling/particle_voxels.hpp"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ Bounds bounds_of(const std::vector<Vec3>& points, int dimension) {
   return bounds;
 }
 
-/// A grid of the given spacing over the cloud and a margin, without its values.
+/// Returns a grid that covers the cloud and a margin; its values are not yet set.
 GridSamples make_grid(const Bounds& bounds, int dimension, double spacing, double margin) {
   GridSamples grid;
   grid.origin = bounds.min.array() - margin;
@@ -44,14 +45,15 @@ GridSamples make_grid(const Bounds& bounds, int dimension, double spacing, doubl
     if (total > max_nodes)
       throw InputError("",
                        "the cloud of particles spreads over more than 1.5e8 grid nodes; "
-                       "choose a larger voxel size or drop the outliers");
+                       "choose a larger voxel size or remove the particles far from the rest");
     grid.counts[axis] = static_cast<std::size_t>(count);
   }
   if (dimension == 2) grid.origin.y() = 0;
   return grid;
 }
 
-/// How many nodes about x, two to three spacings away along each axis, are inside.
+/// Returns the number of nodes inside the solid among those within two to three spacings of x along
+/// each axis.
 int count_inside(const GridSamples& grid, const NearestSeed& nodes, const Vec3& x) {
   const NearestSeed::Index low = nodes.cell_of(x);
   int inside = 0;
@@ -62,17 +64,17 @@ int count_inside(const GridSamples& grid, const NearestSeed& nodes, const Vec3& 
   return inside;
 }
 
-/// Unites the solid with a ball, large enough for the grid to show, around each particle that has
-/// less than a voxel of solid about it.
-void keep_lone_particles(GridSamples& grid, NearestSeed& nodes, const std::vector<Vec3>& points,
-                         int dimension) {
-  std::vector<Vec3> lone;
+/// Unites the solid with a ball around each isolated particle, which is one with less than a voxel
+/// of solid around it. The ball is large enough for the grid to resolve.
+void keep_isolated_particles(GridSamples& grid, NearestSeed& nodes, const std::vector<Vec3>& points,
+                             int dimension) {
+  std::vector<Vec3> isolated;
   for (const Vec3& x : points)
-    if (count_inside(grid, nodes, x) < (dimension == 2 ? 4 : 8)) lone.push_back(x);
-  if (lone.empty()) return;
-  // Seeding finds no room in smaller ones.
+    if (count_inside(grid, nodes, x) < (dimension == 2 ? 4 : 8)) isolated.push_back(x);
+  if (isolated.empty()) return;
+  // Seeding places no particle in a smaller ball.
   const double radius = (dimension == 2 ? 1.0 : 1.15) * grid.spacing;
-  nodes.broadcast(lone);
+  nodes.propagate(isolated);
   nodes.for_each_node([&](const NearestSeed::Index& n) {
     float& value = grid.values[nodes.at(n)];
     value = std::min(value, static_cast<float>(nodes.distance(n) - radius));
@@ -101,19 +103,19 @@ GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension,
       make_grid(bounds_of(points, dimension), dimension, spacing, radius + closing + 2 * spacing);
 
   NearestSeed nodes(grid.origin, spacing, grid.counts);
-  nodes.broadcast(points);
+  nodes.propagate(points);
   grid.values.resize(grid.counts[0] * grid.counts[1] * grid.counts[2]);
   nodes.for_each_node([&](const NearestSeed::Index& n) {
     grid.values[nodes.at(n)] = static_cast<float>(nodes.distance(n) - radius - closing);
   });
 
   const std::vector<Vec3> surface = zero_crossings(nodes, grid.values);
-  nodes.broadcast(surface);
+  nodes.propagate(surface);
   nodes.for_each_node([&](const NearestSeed::Index& n) {
     float& value = grid.values[nodes.at(n)];
     value = static_cast<float>(std::copysign(nodes.distance(n), value) + closing);
   });
-  keep_lone_particles(grid, nodes, points, dimension);
+  keep_isolated_particles(grid, nodes, points, dimension);
   return grid;
 }
 

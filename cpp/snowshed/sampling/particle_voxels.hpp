@@ -1,4 +1,4 @@
-// From a cloud of particles to a solid.
+// The solid that a cloud of particles fills.
 #pragma once
 
 #include <vector>
@@ -8,28 +8,28 @@
 
 namespace snowshed {
 
-/// The radius to give particles seeded `per_voxel` to a voxel, metres: three eighths of their
-/// mean spacing. Of the radii tried it keeps the volume best (within 1.5 % for slabs and domes
-/// in 2D and 3D, poisson or jittered), and the outline within 0.2 voxels at each end.
+/// Returns the radius of particles of which `per_voxel` were seeded to a voxel, metres: three
+/// eighths of their mean spacing. Of the radii that were tried, it keeps the volume best (within
+/// 1.5 % for slabs and domes in 2D and 3D, poisson or jittered) and the outline within 0.2 voxels
+/// at each end.
 double particle_radius(int dimension, double voxel, double per_voxel);
 
-/// The solid that a cloud of particles fills: the "VDB from particles" of the thesis on a
-/// plain grid of half the voxel size. `voxel` and `radius` in metres.
+/// Returns the solid that a cloud of particles fills. This is the "VDB from particles" of the
+/// thesis on a dense grid of half the voxel size. `voxel` and `radius` are in metres.
 ///
-/// The union of balls of `radius` is closed (dilated, then eroded) by one voxel. Closing
-/// fills the gaps between particles, which are narrower than two voxels at 4 or more particles
-/// per voxel, but does not move the outline, which stays `radius` beyond the outermost
-/// particles, nor fills valleys wider than about two voxels. Heights and lengths thus exceed
-/// those of the particle centres by `radius` at each end.
-/// Particles apart from the rest are too small for the grid; each becomes a ball about half a
-/// voxel in radius.
+/// The union of balls of `radius` is closed (dilated, then eroded) by one voxel. Closing fills the
+/// gaps between particles, which are narrower than two voxels at 4 or more particles per voxel. It
+/// does not move the outline, which stays `radius` beyond the outermost particles, and does not
+/// fill valleys wider than about two voxels. Heights and lengths thus exceed those of the particle
+/// centres by `radius` at each end. Isolated particles are too small for the grid; each becomes a
+/// ball about half a voxel in radius.
 ///
 /// Throws InputError if there are no points, if a point is not finite, or if the cloud's bounds
 /// need too large a grid.
 Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, double voxel,
                              double radius);
 
-/// The samples that solid is made of, at a spacing of half a voxel; a single one along y in 2D.
+/// Returns the samples of that solid at a spacing of half a voxel; in 2D a single one along y.
 GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension, double voxel,
                                  double radius);
 

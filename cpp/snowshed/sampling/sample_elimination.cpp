@@ -12,11 +12,11 @@
 namespace snowshed {
 namespace {
 
-/// How much two points crowd each other: (1 - d / (2 r_max))^8 as a fixed-point number,
-/// with d no smaller than 2 r_min (Yuksel, equations 1, 5 and 6).
-class Crowding {
+/// The weight of a pair of points: (1 - d / (2 r_max))^8 as a fixed-point number, with their
+/// distance d clamped to at least 2 r_min (Yuksel, equations 1, 5 and 6).
+class PairWeight {
  public:
-  Crowding(int dimension, double point_measure, double kept_ratio) {
+  PairWeight(int dimension, double point_measure, double kept_ratio) {
     const double r_max = dimension == 2 ? std::sqrt(point_measure / (2 * std::sqrt(3.0)))
                                         : std::cbrt(point_measure / (4 * std::sqrt(2.0)));
     reach_ = 2 * r_max;
@@ -38,38 +38,39 @@ class Crowding {
   double reach_, per_reach_, nearest_;
 };
 
-/// Points queued by how crowded they are. Weights only fall, so an entry of the queue is an
-/// upper bound of its point's weight and need be corrected only when it comes to the front.
-class CrowdedFirst {
+/// A queue of points, the largest weight first. Weights only fall, so an entry of the queue is an
+/// upper bound of its point's weight. It is corrected when it comes to the front.
+class WeightQueue {
  public:
-  explicit CrowdedFirst(std::vector<std::int64_t> weights) : weights_(std::move(weights)) {
+  explicit WeightQueue(std::vector<std::int64_t> weights) : weights_(std::move(weights)) {
     std::vector<Entry> entries(weights_.size());
     for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i] = {weights_[i], i};
     queue_ = Queue(std::less<Entry>(), std::move(entries));
   }
 
+  /// Removes the point with the largest weight and returns it.
   std::uint32_t pop() {
     for (;;) {
       const auto [weight, point] = queue_.top();
       queue_.pop();
       if (weight == weights_[point]) {
-        weights_[point] = gone;
+        weights_[point] = removed;
         return point;
       }
       queue_.push({weights_[point], point});
     }
   }
 
-  bool bilateral(std::uint32_t point) const { return weights_[point] != gone; }
+  bool contains(std::uint32_t point) const { return weights_[point] != removed; }
 
   void lower(std::uint32_t point, std::int64_t by) {
-    if (bilateral(point)) weights_[point] -= by;
+    if (contains(point)) weights_[point] -= by;
   }
 
  private:
   using Entry = std::pair<std::int64_t, std::uint32_t>;
   using Queue = std::priority_queue<Entry>;
-  static constexpr std::int64_t gone = -1;
+  static constexpr std::int64_t removed = -1;
 
   std::vector<std::int64_t> weights_;
   Queue queue_;
@@ -81,21 +82,21 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
                                     double point_measure) {
   const std::vector<Vec3>& points = candidates.points;
   const double kept_ratio = static_cast<double>(count) / candidates.inside_count;
-  const Crowding crowding(dimension, point_measure, kept_ratio);
-  const PointGrid grid(points, crowding.reach());
+  const PairWeight pair_weight(dimension, point_measure, kept_ratio);
+  const PointGrid grid(points, pair_weight.reach());
 
   std::vector<std::int64_t> weights(points.size(), 0);
   for (std::uint32_t i = 0; i < points.size(); ++i)
     grid.for_each_near(points[i], [&](std::uint32_t j, const Vec3& other) {
-      if (j != i) weights[i] += crowding(points[i], other);
+      if (j != i) weights[i] += pair_weight(points[i], other);
     });
 
-  CrowdedFirst queue(std::move(weights));
+  WeightQueue queue(std::move(weights));
   for (std::size_t left = candidates.inside_count; left > count;) {
     const std::uint32_t i = queue.pop();
     left -= candidates.inside[i];
     grid.for_each_near(points[i], [&](std::uint32_t j, const Vec3& other) {
-      const std::int64_t by = crowding(points[i], other);
+      const std::int64_t by = pair_weight(points[i], other);
       if (by > 0) queue.lower(j, by);
     });
   }
@@ -103,7 +104,7 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
   std::vector<Vec3> kept;
   kept.reserve(count);
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (candidates.inside[i] && queue.bilateral(i)) kept.push_back(points[i]);
+    if (candidates.inside[i] && queue.contains(i)) kept.push_back(points[i]);
   return kept;
 }
 

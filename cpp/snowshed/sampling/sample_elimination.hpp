@@ -1,4 +1,4 @@
-// Blue noise: points that keep their distance.
+// Blue noise: random points that keep a distance from each other.
 #pragma once
 
 #include <cstddef>
@@ -22,14 +22,15 @@ struct Candidates {
 };
 
 /// Weighted sample elimination (Yuksel 2015, "Sample elimination for generating Poisson disk
-/// sample sets"): removes the most crowded candidate, over and over, until `count` of those
-/// inside are left, and returns these. `point_measure` is the volume (area in 2D) per point.
+/// sample sets"). Removes the candidate with the largest weight until `count` of those inside are
+/// left, and returns these. `point_measure` is the volume (area in 2D) per point. `count` must not
+/// exceed candidates.inside_count.
 ///
-/// Candidates outside take part so that the surface is not special: without them points on it
-/// have fewer neighbours, survive more often, and the surface layer grows too dense.
+/// Candidates outside the solid are eliminated, too. Without them, points at the surface would have
+/// fewer neighbours and be removed less often, and the surface layer would become too dense.
 ///
-/// Weights are integers, so that sums and differences are exact and the order of removal does
-/// not hang on rounding. Time grows as N log N. `count` <= candidates.inside_count.
+/// Weights are integers. Their sums and differences are exact, so the order of removal does not
+/// depend on rounding. The time grows as N log N.
 std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count, int dimension,
                                     double point_measure);
 

@@ -26,9 +26,10 @@ void check_arguments(int dimension, double voxel, double per_voxel) {
     fail("particles per voxel", per_voxel, "must be greater than 0 and at most 1000");
 }
 
-/// Rounds up, but not for an excess that is only rounding.
+/// Returns `count` rounded up. An excess that is only rounding is ignored.
 double round_up(double count) { return std::ceil(count * (1 - 1e-9)); }
 
+/// Returns the mean spacing of particles.
 double spacing(int dimension, double voxel, double per_voxel) {
   return voxel / (dimension == 2 ? std::sqrt(per_voxel) : std::cbrt(per_voxel));
 }
@@ -65,12 +66,12 @@ struct Tiling {
   }
 };
 
-/// A point of each lattice cell: its centre, or a random one if `random` is given.
+/// Places a point in each lattice cell: its centre, or a random point if `random` is given.
 class LatticeSeeder {
  public:
   LatticeSeeder(const LevelSet& shape, Random* random) : shape_(shape), random_(random) {}
 
-  /// Every cell of a tiling holds exactly one point.
+  /// Returns one point for every cell of the tiling.
   std::vector<Vec3> fill(const Tiling& tiling) {
     std::vector<Vec3> points;
     points.reserve(tiling.size());
@@ -78,12 +79,13 @@ class LatticeSeeder {
       for (std::size_t j = 0; j < tiling.counts[1]; ++j)
         for (std::size_t k = 0; k < tiling.counts[2]; ++k) {
           const Vec3 center = tiling.center(i, j, k), x = center + offset(tiling.cell);
-          // Rounding can put a random point of an outer cell on the surface.
+          // Due to rounding, a random point of an outer cell may lie on the surface.
           points.push_back(shape_.distance(x) < 0 ? x : center);
         }
     return points;
   }
 
+  /// Returns a point for every cell whose point lies inside the solid.
   std::vector<Vec3> fill(const std::vector<Voxel>& cells, const Mat3& cell) {
     std::vector<Vec3> points;
     for (const Voxel& voxel : cells) {
@@ -114,8 +116,8 @@ std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spac
   return seeder.fill(voxelize(shape, dimension, spacing), cell);
 }
 
-/// Random candidates, `per_voxel` in each voxel on average, in and within `margin` of the
-/// solid, at least `wanted` of them inside it.
+/// Returns random candidates inside the solid and within `margin` of it, on average `per_voxel` in
+/// each voxel. At least `wanted` of them are inside.
 Candidates draw_candidates(const LevelSet& shape, int dimension, double voxel, double per_voxel,
                            double margin, std::size_t wanted, Random& random) {
   constexpr int max_rounds = 1000;
@@ -142,7 +144,7 @@ std::vector<Vec3> seed_poisson(const LevelSet& shape, int dimension, double voxe
   constexpr std::size_t candidates_per_point = 3;  // Yuksel: 5 gains little over 3
   const double total = measure(shape, dimension, voxel);
   const auto count = static_cast<std::size_t>(count_for(total, dimension, voxel, per_voxel));
-  // As far as candidates see each other, but no thicker a layer than the solid itself.
+  // The reach of the pair weights, but no more than the solid itself is thick.
   const double margin =
       std::min(1.2 * spacing(dimension, voxel, per_voxel), std::max(shape.inradius(), 0.0));
   const Candidates candidates =
@@ -155,7 +157,7 @@ std::vector<Vec3> seed_poisson(const LevelSet& shape, int dimension, double voxe
 
 std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, double per_voxel,
                        SeedPattern pattern, std::uint64_t seed) {
-  // Checks the arguments and refuses absurd counts before anything is allocated.
+  // Checks the arguments and refuses excessive counts before anything is allocated.
   expected_count(shape, dimension, voxel, per_voxel, pattern);
   Random random(seed);
   if (pattern == SeedPattern::poisson)

@@ -9,29 +9,29 @@
 
 namespace snowshed {
 
-/// How the particles of a solid are arranged, see `seed`.
+/// The arrangement of the particles of a solid, see `seed`.
 enum class SeedPattern { regular, jittered, poisson };
 
-/// More particles than this are refused.
+/// The largest number of particles of a solid.
 inline constexpr double max_particles = 2e8;
 
-/// Particle positions strictly inside the bounded solid `shape`, about `per_voxel` for each
+/// Returns particle positions strictly inside the bounded solid `shape`, about `per_voxel` for each
 /// voxel of edge `voxel` (metres).
 ///
-/// - regular: the centres of a lattice of spacing voxel / per_voxel^(1/d). A box or plate, in
-///   any orientation, is tiled exactly in its own frame, with the counts rounded up in each
-///   direction and so never fewer particles than asked for; other solids use a lattice along
-///   the world axes.
+/// - regular: the centres of a lattice of spacing voxel / per_voxel^(1/d). A box or plate in any
+///   orientation is tiled exactly in its own frame. Its counts are rounded up in each direction, so
+///   there are never fewer particles than asked for. Other solids use a lattice along the world
+///   axes.
 /// - jittered: a random point in each cell of that lattice.
-/// - poisson: blue noise (see sample_elimination.hpp) with exactly the `expected_count`.
+/// - poisson: blue noise (see sample_elimination.hpp) of exactly `expected_count` points.
 ///
-/// The same arguments give the same points. Throws InputError if the solid is unbounded or
-/// holds no particle or more than `max_particles`.
+/// The same arguments give the same points. Throws InputError if the solid is unbounded, if it
+/// holds no particle, or if it holds more than `max_particles`.
 std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, double per_voxel,
                        SeedPattern pattern, std::uint64_t seed);
 
-/// How many particles `seed` will place, without placing them: exact for poisson and for
-/// boxes, per_voxel * measure / voxel^d otherwise.
+/// Returns the number of particles that `seed` will place. It is exact for poisson and for boxes,
+/// and per_voxel * measure / voxel^d otherwise.
 std::size_t expected_count(const LevelSet& shape, int dimension, double voxel, double per_voxel,
                            SeedPattern pattern);
 

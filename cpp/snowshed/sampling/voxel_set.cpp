@@ -18,8 +18,8 @@ void require_bounded(const Bounds& bounds, int dimension) {
     throw InputError("", "the solid is unbounded; only bounded solids can be filled or measured");
 }
 
-/// A solid of a scene with `dimension` axes cut into ever smaller cells, each halved along
-/// every axis, down to a given edge.
+/// Recursive subdivision of a solid into cells. Each cell is halved along every axis of the scene,
+/// down to a given edge.
 class Subdivision {
  public:
   struct Root {
@@ -30,7 +30,7 @@ class Subdivision {
   Subdivision(const LevelSet& shape, int dimension)
       : shape_(shape), bounds_(shape.bounds()), dimension_(dimension) {}
 
-  /// The smallest cell with edge `edge` * 2^levels that covers the solid and the margin.
+  /// Returns the smallest cell with edge `edge` * 2^levels that covers the solid and the margin.
   Root root(double edge, double margin) const {
     require_bounded(bounds_, dimension_);
     Root root{(bounds_.min + bounds_.max) / 2, 0};
@@ -41,6 +41,7 @@ class Subdivision {
     return root;
   }
 
+  /// Returns the volume (area in 2D) of the solid within a cell.
   double measure(const Vec3& center, double edge, int levels) {
     if (misses(center, edge, levels, 0)) return 0;
     const double d = shape_.distance(center), reach = half_diagonal(edge);
@@ -54,17 +55,17 @@ class Subdivision {
     return sum;
   }
 
-  void interpolate_nodes(const Vec3& center, double edge, int levels, double margin,
-                         std::vector<Voxel>& voxels) {
+  /// Appends the voxels of a cell that may hold points within `margin` of the solid.
+  void collect_voxels(const Vec3& center, double edge, int levels, double margin,
+                      std::vector<Voxel>& voxels) {
     if (misses(center, edge, levels, margin)) return;
     if (levels == 0) {
       count_cell();
       voxels.push_back({center, shape_.distance(center) < -half_diagonal(edge)});
       return;
     }
-    for_each_child(center, edge, [&](const Vec3& c) {
-      interpolate_nodes(c, edge / 2, levels - 1, margin, voxels);
-    });
+    for_each_child(center, edge,
+                   [&](const Vec3& c) { collect_voxels(c, edge / 2, levels - 1, margin, voxels); });
   }
 
  private:
@@ -73,8 +74,9 @@ class Subdivision {
                              " voxels; choose a larger voxel size or a smaller solid");
   }
 
-  /// Whether no part of a cell is within `margin` of the solid. Distances far from the solid may be
-  /// too large (a sampled grid does not know what lies beyond it), so they do not count there.
+  /// Returns whether no point of a cell is within `margin` of the solid. Outside the solid's bounds
+  /// the bounds decide, since distances far from the solid may be too large (those of a sampled
+  /// grid beyond its box, for example).
   bool misses(const Vec3& center, double edge, int levels, double margin) const {
     const Vec3 middle = (bounds_.min + bounds_.max) / 2, half = (bounds_.max - bounds_.min) / 2;
     bool near = true;
@@ -93,9 +95,9 @@ class Subdivision {
 
   double half_diagonal(double edge) const { return edge / 2 * std::sqrt(dimension_); }
 
-  /// The part of a cell below a plane at signed distance -d from its centre, taken to grow
-  /// linearly between the first and the last corner. Not exact for one tilted cut, but
-  /// without bias over the many cells that a face cuts at all heights.
+  /// Returns the fraction of a cell below a plane at signed distance -d from its centre. The
+  /// fraction is taken to grow linearly between the first and the last corner. This is not exact
+  /// for a single tilted cut, but has no bias over the many cells that a face cuts at all heights.
   static double fraction_below(double d, const Vec3& normal, double edge) {
     return std::clamp(0.5 - d / (edge * normal.cwiseAbs().sum()), 0.0, 1.0);
   }
@@ -124,7 +126,7 @@ std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, d
   std::vector<Voxel> voxels;
   Subdivision cut(shape, dimension);
   const auto [center, levels] = cut.root(edge, margin);
-  cut.interpolate_nodes(center, std::ldexp(edge, levels), levels, margin, voxels);
+  cut.collect_voxels(center, std::ldexp(edge, levels), levels, margin, voxels);
   return voxels;
 }
 
@@ -144,7 +146,7 @@ double measure(const LevelSet& shape, int dimension, double voxel) {
   Subdivision cut(shape, dimension);
   auto [center, levels] = cut.root(voxel, 0.0);
   const double edge = std::ldexp(voxel, levels);
-  // Small solids can afford a finer look at their boundary and need it most.
+  // A small solid needs a finer subdivision of its boundary most, and can afford it.
   const int coarse_levels = dimension == 2 ? 12 : 8;
   levels += std::clamp(coarse_levels - levels, 1, 3);
   return cut.measure(center, edge, levels);

@@ -1,4 +1,4 @@
-// Solids cut into voxels: cubes in 3D, squares of the plane y = 0 in 2D.
+// Voxels of solids: cubes in 3D, squares of the plane y = 0 in 2D.
 #pragma once
 
 #include <vector>
@@ -7,26 +7,27 @@
 
 namespace snowshed {
 
-/// A voxel of a solid. `inside`: no point of it lies outside the solid.
+/// A voxel that may hold points of a solid.
 struct Voxel {
   Vec3 center;
-  bool inside;
+  bool inside;  // no point of the voxel lies outside the solid
 };
 
-/// The voxels with edge `edge` (metres) that may hold points within `margin` of the bounded
-/// solid `shape`, in an order that keeps neighbours together. The lattice has a corner at
-/// the centre of the solid's bounds.
+/// Returns the voxels with edge `edge` (metres) that may hold points within `margin` of the bounded
+/// solid `shape`. Neighbouring voxels are near each other in the result. The lattice has a corner
+/// at the centre of the solid's bounds.
 ///
-/// Throws InputError if the solid is unbounded or needs an absurd number of voxels.
+/// Throws InputError if the solid is unbounded or needs more than 2e8 voxels on its boundary.
 std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin = 0.0);
 
-/// `shape` as a box, if it is one. In 2D: the rectangle it cuts from the plane y = 0, its edges
-/// along the columns 0 and 2 of `axes`, if its own y axis is across the plane.
+/// Returns `shape` as a box if it is one. In 2D this is the rectangle in which the box cuts the
+/// plane y = 0, with edges along columns 0 and 2 of `axes`; the box's own y axis must be normal to
+/// the plane.
 std::optional<OrientedBox> scene_box(const LevelSet& shape, int dimension);
 
-/// Volume (3D, m3) or area (2D, m2) of a bounded solid. Exact for boxes in any orientation;
-/// otherwise voxels on the boundary are subdivided and their parts cut off by the tangent
-/// plane, an error of second order in the voxel size. Throws as `voxelize`.
+/// Returns the volume (3D, m3) or area (2D, m2) of a bounded solid. It is exact for boxes in any
+/// orientation. For other solids, voxels on the boundary are subdivided and cut by the tangent
+/// plane, with an error of second order in the voxel size. Throws as `voxelize`.
 double measure(const LevelSet& shape, int dimension, double voxel);
 
 }  // namespace snowshed

@@ -41,7 +41,7 @@ ObstacleSpec panel_obstacle(const Scene& scene) {
   obstacle.shape.normal = frame.normal;
   obstacle.shape.length = frame.length;
   obstacle.shape.width = frame.width;
-  obstacle.shape.thickness = std::max(panel.thickness, least_cells * scene.numerics.dx);
+  obstacle.shape.thickness = std::max(panel.thickness, least_cells * resolution(scene.numerics));
   obstacle.condition = panel.condition;
   obstacle.friction = panel.friction;
   return obstacle;

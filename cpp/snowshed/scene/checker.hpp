@@ -1,15 +1,15 @@
-// Visitor that holds every field of a scene against its range.
+// Visitor that checks that every field of a scene lies in its range.
 #pragma once
 
 #include <cmath>
 
-#include "snowshed/scene/walker.hpp"
+#include "snowshed/scene/path_visitor.hpp"
 
 namespace snowshed {
 
-class Checker : public Walker<Checker> {
+class Checker : public PathVisitor<Checker> {
  public:
-  using Walker::Walker;
+  using PathVisitor::PathVisitor;
 
   void version(const char*, int, const char*) {}
 
@@ -71,7 +71,7 @@ class Checker : public Walker<Checker> {
   template <class T>
   void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {
     check_count(at(key), items.size(), count);
-    Walker::list(key, items, count, doc);
+    PathVisitor::list(key, items, count, doc);
   }
 
  protected:

@@ -15,6 +15,10 @@
 //   object(key, member, need, doc)   optional(key, member, doc)   list(key, member, count, doc)
 //   variants(key, member, doc), variant(name, doc)..., end_variants()
 //                                            fields after variant(name) belong to that kind only
+//   method(key, settings_key, member, doc, settings_doc)
+//                                            the name of a method, and the settings of that method
+//   alias(key, other)                        before a field: another key that is read for it
+//   accuracy({key...})                       before fields: those that trade accuracy for time
 #pragma once
 
 #include "snowshed/scene/enum_names.hpp"
@@ -145,6 +149,9 @@ void describe(V& v, BodySpec& b) {
 
 template <class V>
 void describe(V& v, Panel& p) {
+  v.alias("height", "lower_edge_height");  // the words of pvlib
+  v.alias("length", "slant_height");
+  v.alias("tilt", "surface_tilt");
   v.number("height", p.height, "m", allowed::size_or_zero.required(),
            "Vertical distance of the lower edge above the ground");
   v.number("length", p.length, "m", allowed::size.required(), "Length along the slope");
@@ -194,6 +201,7 @@ void describe(V& v, Domain& d) {
 
 template <class V>
 void describe(V& v, Seeding& s) {
+  v.accuracy({"particles_per_voxel", "pattern"});
   v.number("particles_per_voxel", s.particles_per_voxel, "", non_negative.up_to(1000.0),
            "Particles per voxel of edge dx, at least 4 in 2D and 6 in 3D; 0: 6 in 2D, 8 in 3D");
   v.choice("pattern", s.pattern, "How particles are placed");
@@ -203,12 +211,15 @@ void describe(V& v, Seeding& s) {
 
 template <class V>
 void describe(V& v, MpmSettings& n) {
+  v.accuracy({"dx", "precision", "transfer", "flip_ratio", "basis", "courant_factor",
+              "strain_limit", "sleep_speed", "sleep_time"});
+  v.alias("courant_factor", "step_factor");  // its name up to version 0.1
   v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
   v.choice("transfer", n.transfer, "How velocities move between particles and grid");
   v.number("flip_ratio", n.flip_ratio, "", fraction, "Share of FLIP in FLIP/PIC; 0 is pure PIC");
   v.choice("basis", n.basis, "B-spline of the grid");
-  v.number("step_factor", n.step_factor, "", positive.up_to(1.0),
+  v.number("courant_factor", n.courant_factor, "", positive.up_to(1.0),
            "Time step over the largest stable one");
   v.number("strain_limit", n.strain_limit, "", positive.up_to(0.5),
            "Largest |dt grad v| that a step may impose on a particle");
@@ -255,7 +266,7 @@ void describe(V& v, Scene& s) {
   v.list("bodies", s.bodies, between(0, 10000), "Further bodies of snow");
   v.optional("domain", s.domain, "A box with sticky sides; unbounded without it");
   v.object("seeding", s.seeding, Need::optional, "How snow is filled with particles");
-  v.object("numerics", s.numerics, Need::optional, "The method's settings");
+  v.method("method", "numerics", s.numerics, "The numerical method", "The method's settings");
   v.object("events", s.events, Need::optional, "How many events, and when one ends");
   v.object("output", s.output, Need::optional, "What is written during a run");
 }

@@ -31,6 +31,14 @@ std::string to_text(const json& value, const std::string& path) {
   return value.get<std::string>();
 }
 
+std::size_t to_place(const json& value, const std::string& path,
+                     const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (value == names[i]) return i;
+  const std::string near = value.is_string() ? suggestion(value.get<std::string>(), names) : "";
+  throw InputError(path, shown(value) + " is none of " + quoted_list(names) + near);
+}
+
 std::string vector_text(int dimension) {
   return dimension == 2 ? "an array of 2 numbers (x, z; the scene is 2D)"
                         : "an array of 3 numbers (x, y, z; the scene is 3D)";

@@ -50,15 +50,15 @@ Int to_integer(const nlohmann::json& value, const std::string& path, const Range
   return value.get<Int>();
 }
 
+/// Where among `names` the value is.
+std::size_t to_place(const nlohmann::json& value, const std::string& path,
+                     const std::vector<std::string>& names);
+
 template <class E>
 E to_choice(const nlohmann::json& value, const std::string& path) {
   std::vector<std::string> names;
-  for (const auto& named : EnumNames<E>::list) {
-    if (value == named.name) return named.value;
-    names.push_back(named.name);
-  }
-  const std::string near = value.is_string() ? suggestion(value.get<std::string>(), names) : "";
-  throw InputError(path, shown(value) + " is none of " + quoted_list(names) + near);
+  for (const auto& named : EnumNames<E>::list) names.push_back(named.name);
+  return EnumNames<E>::list[to_place(value, path, names)].value;
 }
 
 }  // namespace snowshed

@@ -1,69 +1,74 @@
-// Where a member of a scene stands in its JSON, so that rules can name members, not texts.
+// The JSON path of a member of a scene: rules name members, messages name their paths.
 #pragma once
 
 #include <typeindex>
 
-#include "snowshed/scene/walker.hpp"
+#include "snowshed/scene/path_visitor.hpp"
 
 namespace snowshed {
 
-/// Visitor that looks for the object at an address.
-class Locator : public Walker<Locator> {
+/// Visitor that finds the path of the object with a given address and type.
+class Locator : public PathVisitor<Locator> {
  public:
-  /// `path` receives the JSON pointer when the target is met.
+  /// Writes the JSON pointer of the target to `path`.
   Locator(const void* target, std::type_index type, const int& dimension, std::string& path)
-      : Walker("", dimension), target_(target), type_(type), found_(path) {}
+      : PathVisitor("", dimension), target_(target), type_(type), found_(path) {}
 
   template <class T, class... Rest>
   void number(const char* key, T& value, const Rest&...) {
-    meet(at(key), value);
+    compare(at(key), value);
   }
   template <class T, class... Rest>
   void integer(const char* key, T& value, const Rest&...) {
-    meet(at(key), value);
+    compare(at(key), value);
   }
   template <class T, class... Rest>
   void vector(const char* key, T& value, const Rest&...) {
-    meet(at(key), value);
+    compare(at(key), value);
   }
   template <class T, class... Rest>
   void spin(const char* key, T& value, const Rest&...) {
-    meet(at(key), value);
+    compare(at(key), value);
   }
   void version(const char*, int, const char*) {}
-  void flag(const char* key, bool& value, const char*) { meet(at(key), value); }
-  void text(const char* key, std::string& value, const char*) { meet(at(key), value); }
-  void file(const char* key, std::string& value, const char*) { meet(at(key), value); }
+  void flag(const char* key, bool& value, const char*) { compare(at(key), value); }
+  void text(const char* key, std::string& value, const char*) { compare(at(key), value); }
+  void file(const char* key, std::string& value, const char*) { compare(at(key), value); }
   template <class E>
   void choice(const char* key, E& value, const char*) {
-    meet(at(key), value);
+    compare(at(key), value);
   }
-  void direction(const char* key, Vec3& value, const char*) { meet(at(key), value); }
-  void axis(const char* key, Vec3& value, const char*) { meet(at(key), value); }
+  void direction(const char* key, Vec3& value, const char*) { compare(at(key), value); }
+  void axis(const char* key, Vec3& value, const char*) { compare(at(key), value); }
 
   template <class T>
   void object(const char* key, T& value, Need need, const char* doc) {
-    meet(at(key), value);
-    Walker::object(key, value, need, doc);
+    compare(at(key), value);
+    PathVisitor::object(key, value, need, doc);
   }
   template <class T>
   void optional(const char* key, std::optional<T>& value, const char* doc) {
-    meet(at(key), value);
-    if (value) meet(at(key), *value);
-    Walker::optional(key, value, doc);
+    compare(at(key), value);
+    if (value) compare(at(key), *value);
+    PathVisitor::optional(key, value, doc);
+  }
+  void method(const char* key, const char* settings_key, MethodSettings& settings, const char* doc,
+              const char* settings_doc) {
+    compare(at(settings_key), settings);
+    PathVisitor::method(key, settings_key, settings, doc, settings_doc);
   }
   template <class T>
   void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {
-    meet(at(key), items);
+    compare(at(key), items);
     for (std::size_t i = 0; i < items.size(); ++i)
-      meet(pointer(at(key), std::to_string(i)), items[i]);
-    Walker::list(key, items, count, doc);
+      compare(pointer(at(key), std::to_string(i)), items[i]);
+    PathVisitor::list(key, items, count, doc);
   }
 
  private:
-  /// Types are compared too: a struct and its first member share an address.
+  /// Compares types too, because a struct and its first member share an address.
   template <class T>
-  void meet(const std::string& path, const T& value) {
+  void compare(const std::string& path, const T& value) {
     if (&value == target_ && type_ == typeid(T)) found_ = path;
   }
 
@@ -72,7 +77,7 @@ class Locator : public Walker<Locator> {
   std::string& found_;
 };
 
-/// JSON pointer of `member`, which must be part of `scene`; "/" for the scene itself.
+/// Returns the JSON pointer of a member of the scene, "/" for the scene itself.
 template <class T>
 std::string path_of(const Scene& scene, const T& member) {
   std::string path = "/";

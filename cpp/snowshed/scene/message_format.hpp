@@ -1,4 +1,4 @@
-// How messages show numbers, names and places.
+// Numbers, names and JSON paths as messages show them.
 #pragma once
 
 #include <string>
@@ -6,25 +6,27 @@
 
 namespace snowshed {
 
-/// The shortest text that reads back as the same number: 0.5, 210, 1e-07.
+/// Returns the shortest text that reads back as the same number: 0.5, 210, 1e-07.
 std::string show(double number);
 
-/// Six digits, for what has been computed.
+/// Returns the number with six digits, for computed values.
 std::string show_rounded(double number);
 
-/// Text in quotation marks, in ASCII, shortened if long: safe to print whatever it holds.
+/// Returns the text in quotation marks, as ASCII and shortened, so that any text can be printed.
 std::string quote(const std::string& text);
 
+/// Returns whether the text is valid UTF-8.
 bool is_utf8(const std::string& text);
 
-/// JSON pointer (RFC 6901) of a member or an item. Control characters and the rest of a very long
-/// key, which only a broken scene has, are not worth showing.
+/// Returns the JSON pointer (RFC 6901) of a member or an item of `parent`. Control characters
+/// become
+/// "?", and keys of more than 100 characters are cut.
 std::string pointer(const std::string& parent, const std::string& key);
 
-/// `"a", "b", "c"`.
+/// Returns the names in quotation marks with commas between them.
 std::string quoted_list(const std::vector<std::string>& names);
 
-/// "; did you mean "x"?" with the name nearest to `given`, or "" if none is near.
+/// Returns `; did you mean "x"?` with the name nearest to `given`, or nothing if none is near.
 std::string suggestion(const std::string& given, const std::vector<std::string>& names);
 
 }  // namespace snowshed

@@ -38,7 +38,7 @@ Scene lab_scene(double tilt) {
   slab.thickness = 0.02;  // its length stays 0: as long as the panel, also if that is changed
   slab.width = 0.142;
   scene.ground.emplace().condition = Condition::sticky;
-  scene.numerics.dx = 0.01;
+  scene.mpm().dx = 0.01;
   scene.events.count = 5;
   return scene;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "snowshed/scene/checker.hpp"
@@ -121,6 +122,22 @@ class Reader : public Checker {
       read((*given)[i], at(key) + "/" + std::to_string(i), dimension_, items[i]);
   }
 
+  void method(const char* key, const char* settings_key, MethodSettings& settings, const char*,
+              const char* settings_doc) {
+    if (const json* given = take(key))
+      settings = all_methods()[to_place(*given, at(key), method_names())];
+    std::visit([&](auto& own) { object(settings_key, own, Need::optional, settings_doc); },
+               settings);
+  }
+
+  void alias(const char* key, const char* other) {
+    aliases_.push_back(other);
+    if (!object_.contains(other)) return;
+    if (object_.contains(key))
+      throw InputError(at(other), "means the same as " + at(key) + "; give one of the two");
+    given_alias_[key] = other;
+  }
+
   void variants(const char* key, std::string& type, const char* doc) {
     const json* given = take(key, Need::required, "a text");
     if (!given) throw *missing_;  // without it no other key makes sense
@@ -135,7 +152,8 @@ class Reader : public Checker {
   /// `finish`, after unknown ones: a misspelt key is both, and the misspelling is what helps.
   const json* take(const char* key, Need need = Need::optional, const std::string& allowed = "") {
     keys_.push_back(key);
-    const auto found = object_.find(key);
+    const auto alias = given_alias_.find(key);
+    const auto found = object_.find(alias == given_alias_.end() ? key : alias->second);
     if (found != object_.end()) return &*found;
     if (is_required(need, dimension_) && !missing_)
       missing_ = InputError(at(key), "missing: " + allowed + " is required");
@@ -143,9 +161,11 @@ class Reader : public Checker {
   }
 
   void finish() const {
+    std::vector<std::string> known = keys_;
+    known.insert(known.end(), aliases_.begin(), aliases_.end());
     for (const auto& [key, value] : object_.items()) {
-      if (std::find(keys_.begin(), keys_.end(), key) != keys_.end()) continue;
-      const std::string near = suggestion(key, keys_);
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      const std::string near = suggestion(key, known);
       throw InputError(at(key),
                        "unknown key" + (near.empty() ? "; allowed: " + quoted_list(keys_) : near));
     }
@@ -154,6 +174,8 @@ class Reader : public Checker {
 
   const json& object_;
   std::vector<std::string> keys_;
+  std::vector<std::string> aliases_;
+  std::map<std::string, std::string> given_alias_;  // by the key that it stands for
   std::optional<InputError> missing_;
 };
 

@@ -12,8 +12,8 @@
 #include "snowshed/geometry/rigid_motion.hpp"
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/contact_law.hpp"
-#include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/sampling/seeding.hpp"
+#include "snowshed/scene/method_settings.hpp"
 
 namespace snowshed {
 
@@ -138,9 +138,13 @@ struct Scene {
   std::vector<BodySpec> bodies;
   std::optional<Domain> domain;  // its sides are sticky walls; none: unbounded
   Seeding seeding;
-  MpmSettings numerics;
+  MethodSettings numerics;  // of the method that the scene chooses
   Events events;
   Output output;
+
+  /// The settings of the material point method, which the scene must have chosen.
+  MpmSettings& mpm() { return std::get<MpmSettings>(numerics); }
+  const MpmSettings& mpm() const { return std::get<MpmSettings>(numerics); }
 };
 
 }  // namespace snowshed

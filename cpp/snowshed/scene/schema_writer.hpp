@@ -2,7 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <initializer_list>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "snowshed/scene/describe.hpp"
 
@@ -102,6 +107,26 @@ class SchemaWriter {
         doc, count.need);
   }
 
+  void method(const char* key, const char* settings_key, MethodSettings&, const char* doc,
+              const char* settings_doc) {
+    json names = json::array(), alternatives = json::array();
+    for_each_method([&](const auto& settings) {
+      const MethodInfo& info = info_of(settings);
+      json schema = {{"title", info.name}, {"description", info.doc}};
+      schema.update(write<std::decay_t<decltype(settings)>>(definitions_));
+      names.push_back(info.name);
+      alternatives.push_back(std::move(schema));
+    });
+    add(key, {{"enum", names}, {"default", names[0]}}, doc);
+    add(settings_key, {{"anyOf", std::move(alternatives)}}, settings_doc);
+  }
+
+  void alias(const char* key, const char* other) { aliases_[key].push_back(other); }
+
+  void accuracy(std::initializer_list<const char*> keys) {
+    accuracy_.insert(keys.begin(), keys.end());
+  }
+
   void variants(const char* key, std::string&, const char* doc) {
     variant_key_ = key;
     variant_doc_ = doc;
@@ -145,6 +170,8 @@ class SchemaWriter {
     if (need == Need::required_in_3d) doc += " (required in 3D)";
     json property = {{"description", doc}};
     property.update(schema);
+    if (accuracy_.count(key)) property["x-accuracy"] = true;
+    if (aliases_.count(key)) property["x-aliases"] = aliases_[key];
     properties_[key] = std::move(property);
   }
 
@@ -191,6 +218,8 @@ class SchemaWriter {
   json properties_ = json::object();
   json required_ = json::array();
   json variants_ = json::array();
+  std::set<std::string> accuracy_;                           // keys that trade accuracy for time
+  std::map<std::string, std::vector<std::string>> aliases_;  // by the key that they stand for
   std::string variant_key_, variant_doc_, variant_name_, variant_what_;
 };
 

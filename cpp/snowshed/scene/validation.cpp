@@ -12,11 +12,12 @@
 namespace snowshed {
 namespace {
 
-class Rules {
+class SceneRules {
  public:
-  explicit Rules(const Scene& scene) : scene_(scene) {}
+  explicit SceneRules(const Scene& scene) : scene_(scene) {}
 
   void check() const {
+    check_parts(scene_, info_of(scene_.numerics));
     if (scene_.domain) check_domain(*scene_.domain);
     if (scene_.panel) check_panel(*scene_.panel);
     if (scene_.slab) check_slab(*scene_.slab);
@@ -28,7 +29,7 @@ class Rules {
     check_seeding(scene_.seeding);
     if (scene_.events.rest_time > scene_.events.max_time)
       fail(scene_.events.rest_time, show(scene_.events.rest_time) + " s is longer than an event (" +
-                                        named(scene_.events.max_time) + " s)");
+                                        path_and_value(scene_.events.max_time) + " s)");
     if (!scene_.slab && scene_.bodies.empty())
       fail(scene_, "nothing holds snow: give " + path_of(scene_, scene_.slab) + " or " +
                        path_of(scene_, scene_.bodies));
@@ -40,8 +41,8 @@ class Rules {
     throw InputError(path_of(scene_, member), message);
   }
 
-  /// "/panel/length = 2".
-  std::string named(const double& member) const {
+  /// Returns path and value of a member, such as "/panel/length = 2".
+  std::string path_and_value(const double& member) const {
     return path_of(scene_, member) + " = " + show(member);
   }
 
@@ -75,7 +76,7 @@ class Rules {
     for (const auto& layer : slab.layers) check_event(layer.event);
   }
 
-  /// Of all events, as one solid.
+  /// Returns the slab of the event in which it is thickest, as one solid.
   ShapeSpec thickest_slab() const {
     const auto& layers = scene_.slab->layers;
     double always = scene_.slab->thickness;
@@ -108,7 +109,7 @@ class Rules {
 
   void check_fits(const double& slab, const double& panel) const {
     if (slab > panel)
-      fail(slab, show(slab) + " m is more than the panel has (" + named(panel) + " m)");
+      fail(slab, show(slab) + " m is more than the panel has (" + path_and_value(panel) + " m)");
   }
 
   void check_panel(const Panel& panel) const {
@@ -118,8 +119,8 @@ class Rules {
                            " m below the ground, which is steeper");
   }
 
-  /// Written in full, a shape takes up to 13 values, and snow fewer: a scene must not grow, by its
-  /// defaults, beyond what the JSON parser reads (max_values), or no run of it could be resumed.
+  /// A shape written with its defaults takes up to 13 values, snow fewer. The written scene must
+  /// stay within what the JSON parser reads (max_values), or its run could not be resumed.
   void check_number_of_shapes() const {
     constexpr std::size_t most = 50'000;
     std::size_t shapes = 0;
@@ -140,10 +141,10 @@ class Rules {
     check_shape(obstacle.shape, 1);
     if (obstacle.motion && obstacle.motion->end < obstacle.motion->start)
       fail(obstacle.motion->end, show(obstacle.motion->end) + " s is before the start (" +
-                                     named(obstacle.motion->start) + " s)");
+                                     path_and_value(obstacle.motion->start) + " s)");
   }
 
-  /// Results tell obstacles apart by their names.
+  /// Names must differ, because results tell obstacles apart by them.
   void check_names() const {
     std::set<std::string> names;
     for (const auto& obstacle : assemble_obstacles(scene_)) {
@@ -168,7 +169,7 @@ class Rules {
   void check_in_domain(const T& member, const ShapeSpec& shape) const {
     const auto bounds = shape_bounds(shape);
     if (!scene_.domain || !bounds) return;
-    const double rounding = 1e-6 * scene_.numerics.dx;
+    const double rounding = 1e-6 * resolution(scene_.numerics);
     for (const int i : {0, 1, 2}) {
       if (i == 1 && !in_3d()) continue;
       const double low = scene_.domain->min[i], high = scene_.domain->max[i];
@@ -206,6 +207,20 @@ class Rules {
 
 }  // namespace
 
-void check_rules(const Scene& scene) { Rules(scene).check(); }
+void check_parts(const Scene& scene, const MethodInfo& method) {
+  const auto check = [&](const auto& part, bool given, bool taken) {
+    if (given && !taken)
+      throw InputError(path_of(scene, part),
+                       "the method " + quote(method.name) + " takes no such part");
+  };
+  check(scene.panel, scene.panel.has_value(), method.takes.panel);
+  check(scene.slab, scene.slab.has_value(), method.takes.slab);
+  check(scene.ground, scene.ground.has_value(), method.takes.ground);
+  check(scene.obstacles, !scene.obstacles.empty(), method.takes.obstacles);
+  check(scene.bodies, !scene.bodies.empty(), method.takes.bodies);
+  check(scene.domain, scene.domain.has_value(), method.takes.domain);
+}
+
+void check_rules(const Scene& scene) { SceneRules(scene).check(); }
 
 }  // namespace snowshed

@@ -1,7 +1,9 @@
 // Visitor that writes a scene as JSON, every field of it.
 #pragma once
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "snowshed/scene/describe.hpp"
 
@@ -59,6 +61,17 @@ class Writer {
     auto& array = json_[key] = nlohmann::ordered_json::array();
     for (auto& item : items) array.push_back(write(item, dimension_));
   }
+
+  /// The default method is left out: its scenes, and their hashes, stay as they were before there
+  /// was a choice.
+  void method(const char* key, const char* settings_key, MethodSettings& settings, const char*,
+              const char*) {
+    if (settings.index() > 0) json_[key] = info_of(settings).name;
+    json_[settings_key] = std::visit([&](auto& own) { return write(own, dimension_); }, settings);
+  }
+
+  void alias(const char*, const char*) {}
+  void accuracy(std::initializer_list<const char*>) {}
 
   void variants(const char* key, std::string& type, const char*) { json_[key] = type_ = type; }
   bool variant(const char* name, const char*) { return type_ == name; }

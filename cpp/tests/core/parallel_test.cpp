@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace snowshed {
@@ -16,6 +18,32 @@ TEST(Parallel, EveryIterationRunsOnce) {
       parallel_for_each(n, threads, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
       EXPECT_EQ(runs, std::vector<int>(std::size_t(n), 2)) << n << " on " << threads;
     }
+}
+
+TEST(Parallel, ThrowsWhatTheFirstIterationThatThrowsThrew) {
+  const auto thrown_by = [](const auto& loop) {
+    try {
+      loop([](std::ptrdiff_t i) {
+        if (i % 1000 == 777) throw std::out_of_range(std::to_string(i));
+      });
+    } catch (const std::out_of_range& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  for (const int threads : {1, 2, 5})
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      EXPECT_EQ(thrown_by([&](auto f) { parallel_for(5000, threads, 16, f); }), "777");
+      EXPECT_EQ(thrown_by([&](auto f) { parallel_for_each(5000, threads, f); }), "777");
+    }
+}
+
+TEST(Parallel, TakesAsManyThreadsAsOpenMpWouldUnlessToldHowMany) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(3);  // as OMP_NUM_THREADS would
+  EXPECT_EQ(threads_to_use(0), 3);
+  EXPECT_EQ(threads_to_use(7), 7);
+  omp_set_num_threads(before);
 }
 
 #ifdef SNOWSHED_STD_THREADS

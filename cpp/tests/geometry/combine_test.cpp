@@ -35,7 +35,7 @@ TEST(Difference, LeavesTheFirstWithoutTheOthers) {
         x.norm() < 1 && (x - Vec3(1, 0, 0)).norm() > 0.5 && (x - Vec3(0, 0, 1)).norm() > 0.5;
     EXPECT_EQ(bitten->distance(x) < 0, inside);
   }
-  // In the bite the surface faces the centre of what was taken away.
+  // The surface of the hole faces the centre of the ball that was subtracted.
   EXPECT_LT((bitten->normal({0.55, 0, 0}) - Vec3::UnitX()).norm(), 1e-12);
   EXPECT_DOUBLE_EQ(bitten->inradius(), 1.0);
   expect_normal_is_gradient(*bitten, 1.5);
@@ -43,7 +43,7 @@ TEST(Difference, LeavesTheFirstWithoutTheOthers) {
 }
 
 TEST(Transform, RotatesThenTranslates) {
-  const Mat3 quarter = rotation_about_y(pi / 2);  // x axis to -z
+  const Mat3 quarter = rotation_about_y(pi / 2);  // turns the x axis to -z
   const Shape rod = make_box(Vec3(2, 0, 0), Vec3(2, 0.2, 0.2));
   const Shape moved = transform(rod, quarter, {10, 0, 0});
   EXPECT_NEAR(moved->distance({10, 0, -2}), -0.1, 1e-12);

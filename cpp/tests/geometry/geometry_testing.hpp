@@ -17,7 +17,7 @@
 
 namespace snowshed::geometry_testing {
 
-/// Uniform in the cube [-half, half]^3.
+/// Returns a point uniformly distributed in the cube [-half, half]^3.
 inline Vec3 random_point(Random& random, double half) {
   const double x = random.uniform(), y = random.uniform(), z = random.uniform();
   return half * (2 * Vec3(x, y, z) - Vec3::Ones());
@@ -28,8 +28,8 @@ inline Mat3 random_rotation(Random& random) {
   return Eigen::AngleAxisd(2 * pi * random.uniform(), axis).toRotationMatrix();
 }
 
-/// The normal is a unit vector and the gradient of the distance at random points, except on
-/// the few that sit on an edge of the medial axis.
+/// Expects that the normal is a unit vector and the gradient of the distance at random points. Few
+/// points lie so close to the medial axis that the gradient differs.
 inline void expect_normal_is_gradient(const LevelSet& shape, double half, double tolerance = 1e-5,
                                       double h = 1e-6) {
   Random random(7);
@@ -48,7 +48,7 @@ inline void expect_normal_is_gradient(const LevelSet& shape, double half, double
   EXPECT_LE(off, samples / 200);
 }
 
-/// Every point with a negative distance lies in the bounds.
+/// Expects that every point with a negative distance lies within the bounds.
 inline void expect_bounds_hold(const LevelSet& shape, double half) {
   Random random(8);
   const Bounds bounds = shape.bounds();
@@ -63,7 +63,7 @@ inline void expect_bounds_hold(const LevelSet& shape, double half) {
   EXPECT_GT(inside, 0);
 }
 
-/// Runs `action`, which must throw an InputError whose text contains `expected`.
+/// Expects that `action` throws an InputError whose text contains `expected`.
 template <class Action>
 void expect_input_error(Action action, const std::string& expected) {
   try {
@@ -75,7 +75,7 @@ void expect_input_error(Action action, const std::string& expected) {
   }
 }
 
-/// A directory that lives as long as the test.
+/// A temporary folder, removed at the end of its scope.
 class TempDir {
  public:
   TempDir() {

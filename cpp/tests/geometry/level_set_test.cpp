@@ -7,7 +7,8 @@ namespace {
 
 using namespace geometry_testing;
 
-/// A ball or a slab without a normal of its own.
+// Solids that do not override `normal`.
+
 class Ball final : public LevelSet {
  public:
   double distance(const Vec3& x) const override { return x.norm() - 1; }

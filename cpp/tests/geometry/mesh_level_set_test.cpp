@@ -24,7 +24,7 @@ TEST(MeshLevelSet, CubeMatchesTheBox) {
 }
 
 TEST(MeshLevelSet, SignIsRightBeyondEdgesAndCorners) {
-  // Planes of single faces give the wrong sign here; a spike makes it worse than a cube does.
+  // The normal of a single face gives the wrong sign here, for a spike more often than for a cube.
   TriangleMesh spike = box_mesh({-1, -1, 0}, {1, 1, 0.2});
   for (const int top : {4, 5, 6, 7})
     spike.vertices[top] = {0.01 * spike.vertices[top].x(), 0.01 * spike.vertices[top].y(), 3};

@@ -1,4 +1,4 @@
-// Meshes for tests.
+// Meshes shared by tests.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ inline TriangleMesh box_mesh(const Vec3& min, const Vec3& max) {
   return mesh;
 }
 
-/// A ball of `rings` x 2 `rings` facets with its vertices on the sphere.
+/// Returns a ball of `rings` x 2 `rings` facets whose vertices lie on the sphere.
 inline TriangleMesh sphere_mesh(double radius, std::uint32_t rings) {
   TriangleMesh mesh;
   const std::uint32_t sides = 2 * rings;

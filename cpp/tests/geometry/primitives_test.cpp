@@ -69,7 +69,8 @@ TEST(Cylinder, DistanceMatchesClosedForms) {
   EXPECT_DOUBLE_EQ(cylinder->distance({0, 0, 4}), 3);
   EXPECT_DOUBLE_EQ(cylinder->distance({0.5 + 3, 0, 1 + 4}), 5);
   EXPECT_DOUBLE_EQ(cylinder->inradius(), 0.5);
-  EXPECT_NEAR(cylinder->normal({0, 0, 0}).z(), 0, 1e-15);  // on the axis: any radial direction
+  EXPECT_NEAR(cylinder->normal({0, 0, 0}).z(), 0,
+              1e-15);  // on the axis any radial direction will do
 }
 
 TEST(Cylinder, IsSoundInAnyOrientation) {

@@ -9,8 +9,8 @@ using namespace geometry_testing;
 
 constexpr double spacing = 0.1, radius = 1.0;
 
-/// Of a ball about the origin, cut off at `band`.
-GridSamples cut_off_ball(double band) {
+/// Returns signed distances to a ball about the origin, clamped to `band`.
+GridSamples clamped_ball(double band) {
   constexpr std::size_t n = 51;
   GridSamples ball{Vec3::Constant(-2.47), spacing, {n, n, n}, {}};
   for (std::size_t i = 0; i < n; ++i)
@@ -27,13 +27,13 @@ void expect_ball(const GridSamples& ball, double tolerance) {
   Random random(5);
   for (int n = 0; n < 3000; ++n) {
     const Vec3 x = random_point(random, 2.4);
-    if (x.norm() < 0.3) continue;  // samples cannot show the peak in the centre
+    if (x.norm() < 0.3) continue;  // the samples do not resolve the kink at the centre
     ASSERT_NEAR(shape->distance(x), x.norm() - radius, tolerance) << x.transpose();
   }
 }
 
 TEST(RebuildDistance, BeyondTheBand) {
-  GridSamples ball = cut_off_ball(3 * spacing);
+  GridSamples ball = clamped_ball(3 * spacing);
   const std::vector<float> cut = ball.values;
   rebuild_distance(ball, 0.999 * 3 * spacing, "ball");
   expect_ball(ball, 0.2 * spacing);
@@ -42,13 +42,13 @@ TEST(RebuildDistance, BeyondTheBand) {
 }
 
 TEST(RebuildDistance, AllOver) {
-  GridSamples ball = cut_off_ball(0.5 * spacing);
+  GridSamples ball = clamped_ball(0.5 * spacing);
   rebuild_distance(ball, 0, "ball");
-  expect_ball(ball, 0.35 * spacing);  // close to the surface, of which only crossings are known
+  expect_ball(ball, 0.35 * spacing);  // near the surface, since only its crossings are known
 }
 
 TEST(RebuildDistance, NeedsASurface) {
-  GridSamples nothing = cut_off_ball(1);
+  GridSamples nothing = clamped_ball(1);
   for (float& value : nothing.values) value = 1;
   expect_input_error([&] { rebuild_distance(nothing, 0, "nowhere"); }, "nowhere: no value");
 }

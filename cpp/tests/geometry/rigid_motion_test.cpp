@@ -41,7 +41,7 @@ TEST(RigidMotion, VelocityIsTheTimeDerivativeOfAMaterialPoint) {
 TEST(RigidMotion, QuarterTurnAboutAMovingPivot) {
   MotionSpec spec;
   spec.velocity = {2, 0, 0};
-  spec.angular_velocity = {0, pi / 2, 0};  // x axis towards -z
+  spec.angular_velocity = {0, pi / 2, 0};  // turns the x axis towards -z
   spec.pivot = {1, 0, 0};
   const RigidMotion motion(spec);
   EXPECT_LT((motion.to_body({3, 0, -1}, 1.0) - Vec3(2, 0, 0)).norm(), 1e-12);

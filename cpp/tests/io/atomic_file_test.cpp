@@ -13,7 +13,7 @@ namespace {
 
 using AtomicFileTest = TemporaryFolder;
 
-/// No file may grow beyond `bytes` while this lives: what a full disk looks like.
+/// Lets no file grow beyond `bytes` within its scope, as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {

@@ -15,7 +15,7 @@ namespace {
 
 class BinaryArchiveTest : public TemporaryFolder {
  protected:
-  /// A small archive: text of 3 bytes, 3 floats, 2 integers of 64 bits, an empty array.
+  /// Writes a small archive: text of 3 bytes, 3 floats, 2 integers of 64 bits, an empty array.
   std::string write_sample() const {
     const std::vector<float> speed = {1.5f, -2.0f, 0.25f};
     BinaryWriter writer;
@@ -38,7 +38,7 @@ class BinaryArchiveTest : public TemporaryFolder {
     return message_of<InputError>([&] { load(bytes); });
   }
 
-  /// The sample with a number replaced, and a checksum that fits: an attack, not an accident.
+  /// Returns the sample with a number replaced and a valid checksum, as after a manipulation.
   template <class T>
   std::string forged(std::size_t offset, T value) const {
     return snowshed::forged(sample(), offset, value);
@@ -48,8 +48,8 @@ class BinaryArchiveTest : public TemporaryFolder {
   const std::string sample_ = write_sample();
 };
 
-// Where things are in the sample: the first section follows the header of 24 bytes; its header
-// has type, name length, count and bytes.
+// Offsets in the sample. The first section follows the header of 24 bytes. Its own header has type,
+// name length, count and bytes.
 constexpr std::size_t sections_at = 12, length_at = 16, type_at = 24, name_length_at = 28,
                       count_at = 32, bytes_at = 40, name_at = 48;
 
@@ -186,7 +186,7 @@ TEST_F(BinaryArchiveTest, RefusesASectionTwice) {
 }
 
 TEST_F(BinaryArchiveTest, ManySectionsTakeTimeInProportion) {
-  constexpr std::uint32_t sections = 100'000;  // comparing each with each would take minutes
+  constexpr std::uint32_t sections = 100'000;  // comparing all pairs would take minutes
   std::string bytes = sample().substr(0, type_at);
   for (std::uint32_t i = 0; i < sections; ++i) {
     const std::uint32_t header[] = {6, 8, 0, 0, 0, 0};  // no elements of one byte
@@ -202,7 +202,7 @@ TEST_F(BinaryArchiveTest, ManySectionsTakeTimeInProportion) {
 TEST_F(BinaryArchiveTest, FindsNumbersThatAreNotFinite) {
   load(sample()).require_finite();
   BinaryWriter writer;
-  writer.add("count", std::vector<std::uint64_t>(2, ~std::uint64_t{0}));  // NaN, were it a double
+  writer.add("count", std::vector<std::uint64_t>(2, ~std::uint64_t{0}));  // NaN if read as a double
   writer.add("time", std::vector<double>{1.0, 2.0, -std::numeric_limits<double>::infinity()});
   writer.save(path("double"));
   EXPECT_EQ(

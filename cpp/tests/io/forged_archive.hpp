@@ -1,4 +1,4 @@
-// Archives that were changed on purpose: their checksums fit.
+// Archives that were changed on purpose and have a valid checksum.
 #pragma once
 
 #include <cstring>
@@ -8,6 +8,7 @@
 
 namespace snowshed {
 
+/// Returns `bytes` with a valid checksum.
 inline std::string with_valid_sum(std::string bytes) {
   Checksum sum;
   sum.update(bytes.data(), bytes.size() - 8);
@@ -16,14 +17,14 @@ inline std::string with_valid_sum(std::string bytes) {
   return bytes;
 }
 
-/// `bytes` with a number replaced.
+/// Returns `bytes` with a number replaced and a valid checksum.
 template <class T>
 std::string forged(std::string bytes, std::size_t offset, T value) {
   std::memcpy(&bytes[offset], &value, sizeof value);
   return with_valid_sum(std::move(bytes));
 }
 
-/// Where the data of the section of that name begin, if the name is shorter than eight characters.
+/// Returns the offset of a section's data. The name must be shorter than eight characters.
 inline std::size_t data_of(const std::string& bytes, std::string name) {
   name.resize(8);
   return bytes.find(name) + 8;

@@ -38,7 +38,7 @@ TEST_F(PvdSeriesTest, ReopensExactly) {
   EXPECT_EQ(reopened.entries()[0].file, "a & \"b\".vtp");
 }
 
-TEST_F(PvdSeriesTest, ResumesWithoutWhatIsWrittenAgain) {
+TEST_F(PvdSeriesTest, ReopensWithoutEntriesFromATimeOn) {
   PvdSeries series(path("snow.pvd"));
   for (const double time : {0.0, 0.1, 0.2, 0.3}) series.append(time, "s.vtp");
   PvdSeries resumed = PvdSeries::reopen(path("snow.pvd"), 0.2);

@@ -1,4 +1,4 @@
-// A folder of its own for each test, gone afterwards.
+// A temporary folder for each test, removed at its end.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ class TemporaryFolder : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// What an error says; the test fails if `action` throws no Error.
+/// Returns the message of the Error that `action` throws. The test fails if it throws none.
 template <class Error, class Action>
 std::string message_of(Action&& action) {
   try {
@@ -50,7 +50,7 @@ std::string message_of(Action&& action) {
   } catch (const Error& error) {
     return error.what();
   }
-  ADD_FAILURE() << "no error of the expected kind";
+  ADD_FAILURE() << "no error of the expected type";
   return {};
 }
 

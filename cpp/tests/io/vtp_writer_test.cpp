@@ -17,7 +17,7 @@ std::string attribute(const std::string& element, const std::string& name) {
   return element.substr(start, element.find('"', start) - start);
 }
 
-/// Reads a block the way VTK does: by the offset in the element that has this name.
+/// Returns a block as VTK reads it: at the offset in the element with this name.
 template <class T>
 std::vector<T> block(const std::string& file, const std::string& name) {
   const std::size_t found = file.find("Name=\"" + name + "\"");

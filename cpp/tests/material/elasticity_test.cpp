@@ -6,7 +6,7 @@ namespace snowshed {
 namespace {
 
 TEST(Elasticity, UniaxialStressGivesYoungsModulusAndPoissonsRatio) {
-  // Strain (-nu, -nu, 1): no stress but along z, where it is E.
+  // The strain (-nu, -nu, 1) gives the stress E along z and no other stress.
   for (double nu : {0.0, 0.2, 0.49}) {
     const auto e = Elasticity<double>::from(1e6, nu, 3);
     const double volumetric = 1 - 2 * nu;

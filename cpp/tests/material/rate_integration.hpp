@@ -1,6 +1,6 @@
-// An independent witness for the return mapping: the rate equations of cohesive Modified Cam-Clay
-// integrated with an adaptive Runge-Kutta method (Dormand-Prince 5(4)). Nothing here shares code
-// or the p-q form with the material; stress and flow are full tensors.
+// An independent reference for the return mapping: the rate equations of cohesive Modified
+// Cam-Clay, integrated with an adaptive Runge-Kutta method (Dormand-Prince 5(4)). It shares no code
+// with the material and does not use its p-q form; stress and flow are full tensors.
 #pragma once
 
 #include <Eigen/Core>
@@ -55,8 +55,9 @@ class RateEquations {
     return shear() * q_now * q_now + m2() * (p_now + snow_.cohesion * p0_now) * (p_now - p0_now);
   }
 
-  /// The state after a straight strain path. Elastic up to the yield surface, whose crossing is
-  /// located by bisection (y is convex along an elastic path); from there on the plastic rates.
+  /// Returns the state after a straight strain path. The path is elastic up to the yield surface
+  /// and plastic from there on. Bisection finds the crossing, since y is convex along an elastic
+  /// path.
   template <int D>
   MaterialState<D> integrate(MaterialState<D> x, const Eigen::Matrix<double, D, D>& path) const {
     const auto elastic_to = [&](double t) { return MaterialState<D>{x.strain + t * path, x.ev}; };
@@ -64,7 +65,7 @@ class RateEquations {
     const double on_surface = 1e-10 * m2() * p0(x.ev) * p0(x.ev);
     if (yield<D>(x) < -on_surface || !loading<D>(x, path)) {
       if (yield<D>(elastic_to(1)) <= 0) return elastic_to(1);
-      // Unloading may start on the surface: look for the way out from the deepest point.
+      // Unloading may start on the surface. The crossing then lies after the minimum of y.
       double low = 0, high = 1;
       for (int i = 0; i < 200; ++i) {
         const double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -92,7 +93,7 @@ class RateEquations {
 
   double y_p(double p, double p0) const { return m2() * (2 * p - (1 - snow_.cohesion) * p0); }
 
-  /// dy/dt of an elastic step at this strain rate.
+  /// Returns dy/dt of an elastic step at this strain rate.
   template <int D>
   double drive(const MaterialState<D>& x, const Eigen::Matrix<double, D, D>& rate) const {
     const auto s = deviatoric_stress<D>(x.strain);
@@ -100,7 +101,7 @@ class RateEquations {
            6 * mu * shear() * s.cwiseProduct(rate).sum();
   }
 
-  /// Rates of elastic strain and e_v from dy = 0 (associative flow: plastic strain rate
+  /// Returns the rates of elastic strain and e_v from dy = 0 (associative flow: plastic strain rate
   /// gamma dy/dtau, dy/dtau = -y_p I/D + 3 (1 + 2 beta) s).
   template <int D>
   MaterialState<D> rates(const MaterialState<D>& x, const Eigen::Matrix<double, D, D>& rate) const {
@@ -116,9 +117,9 @@ class RateEquations {
     return {rate - gamma * flow, -gamma * yp};
   }
 
-  /// Shortly after strengthless snow has begun to be compacted: stress, p0 and e_v grow in
-  /// proportion to time. The ratio r = p/p0 is where the shear stress that the strain rate
-  /// builds up meets the yield surface.
+  /// Returns the state shortly after the compaction of snow without strength has begun. Stress, p0
+  /// and e_v then grow in proportion to time. Their ratio r = p/p0 is that at which the shear
+  /// stress due to the strain rate lies on the yield surface.
   template <int D>
   MaterialState<D> recompacted(const Eigen::Matrix<double, D, D>& rate, double time) const {
     using Matrix = Eigen::Matrix<double, D, D>;
@@ -154,11 +155,11 @@ class RateEquations {
         {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
     static constexpr double error[7] = {71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
                                         -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
-    constexpr double tolerance = 1e-15;  // beside yield strains of some 1e-3
+    constexpr double tolerance = 1e-15;  // yield strains are about 1e-3
     double h = 1e-4;
     while (t < 1) {
       h = std::min(h, 1 - t);
-      if (x.ev > -1e-9) {  // full softening: no stress is left, the whole strain is plastic
+      if (x.ev > -1e-9) {  // full softening: the stress is zero, all strain is plastic
         const double gap = x.ev + x.strain.trace(), end = gap + (1 - t) * path.trace();
         if (end >= 0) return {Eigen::Matrix<double, D, D>::Zero(), end};
         t += std::max(0.0, -gap / path.trace());
@@ -167,7 +168,7 @@ class RateEquations {
         t += h;
         continue;
       }
-      MaterialState<D> k[7], next, off{Eigen::Matrix<double, D, D>::Zero(), 0};
+      MaterialState<D> k[7], next, difference{Eigen::Matrix<double, D, D>::Zero(), 0};
       for (int i = 0; i < 7; ++i) {
         next = x;
         for (int j = 0; j < i; ++j) {
@@ -175,16 +176,16 @@ class RateEquations {
           next.ev += h * a[i][j] * k[j].ev;
         }
         k[i] = rates<D>(next, path);
-        off.strain += h * error[i] * k[i].strain;
-        off.ev += h * error[i] * k[i].ev;
+        difference.strain += h * error[i] * k[i].strain;
+        difference.ev += h * error[i] * k[i].ev;
       }
-      const double wrong = std::max(off.strain.norm(), std::abs(off.ev)) / tolerance;
-      if (wrong <= 1 && next.ev < 0) {
+      const double excess = std::max(difference.strain.norm(), std::abs(difference.ev)) / tolerance;
+      if (excess <= 1 && next.ev < 0) {
         x = next;
         t += h;
         if (!loading<D>(x, path)) return integrate<D>(x, (1 - t) * path);  // unloads midway
       }
-      const double factor = 0.9 * std::pow(std::max(wrong, 1e-5), -0.2);
+      const double factor = 0.9 * std::pow(std::max(excess, 1e-5), -0.2);
       h *= next.ev < 0 ? std::clamp(factor, 0.2, 3.0) : 0.5;
       if (h < 1e-15) throw std::runtime_error("the rate equations have become singular");
     }

@@ -13,11 +13,11 @@
 namespace snowshed {
 namespace {
 
-// The witness computes in long double, so that its own rounding does not count.
+// The reference is computed in long double, so that its own rounding is negligible.
 template <int D>
 using Matrix = Eigen::Matrix<long double, D, D>;
 
-/// f of a symmetric matrix by its eigenvalues.
+/// Returns f of a symmetric matrix, computed from its eigenvalues.
 template <int D, class F>
 Matrix<D> of_eigenvalues(const Matrix<D>& a, F f) {
   const Eigen::SelfAdjointEigenSolver<Matrix<D>> eigen(a);
@@ -26,6 +26,7 @@ Matrix<D> of_eigenvalues(const Matrix<D>& a, F f) {
   return eigen.eigenvectors() * w.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+/// Returns the tensor in one lane of a pack, or the only one of a scalar.
 template <class V, int D>
 Matrix<D> lane(const Sym<V, D>& a, int l) {
   Matrix<D> m;
@@ -54,7 +55,7 @@ class SymTensor : public testing::Test {
   static constexpr int lanes = is_simd_pack<V> ? int(sizeof(V) / sizeof(T)) : 1;
   static constexpr double epsilon = std::numeric_limits<T>::epsilon();
 
-  /// Random, of the given norm in each lane.
+  /// Returns random tensors, each of the given norm.
   static Sym<V, D> random_tensor(Random& random, double norm) {
     Sym<V, D> a;
     for (int l = 0; l < lanes; ++l) {
@@ -74,7 +75,8 @@ class SymTensor : public testing::Test {
     return a;
   }
 
-  /// Largest error over random tensors of that norm, relative to the result's norm.
+  /// Returns the largest error over random tensors of that norm, relative to the norm of the
+  /// result.
   template <class F, class G>
   static double worst(double norm, F f, G exact) {
     Random random(2);
@@ -97,7 +99,8 @@ using TensorCases =
                    TensorCase<SimdPack<double>, 3>>;
 TYPED_TEST_SUITE(SymTensor, TensorCases);
 
-// Series below detail::series_norm = 0.04 (half of that for the strain), eigenvalues above.
+// Below detail::series_norm = 0.04 (half of it for the strain) series are used, above it
+// eigenvalues.
 constexpr double norms[] = {1e-12, 1e-6, 1e-3, 0.0199, 0.0201, 0.0399, 0.0401, 0.3, 0.9};
 
 TYPED_TEST(SymTensor, HenckyStrainIsHalfTheLogarithm) {

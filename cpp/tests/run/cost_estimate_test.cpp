@@ -50,8 +50,8 @@ TEST(CostEstimate, TimeStepOfTheCalibratedSnow) {
   EXPECT_NEAR(stable_time_step(preset_scene("geometry")), 5.430e-5, 1e-8);
   EXPECT_NEAR(estimate_cost(lab).wave_speed, 80.064, 1e-3);
   Scene fine = lab;
-  fine.numerics.dx = 0.005;
-  fine.numerics.step_factor = 0.45;
+  fine.mpm().dx = 0.005;
+  fine.mpm().courant_factor = 0.45;
   EXPECT_NEAR(stable_time_step(fine), stable_time_step(lab) / 4, 1e-15);
 }
 
@@ -74,11 +74,11 @@ TEST(CostEstimate, TheRearSlidesTheWholePanelAndFalls) {
 
 TEST(CostEstimate, OlderSnowIsAwakeOnlyInPart) {
   Scene scene = preset_scene("lab-40");
-  scene.numerics.sleep_speed = 0.0;
+  scene.mpm().sleep_speed = 0.0;
   const CostEstimate awake = estimate_cost(scene);
   const double steps = awake.steps / 5, slab = awake.particles[0];
   EXPECT_NEAR(awake.updates, steps * slab * (1 + 2 + 3 + 4 + 5), 1.0);
-  scene.numerics.sleep_speed = 0.02;
+  scene.mpm().sleep_speed = 0.02;
   const CostEstimate asleep = estimate_cost(scene);
   EXPECT_LT(asleep.first_landing, asleep.slide_time + asleep.fall_time);
   const double share = 0.5 * (1 - asleep.first_landing / asleep.event_time);
@@ -149,16 +149,16 @@ TEST(CostEstimate, DoublesNeedTwiceTheMemory) {
   const double single = estimate_cost(scene).bytes;
   EXPECT_GT(single, 150.0 * 27830);
   EXPECT_LT(single, 300.0 * 27830);
-  scene.numerics.precision = Precision::float64;
+  scene.mpm().precision = Precision::float64;
   EXPECT_NEAR(estimate_cost(scene).bytes, 2 * single, 1e-6 * single);
 }
 
 TEST(CostEstimate, AbsurdScenesAreForecastAndRefused) {
   Scene scene = preset_scene("lab-40");
-  scene.numerics.dx = 1e-9;
+  scene.mpm().dx = 1e-9;
   EXPECT_GT(estimate_cost(scene).total_particles, 1e20);
   EXPECT_THROW(check_memory(estimate_cost(scene).bytes), InputError);
-  scene.numerics.dx = std::numeric_limits<double>::denorm_min();
+  scene.mpm().dx = std::numeric_limits<double>::denorm_min();
   EXPECT_THROW(check_memory(estimate_cost(scene).bytes), InputError);
 }
 

@@ -88,7 +88,7 @@ TEST_F(Layers, OfTwoThreadsHaveTheSameBits) {
   Scene scene = layered_scene();
   scene.events.count = 2;
   const auto one = run_all(scene);
-  scene.numerics.threads = 2;
+  scene.mpm().threads = 2;
   expect_same_bits(*run_all(scene), *one);
 }
 

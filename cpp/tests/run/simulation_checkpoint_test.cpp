@@ -23,8 +23,8 @@ Scene drop(double dx) {
   body.shape.radius = 0.05;
   body.shape.center = {0, 0, 0.06};
   scene.bodies.push_back(body);
-  scene.numerics.dx = dx;
-  scene.numerics.threads = 1;
+  scene.mpm().dx = dx;
+  scene.mpm().threads = 1;
   return scene;
 }
 
@@ -66,7 +66,7 @@ TEST_F(SimulationCheckpoint, IsTheSameOnAnyNumberOfThreads) {
   scene.output.energy = true;
   std::string first;
   for (const int threads : {1, 2, 3}) {
-    scene.numerics.threads = threads;
+    scene.mpm().threads = threads;
     Simulation sim(scene);
     sim.begin_event();
     ASSERT_GT(sim.solver().size(), 4000u);

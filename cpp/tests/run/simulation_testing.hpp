@@ -23,8 +23,8 @@ inline Scene small_scene(Transfer transfer = Transfer::flip) {
   scene.slab.emplace();
   scene.slab->thickness = 0.03;
   scene.ground.emplace();
-  scene.numerics.transfer = transfer;
-  scene.numerics.threads = 1;
+  scene.mpm().transfer = transfer;
+  scene.mpm().threads = 1;
   scene.events.count = 3;
   scene.events.max_time = 0.3;
   scene.output.energy = true;

@@ -15,7 +15,7 @@ namespace {
 using namespace geometry_testing;
 constexpr double voxel = 0.01;
 
-/// How far the solid reaches in direction u from a point inside.
+/// Returns the distance from a point inside the solid to its surface in direction u.
 double reach(const LevelSet& solid, const Vec3& from, const Vec3& u) {
   double s = 0;
   while (solid.distance(from + s * u) < 0) s += 1e-4;
@@ -36,7 +36,7 @@ class Pile : public ::testing::TestWithParam<int> {
 
 TEST_P(Pile, KeepsVolumeHeightAndLength) {
   EXPECT_NEAR(measure(*solid, dimension, voxel) / measure(*pile, dimension, voxel), 1, 0.02);
-  // The stack's measures are those of its outermost particles (thesis A.4).
+  // Height and length of a stack are those of its outermost particles (thesis A.4).
   const auto cloud_extent = [&](const Vec3& u) {
     double farthest = -1;
     for (const Vec3& x : points) farthest = std::max(farthest, x.dot(u));
@@ -53,13 +53,13 @@ TEST_P(Pile, KeepsVolumeHeightAndLength) {
   EXPECT_NEAR(extent(z), cloud_extent(z), voxel / 2);
   EXPECT_NEAR(extent(z), height, voxel / 2);
   EXPECT_NEAR(extent(x) + extent(-x), cloud_extent(x) + cloud_extent(-x), voxel / 2);
-  EXPECT_NEAR(extent(x) + extent(-x), length, voxel);  // sharp tips stay empty
+  EXPECT_NEAR(extent(x) + extent(-x), length, voxel);  // the sharp tips hold no particles
 }
 
 TEST_P(Pile, HasNoHolesAndHoldsItsParticles) {
-  const auto bilateral = [&](const Vec3& x) { return solid->distance(x) < 0; };
-  const auto held = std::count_if(points.begin(), points.end(), bilateral);
-  EXPECT_GT(held, 0.99 * points.size());
+  const auto is_inside = [&](const Vec3& x) { return solid->distance(x) < 0; };
+  const auto inside = std::count_if(points.begin(), points.end(), is_inside);
+  EXPECT_GT(inside, 0.99 * points.size());
   Random random(1);
   for (int n = 0; n < 5000; ++n) {
     Vec3 x = random_point(random, 0.25);
@@ -86,7 +86,7 @@ TEST(ParticlesToLevelSet, FillsGapsButKeepsValleys) {
   EXPECT_GT(particles_to_level_set(pair(0.08), 2, voxel, r)->distance({0.04, 0, 0}), 0.01);
 }
 
-TEST(ParticlesToLevelSet, KeepsLoneParticles) {
+TEST(ParticlesToLevelSet, KeepsIsolatedParticles) {
   Random random(5);
   for (const int dimension : {2, 3})
     for (int n = 0; n < 50; ++n) {
@@ -95,7 +95,7 @@ TEST(ParticlesToLevelSet, KeepsLoneParticles) {
       const Shape ball = particles_to_level_set({x, {0.3, 0, 0}}, dimension, voxel, 1e-3);
       EXPECT_LT(ball->distance(x), 0) << x.transpose();
       const auto seeds = seed(*ball, dimension, voxel, 6, SeedPattern::poisson, n);
-      const auto near = [&](const Vec3& grain) { return (grain - x).norm() < 0.6 * voxel; };
+      const auto near = [&](const Vec3& particle) { return (particle - x).norm() < 0.6 * voxel; };
       EXPECT_GE(std::count_if(seeds.begin(), seeds.end(), near), 1) << x.transpose();
     }
 }

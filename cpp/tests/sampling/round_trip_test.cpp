@@ -1,4 +1,5 @@
-// Particles to a solid and back on snowshed's own grids, as between events with "reseed".
+// Conversion of particles to a solid and back on snowshed's own grids, as between events with
+// "reseed".
 #include "sampling/round_trip_testing.hpp"
 
 namespace snowshed {

@@ -1,4 +1,4 @@
-// Snow of known volume that is turned into a solid and into particles again.
+// Snow of known volume that is converted to a solid and to particles again.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Snow {
   double height, volume;
 };
 
-/// A dome cut from a ball (in 2D a disc), as high as a quarter of its length.
+/// Returns a dome cut from a ball (in 2D from a disc). Its height is a quarter of its length.
 inline Snow dome(int dimension) {
   const double height = dimension == 2 ? 0.1 : 0.06, radius = 2.5 * height;
   const Shape ball = make_sphere({0, 0, height - radius}, radius);
@@ -36,7 +36,7 @@ inline Snow dome(int dimension) {
           dimension == 2 ? section : cap};
 }
 
-/// A slab with sharp edges.
+/// Returns a slab, which has sharp edges.
 inline Snow slab(int dimension) {
   const double height = 0.05, length = dimension == 2 ? 0.3 : 0.15, width = 0.1;
   return {"slab", dimension,
@@ -65,7 +65,7 @@ inline double top(const std::vector<Vec3>& cloud) {
   return high;
 }
 
-/// The highest particle in each column two voxels wide, seen from the side.
+/// Returns the height of the highest particle in each column of two voxels along x.
 inline std::map<int, double> outline(const std::vector<Vec3>& cloud) {
   std::map<int, double> heights;
   for (const Vec3& x : cloud) {
@@ -75,7 +75,8 @@ inline std::map<int, double> outline(const std::vector<Vec3>& cloud) {
   return heights;
 }
 
-/// Root mean square of the difference of two outlines where both have snow.
+/// Returns the root mean square difference of two outlines over the columns in which both have
+/// snow.
 inline double outline_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   const auto one = outline(a), other = outline(b);
   double sum = 0, count = 0;
@@ -89,18 +90,19 @@ inline double outline_difference(const std::vector<Vec3>& a, const std::vector<V
   return std::sqrt(sum / count);
 }
 
-/// Particles as a solid. The test's own way, through a file or not.
+/// A conversion of particles to a solid, for example through a file.
 using Solidify = std::function<Shape(const std::vector<Vec3>& particles, const Snow&)>;
 
+/// Expects that volume, particle number and outline survive the conversion and seeding.
 inline void expect_kept(const Snow& snow, const Solidify& solidify) {
   SCOPED_TRACE(std::string(snow.name) + " in " + std::to_string(snow.dimension) + "D");
   const std::vector<Vec3> before = particles_of(*snow.solid, snow.dimension, 3);
   const Shape solid = solidify(before, snow);
-  // Of the small snow in 3D, a tenth of a voxel all around is more.
-  const double slack = snow.dimension == 2 ? 0.02 : 0.05;
-  EXPECT_NEAR(measure(*solid, snow.dimension, voxel) / snow.volume, 1, slack);
+  // The snow is smaller in 3D, where a tenth of a voxel all around is a larger part of it.
+  const double tolerance = snow.dimension == 2 ? 0.02 : 0.05;
+  EXPECT_NEAR(measure(*solid, snow.dimension, voxel) / snow.volume, 1, tolerance);
   const std::vector<Vec3> after = particles_of(*solid, snow.dimension, 4);
-  EXPECT_NEAR(double(after.size()) / double(before.size()), 1, slack);
+  EXPECT_NEAR(double(after.size()) / double(before.size()), 1, tolerance);
   EXPECT_NEAR(top(after), top(before), voxel / 2);
   EXPECT_NEAR(top(after), snow.height, voxel / 2);
   EXPECT_NEAR(extent(after, 0), extent(before, 0), voxel / 2);

@@ -43,7 +43,7 @@ double smallest_spacing(const std::vector<Vec3>& points, double reach) {
   return smallest;
 }
 
-TEST(Seed, PointsAreStrictlyInsideAndAsManyAsForecast) {
+TEST(Seed, PointsAreStrictlyInsideAndAsManyAsExpected) {
   for (const SeedPattern pattern : patterns) {
     for (const Shape& shape : {tilted_slab_2d(), dome()}) {
       const auto points = seed(*shape, 2, voxel_edge, 6, pattern, 1);
@@ -67,7 +67,7 @@ TEST(Seed, PoissonGivesExactlyTheCountRoundedUp) {
   const double volume = measure(*dome(), 3, voxel_edge);
   EXPECT_EQ(seed(*dome(), 3, voxel_edge, 6, SeedPattern::poisson, 1).size(),
             std::ceil(6 * volume / 1e-6));
-  // Less than a voxel_edge still gets a particle.
+  // A solid smaller than a voxel still gets a particle.
   EXPECT_EQ(seed(*make_sphere({0, 0, 0}, 1e-3), 3, voxel_edge, 6, SeedPattern::poisson, 1).size(),
             1u);
 }
@@ -104,7 +104,8 @@ TEST(Seed, JitteredPutsOnePointInEachCell) {
 }
 
 TEST(Seed, PoissonKeepsItsDistance) {
-  // The densest packing has 1.07 (2D) and 1.12 (3D) mean spacings; white noise about 0.
+  // In mean spacings, the smallest distance is 1.07 (2D) and 1.12 (3D) in the densest packing and
+  // about 0 in white noise.
   const double spacing_2d = voxel_edge / std::sqrt(6.0), spacing_3d = voxel_edge / 2;
   const auto flat = seed(*tilted_slab_2d(), 2, voxel_edge, 6, SeedPattern::poisson, 5);
   EXPECT_GT(smallest_spacing(flat, 2 * spacing_2d), 0.6 * spacing_2d);
@@ -115,7 +116,7 @@ TEST(Seed, PoissonKeepsItsDistance) {
 TEST(Seed, PoissonIsAsDenseAtTheSurfaceAsWithin) {
   const Shape slab = make_box(Vec3::Zero(), Vec3(0.4, 0.3, 0.04));
   const auto points = seed(*slab, 3, voxel_edge, 8, SeedPattern::poisson, 2);
-  // Layers one spacing thick from the top.
+  // Counts in layers one spacing thick, from the top.
   std::vector<double> layers(8, 0);
   for (const Vec3& x : points) ++layers[std::min(7, int((0.02 - x.z()) / 0.005))];
   for (const double count : layers) EXPECT_NEAR(count / (points.size() / 8.0), 1, 0.06);

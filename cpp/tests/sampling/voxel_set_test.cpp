@@ -11,7 +11,7 @@ namespace {
 
 using namespace geometry_testing;
 
-/// A box that does not say that it is one, so that it has to be measured.
+/// Returns a box without `oriented_box`, so that its volume is measured by subdivision.
 Shape anonymous(Shape box) { return dilate(std::move(box), 0.0); }
 
 TEST(Measure, IsExactForBoxes) {

@@ -21,7 +21,7 @@ Scene panel_scene(double tilt, double ground_tilt = 0.0) {
   panel.tilt = tilt;
   scene.slab.emplace().thickness = 0.1;
   scene.ground.emplace().tilt = ground_tilt;
-  scene.numerics.dx = 0.01;
+  scene.mpm().dx = 0.01;
   return scene;
 }
 

@@ -25,7 +25,7 @@ void expect_conditions(const Scene& scene) {
   EXPECT_EQ(scene.panel->condition, Condition::slip);
   EXPECT_EQ(scene.ground->condition, Condition::sticky);
   EXPECT_EQ(scene.ground->tilt, 0.0);
-  EXPECT_EQ(scene.numerics.dx, 0.01);
+  EXPECT_EQ(scene.mpm().dx, 0.01);
   EXPECT_EQ(scene.gravity, 9.81);
 }
 

@@ -67,6 +67,11 @@ class Randomizer {
   }
   bool variant(const char* name, const char*) { return type_ == name; }
   void end_variants() {}
+  void method(const char*, const char*, MethodSettings& settings, const char*, const char*) {
+    std::visit([&](auto& own) { fill(own); }, settings);
+  }
+  void alias(const char*, const char*) {}
+  void accuracy(std::initializer_list<const char*>) {}
 
  private:
   template <class T>

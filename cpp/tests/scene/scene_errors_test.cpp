@@ -75,7 +75,12 @@ INSTANTIATE_TEST_SUITE_P(
          "0 is outside the allowed range (0 < value <= 1000000 m)"},
         {R"(, "numerics": {"flip_ratio": 1.5})", "/numerics/flip_ratio",
          "1.5 is outside the allowed range (0 <= value <= 1)"},
-        {R"(, "numerics": {"step_factor": 0})", "/numerics/step_factor",
+        {R"(, "method": "mps")", "/method", R"("mps" is none of "mpm"; did you mean "mpm"?)"},
+        {R"(, "numerics": {"courant_factor": 0.5, "step_factor": 0.5})", "/numerics/step_factor",
+         "means the same as /numerics/courant_factor; give one of the two"},
+        {R"(, "numerics": {"step_factr": 0.5})", "/numerics/step_factr",
+         R"(unknown key; did you mean "step_factor"?)"},
+        {R"(, "numerics": {"courant_factor": 0})", "/numerics/courant_factor",
          "0 is outside the allowed range (0 < value <= 1)"},
         {R"(, "numerics": {"strain_limit": 0.6})", "/numerics/strain_limit",
          "0.6 is outside the allowed range (0 < value <= 0.5)"},
@@ -379,9 +384,9 @@ TEST(SceneErrorsText, ScenesMadeInCodeAreHeldAgainstTheSameRanges) {
   scene.bodies[0].shape.type = "transform";
   EXPECT_EQ(where(), "/bodies/0/shape/shapes");
   scene.bodies[0].shape.type = "sphere";
-  scene.numerics.basis = static_cast<Basis>(17);
+  scene.mpm().basis = static_cast<Basis>(17);
   EXPECT_EQ(where(), "/numerics/basis");
-  scene.numerics.basis = Basis::cubic;
+  scene.mpm().basis = Basis::cubic;
   scene.dimension = 5;
   EXPECT_EQ(where(), "/dimension");
 }

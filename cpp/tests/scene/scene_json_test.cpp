@@ -72,7 +72,7 @@ TEST(SceneJson, EveryFieldIsRead) {
     "seeding": {"particles_per_voxel": 3, "pattern": "regular", "seed": 18446744073709551615,
                 "allow_sparse": true},
     "numerics": {"dx": 0.02, "precision": "double", "transfer": "apic", "flip_ratio": 0.5,
-                 "basis": "cubic", "step_factor": 0.3, "strain_limit": 0.1, "sleep_speed": 0.4,
+                 "basis": "cubic", "courant_factor": 0.3, "strain_limit": 0.1, "sleep_speed": 0.4,
                  "sleep_time": 0.7, "threads": 3},
     "events": {"count": 4, "between": "reseed", "max_time": 3, "rest_speed": 0.1,
                "rest_time": 0.2},
@@ -85,8 +85,8 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(*scene.ground == (Ground{-5, Condition::slip, 0.4}));
   EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
   EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
-  EXPECT_TRUE(scene.numerics == (MpmSettings{0.02, Precision::float64, Transfer::apic, 0.5,
-                                             Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
+  EXPECT_TRUE(scene.mpm() == (MpmSettings{0.02, Precision::float64, Transfer::apic, 0.5,
+                                          Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, true, 30}));
 
@@ -241,6 +241,26 @@ TEST_F(SceneFile, WhatCannotBeReadIsNamed) {
       EXPECT_EQ(error.where(), path.string());
     }
   }
+}
+
+TEST(SceneJson, TheMethodIsAChoiceAndTheDefaultGoesWithoutSaying) {
+  const std::string base =
+      R"({"snowshed": 1, "bodies": [{"shape": {"type": "sphere", "radius": 1}}])";
+  const Scene scene = parse_scene(base + R"(, "numerics": {"dx": 0.02}, "method": "mpm"})");
+  EXPECT_EQ(scene.mpm().dx, 0.02);
+  EXPECT_EQ(write_scene(scene), write_scene(parse_scene(base + R"(, "numerics": {"dx": 0.02}})")));
+  EXPECT_FALSE(nlohmann::json::parse(write_scene(scene)).contains("method"));
+}
+
+TEST(SceneJson, OtherNamesOfAKeyAreRead) {
+  const Scene scene = parse_scene(R"({"snowshed": 1, "slab": {"thickness": 0.1},
+    "panel": {"lower_edge_height": 1, "slant_height": 2, "width": 3, "surface_tilt": 45},
+    "numerics": {"step_factor": 0.5}})");
+  EXPECT_TRUE(*scene.panel == (Panel{1, 2, 3, 45, 0, Condition::slip, 0.3}));
+  EXPECT_EQ(scene.mpm().courant_factor, 0.5);
+  const auto written = nlohmann::json::parse(write_scene(scene));
+  EXPECT_EQ(written["numerics"]["courant_factor"], 0.5);
+  EXPECT_FALSE(written["numerics"].contains("step_factor"));
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Rules between several fields: each is broken by one change to a scene that keeps them all.
+#include "snowshed/scene/validation.hpp"
+
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -135,6 +137,26 @@ TEST(SceneRulesBase, PlaneScenesHaveNoWidth) {
   EXPECT_NO_THROW(validate(scene));
   scene.seeding.particles_per_voxel = 3.9;
   EXPECT_THROW(validate(scene), InputError);
+}
+
+TEST(SceneParts, AreRefusedByAMethodThatDoesNotTakeThem) {
+  const Scene scene = good_scene();
+  const auto refused = [&](TakenParts parts) {
+    try {
+      check_parts(scene, {"slide", "", parts});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  const std::string end = R"(: the method "slide" takes no such part)";
+  EXPECT_EQ(refused({true, true, true, true, true, true}), "nothing");
+  EXPECT_EQ(refused({false, true, true, true, true, true}), "/panel" + end);
+  EXPECT_EQ(refused({true, false, true, true, true, true}), "/slab" + end);
+  EXPECT_EQ(refused({true, true, false, true, true, true}), "/ground" + end);
+  EXPECT_EQ(refused({true, true, true, false, true, true}), "/obstacles" + end);
+  EXPECT_EQ(refused({true, true, true, true, false, true}), "/bodies" + end);
+  EXPECT_EQ(refused({true, true, true, true, true, false}), "/domain" + end);
 }
 
 }  // namespace

@@ -34,13 +34,13 @@ TEST(ReadVdb, LevelSetIsADistanceEverywhere) {
   const std::string path = write(folder, {sphere()});
   for (const char* name : {"", "ball"}) {
     const Shape ball = make_sampled_grid(read_vdb({path, name}), "ball");
-    // Chords of the ten voxels along the radius cut off half a per cent.
+    // With ten voxels along the radius, linear interpolation loses half a per cent.
     EXPECT_NEAR(measure(*ball, 3, voxel) / (4 * pi / 3 * std::pow(radius, 3)), 1, 0.01);
-    // From the middle, ten voxels deep, to what is beyond the stored box.
-    for (const double part : {0.01, 0.3, 0.6, 0.95, 1.0, 1.05, 1.2}) {
-      const Vec3 x = center + part * radius * Vec3(1, 2, -2) / 3;
-      EXPECT_NEAR(ball->distance(x), (part - 1) * radius, 0.1 * voxel) << part;
-      if (part > 0.1) EXPECT_LT((ball->normal(x) - Vec3(1, 2, -2) / 3).norm(), 0.1) << part;
+    // From the centre, ten voxels deep, to points outside the stored box.
+    for (const double fraction : {0.01, 0.3, 0.6, 0.95, 1.0, 1.05, 1.2}) {
+      const Vec3 x = center + fraction * radius * Vec3(1, 2, -2) / 3;
+      EXPECT_NEAR(ball->distance(x), (fraction - 1) * radius, 0.1 * voxel) << fraction;
+      if (fraction > 0.1) EXPECT_LT((ball->normal(x) - Vec3(1, 2, -2) / 3).norm(), 0.1) << fraction;
     }
   }
 }
@@ -57,7 +57,7 @@ TEST(ReadVdb, HalfPrecisionAndScale) {
 TEST(ReadVdb, FogVolumeIsSnowAboveTheThreshold) {
   const TempDir folder;
   const std::string path = write(folder, {fog()});
-  // It grows from 0 to 1 over three voxels.
+  // The value grows from 0 to 1 over three voxels.
   for (const double threshold : {0.2, 0.5, 0.8}) {
     const Shape ball = make_sampled_grid(read_vdb({path, "mist", threshold}), "mist");
     const double expected = radius - 3 * voxel * threshold;
@@ -75,7 +75,7 @@ TEST(ReadVdb, AShapeOfAScene) {
   spec.file = "test.vdb";
   spec.grid = "ball";
   EXPECT_NEAR(build_shape(spec, 3, "/x", folder.path())->distance(center), -radius, 0.1 * voxel);
-  // The section of the plane y = 0, 0.2 m from the centre.
+  // In 2D the shape is its section with the plane y = 0, which is 0.2 m from the centre.
   const double section = std::sqrt(radius * radius - 0.04);
   EXPECT_NEAR(measure(*build_shape(spec, 2, "/x", folder.path()), 2, voxel), pi * section * section,
               0.02);
@@ -107,7 +107,7 @@ TEST(ReadVdb, RefusesWhatIsNoUniformScalarGrid) {
   grid->transform().postScale(openvdb::Vec3d(1, 1, 2));
   refused(grid, "no cubes along the axes");
   grid = sphere();
-  grid->transform().postScale(100.0);  // distances of another unit than positions
+  grid->transform().postScale(100.0);  // distances and positions in different units
   refused(grid, "background");
   refused(openvdb::createLevelSet<openvdb::FloatGrid>(0.1, 3), "no active voxels");
   const std::string two = write(folder, {sphere(), fog()});
@@ -121,7 +121,7 @@ TEST(ReadVdb, RefusesHugeExtentsAtOnce) {
   grid->tree().setValueOn({-2'000'000'000, 0, 2'000'000'000}, 0.1f);
   const std::string far = write(folder, {grid});
   expect_input_error([&] { read_vdb({far, "ball"}); }, "at most 5e+07 are read");
-  // All of index space as one active tile.
+  // A single active tile covers a large part of index space.
   grid = openvdb::FloatGrid::create(0.0f);
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->tree().root().addTile(openvdb::Coord(0), 1.0f, true);
@@ -147,8 +147,8 @@ TEST(ReadVdb, ValuesTooSteepForTheBandAreRebuilt) {
   auto grid = sphere();
   for (auto value = grid->beginValueOn(); value; ++value) value.setValue(100.0f * *value);
   const Shape ball = make_sampled_grid(read_vdb({write(folder, {grid}), ""}), "ball");
-  for (const double part : {0.5, 0.9, 1.1, 1.5})
-    EXPECT_NEAR(ball->distance(center + part * radius * Vec3::UnitX()), (part - 1) * radius,
+  for (const double fraction : {0.5, 0.9, 1.1, 1.5})
+    EXPECT_NEAR(ball->distance(center + fraction * radius * Vec3::UnitX()), (fraction - 1) * radius,
                 0.35 * voxel);
 }
 
@@ -161,13 +161,13 @@ TEST(ReadVdb, RefusesDamagedFiles) {
   const std::string path = write(folder, {sphere()});
   std::ifstream stream(path, std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(stream), {}};
-  for (std::size_t part = 1; part < 10; ++part) {
-    const auto cut = folder.write("cut.vdb", whole.substr(0, whole.size() * part / 10));
+  for (std::size_t tenths = 1; tenths < 10; ++tenths) {
+    const auto cut = folder.write("cut.vdb", whole.substr(0, whole.size() * tenths / 10));
     expect_input_error([&] { read_vdb({cut, "ball"}); }, "cut.vdb: grid 'ball': ");
   }
 }
 
-/// Refused or read, but never a crash of this process, and soon.
+// A damaged file must be read or refused within a short time, and must not crash this process.
 TEST(ReadVdb, SurvivesFlippedBytes) {
   const TempDir folder;
   const std::string path = write(folder, {sphere()});
@@ -176,7 +176,7 @@ TEST(ReadVdb, SurvivesFlippedBytes) {
   Random random(11);
   for (int n = 0; n < 20; ++n) {
     std::string damaged = whole;
-    // Most of what matters stands at the beginning.
+    // Every other file is damaged in the headers at its beginning.
     const std::size_t reach = n % 2 ? damaged.size() : 700;
     for (int flips = 0; flips < 3; ++flips)
       damaged[std::size_t(random.uniform() * reach)] = char(random.uniform() * 256);

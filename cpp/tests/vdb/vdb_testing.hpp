@@ -1,4 +1,4 @@
-// OpenVDB files made by OpenVDB itself.
+// OpenVDB files written with OpenVDB itself.
 #pragma once
 
 #include <openvdb/openvdb.h>

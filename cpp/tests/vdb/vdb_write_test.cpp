@@ -13,7 +13,7 @@ namespace {
 using namespace geometry_testing;
 using round_trip::voxel;
 
-VdbWriting how(int dimension) {
+VdbWriteSettings settings(int dimension) {
   return {dimension, voxel, particle_radius(dimension, voxel, round_trip::per_voxel(dimension)),
           dimension == 2 ? 9 * voxel : 0};
 }
@@ -48,8 +48,8 @@ TEST_P(WriteVdb, HoldsSolidDensityAndPoints) {
   const int dimension = GetParam();
   const round_trip::Snow dome = round_trip::dome(dimension);
   const ParticleCloud cloud = cloud_of(round_trip::particles_of(*dome.solid, dimension, 1));
-  const double width = dimension == 2 ? how(dimension).width : 1;
-  const VdbSummary summary = write_particles(path, cloud, how(dimension));
+  const double width = dimension == 2 ? settings(dimension).width : 1;
+  const VdbSummary summary = write_particles(path, cloud, settings(dimension));
 
   const auto surface = openvdb::gridPtrCast<openvdb::FloatGrid>(grid(path, "surface"));
   EXPECT_EQ(surface->getGridClass(), openvdb::GRID_LEVEL_SET);
@@ -85,7 +85,7 @@ TEST_P(WriteVdb, HoldsSolidDensityAndPoints) {
 TEST_P(WriteVdb, RoundTripThroughAFile) {
   const auto through_a_file = [&](const std::vector<Vec3>& particles,
                                   const round_trip::Snow& snow) {
-    write_particles(path, cloud_of(particles), how(snow.dimension));
+    write_particles(path, cloud_of(particles), settings(snow.dimension));
     return make_sampled_grid(read_vdb({path, "surface"}), path);
   };
   round_trip::expect_kept(round_trip::dome(GetParam()), through_a_file);
@@ -97,7 +97,7 @@ TEST_P(WriteVdb, DensityVolumeReadBackIsTheSnow) {
   const round_trip::Snow slab = round_trip::slab(dimension);
   ParticleCloud cloud = cloud_of(round_trip::particles_of(*slab.solid, dimension, 1));
   for (double& mass : cloud.masses) mass = 200 * slab.volume / double(cloud.masses.size());
-  write_particles(path, cloud, how(dimension));
+  write_particles(path, cloud, settings(dimension));
   const Shape solid = make_sampled_grid(read_vdb({path, "density", 100}), path);
   EXPECT_NEAR(measure(*solid, dimension, voxel) / slab.volume, 1, 0.1);
 }
@@ -108,7 +108,7 @@ TEST(WriteVdbAlone, RefusesWhatIsNoSolid) {
   openvdb::initialize();
   const TempDir folder;
   const std::string path = (folder.path() / "none.vdb").string();
-  expect_input_error([&] { write_particles(path, {}, how(3)); }, "no particles");
+  expect_input_error([&] { write_particles(path, {}, settings(3)); }, "no particles");
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 

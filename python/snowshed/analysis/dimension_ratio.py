@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
 from snowshed.run.results import read_events
-from snowshed.scene.scene import ResolvedScene, PathLike
+from snowshed.scene.scene import PathLike, ResolvedScene
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,4 +61,5 @@ def _dimension(folder: PathLike) -> int:
     scene = Path(folder) / "scene.json"
     if not scene.is_file():
         raise InputError(f"{folder}: no results; it holds no scene.json")
-    return int(ResolvedScene.load(scene).data["dimension"])
+    data: dict[str, Any] = ResolvedScene.load(scene).data
+    return int(data["dimension"])

@@ -17,16 +17,20 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.scene_options import option_name
+from snowshed.io.formatting import percent
+from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import Scene
+from snowshed.scene.schema import current_path
 
 if TYPE_CHECKING:
-    from snowshed.analysis.verification.case import Settings, Value
-    from snowshed.analysis.verification.measurements import Measurement
+    from snowshed.analysis.verification.measurements import Measurement, Settings, Value
 
 CASE = "stack_convergence"
 QUANTITIES = ("height", "length")
 PRESET = "lab-50"  # whose slab the case's stacks are made of
+ORDER_IN = MpmSettings.RESOLUTION  # the case is one of the material point method
 
 
 def part(text: str) -> float:
@@ -102,9 +106,8 @@ def choose(
     >>> choice.values["numerics.dx"] > 0
     True
     """
-    from snowshed.analysis.verification.analysis import quickest
     from snowshed.analysis.verification.recorded import load_recorded
-    from snowshed.analysis.verification.wording import percent
+    from snowshed.analysis.verification.solutions import quickest
 
     data = scene.resolve().data
     thickness = _slab_thickness(data)
@@ -112,17 +115,22 @@ def choose(
     stacks = _nearest(recorded_stacks(listed), data)
     if not stacks:
         raise InputError(
-            f"--accuracy: nothing is recorded to choose from; make it with snowshed verify --full "
-            f"--case {CASE} --record FILE"
+            "--accuracy: nothing is recorded to choose from; in the source of snowshed, "
+            f"`python -m validation --full --case {CASE} --record FILE -o DIR` makes it"
         )
     costs, errors = [stack.wall_s for stack in stacks], [stack.error for stack in stacks]
     stack = stacks[quickest(costs, errors, wanted)]
-    share = float(stack.settings["dx"]) / _slab_thickness(Scene.preset(PRESET).resolve().data)
+    path = resolution_path(data)
+    name = path.rpartition(".")[2]
+    share = float(stack.settings[name]) / _slab_thickness(Scene.preset(PRESET).resolve().data)
     # What a recorded run does not name had its default, and so must have it here.
-    values = {path: stack.settings.get(name) for name, path in ACCURACY.items()}
-    values["numerics.dx"] = float(f"{share * thickness:.3g}")
-    what = f"dx {values['numerics.dx']:g} m ({share:.3g} of the slab's thickness)"
-    reason = " ".join([f"--accuracy {percent(wanted)}: {what}", *_reasons(stack, wanted, data)])
+    values = {where: stack.settings.get(key) for key, where in ACCURACY.items()}
+    size = float(f"{share * thickness:.3g}")
+    values[path] = size
+    what = f"{name} {size:g} m ({share:.3g} of the slab's thickness)"
+    reason = " ".join(
+        [f"--accuracy {percent(wanted)}: {what}", *_reasons(stack, wanted, data, name)]
+    )
     return Choice(stack.error <= wanted, values, reason)
 
 
@@ -138,16 +146,17 @@ def check_alone(options: Mapping[str, Any]) -> None:
     --------
     >>> check_alone({"panel__tilt": 50.0, "numerics__basis": None})
     """
-    for path in ACCURACY.values():
-        if options.get(path.replace(".", "__")) is not None:
+    for name, value in options.items():
+        given = name.replace("__", ".")
+        if value is not None and current_path(given) in ACCURACY.values():
             raise InputError(
-                f"{option_name(path)}: --accuracy chooses grid and scheme; give one of the two"
+                f"{option_name(given)}: --accuracy chooses grid and scheme; give one of the two"
             )
 
 
 @dataclass(frozen=True)
 class RecordedStack:
-    """What is recorded of stacks made with the same settings.
+    """Recorded errors of stacks made with the same settings.
 
     Attributes
     ----------
@@ -172,8 +181,8 @@ class RecordedStack:
 
 def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     """Return what is recorded of stacks."""
-    from snowshed.analysis.verification.analysis import assured_errors, key_of, rows_of, solutions
     from snowshed.analysis.verification.measurements import to_table
+    from snowshed.analysis.verification.solutions import assured_errors, key_of, rows_of, solutions
 
     table = to_table(one for one in measurements if one.case == CASE and not one.failure)
 
@@ -181,7 +190,7 @@ def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
         found = solutions(rows_of(table, CASE, quantity))
         return {key_of(o.settings): e for o, e in zip(found, assured_errors(found, order_in))}
 
-    errors = [by_settings(name, "dx") for name in QUANTITIES]
+    errors = [by_settings(name, ORDER_IN) for name in QUANTITIES]
     spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
     return [
         RecordedStack(
@@ -234,11 +243,11 @@ def _distance(value: Value, mine: Value) -> float:
     return abs(value - mine)
 
 
-def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any]) -> list[str]:
-    """Return the rest of the first sentence and all that follow it."""
-    from snowshed.analysis.verification.wording import percent, settings
+def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name: str) -> list[str]:
+    """Return the rest of the first sentence, which tells the setting `name`, and what follows."""
+    from snowshed.analysis.verification.wording import settings
 
-    scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != "dx"}
+    scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != name}
     height, length = (percent(error, 2) for error in stack.errors)
     off = f"the height of the stack was off by {height} and its length by {length}"
     if stack.error <= wanted:

@@ -1,23 +1,18 @@
-"""What the command line shows: the progress bar and tables."""
+"""What the commands that run and look at scenes print."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.progress import TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from snowshed.analysis.dimension_ratio import RULE_OF_THUMB
-from snowshed.cli.terminal import one_bar, plain_table, wide_console
+from snowshed.cli.terminal import plain_table, wide_console
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from snowshed.run.events import Progress, Reporter
 
 EVENT_TABLE = {
     "event": ("event", "{:.0f}"),
@@ -32,23 +27,6 @@ EVENT_TABLE = {
     "panel\nkg": ("on_panel_kg", "{:.2g}"),
     "ended": ("ended", "{}"),
 }
-
-
-@contextmanager
-def progress_bar() -> Iterator[Reporter]:
-    """Show one bar over all events, with the time that is left, on stderr."""
-    columns = (TimeRemainingColumn(), TextColumn("{task.fields[speed]}"))
-    with one_bar(*columns, speed="") as bar:
-
-        def report(progress: Progress) -> None:
-            speed = progress.updates_per_s / 1e6
-            bar.show(
-                (progress.event - 1 + progress.fraction) / progress.count,
-                f"event {progress.event}/{progress.count}, {progress.time:.2f} s",
-                speed=f"{speed:.1f} M updates/s" if speed else "",
-            )
-
-        yield report
 
 
 def print_events(table: pd.DataFrame, folder: Path) -> None:

@@ -1,7 +1,8 @@
-"""Studies that a command designs: written as a study file, computed, and evaluated apart from that.
+"""Studies that a command designs, computes and evaluates.
 
-The runs go through ``snowshed study run``, so that they are resumed and stored as those of any
-study. The evaluation takes nothing but the store.
+The design is kept as a study file beside the results, and the runs are those of a ``snowshed study
+run``, so that they are resumed and stored as those of any study. The evaluation takes nothing but
+the store.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ from typing import Any, Optional, TypeVar
 
 import click
 
-from snowshed.io.atomic import write_text
+from snowshed.cli.commands.study import compute_study, print_plan
+from snowshed.snow.stack.quantities import MEASURES
+from snowshed.study.definition import Study
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -24,7 +27,11 @@ USELESS: Mapping[str, Sequence[str]] = {
     "stored": ["file", "plan_only", "quick", "seeds", "samples", "jobs"],
     "file": ["quick", "seeds", "samples"],
 }
-MEASURES = click.Choice(["stack", "body"])
+
+
+def measure_help() -> str:
+    """Return what the values of ``--measure`` mean."""
+    return " or ".join(f"{one.name} ({one.label})" for one in MEASURES.values()) + "."
 
 
 def design_options(command: Command) -> Command:
@@ -34,9 +41,9 @@ def design_options(command: Command) -> Command:
         click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]"),
         click.option(
             "--measure",
-            type=MEASURES,
+            type=click.Choice(list(MEASURES)),
             default="stack",
-            help="stack (97 % of the snow) or body (the largest connected one).  [default: stack]",
+            help=f"{measure_help()}  [default: stack]",
         ),
         click.option("--name", help="Name of the stored study, if its folder holds several."),
         click.option(
@@ -88,40 +95,26 @@ def _flag(context: click.Context, name: str) -> str:
     return next(one.opts[-1] for one in context.command.params if one.name == name)
 
 
-def write_study(text: str, folder: Path) -> Path:
-    """Write a study file into the results folder and return its path."""
+def chosen_study(context: click.Context, folder: Path, design: Callable[[], Study]) -> Study:
+    """Return the study of the file that was given, else the one designed, kept in the folder."""
+    file: Optional[Path] = context.params["file"]
+    if file is not None:
+        return Study.load(file)
+    study = design()
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(folder / STUDY, text)
-    return folder / STUDY
+    study.save(folder / STUDY)
+    return study
 
 
-def plan(context: click.Context, file: Path, jobs: Optional[int]) -> None:
-    """Say how many runs a study file makes, and how long they take."""
-    from snowshed.cli.main.commands import study as command
+def computed(context: click.Context, study: Study, folder: Path) -> Optional[tuple[Path, str]]:
+    """Compute what is missing of a study; return the folder of the store, and its name there.
 
-    context.invoke(command.plan, file=file, jobs=jobs)
-
-
-def compute(
-    context: click.Context, file: Path, folder: Path, jobs: Optional[int], quiet: bool
-) -> tuple[Path, str]:
-    """Compute what is missing of a study file; return the folder of the store, and its name there.
-
-    Ends the command, with the exit codes of ``snowshed study run``, if runs fail or are
-    interrupted; the same command goes on then.
+    Return None if the command should only say how long that takes. The command ends, with the exit
+    codes of ``snowshed study run``, if runs fail or are interrupted; the same command goes on then.
     """
-    from snowshed.cli.main.commands import study as command
-    from snowshed.study import Study
-
-    store = folder / RUNS
-    context.invoke(
-        command.run,
-        file=file,
-        folder=store,
-        quiet=quiet,
-        jobs=jobs,
-        threads=None,
-        scheduler=None,
-        retry_failed=False,
-    )
-    return store, Study.load(file).name
+    jobs, quiet = context.params["jobs"], context.params["quiet"]
+    if context.params["plan_only"]:
+        print_plan(study, jobs)
+        return None
+    compute_study(study, folder / RUNS, quiet=quiet, jobs=jobs)
+    return folder / RUNS, study.name

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Optional, TypeVar
 
@@ -18,7 +19,7 @@ from snowshed._core import InputError
 from snowshed.io.input_file import read_input
 from snowshed.scene.components import Ground, Panel, Slab, Snow
 from snowshed.scene.scene import Scene
-from snowshed.scene.schema import Parameter, scene_parameters
+from snowshed.scene.schema import Parameter, current_path, scene_parameters
 
 SHORT_NAMES = {
     "dimension": "dim",
@@ -56,6 +57,8 @@ def option_name(path: str) -> str:
 def scene_options(command: Command) -> Command:
     """Add all options that describe a scene to a click command."""
     for parameter in reversed(scene_parameters()):
+        for path in parameter.aliases:
+            command = _option(replace(parameter, path=path), hidden=True)(command)
         command = _option(parameter)(command)
     command = click.option(
         "--snow", "snow_preset", metavar="NAME", help="Snow of the thesis: calibrated, reference."
@@ -74,16 +77,14 @@ def scene_from_options(
     scene = Scene.preset(preset) if preset else Scene(panel=Panel(), slab=Slab(), ground=Ground())
     if snow_preset:
         scene.update({"snow": Snow.preset(snow_preset).to_data()})
-    for name, value in options.items():
-        if value is not None and value != ():
-            scene.set(name.replace("__", "."), value)
-    return scene
+    given = {k.replace("__", "."): v for k, v in options.items() if v is not None and v != ()}
+    return scene.update(given)
 
 
 def in_terms_of_options(error: InputError) -> InputError:
     """Return the error with the option in front, if it is about a parameter that has one."""
     path = path_of(error)
-    if path in {parameter.path for parameter in scene_parameters()}:
+    if current_path(path) in {parameter.path for parameter in scene_parameters()}:
         where, colon, rest = str(error).partition(":")
         return InputError(f"{option_name(path)} ({where}){colon}{rest}")
     return error
@@ -113,20 +114,23 @@ def json_object(text: str) -> Any:
         raise click.BadParameter(f"{error}; give a JSON object, or its file") from None
 
 
-def _option(parameter: Parameter) -> Callable[[Command], Command]:
+def _option(parameter: Parameter, *, hidden: bool = False) -> Callable[[Command], Command]:
+    """Return the decorator that adds the option; a hidden one is not in the help."""
     name = option_name(parameter.path)
     target = parameter.path.replace(".", "__")
     text = _help(parameter)
     if parameter.kind == "boolean":
-        return click.option(f"{name}/--no-{name[2:]}", target, default=None, help=text)
+        return click.option(
+            f"{name}/--no-{name[2:]}", target, default=None, help=text, hidden=hidden
+        )
     if parameter.kind == "list":
         return click.option(
-            name, target, type=json_object, multiple=True, metavar="JSON", help=text
+            name, target, type=json_object, multiple=True, metavar="JSON", help=text, hidden=hidden
         )
     if parameter.kind == "vector":
-        return click.option(name, target, type=numbers, metavar="X,Y,Z", help=text)
+        return click.option(name, target, type=numbers, metavar="X,Y,Z", help=text, hidden=hidden)
     kind = click.Choice(parameter.choices) if parameter.choices else TYPES[parameter.kind]
-    return click.option(name, target, type=kind, help=text)
+    return click.option(name, target, type=kind, help=text, hidden=hidden)
 
 
 def _help(parameter: Parameter) -> str:

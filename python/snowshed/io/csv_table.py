@@ -1,17 +1,21 @@
-"""Tables in CSV files: those that grow row by row, whole on disk after every row, and any other."""
+"""Tables in CSV files: those that grow row by row, those that people write, and any other.
+
+All are read by the same rules: UTF-8, one name for each column, and a cell for each in every row.
+"""
 
 from __future__ import annotations
 
 import csv
 import io
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
 from snowshed.io.atomic import write_text
-from snowshed.io.input_file import LARGEST_TABLE, read_input
+from snowshed.io.input_file import LARGEST, LARGEST_TABLE, read_input
 from snowshed.io.messages import quoted
 
 if TYPE_CHECKING:
@@ -79,14 +83,10 @@ class Table:
         return total
 
     def _read(self) -> list[dict[str, str]]:
-        try:
-            with self.path.open(newline="", encoding="utf-8") as file:
-                rows = list(csv.DictReader(file, strict=True))
-        except (UnicodeDecodeError, csv.Error) as error:
-            raise self._damaged(str(error)) from None
+        records = _records(self.path, _decoded(self.path, LARGEST_TABLE))
+        _, names = next(records, (0, []))
+        rows = [dict(zip(names, cells)) for _, cells in records]
         for row in rows:
-            if None in row or None in row.values():
-                raise self._damaged(f"a row that has not {len(row)} cells")
             if self.columns and not set(row) <= set(self.columns):
                 raise self._damaged(f"its columns are not {', '.join(self.columns)}")
             if not row.get("event", "").isdecimal():
@@ -111,15 +111,119 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
-def read_csv(path: Path, **options: Any) -> pd.DataFrame:
+@dataclass(frozen=True)
+class Row:
+    """A row of a table of texts.
+
+    Attributes
+    ----------
+    table, place
+        Where it stands, for messages: in which table, and in which line or row of it.
+    number
+        Its line, or else its row, from 1.
+    cells
+        Its texts by the names of their columns.
+    """
+
+    table: str
+    place: str
+    number: int
+    cells: Mapping[str, str]
+
+    @property
+    def where(self) -> str:
+        """Table and place."""
+        return f"{self.table}, {self.place}"
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """A table of texts, as people write them.
+
+    Attributes
+    ----------
+    columns
+        Names.
+    rows
+        What is below.
+    """
+
+    columns: Sequence[str]
+    rows: Sequence[Row]
+
+
+def read_text_table(
+    path: Path, hint: str, check_columns: Callable[[Sequence[str], str], None]
+) -> TextTable:
+    """Return a CSV table that people write: with comments (#) and empty lines, cells as texts.
+
+    Parameters
+    ----------
+    path
+        The file.
+    hint
+        What to do about a file that is empty, for the message.
+    check_columns
+        Called with the names and where they stand before any row is read; raises InputError if
+        they do not serve.
+
+    Raises
+    ------
+    InputError
+        As for `read_csv`, naming the line.
+    OSError
+        If it cannot be read.
+    """
+    records = _records(path, _decoded(path, LARGEST), comment="#")
+    head = next(records, None)
+    if head is None:
+        raise InputError(f"{path}: empty; {hint}")
+    line, columns = head
+    check_columns(columns, f"{path}, line {line}")
+    rows = [Row(str(path), f"line {n}", n, dict(zip(columns, cells))) for n, cells in records]
+    return TextTable(columns, rows)
+
+
+def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:
+    """Return a DataFrame as the table of texts that its CSV file would be.
+
+    Parameters
+    ----------
+    table
+        Any DataFrame; what is missing becomes an empty text, numbers keep their value.
+    name
+        What messages call it.
+    index
+        The column that the index stands for, if the table has none of that name.
+    """
+    if index not in table:
+        table = table.rename_axis(index).reset_index()
+    columns = [str(column) for column in table]
+    rows = [
+        Row(name, f"row {number}", number, dict(zip(columns, map(_text, cells))))
+        for number, cells in enumerate(table.itertuples(index=False, name=None), 1)
+    ]
+    return TextTable(columns, rows)
+
+
+def _text(value: object) -> str:
+    """Return a cell of a DataFrame as text; a number is the same when it is read."""
+    import pandas as pd
+
+    if value is None or value is pd.NaT or value is pd.NA or value != value:
+        return ""
+    return value.isoformat() if hasattr(value, "isoformat") else str(value)
+
+
+def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     """Return a table from a CSV file that may hold anything.
 
     Parameters
     ----------
     path
         The file.
-    **options
-        As of `pandas.read_csv`.
+    as_text
+        Whether every cell is the text that stands there, instead of a number where it is one.
 
     Raises
     ------
@@ -131,29 +235,65 @@ def read_csv(path: Path, **options: Any) -> pd.DataFrame:
     """
     import pandas as pd
 
-    content = read_input(path, LARGEST_TABLE)
+    text = _decoded(path, LARGEST_TABLE)
+    for _ in _records(path, text):
+        pass
+    options: dict[str, Any] = {"dtype": str, "keep_default_na": False} if as_text else {}
     try:
-        _check_rows(io.StringIO(content.decode("utf-8"), newline=""))
-        table: pd.DataFrame = pd.read_csv(io.BytesIO(content), **options)
-        return table
-    except (ValueError, csv.Error) as error:  # of pandas all errors on content are ValueErrors
+        table: pd.DataFrame = pd.read_csv(io.StringIO(text), **options)
+    except ValueError as error:  # of pandas all errors on content are ValueErrors
         raise InputError(f"{path}: not a table: {error}") from None
+    return table
 
 
-def _check_rows(file: Iterable[str]) -> None:
-    rows = csv.reader(file)
-    names = next(rows, [])
-    _check_names(names)
-    for row in rows:
-        if row and len(row) != len(names):
-            raise ValueError(
-                f"line {rows.line_num}: {len(row)} cells, but there are {len(names)} columns"
+def _decoded(path: Path, largest: int) -> str:
+    content = read_input(path, largest)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise InputError(f"{path}, line {line}: not a table: not UTF-8 text") from None
+
+
+def _records(path: Path, text: str, comment: str = "") -> Iterator[tuple[int, list[str]]]:
+    """Yield the first line and the cells of each record, which has as many as there are names."""
+    pulled: list[int] = []
+    reader = csv.reader(_numbered(text, comment, pulled), strict=True)
+    names: list[str] = []
+    while True:
+        pulled.clear()
+        try:
+            cells = [cell.strip() for cell in next(reader)]
+        except StopIteration:
+            return
+        except csv.Error as error:
+            raise InputError(f"{path}, line {pulled[0]}: not a table: {error}") from None
+        if not cells:
+            continue
+        if not names:
+            _check_names(cells, f"{path}, line {pulled[0]}")
+            names = cells
+        elif len(cells) != len(names):
+            raise InputError(
+                f"{path}, line {pulled[0]}: not a table: {len(cells)} cells in {len(names)} columns"
             )
+        yield pulled[0], cells
 
 
-def _check_names(names: Sequence[str]) -> None:
+def _numbered(text: str, comment: str, pulled: list[int]) -> Iterator[str]:
+    """Yield the lines that are neither empty nor comments, noting their numbers in `pulled`."""
+    for number, line in enumerate(io.StringIO(text, newline=""), 1):
+        if comment and (not line.strip() or line.lstrip().startswith(comment)):
+            continue
+        pulled.append(number)
+        yield line
+
+
+def _check_names(names: Sequence[str], where: str) -> None:
     if len(names) > MOST_COLUMNS:
-        raise ValueError(f"{len(names)} columns; at most {MOST_COLUMNS} are allowed")
+        raise InputError(
+            f"{where}: not a table: {len(names)} columns; at most {MOST_COLUMNS} are allowed"
+        )
     for number, name in enumerate(names):
         if name in names[:number]:
-            raise ValueError(f"the column {quoted(name)} is there twice")
+            raise InputError(f"{where}: not a table: the column {quoted(name)} is there twice")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isnan
+from math import inf, isnan
 from typing import Optional
 
 #: What stands where there is no number.
@@ -11,6 +11,13 @@ TIMES = "\N{MULTIPLICATION SIGN}"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 #: Parts below this are shown as they are, not in percent.
 SMALL = 1e-5
+#: Up to how many seconds an estimate is told in which unit, of how many seconds, to what digit.
+UNITS_OF_TIME = (
+    (100, 1, "s", 0),
+    (6000, 60, "min", 1),
+    (172800, 3600, "h", 1),
+    (inf, 86400, "days", 1),
+)
 
 
 def exact(value: float) -> str:
@@ -91,3 +98,19 @@ def count(value: Optional[float]) -> str:
     if value is None or isnan(value) or value >= 1e6:
         return number(value)
     return f"{value:,.0f}"
+
+
+def about(seconds: float) -> str:
+    """Return an estimated time.
+
+    Examples
+    --------
+    >>> [about(t) for t in (0.4, 42.3, 200, 8000)]
+    ['under 1 s', 'about 42 s', 'about 3.3 min', 'about 2.2 h']
+    """
+    if seconds < 1:
+        return "under 1 s"
+    unit, name, digits = next(
+        (unit, name, digits) for limit, unit, name, digits in UNITS_OF_TIME if seconds < limit
+    )
+    return f"about {seconds / unit:.{digits}f} {name}"

@@ -6,11 +6,15 @@ import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Dict, List, Union
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
 from snowshed.io.messages import shortened
+
+#: What `json.loads` returns.
+JsonValue = Union[None, bool, int, float, str, List["JsonValue"], Dict[str, "JsonValue"]]
+JsonObject = Dict[str, JsonValue]
 
 #: What the values of a JSON object may have to be, in words.
 KINDS = {dict: "an object", list: "a list", str: "a text", float: "a finite number"}

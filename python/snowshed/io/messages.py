@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable
+
 LONGEST = 60  # characters
 
 
@@ -27,3 +30,16 @@ def quoted(text: str) -> str:
     65
     """
     return repr(text[:LONGEST]) + ("" if len(text) <= LONGEST else "...")
+
+
+def suggestion(given: str, words: Iterable[str]) -> str:
+    """Return "; did you mean ...?" with the word nearest to `given`, or nothing if none is near.
+
+    Examples
+    --------
+    >>> suggestion("tlit", ["tilt", "length"]), suggestion("DX", ["dx"]), suggestion("x", ["tilt"])
+    ('; did you mean tilt?', '; did you mean dx?', '')
+    """
+    by_lower = {word.lower(): word for word in words}
+    near = difflib.get_close_matches(given.lower(), by_lower, n=1)
+    return f"; did you mean {by_lower[near[0]]}?" if near else ""

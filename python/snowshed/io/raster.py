@@ -13,7 +13,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.arrays import Floats
 from snowshed.io.extras import require
-from snowshed.scene.scene import PathLike
+from snowshed.io.paths import PathLike
 
 GEOTIFF = (".tif", ".tiff")
 CORNERS = ("xllcorner", "yllcorner", "xllcenter", "yllcenter")

@@ -1,25 +1,79 @@
-"""Records: dataclasses that mirror JSON objects. A field that is None was not given."""
+"""Records: dataclasses that mirror JSON objects. A field that is None was not given.
+
+A record knows its fields: a name that is none of them, and a value that its field does not take,
+are errors at once, wherever they are used.
+"""
 
 from __future__ import annotations
 
-import os
-import sys
 import typing
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields
 from functools import cache
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Optional, TypeVar
 
 from snowshed._core import InputError
+from snowshed.io.field_type import alternatives_of, convert, is_record, shown
+from snowshed.io.json_file import JsonObject, JsonValue
+from snowshed.io.messages import suggestion
 
 DEEPEST = 64  # as the core has it
 
 RecordType = TypeVar("RecordType", bound="Record")
 
 
+class UnknownFieldError(InputError, AttributeError, TypeError):
+    """A name that is no field of a record, as an attribute, a keyword or a key."""
+
+
+class Alias:
+    """Another name of a record's numeric field, declared in the class.
+
+    Parameters
+    ----------
+    field
+        The field's own name.
+    """
+
+    def __init__(self, field: str) -> None:
+        self.field = field
+
+    def __get__(self, record: object, owner: type) -> Optional[float]:
+        """Return the field's value."""
+        return self if record is None else getattr(record, self.field)  # type: ignore[return-value]
+
+    def __set__(self, record: object, value: Optional[float]) -> None:
+        """Set the field."""
+        setattr(record, self.field, value)
+
+
+class _RecordClass(type):
+    """The class of record classes: it checks the keywords with which a record is made."""
+
+    if not TYPE_CHECKING:  # checkers take the signature that `dataclass` makes
+
+        def __call__(cls, *values: object, **keywords: object) -> object:
+            names = {**cls.aliases(), **{f.name: f.name for f in fields(cls)}}
+            for keyword in keywords:
+                if keyword not in names:
+                    raise cls._unknown(keyword)
+            named = {keyword: names[keyword] for keyword in keywords}
+            check_once(named, cls.__name__)
+            return super().__call__(*values, **{named[key]: keywords[key] for key in keywords})
+
+
 @dataclass
-class Record:
-    """A JSON object. A trailing underscore in a field's name is not part of its JSON key."""
+class Record(metaclass=_RecordClass):
+    """A JSON object. A trailing underscore in a field's name is not part of its JSON key.
+
+    Examples
+    --------
+    >>> from snowshed.scene.components import Panel
+    >>> panel = Panel(tilt=40)
+    >>> panel.tlit = 50
+    Traceback (most recent call last):
+    snowshed.io.record.UnknownFieldError: Panel.tlit: Panel has no such field; did you mean tilt?
+    """
 
     @classmethod
     def keys(cls) -> dict[str, str]:
@@ -27,90 +81,129 @@ class Record:
         return {f.name.rstrip("_"): f.name for f in fields(cls)}
 
     @classmethod
-    def from_data(cls: type[RecordType], data: Mapping[str, Any], path: str = "") -> RecordType:
-        """Build the record from a JSON object that stands at `path` in its document."""
+    def aliases(cls) -> dict[str, str]:
+        """Return the other names of fields, as ``{name: field name}``."""
+        return {name: one.field for name, one in vars(cls).items() if isinstance(one, Alias)}
+
+    @classmethod
+    def from_data(cls: type[RecordType], data: Mapping[str, object], path: str = "") -> RecordType:
+        """Build the record from a JSON object that stands at `path` in its document.
+
+        Raises
+        ------
+        InputError
+            At a key the record does not have, or a value its field does not take.
+        """
         if not isinstance(data, Mapping):
-            raise InputError(f"{path or '/'}: {data!r} is not an object")
+            raise InputError(f"{path or '/'}: {shown(data)} is not an object")
+        if path.count("/") > 2 * DEEPEST:
+            raise InputError(f"{path[:100]}...: nested more than {DEEPEST} deep")
         record = cls()
+        check_once({key: cls.field_of(key, path) for key in data}, path)
         for key, value in data.items():
             record.assign(key, value, path)
         return record
 
-    def to_data(self, path: str = "", depth: int = 0) -> dict[str, Any]:
+    def to_data(self, path: str = "", depth: int = 0) -> JsonObject:
         """Return the fields that were given, as a JSON object that stands `depth` deep at `path`.
 
         Raises
         ------
         InputError
-            At a value that JSON does not have.
+            At a value that its field does not take: lists may have been changed since.
         """
-        given = {key: getattr(self, name) for key, name in self.keys().items()}
-        return {
-            key: _to_json(value, f"{path}/{key}", depth + 1)
-            for key, value in given.items()
-            if value is not None
-        }
+        data: JsonObject = {}
+        for key, name in self.keys().items():
+            value = convert(getattr(self, name), _hints(type(self))[name], f"{path}/{key}")
+            if value is not None:
+                data[key] = _to_json(value, f"{path}/{key}", depth + 1)
+        return data
 
-    def assign(self, key: str, value: Any, path: str = "") -> None:
-        """Set one field by its JSON key; objects and lists of them become records."""
-        name = self.field_of(key, path)
-        setattr(self, name, _from_json(self.record_type(key), value, f"{path}/{key}"))
+    def assign(self, key: str, value: object, path: str = "") -> None:
+        """Set one field by its JSON key; objects and lists of them become records.
 
-    def field_of(self, key: str, path: str = "") -> str:
-        """Return the field a JSON key stands for; unknown keys are refused by name."""
-        keys = self.keys()
-        if key not in keys:
-            raise InputError(f"{path}/{key}: unknown key; allowed: {', '.join(keys)}")
-        return keys[key]
+        Raises
+        ------
+        InputError
+            If the record has no such key, or its field does not take the value.
+        """
+        self._keep(self.field_of(key, path), value, f"{path}/{key}")
 
     @classmethod
-    def record_type(cls, key: str) -> type[Record] | None:
+    def field_of(cls, key: str, path: str = "") -> str:
+        """Return the field a JSON key stands for; unknown keys are refused by name."""
+        keys = {**cls.keys(), **cls.aliases()}
+        if key not in keys:
+            allowed = ", ".join(cls.keys())
+            near = suggestion(str(key), keys)
+            raise InputError(f"{path}/{key}: unknown key; allowed: {allowed}{near}")
+        return keys[key]
+
+    def record_type(self, key: str) -> Optional[type[Record]]:
         """Return the record class held, singly or in a list, under `key`, if any."""
-        # mypy takes the class for one of its instances, which have no hash.
-        return _record_types(cls)[cls.keys()[key]]  # type: ignore[arg-type]
+        return _record_type(_hints(type(self))[self.field_of(key)])
+
+    def _keep(self, name: str, value: object, where: str) -> None:
+        object.__setattr__(self, name, convert(value, _hints(type(self))[name], where))
+
+    @classmethod
+    def _unknown(cls, name: str) -> UnknownFieldError:
+        near = suggestion(name, [*cls.keys(), *cls.aliases()])
+        has = near or f"; it has {', '.join(cls.keys())}"
+        return UnknownFieldError(f"{cls.__name__}.{name}: {cls.__name__} has no such field{has}")
+
+    if not TYPE_CHECKING:  # or checkers would take any name for an attribute
+
+        def __getattr__(self, name: str) -> object:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            raise self._unknown(name)
+
+        def __setattr__(self, name: str, value: object) -> None:
+            if name in _hints(type(self)):
+                self._keep(name, value, f"{type(self).__name__}.{name}")
+            elif name in self.aliases() or (name.startswith("_") and hasattr(type(self), name)):
+                object.__setattr__(self, name, value)
+            else:
+                raise self._unknown(name)
+
+
+def check_once(fields_of: Mapping[str, str], where: str) -> None:
+    """Raise InputError if two names, given at `where`, stand for the same field.
+
+    Examples
+    --------
+    >>> check_once({"tilt": "tilt", "height": "height"}, "/panel")
+    """
+    name_of: dict[str, str] = {}
+    for name, field in fields_of.items():
+        if field in name_of:
+            raise InputError(
+                f"{where}/{name}: means the same as {name_of[field]}; give one of the two"
+            )
+        name_of[field] = name
 
 
 @cache
-def _record_types(record: type[Record]) -> dict[str, type[Record] | None]:
-    """Return the record class of every field; the hints are evaluated once, which is slow."""
-    return {name: _find_record(hint) for name, hint in typing.get_type_hints(record).items()}
+def _hints(record: type[Record]) -> dict[str, object]:
+    """Return the type of every field; the annotations are evaluated once, which is slow."""
+    hints = typing.get_type_hints(record)
+    return {f.name: hints[f.name] for f in fields(record)}
 
 
-def _find_record(hint: Any) -> type[Record] | None:
-    if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Record):
-        return hint
-    found = (_find_record(inner) for inner in typing.get_args(hint))
-    return next((record for record in found if record), None)
+def _record_type(hint: object) -> Optional[type[Record]]:
+    for kind in alternatives_of(hint):
+        for inner in (kind, *typing.get_args(kind)):
+            if is_record(inner):
+                return typing.cast("type[Record]", inner)
+    return None
 
 
-def _from_json(record: type[Record] | None, value: Any, path: str) -> Any:
-    if path.count("/") > 2 * DEEPEST:
-        raise InputError(f"{path[:100]}...: nested more than {DEEPEST} deep")
-    if record is None or value is None or isinstance(value, Record):
-        return value
-    if isinstance(value, (list, tuple)):
-        return [_from_json(record, item, f"{path}/{i}") for i, item in enumerate(value)]
-    return record.from_data(value, path)
-
-
-def _to_json(value: Any, path: str, depth: int = 0) -> Any:
+def _to_json(value: object, path: str, depth: int) -> JsonValue:
     if depth > DEEPEST:
         raise InputError(f"{path}: nested more than {DEEPEST} deep")
     if isinstance(value, Record):
         return value.to_data(path, depth)
-    if hasattr(value, "tolist"):  # NumPy scalars and arrays
-        value = value.tolist()
     if isinstance(value, (list, tuple)):
         return [_to_json(item, f"{path}/{i}", depth + 1) for i, item in enumerate(value)]
-    if isinstance(value, Mapping):
-        return {str(key): _to_json(value[key], f"{path}/{key}", depth + 1) for key in value}
-    if isinstance(value, os.PathLike):
-        value = os.fspath(value)
-    if not (value is None or isinstance(value, (bool, int, float, str))):
-        raise InputError(f"{path}: {value!r} is not a number, text, list or object")
-    if isinstance(value, (int, float)) and not abs(value) <= sys.float_info.max:
-        shown = value if isinstance(value, float) else f"an integer of {value.bit_length()} bits"
-        raise InputError(f"{path}: {shown} is not a finite number")
-    if isinstance(value, str) and any("\ud800" <= c <= "\udfff" for c in value):
-        raise InputError(f"{path}: {value!a} is not text: it has half a surrogate pair")
-    return value
+    return typing.cast("JsonValue", value)  # a scalar, checked

@@ -37,7 +37,8 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     Returns
     -------
     dict
-        ``position`` (n, 3), m, and the quantities of the particles, (n,) or (n, 3), in SI units.
+        ``position`` (n, 3), m, and the quantities of the particles, (n,) or (n, 3), in SI units;
+        all finite, ordered by ``id``. The arrays cannot be written to.
 
     Raises
     ------
@@ -74,4 +75,6 @@ def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]
         count * components,
         int(array.attrib["offset"]) + LENGTH_BYTES,
     )
+    if values.dtype.kind == "f" and not np.isfinite(values).all():
+        raise ValueError(f"{array.attrib['Name']} holds what is no finite number")
     return values.reshape(count, components) if components > 1 else values

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from snowshed.methods.registry import settings_of
+
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
@@ -32,7 +34,8 @@ def scene_caption(scene: dict[str, Any]) -> str:
         parts.append(_slab(slab))
     if tilt := (scene.get("ground") or {}).get("tilt"):
         parts.append(f"ground tilt {tilt:g}°")
-    parts.append(f"dx {scene['numerics']['dx']:g} m")
+    settings = settings_of(scene)
+    parts.append(f"{settings.RESOLUTION} {settings.resolution:g} m")
     return " · ".join(parts) + "\n" + _snow(scene) + f" · events {_between(scene)}"
 
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from snowshed import _core
+from snowshed._core import Simulation
 from snowshed.io.arrays import Floats
+from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import FAINT, INK, STACK, blank, describe, quiet
 from snowshed.scene.builders.slope import BOARD_CELLS
-from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.scene.scene import SceneLike, resolve_scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +24,7 @@ WIDTH = 9.0  # inches
 SAMPLES = (900, 500)  # of the obstacles, along x and z
 
 
-def scene_figure(scene: Union[Scene, ResolvedScene]) -> Figure:
+def scene_figure(scene: SceneLike) -> Figure:
     """Draw a scene in the plane y = 0, with the snow of its first event in place.
 
     Parameters
@@ -36,8 +37,8 @@ def scene_figure(scene: Union[Scene, ResolvedScene]) -> Figure:
     InputError
         If the scene is wrong.
     """
-    ready = scene.resolve() if isinstance(scene, Scene) else scene
-    simulation = _core.Simulation(ready.json, ready.base_dir)
+    ready = resolve_scene(scene)
+    simulation = Simulation(ready.json, ready.base_dir)
     simulation.begin_event()
     data = ready.data
     left, right, bottom, top = _limits(simulation, data)
@@ -66,7 +67,7 @@ def scene_figure(scene: Union[Scene, ResolvedScene]) -> Figure:
     return figure
 
 
-def _limits(simulation: _core.Simulation, scene: dict[str, Any]) -> Limits:
+def _limits(simulation: Simulation, scene: dict[str, Any]) -> Limits:
     """Return a view of the snow, of what holds it, and of as much ground to either side."""
     snow = simulation.positions()[:, [0, 2]]
     low, high = snow.min(axis=0), snow.max(axis=0)
@@ -76,12 +77,12 @@ def _limits(simulation: _core.Simulation, scene: dict[str, Any]) -> Limits:
     return (
         float(low[0]) - room,
         float(high[0]) + room,
-        min(floor, -fall) - 0.2 * room - scene["numerics"]["dx"],
+        min(floor, -fall) - 0.2 * room - resolution_of(scene),
         float(high[1]) + 0.5 * room,
     )
 
 
-def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
+def _draw_obstacles(axes: Axes, simulation: Simulation) -> None:
     x = np.linspace(*axes.get_xlim(), SAMPLES[0])
     z = np.linspace(*axes.get_ylim(), SAMPLES[1])
     points = np.stack(np.meshgrid(x, 0.0, z, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -91,14 +92,14 @@ def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
         axes.contour(x, z, distance, [0.0], colors=[FAINT], linewidths=1.2, zorder=2)
 
 
-def _draw_panel(axes: Axes, simulation: _core.Simulation, scene: dict[str, Any]) -> None:
+def _draw_panel(axes: Axes, simulation: Simulation, scene: dict[str, Any]) -> None:
     """Draw the panel's face, and the board below it as thick as the core makes it."""
     frame = simulation.panel_frame()
     if frame is None:
         return
     half = 0.5 * frame["length"] * np.asarray(frame["slope"])
     face = np.array([frame["center"] - half, frame["center"] + half])
-    thickness = max(scene["panel"]["thickness"], BOARD_CELLS * scene["numerics"]["dx"])
+    thickness = max(scene["panel"]["thickness"], BOARD_CELLS * resolution_of(scene))
     back = face[::-1] - thickness * np.asarray(frame["normal"])
     axes.fill(*np.concatenate([face, back])[:, [0, 2]].T, color="#c9d1d8", linewidth=0, zorder=1)
     axes.plot(*face[:, [0, 2]].T, color=INK, linewidth=3.5, zorder=4, label="panel")
@@ -115,12 +116,12 @@ def _draw_ground(axes: Axes, scene: dict[str, Any], tilt: float) -> None:
 
 def _near_section(positions: Floats, scene: dict[str, Any]) -> Floats:
     """Return the particles that lie within a cell of y = 0; in 2D all of them."""
-    near: Floats = positions[np.abs(positions[:, 1]) <= scene["numerics"]["dx"]]
+    near: Floats = positions[np.abs(positions[:, 1]) <= resolution_of(scene)]
     return near
 
 
 def _dot(scene: dict[str, Any], width: float) -> float:
     """Return the area of a particle's dot, points squared, so that dots nearly touch."""
     count = scene["seeding"]["particles_per_voxel"]
-    spacing = scene["numerics"]["dx"] / count ** (1.0 / scene["dimension"])
+    spacing = resolution_of(scene) / count ** (1.0 / scene["dimension"])
     return float(np.clip((0.9 * spacing * 72.0 * (WIDTH - 1.0) / width) ** 2, 1.0, 60.0))

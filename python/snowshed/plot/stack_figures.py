@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from snowshed import _core
 from snowshed.io.arrays import Floats
+from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import (
     BODY,
@@ -135,7 +136,7 @@ def _draw_particles(axes: Axes, simulation: _core.Simulation) -> None:
 def _spacing(scene: dict[str, Any]) -> float:
     """Return the mean distance of particles as they are seeded, m."""
     count: float = scene["seeding"]["particles_per_voxel"]
-    return float(scene["numerics"]["dx"] / count ** (1 / scene["dimension"]))
+    return float(resolution_of(scene) / count ** (1 / scene["dimension"]))
 
 
 def _points_per_metre(axes: Axes) -> float:

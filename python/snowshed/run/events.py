@@ -15,9 +15,8 @@ moved mass, height, length and outline. What time does to a stack that is carrie
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Optional, Union
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed import _core
 from snowshed.io.arrays import Booleans, Floats
@@ -26,8 +25,9 @@ from snowshed.run.ageing import Ageing
 from snowshed.run.conversion import conversion_row
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
+from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
-from snowshed.scene.scene import PathLike, ResolvedScene, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 
 if TYPE_CHECKING:
@@ -36,34 +36,8 @@ if TYPE_CHECKING:
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
 
 
-@dataclass(frozen=True)
-class Progress:
-    """How far a run has come.
-
-    Attributes
-    ----------
-    event, count
-        The event that runs, from 1, and how many there will be.
-    time
-        Simulated time in this event, s.
-    fraction
-        Estimated part of this event that is done, 0 to 1.
-    updates_per_s
-        Particle updates per second.
-    """
-
-    event: int
-    count: int
-    time: float = 0.0
-    fraction: float = 0.0
-    updates_per_s: float = 0.0
-
-
-Reporter = Callable[[Progress], None]
-
-
 def run_events(
-    scene: Union[Scene, ResolvedScene],
+    scene: SceneLike,
     out_dir: PathLike,
     *,
     resume: bool = False,
@@ -76,7 +50,7 @@ def run_events(
     Parameters
     ----------
     scene
-        What to simulate.
+        What to simulate: a scene, its JSON data, or the path of a scene file.
     out_dir
         The results folder (see ``snowshed.run.results``); new or empty, unless resuming.
     resume
@@ -108,6 +82,7 @@ def run_events(
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene
     >>> tiny = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
     >>> tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
     >>> with TemporaryDirectory() as folder:
@@ -115,8 +90,9 @@ def run_events(
     >>> table.event.tolist()
     [1]
     """
-    ready = scene.resolve() if isinstance(scene, Scene) else scene
-    if ageing is not None and ready.data["events"]["between"] != "carry":
+    ready = resolve_scene(scene)
+    data: dict[str, Any] = ready.data
+    if ageing is not None and data["events"]["between"] != "carry":
         raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
     open_run = _resume if resume else _create
     sequence, results = open_run(ready, out_dir, None if ageing is None else ageing.data)
@@ -251,7 +227,7 @@ class _Recorder:
         return self._measure_of(
             self.simulation.positions(),
             self.simulation.masses(),
-            self.simulation.density(),
+            self.simulation.densities(),
             self.simulation.on_panel(),
         )
 
@@ -268,6 +244,21 @@ class _Recorder:
             exclude=on_panel,
         )
 
-    def _tell(self, time: float, fraction: float, updates_per_s: float = 0.0) -> None:
-        if self.report is not None:
-            self.report(Progress(self.simulation.event, self.count, time, fraction, updates_per_s))
+    def _tell(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
+        """Report where the run is; `fraction` is the part of the event that is done."""
+        if self.report is None:
+            return
+        event = self.simulation.event
+        ended = event - 1 + int(fraction == 1.0)
+        self.report(
+            Progress(
+                (event - 1 + fraction) / self.count,
+                ended,
+                self.count,
+                "events",
+                f"{time_s:.2f} s of event {event}",
+                event=event,
+                time=time_s,
+                updates_per_s=updates_per_s,
+            )
+        )

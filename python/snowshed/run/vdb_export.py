@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from snowshed._core import InputError
 from snowshed.io.vdb.writing import WrittenVdb, write_vdb
 from snowshed.io.vtp import read_particles
-from snowshed.scene.scene import ResolvedScene, PathLike
+from snowshed.methods.registry import resolution_of
+from snowshed.run.results_reader import Results
+from snowshed.scene.scene import PathLike
 
 POINT_QUANTITIES = ("velocity", "event", "mass", "density", "volumetric_plastic_strain", "id")
 
@@ -55,7 +57,7 @@ def export_folder(
         If the folder holds no such particles, or snowshed was built without OpenVDB.
     """
     folder = Path(folder)
-    scene = _scene(folder)
+    scene = Results(folder).scene.data
     output = folder / "vdb" if output is None else Path(output)
     files = list(_particle_files(folder, snapshots))
     written = []
@@ -65,13 +67,6 @@ def export_folder(
             report(exported)
         written.append(exported)
     return written
-
-
-def _scene(folder: Path) -> dict[str, Any]:
-    path = folder / "scene.json"
-    if not path.is_file():
-        raise InputError(f"{folder}: no results; it holds no scene.json")
-    return ResolvedScene.load(path).data
 
 
 def _particle_files(folder: Path, snapshots: bool) -> Iterator[Path]:
@@ -95,7 +90,7 @@ def _write(file: Path, output: Path, scene: dict[str, Any], width: Optional[floa
         particles["position"],
         particles["mass"],
         dimension=scene["dimension"],
-        dx=scene["numerics"]["dx"],
+        dx=resolution_of(scene),
         particles_per_voxel=scene["seeding"]["particles_per_voxel"],
         width=width,
         attributes=points,

@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
 
-from snowshed.scene.components import Numerics
+from snowshed.methods.registry import SETTINGS_KEY
+from snowshed.scene.schema import Parameter, scene_parameters
 
-#: Where in a scene each setting stands. Threads do not change a result and are not among them.
+
+def _of_other_section(parameter: Parameter) -> bool:
+    return not parameter.path.startswith(f"{SETTINGS_KEY}.")
+
+
+#: Where in a scene each setting stands: those that the schema marks, the method's own first.
 ACCURACY: Mapping[str, str] = {
-    **{f.name: f"numerics.{f.name}" for f in fields(Numerics) if f.name != "threads"},
-    "particles_per_voxel": "seeding.particles_per_voxel",
-    "pattern": "seeding.pattern",
+    p.path.rpartition(".")[2]: p.path
+    for p in sorted(scene_parameters(), key=_of_other_section)
+    if p.accuracy
+}
+
+#: Names that settings had in earlier versions, and thus in tables and records, to those of today.
+FORMER_NAMES: Mapping[str, str] = {
+    alias.rpartition(".")[2]: p.path.rpartition(".")[2]
+    for p in scene_parameters()
+    for alias in p.aliases
+    if p.accuracy
 }

@@ -1,32 +1,57 @@
-"""The parts of a scene, field by field as the core reads them.
+"""The components of a scene, field by field as the core reads them.
 
-Every field defaults to None, "not given": the core's default holds. Defaults, units in full and
-limits are in the JSON Schema (``snowshed schema``). Vectors are (x, y, z), in 2D (x, z).
+Every field defaults to None, "not given": the core's default holds. Vectors are (x, y, z), in 2D
+(x, z). The tables of attributes are those of the JSON Schema (``snowshed schema``).
 """
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import List, Optional, Union
+from typing import List, Literal, Optional, Union
 
-from snowshed import _core
-from snowshed.io.record import Record
+from snowshed._core import snow_preset
+from snowshed.io.record import Alias, Record
 from snowshed.scene.shape import Shape, Vector
+
+SnowModel = Literal["cam_clay", "elastic"]
+Condition = Literal["sticky", "slip", "separate"]
+Pattern = Literal["regular", "jittered", "poisson"]
+Between = Literal["carry", "reseed"]
 
 
 @dataclass
 class Snow(Record):
-    """Cohesive Modified Cam-Clay snow (thesis 1.2.5-1.2.7), or a purely elastic body."""
+    """Cohesive Modified Cam-Clay snow (thesis 1.2.5-1.2.7), or a purely elastic body.
 
-    model: Optional[str] = None  # cam_clay, elastic
-    density: Optional[float] = None  # kg/m3
-    youngs_modulus: Optional[float] = None  # E, Pa
-    poissons_ratio: Optional[float] = None  # nu
-    critical_state_slope: Optional[float] = None  # M
-    preconsolidation_pressure: Optional[float] = None  # p0, Pa, initial
-    cohesion: Optional[float] = None  # beta
-    hardening_factor: Optional[float] = None  # xi
+    Attributes
+    ----------
+    model : {"cam_clay", "elastic"}
+        Law: cohesive Modified Cam-Clay, or elastic without yielding. Default "cam_clay".
+    density : float
+        Initial bulk density [kg/m3]. 0 < value <= 1000; default 210.
+    youngs_modulus : float
+        Young's modulus E [Pa]. 0 < value <= 1e+12; default 1e+06.
+    poissons_ratio : float
+        Poisson's ratio nu. 0 <= value < 0.5; default 0.3.
+    critical_state_slope : float
+        Slope M of the critical state line (internal friction). 0 <= value <= 100; default 0.5.
+    preconsolidation_pressure : float
+        Initial preconsolidation pressure p0 [Pa]. 0 < value <= 1e+12; default 7000.
+    cohesion : float
+        Cohesion beta: tensile strength over p0. 0 <= value <= 1; default 0.2.
+    hardening_factor : float
+        Hardening factor xi. 0 < value <= 1000; default 0.1.
+    """
+
+    model: Optional[SnowModel] = None
+    density: Optional[float] = None
+    youngs_modulus: Optional[float] = None
+    poissons_ratio: Optional[float] = None
+    critical_state_slope: Optional[float] = None
+    preconsolidation_pressure: Optional[float] = None
+    cohesion: Optional[float] = None
+    hardening_factor: Optional[float] = None
 
     @classmethod
     def preset(cls, name: str) -> Snow:
@@ -37,131 +62,261 @@ class Snow(Record):
         >>> Snow.preset("calibrated").critical_state_slope
         0.5
         """
-        return cls.from_data(json.loads(_core.snow_preset(name)))
+        return cls.from_data(json.loads(snow_preset(name)))
 
 
 @dataclass
 class Panel(Record):
-    """The panel of Figure 3.1.1. x points down the slide direction from the panel's centre."""
+    """The panel of Figure 3.1.1. x points down the slide direction from the panel's centre.
 
-    height: Optional[float] = None  # m, of the lower edge above the ground
-    length: Optional[float] = None  # m, along the slope
-    width: Optional[float] = None  # m, 3D only
-    tilt: Optional[float] = None  # degrees from horizontal
-    thickness: Optional[float] = None  # m, below the sliding face
-    condition: Optional[str] = None  # sticky, slip, separate
-    friction: Optional[float] = None  # Coulomb coefficient
+    Attributes
+    ----------
+    height : float
+        Vertical distance of the lower edge above the ground [m]. 0 <= value <= 1e+06; required;
+        also lower_edge_height.
+    length : float
+        Length along the slope [m]. 0 < value <= 1e+06; required; also slant_height.
+    width : float
+        Width across the slope; ignored in 2D (required in 3D) [m]. 0 <= value <= 1e+06.
+    tilt : float
+        Tilt from the horizontal [degrees]. 0 <= value < 90; default 40; also surface_tilt.
+    thickness : float
+        Thickness, below the sliding face [m]. 0 <= value <= 1e+06; default 0.
+    condition : {"sticky", "slip", "separate"}
+        What snow that touches it may do. Default "slip".
+    friction : float
+        Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
+    """
+
+    height: Optional[float] = None
+    length: Optional[float] = None
+    width: Optional[float] = None
+    tilt: Optional[float] = None
+    thickness: Optional[float] = None
+    condition: Optional[Condition] = None
+    friction: Optional[float] = None
+
+    # The words of pvlib.
+    surface_tilt = Alias("tilt")
+    slant_height = Alias("length")
+    lower_edge_height = Alias("height")
 
 
 @dataclass
 class Layer(Record):
-    """A layer of the slab, over its whole length and width."""
+    """A layer of the slab, over its whole length and width.
 
-    thickness: Optional[float] = None  # m
-    snow: Optional[Snow] = None  # what it leaves out is as in the scene's snow
-    event: Optional[int] = None  # at whose start it is laid; 0: of every event
+    Attributes
+    ----------
+    thickness : float
+        Thickness, normal to the panel [m]. 0 < value <= 1e+06; required.
+    snow : Snow
+        Snow of its own; what it leaves out is as in the scene's snow.
+    event : int
+        Event at whose start it is laid, 1 the first; 0: at the start of every event. 0 <= value <=
+        1000; default 0.
+    """
+
+    thickness: Optional[float] = None
+    snow: Optional[Snow] = None
+    event: Optional[int] = None
 
 
 @dataclass
 class Slab(Record):
-    """The slab laid on the panel at the start of every event: one snow, or layer by layer."""
+    """The slab laid on the panel at the start of every event: one snow, or layer by layer.
 
-    thickness: Optional[float] = None  # m
-    length: Optional[float] = None  # m
-    width: Optional[float] = None  # m, 3D only
-    layers: Optional[List[Layer]] = None  # in place of a thickness, from the panel upwards
+    Attributes
+    ----------
+    thickness : float
+        Thickness, normal to the panel; 0: that of the layers [m]. 0 <= value <= 1e+06; default 0.
+    length : float
+        Length; 0: as long as the panel [m]. 0 <= value <= 1e+06; default 0.
+    width : float
+        Width; 0: two thirds of the panel's; ignored in 2D [m]. 0 <= value <= 1e+06; default 0.
+    layers : list of Layer
+        In place of a thickness, layers from the panel up.
+    """
+
+    thickness: Optional[float] = None
+    length: Optional[float] = None
+    width: Optional[float] = None
+    layers: Optional[List[Layer]] = None
 
 
 @dataclass
 class Ground(Record):
-    """An inclined plane through the origin; positive tilt falls in the slide direction."""
+    """An inclined plane through the origin; positive tilt falls in the slide direction.
 
-    tilt: Optional[float] = None  # degrees
-    condition: Optional[str] = None  # sticky, slip, separate
+    Attributes
+    ----------
+    tilt : float
+        Tilt; positive falls in the slide direction [degrees]. -60 < value < 60; default 0.
+    condition : {"sticky", "slip", "separate"}
+        What snow that touches it may do. Default "sticky".
+    friction : float
+        Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
+    """
+
+    tilt: Optional[float] = None
+    condition: Optional[Condition] = None
     friction: Optional[float] = None
 
 
 @dataclass
 class Motion(Record):
-    """Prescribed rigid motion of an obstacle between two times."""
+    """Prescribed rigid motion of an obstacle between two times.
 
-    velocity: Optional[Vector] = None  # m/s
-    angular_velocity: Union[Vector, float, None] = None  # rad/s; in 2D a number, about +y
-    pivot: Optional[Vector] = None  # m, moves with the velocity
-    start: Optional[float] = None  # s
-    end: Optional[float] = None  # s
+    Attributes
+    ----------
+    velocity : sequence of float
+        Velocity [m/s]. -10000 <= value <= 10000; default (0, 0, 0).
+    angular_velocity : float or sequence of float
+        Angular velocity about the pivot; in 2D a single number, about +y [rad/s]. -10000 <= value
+        <= 10000.
+    pivot : sequence of float
+        Centre of the rotation; moves with the velocity [m]. -1e+06 <= value <= 1e+06; default (0,
+        0, 0).
+    start : float
+        Start of the motion, on the clock of the whole run [s]. 0 <= value <= 1e+09; default 0.
+    end : float
+        End of the motion [s]. 0 <= value <= 1e+09; default 1e+09.
+    """
+
+    velocity: Optional[Vector] = None
+    angular_velocity: Union[Vector, float, None] = None
+    pivot: Optional[Vector] = None
+    start: Optional[float] = None
+    end: Optional[float] = None
 
 
 @dataclass
 class Obstacle(Record):
-    """Something snow collides with."""
+    """Something snow collides with.
+
+    Attributes
+    ----------
+    name : str
+        Name in messages and results.
+    shape : Shape
+        The solid. Required.
+    condition : {"sticky", "slip", "separate"}
+        What snow that touches it may do. Default "separate".
+    friction : float
+        Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
+    motion : Motion
+        Prescribed rigid motion; fixed without it.
+    """
 
     name: Optional[str] = None
     shape: Optional[Shape] = None
-    condition: Optional[str] = None  # sticky, slip, separate
+    condition: Optional[Condition] = None
     friction: Optional[float] = None
     motion: Optional[Motion] = None
 
 
 @dataclass
 class Body(Record):
-    """A body of snow that appears at the start of an event (0: of every event)."""
+    """A body of snow that appears at the start of an event (0: of every event).
+
+    Attributes
+    ----------
+    shape : Shape
+        The solid to fill with snow. Required.
+    velocity : sequence of float
+        Initial velocity [m/s]. -10000 <= value <= 10000; default (0, 0, 0).
+    event : int
+        Event at whose start it appears, 1 the first; 0: at the start of every event. 0 <= value <=
+        1000; default 1.
+    snow : Snow
+        Snow of its own; what it leaves out is as in the scene's snow.
+    """
 
     shape: Optional[Shape] = None
-    velocity: Optional[Vector] = None  # m/s
+    velocity: Optional[Vector] = None
     event: Optional[int] = None
-    snow: Optional[Snow] = None  # what it leaves out is as in the scene's snow
+    snow: Optional[Snow] = None
 
 
 @dataclass
 class Domain(Record):
-    """The box the snow may not leave; its sides are sticky walls."""
+    """The box the snow may not leave; its sides are sticky walls.
 
-    min: Optional[Vector] = None  # m
-    max: Optional[Vector] = None  # m
+    Attributes
+    ----------
+    min : sequence of float
+        Lowest corner [m]. -1e+06 <= value <= 1e+06; required.
+    max : sequence of float
+        Highest corner [m]. -1e+06 <= value <= 1e+06; required.
+    """
+
+    min: Optional[Vector] = None
+    max: Optional[Vector] = None
 
 
 @dataclass
 class Seeding(Record):
-    """How solids of snow are filled with particles (thesis A.3.2)."""
+    """How solids of snow are filled with particles (thesis A.3.2).
+
+    Attributes
+    ----------
+    particles_per_voxel : float
+        Particles per voxel of edge dx, at least 4 in 2D and 6 in 3D; 0: 6 in 2D, 8 in 3D. 0 <=
+        value <= 1000; default 0.
+    pattern : {"regular", "jittered", "poisson"}
+        How particles are placed. Default "poisson".
+    seed : int
+        Seed of the random numbers. 0 <= value; default 1.
+    allow_sparse : bool
+        Accept fewer particles per voxel. Default False.
+    """
 
     particles_per_voxel: Optional[float] = None
-    pattern: Optional[str] = None  # regular, jittered, poisson
+    pattern: Optional[Pattern] = None
     seed: Optional[int] = None
     allow_sparse: Optional[bool] = None
 
 
 @dataclass
-class Numerics(Record):
-    """Grid, transfer and time step."""
-
-    dx: Optional[float] = None  # m, grid and voxel size
-    precision: Optional[str] = None  # float, double
-    transfer: Optional[str] = None  # flip, apic
-    flip_ratio: Optional[float] = None
-    basis: Optional[str] = None  # quadratic, cubic
-    step_factor: Optional[float] = None
-    strain_limit: Optional[float] = None
-    sleep_speed: Optional[float] = None
-    sleep_time: Optional[float] = None
-    threads: Optional[int] = None
-
-
-@dataclass
 class Events(Record):
-    """How many slide-offs, what happens between them, and when one has come to rest."""
+    """How many slide-offs, what happens between them, and when one has come to rest.
+
+    Attributes
+    ----------
+    count : int
+        Number of slide-off events. 1 <= value <= 1000; default 1.
+    between : {"carry", "reseed"}
+        Between events, carry the particles on or reseed the stack's volume. Default "carry".
+    max_time : float
+        Longest duration of an event [s]. 0 < value <= 1e+09; default 10.
+    rest_speed : float
+        Speed below which the snow counts as resting [m/s]. 0 < value <= 10000; default 0.02.
+    rest_time : float
+        How long it must rest to end the event [s]. 0 <= value <= 1e+09; default 0.05.
+    """
 
     count: Optional[int] = None
-    between: Optional[str] = None  # carry, reseed
-    max_time: Optional[float] = None  # s
-    rest_speed: Optional[float] = None  # m/s
-    rest_time: Optional[float] = None  # s
+    between: Optional[Between] = None
+    max_time: Optional[float] = None
+    rest_speed: Optional[float] = None
+    rest_time: Optional[float] = None
 
 
 @dataclass
 class Output(Record):
-    """What a run writes besides its tables."""
+    """What a run writes besides its tables.
 
-    snapshot_interval: Optional[float] = None  # s of simulated time
+    Attributes
+    ----------
+    snapshot_interval : float
+        Simulated time between particle snapshots; 0: only at the end of an event [s]. 0 <= value
+        <= 1e+09; default 0.
+    energy : bool
+        Keep energy books. Default False.
+    checkpoint_interval : float
+        Wall time between checkpoints; 0: none [s]. 0 <= value <= 1e+09; default 60.
+    """
+
+    snapshot_interval: Optional[float] = None
     energy: Optional[bool] = None
-    checkpoint_interval: Optional[float] = None  # s of wall time
+    checkpoint_interval: Optional[float] = None

@@ -1,28 +1,35 @@
-"""Scenes: what is to be simulated, set value by value and then initialised by the core.
+"""Scenes: what is to be simulated, set value by value and then resolved by the core.
 
 This takes the place of the thesis's Lua remote controller (A.3.1): values may be set, appended
-and overridden, the last one wins, then the scene is initialised.
+and overridden, the last one wins, then the scene is resolved.
 """
 
 from __future__ import annotations
 
+import copy
 import json
 import os
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, List, Optional, Union
+from typing import List, Optional, Union
 
-from snowshed import _core
+from snowshed._core import InputError, load_scene, parse_scene
+from snowshed._core import preset as preset_text
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
-from snowshed.io.record import Record
+from snowshed.io.json_file import JsonObject, JsonValue
+from snowshed.io.paths import PathLike
+from snowshed.io.record import Record, check_once
+from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.registry import SETTINGS_KEY, MethodName, settings_class
 from snowshed.scene.components import (
     Body,
     Domain,
     Events,
     Ground,
-    Numerics,
     Obstacle,
     Output,
     Panel,
@@ -31,13 +38,49 @@ from snowshed.scene.components import (
     Snow,
 )
 
-PathLike = Union[str, "os.PathLike[str]"]
+__all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
+
 Holder = Union[Record, List[Record]]
 
 
 @dataclass
 class Scene(Record):
     """A scene in the making; fields that are None take the core's defaults. SI units.
+
+    Attributes
+    ----------
+    snowshed : int
+        Version of this form. Required.
+    dimension : int
+        2: the plane (x, z); 3: space. 2 <= value <= 3; default 3.
+    title : str
+        What this scene is.
+    gravity : float
+        Gravity, along -z [m/s2]. 0 <= value <= 1000; default 9.81.
+    snow : Snow
+        The material.
+    panel : Panel
+        The panel; its centre is the origin of x, which points down the slide direction.
+    slab : Slab
+        The slab laid on the panel, centred, at the start of every event.
+    ground : Ground
+        An inclined plane through the origin.
+    obstacles : list of Obstacle
+        Further solids that snow collides with.
+    bodies : list of Body
+        Further bodies of snow.
+    domain : Domain
+        A box with sticky sides; unbounded without it.
+    seeding : Seeding
+        How snow is filled with particles.
+    method : {"mpm"}
+        The numerical method. Default "mpm".
+    numerics : MpmSettings
+        The method's settings.
+    events : Events
+        How many events, and when one ends.
+    output : Output
+        What is written during a run.
 
     Examples
     --------
@@ -48,10 +91,10 @@ class Scene(Record):
     250.0
     """
 
-    snowshed: Optional[int] = 1  # version of the form that these classes mirror
-    dimension: Optional[int] = None  # 2 or 3
+    snowshed: Optional[int] = 1
+    dimension: Optional[int] = None
     title: Optional[str] = None
-    gravity: Optional[float] = None  # m/s2, along -z
+    gravity: Optional[float] = None
     snow: Optional[Snow] = None
     panel: Optional[Panel] = None
     slab: Optional[Slab] = None
@@ -60,7 +103,8 @@ class Scene(Record):
     bodies: Optional[List[Body]] = None
     domain: Optional[Domain] = None
     seeding: Optional[Seeding] = None
-    numerics: Optional[Numerics] = None
+    method: Optional[MethodName] = None
+    numerics: Optional[MpmSettings] = None
     events: Optional[Events] = None
     output: Optional[Output] = None
 
@@ -68,7 +112,7 @@ class Scene(Record):
 
     @classmethod
     def load(cls, path: PathLike) -> Scene:
-        """Read a scene file; it may be incomplete until it is initialised.
+        """Read a scene file; it may be incomplete until it is resolved.
 
         Meshes and grids it names are found beside it.
 
@@ -83,12 +127,12 @@ class Scene(Record):
         try:
             data = json.loads(content, object_pairs_hook=_without_duplicates)
         except (ValueError, RecursionError) as error:
-            raise _core.InputError(f"{path}: not JSON: {error}") from None
+            raise InputError(f"{path}: not JSON: {error}") from None
         try:
             scene = cls.from_data(data)
             scene.to_data()
-        except _core.InputError as error:
-            raise _core.InputError(f"{path}: {error}") from None
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
         scene._base_dir = os.fspath(Path(path).parent)
         return scene
 
@@ -101,9 +145,9 @@ class Scene(Record):
         InputError
             If there is no such preset.
         """
-        return cls.from_data(json.loads(_core.preset(name)))
+        return cls.from_data(json.loads(preset_text(name)))
 
-    def set(self, path: str, value: Any) -> Scene:
+    def set(self, path: str, value: object) -> Scene:
         """Set the value at a dotted path such as ``"snow.density"`` or ``"obstacles.0.friction"``.
 
         Objects on the way that were not given are created. Returns the scene itself.
@@ -111,37 +155,55 @@ class Scene(Record):
         Raises
         ------
         InputError
-            If the path names nothing a scene has.
+            If the path names nothing a scene has, or what is there takes no such value. The scene
+            is then as it was.
         """
-        record, key, where = self._locate(path)
-        record.assign(key, value, where)
+        with self._locate(path) as (record, key, where):
+            record.assign(key, value, where)
         return self
 
-    def append(self, path: str, value: Any) -> Scene:
+    def append(self, path: str, value: object) -> Scene:
         """Append a value to the list at a dotted path, such as ``"obstacles"``.
 
         Raises
         ------
         InputError
-            If the path names nothing a scene has, or something that is no list.
+            If the path names nothing a scene has, or something that is no list, or if the list
+            takes no such value. The scene is then as it was.
         """
-        record, key, where = self._locate(path)
-        held = getattr(record, record.field_of(key, where))
-        if not isinstance(held, (list, tuple, type(None))):
-            raise _core.InputError(f"{where}/{key}: nothing can be appended to what is no list")
-        record.assign(key, [*(held or []), value], where)
+        with self._locate(path) as (record, key, where):
+            held = getattr(record, record.field_of(key, where))
+            if not isinstance(held, (list, tuple, type(None))):
+                raise InputError(f"{where}/{key}: nothing can be appended to what is no list")
+            record.assign(key, [*(held or []), value], where)
         return self
 
-    def update(self, values: Mapping[str, Any]) -> Scene:
-        """Set several values; keys are dotted paths, and nested mappings go into what they name."""
-        for path, value in values.items():
-            record, key, where = self._locate(path)
-            record.field_of(key, where)
-            if isinstance(value, Mapping) and record.record_type(key):
-                self.update({f"{path}.{inner}": item for inner, item in value.items()})
-            else:
-                record.assign(key, value, where)
+    def update(self, values: Mapping[str, object]) -> Scene:
+        """Set several values; keys are dotted paths, and nested mappings go into what they name.
+
+        Raises
+        ------
+        InputError
+            As of `set`, or if the same is given by two names. The scene is then as it was.
+        """
+        copy.deepcopy(self)._update(values, {})  # fails, if it must, before anything is changed
+        self._update(values, {})
         return self
+
+    def _update(
+        self, values: Mapping[str, object], names: dict[int, dict[str, str]], prefix: str = ""
+    ) -> None:
+        """Set values; `names` collects the fields that were set, by record and name."""
+        for path, value in values.items():
+            with self._locate(prefix + path) as (record, key, where):
+                field = record.field_of(key, where)
+                if isinstance(value, Mapping) and record.record_type(key):
+                    self._update(value, names, f"{prefix}{path}.")
+                else:
+                    set_so_far = names.setdefault(id(record), {})
+                    set_so_far[key] = field
+                    check_once(set_so_far, where)
+                    record.assign(key, value, where)
 
     def resolve(self) -> ResolvedScene:
         """Have the core validate the scene and fill its defaults.
@@ -153,22 +215,46 @@ class Scene(Record):
         """
         return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
 
-    def _locate(self, path: str) -> tuple[Record, str, str]:
-        """Return the record that holds the last part of `path`, that part, and where it is."""
+    def initialise(self) -> ResolvedScene:
+        """Do what `resolve` does, which is the name to use.
+
+        .. deprecated:: 0.1
+        """
+        warnings.warn("Scene.initialise is now Scene.resolve", DeprecationWarning, stacklevel=2)
+        return self.resolve()
+
+    def record_type(self, key: str) -> Optional[type[Record]]:
+        """Return the class of records under a key; that of the settings depends on the method."""
+        if key == SETTINGS_KEY:
+            return settings_class(self.method)
+        return super().record_type(key)
+
+    @contextmanager
+    def _locate(self, path: str) -> Iterator[tuple[Record, str, str]]:
+        """Yield the record that holds the last part of `path`, that part, and where it is.
+
+        A record on the way that was not given is created, and dropped again on an error.
+        """
         *parents, key = path.split(".")
         holder: Holder = self
         where = ""
-        for parent in parents:
-            holder = _enter(holder, parent, where)
-            where = f"{where}/{parent}"
-        if isinstance(holder, list):
-            raise _core.InputError(f"{where}/{key}: set a key of the item, or the whole list")
-        return holder, key, where
+        created: list[tuple[Record, str]] = []
+        try:
+            for parent in parents:
+                holder = _enter(holder, parent, where, created)
+                where = f"{where}/{parent}"
+            if isinstance(holder, list):
+                raise InputError(f"{where}/{key}: set a key of the item, or the whole list")
+            yield holder, key, where
+        except BaseException:
+            for record, name in created:
+                setattr(record, name, None)
+            raise
 
 
-def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _without_duplicates(pairs: list[tuple[str, JsonValue]]) -> JsonObject:
     """Return a JSON object; as in the core, a key that is given twice is an error."""
-    found: dict[str, Any] = {}
+    found: JsonObject = {}
     for key, value in pairs:
         if key in found:
             raise ValueError(f"the key {key!r} appears twice")
@@ -176,16 +262,17 @@ def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return found
 
 
-def _enter(holder: Holder, key: str, where: str) -> Holder:
+def _enter(holder: Holder, key: str, where: str, created: list[tuple[Record, str]]) -> Holder:
     """Return the record or list under `key`; a record that was not given is created."""
     if isinstance(holder, list):
         return _item(holder, key, where)
     name = holder.field_of(key, where)
     kind = holder.record_type(key)
     if kind is None:
-        raise _core.InputError(f"{where}/{key}: a value, not an object")
+        raise InputError(f"{where}/{key}: a value, not an object")
     if getattr(holder, name) is None:
         setattr(holder, name, kind())
+        created.append((holder, name))
     held: Holder = getattr(holder, name)
     return held
 
@@ -194,9 +281,9 @@ def _item(items: list[Record], key: str, where: str) -> Record:
     try:
         item = items[int(key)]
     except (ValueError, IndexError):
-        raise _core.InputError(f"{where}/{key}: no such item; the list has {len(items)}") from None
+        raise InputError(f"{where}/{key}: no such item; the list has {len(items)}") from None
     if not isinstance(item, Record):
-        raise _core.InputError(f"{where}/{key}: {item!r} is not an object")
+        raise InputError(f"{where}/{key}: {item!r} is not an object")
     return item
 
 
@@ -218,19 +305,55 @@ class ResolvedScene:
     @classmethod
     def parse(cls, text: str, base_dir: PathLike = ".") -> ResolvedScene:
         """Validate JSON text; raises InputError."""
-        return cls(_core.parse_scene(text, os.fspath(base_dir)), os.fspath(base_dir))
+        return cls(parse_scene(text, os.fspath(base_dir)), os.fspath(base_dir))
 
     @classmethod
     def load(cls, path: PathLike) -> ResolvedScene:
         """Read and validate a scene file; raises InputError."""
-        return cls(_core.load_scene(os.fspath(path)), os.fspath(Path(path).parent))
+        return cls(load_scene(os.fspath(path)), os.fspath(Path(path).parent))
 
     @property
-    def data(self) -> dict[str, Any]:
+    def data(self) -> JsonObject:
         """The complete scene as JSON data (a fresh copy)."""
-        data: dict[str, Any] = json.loads(self.json)
+        data: JsonObject = json.loads(self.json)
         return data
 
     def save(self, path: PathLike) -> None:
         """Write the scene to a file."""
         write_text(path, self.json.rstrip() + "\n")
+
+
+SceneLike = Union[Scene, ResolvedScene, Mapping[str, JsonValue], PathLike]
+
+
+def resolve_scene(scene: SceneLike) -> ResolvedScene:
+    """Return the complete scene of whatever stands for one.
+
+    Parameters
+    ----------
+    scene
+        A scene, resolved or not; its JSON data; or the path of a scene file.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, or `scene` is none of these.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> resolve_scene({"slab": {"thickness": 0.1}, "panel": {}}).data["slab"]["thickness"]
+    0.1
+    """
+    if isinstance(scene, ResolvedScene):
+        return scene
+    if isinstance(scene, Scene):
+        return scene.resolve()
+    if isinstance(scene, Mapping):
+        return Scene.from_data(scene).resolve()
+    if isinstance(scene, (str, os.PathLike)):
+        return ResolvedScene.load(scene)
+    raise InputError(
+        f"scene: a value of type {type(scene).__name__}; allowed: Scene, ResolvedScene, dict, path"
+    )

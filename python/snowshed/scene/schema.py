@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Optional, cast
 
-from snowshed import _core
+from snowshed._core import scene_schema as schema_text
+from snowshed.io.json_file import JsonObject, JsonValue
 
-Node = Mapping[str, Any]
+Node = Mapping[str, JsonValue]
 
 
 @dataclass(frozen=True)
@@ -22,17 +24,34 @@ class Parameter:
         Dotted path, such as "snow.density".
     kind
         number, integer, boolean, string, vector (of numbers) or list (of objects).
+    description, unit, default
+        As in the schema; the unit is empty and the default None where there is none.
+    choices
+        What an enumeration may be; None for other parameters.
+    aliases
+        Other dotted paths under which it may be given.
+    accuracy
+        Whether it trades accuracy for computing time.
     """
 
     path: str
     kind: str
     description: str = ""
     unit: str = ""
-    default: Any = None
-    choices: Optional[tuple[Any, ...]] = None
+    default: JsonValue = None
+    choices: Optional[tuple[str, ...]] = None
+    aliases: tuple[str, ...] = ()
+    accuracy: bool = False
 
 
-def scene_parameters() -> list[Parameter]:
+@functools.cache
+def scene_schema() -> JsonObject:
+    """Return the JSON Schema of a scene; it is shared, so leave it as it is."""
+    return cast(JsonObject, json.loads(schema_text()))
+
+
+@functools.cache
+def scene_parameters() -> tuple[Parameter, ...]:
     """Return the parameters of a scene in the order of the schema.
 
     Examples
@@ -40,11 +59,40 @@ def scene_parameters() -> list[Parameter]:
     >>> [p.kind for p in scene_parameters() if p.path == "snow.density"]
     ['number']
     """
-    schema = json.loads(_core.scene_schema())
-    return list(_parameters(schema, schema, ""))
+    schema = scene_schema()
+    return tuple(_parameters(schema, schema, ""))
 
 
-def properties(schema: Node, node: Node) -> dict[str, Node]:
+def current_path(path: str) -> str:
+    """Return a parameter's dotted path; another of its names is replaced by its own.
+
+    Examples
+    --------
+    >>> current_path("numerics.step_factor"), current_path("panel.tilt")
+    ('numerics.courant_factor', 'panel.tilt')
+    """
+    return _path_of_alias().get(path, path)
+
+
+def with_current_names(scene: Mapping[str, JsonValue]) -> JsonObject:
+    """Return a scene's data, in which earlier versions named parameters otherwise.
+
+    Examples
+    --------
+    >>> with_current_names({"numerics": {"step_factor": 0.5}})
+    {'numerics': {'courant_factor': 0.5}}
+    """
+    renamed = dict(scene)
+    for alias, path in _path_of_alias().items():
+        section, _, name = alias.rpartition(".")
+        held = renamed.get(section)
+        if isinstance(held, dict) and name in held:
+            current = path.rpartition(".")[2]
+            renamed[section] = {current if k == name else k: v for k, v in held.items()}
+    return renamed
+
+
+def properties(schema: Node, node: Node) -> dict[str, JsonObject]:
     """Return the properties of an object, those of its alternatives included.
 
     Parameters
@@ -54,32 +102,49 @@ def properties(schema: Node, node: Node) -> dict[str, Node]:
     node
         The object's part of it.
     """
-    found: dict[str, Node] = {}
+    found: dict[str, JsonObject] = {}
     for part in _parts(schema, node):
-        for name, inner in part.get("properties", {}).items():
-            found.setdefault(name, inner)
+        for name, inner in _object(part.get("properties")).items():
+            found.setdefault(name, _object(inner))
     return found
 
 
-def resolve(schema: Node, node: Node) -> dict[str, Any]:
+def resolve(schema: Node, node: Node) -> JsonObject:
     """Return a node with its references and alternatives merged; its own keywords win."""
-    merged: dict[str, Any] = {}
+    merged: JsonObject = {}
     for part in _parts(schema, node):
         if part.get("type") != "null":
             merged = {**part, **merged}
     return merged
 
 
+@functools.cache
+def _path_of_alias() -> dict[str, str]:
+    return {alias: p.path for p in scene_parameters() for alias in p.aliases}
+
+
+def _object(value: JsonValue) -> JsonObject:
+    return value if isinstance(value, dict) else {}
+
+
+def _list(value: JsonValue) -> list[JsonValue]:
+    return value if isinstance(value, list) else []
+
+
+def _text(value: JsonValue) -> str:
+    return value if isinstance(value, str) else ""
+
+
 def _parts(schema: Node, node: Node) -> Iterator[Node]:
     yield node
     if "$ref" in node:
         target: Node = schema
-        for name in node["$ref"].lstrip("#/").split("/"):
-            target = target[name] if name else target
+        for name in _text(node["$ref"]).lstrip("#/").split("/"):
+            target = _object(target[name]) if name else target
         yield from _parts(schema, target)
     for keyword in ("allOf", "oneOf", "anyOf"):
-        for part in node.get(keyword, ()):
-            yield from _parts(schema, part)
+        for part in _list(node.get(keyword)):
+            yield from _parts(schema, _object(part))
 
 
 def _parameters(schema: Node, node: Node, path: str) -> Iterator[Parameter]:
@@ -95,13 +160,16 @@ def _parameters(schema: Node, node: Node, path: str) -> Iterator[Parameter]:
 
 def _parameter(schema: Node, node: Node, path: str) -> Parameter:
     full = resolve(schema, node)
+    section = path.rpartition(".")[0]
     return Parameter(
         path,
         _kind(schema, full),
-        full.get("description", ""),
-        full.get("x-unit", ""),
+        _text(full.get("description")),
+        _text(full.get("x-unit")),
         full.get("default"),
-        tuple(full["enum"]) if "enum" in full else None,
+        tuple(_text(choice) for choice in _list(full["enum"])) if "enum" in full else None,
+        tuple(f"{section}.{_text(alias)}" for alias in _list(full.get("x-aliases"))),
+        bool(full.get("x-accuracy")),
     )
 
 
@@ -110,5 +178,5 @@ def _kind(schema: Node, node: Node) -> str:
     if isinstance(kind, list):
         kind = next(name for name in kind if name != "null")
     if kind == "array":
-        return "list" if properties(schema, node.get("items", {})) else "vector"
+        return "list" if properties(schema, _object(node.get("items"))) else "vector"
     return str(kind)

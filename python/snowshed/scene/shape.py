@@ -4,11 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import List, Optional
+from typing import List, Literal, Optional
 
+from snowshed.io.paths import PathLike
 from snowshed.io.record import Record
 
 Vector = Sequence[float]
+ShapeType = Literal[
+    "plane",
+    "box",
+    "sphere",
+    "cylinder",
+    "capsule",
+    "plate",
+    "mesh",
+    "grid",
+    "vdb",
+    "union",
+    "difference",
+    "transform",
+]
 
 
 @dataclass
@@ -17,6 +32,50 @@ class Shape(Record):
 
     In 2D (plane strain) vectors are (x, z), and every shape is unbounded across.
 
+    Attributes
+    ----------
+    type : str
+        Kind of solid; it decides which other keys are allowed.
+    center : sequence of float
+        A point on the plane (plane); Centre (box, sphere); Middle of the face (plate) [m].
+    size : sequence of float
+        Edge lengths (box) [m].
+    normal : sequence of float
+        Outward normal (plane); Outward normal of the face; not along y (plate).
+    from_ : sequence of float
+        One end of the axis (cylinder); One end of the segment (capsule) [m].
+    to : sequence of float
+        The other end (cylinder, capsule) [m].
+    radius : float
+        Radius (sphere, cylinder, capsule) [m].
+    length : float
+        Length, down the slope (plate) [m].
+    width : float
+        Width, across; ignored in 2D (required in 3D) (plate) [m].
+    thickness : float
+        Thickness, below the face (plate) [m].
+    file : str or path
+        STL, OBJ or PLY file; relative to the scene file (mesh); NPY file; relative to the scene
+        file (grid); VDB file; relative to the scene file (vdb).
+    scale : float
+        Length of one unit of the file (mesh, vdb) [m].
+    origin : sequence of float
+        Position of the first sample (grid) [m].
+    spacing : float
+        Distance between samples (grid) [m].
+    grid_ : str
+        Name of the grid; empty: the only one of floats (vdb).
+    threshold : float
+        Of a fog volume: the solid is where its value is above this (vdb).
+    translate : sequence of float
+        Translation, after the rotation (transform) [m].
+    axis : sequence of float
+        Rotation axis (3D only; +y in 2D) (transform).
+    angle : float
+        Rotation about the axis (transform) [degrees].
+    shapes : list of Shape
+        The parts (union); The body, then what is cut away (difference); The shape (transform).
+
     Examples
     --------
     >>> roof = Shape.union(Shape.box((0, 0, 1), (2, 1, 0.1)), Shape.sphere((1, 0, 1), 0.2))
@@ -24,7 +83,7 @@ class Shape(Record):
     {'type': 'sphere', 'center': [1, 0, 1], 'radius': 0.2}
     """
 
-    type: Optional[str] = None
+    type: Optional[ShapeType] = None
     center: Optional[Vector] = None
     size: Optional[Vector] = None
     normal: Optional[Vector] = None
@@ -34,7 +93,7 @@ class Shape(Record):
     length: Optional[float] = None
     width: Optional[float] = None
     thickness: Optional[float] = None
-    file: Optional[str] = None
+    file: Optional[PathLike] = None
     scale: Optional[float] = None
     origin: Optional[Vector] = None
     spacing: Optional[float] = None
@@ -47,27 +106,27 @@ class Shape(Record):
 
     @classmethod
     def plane(cls, center: Vector, normal: Vector) -> Shape:
-        """Half-space behind the plane through `center` with outward `normal`."""
+        """Return the half-space behind the plane through `center` with outward `normal`."""
         return cls(type="plane", center=center, normal=normal)
 
     @classmethod
     def box(cls, center: Vector, size: Vector) -> Shape:
-        """Box with edges of lengths `size` along the axes."""
+        """Return a box with edges of lengths `size` along the axes."""
         return cls(type="box", center=center, size=size)
 
     @classmethod
     def sphere(cls, center: Vector, radius: float) -> Shape:
-        """Ball; a disc in 2D."""
+        """Return a ball; a disc in 2D."""
         return cls(type="sphere", center=center, radius=radius)
 
     @classmethod
     def cylinder(cls, start: Vector, end: Vector, radius: float) -> Shape:
-        """Cylinder with flat ends, its axis from `start` to `end`."""
+        """Return a cylinder with flat ends, its axis from `start` to `end`."""
         return cls(type="cylinder", from_=start, to=end, radius=radius)
 
     @classmethod
     def capsule(cls, start: Vector, end: Vector, radius: float) -> Shape:
-        """Cylinder with round caps, its axis from `start` to `end`."""
+        """Return a cylinder with round caps, its axis from `start` to `end`."""
         return cls(type="capsule", from_=start, to=end, radius=radius)
 
     @classmethod
@@ -80,25 +139,25 @@ class Shape(Record):
         width: Optional[float] = None,
         thickness: Optional[float] = None,
     ) -> Shape:
-        """Plate whose face is centred on `center`; `length` along the slope, `width` across."""
+        """Return a plate centred on its face; `length` is along the slope, `width` across."""
         plate = cls(type="plate", center=center, normal=normal, length=length)
         plate.width, plate.thickness = width, thickness
         return plate
 
     @classmethod
-    def mesh(cls, file: str, *, scale: Optional[float] = None) -> Shape:
+    def mesh(cls, file: PathLike, *, scale: Optional[float] = None) -> Shape:
         """Return a closed mesh from an STL, OBJ or PLY file; `scale` is metres per file unit."""
         return cls(type="mesh", file=file, scale=scale)
 
     @classmethod
-    def grid(cls, file: str, *, origin: Vector, spacing: float) -> Shape:
-        """Signed distances sampled on a regular grid (.npy), its first sample at `origin`."""
+    def grid(cls, file: PathLike, *, origin: Vector, spacing: float) -> Shape:
+        """Return a solid from signed distances on a regular grid (.npy), the first at `origin`."""
         return cls(type="grid", file=file, origin=origin, spacing=spacing)
 
     @classmethod
     def vdb(
         cls,
-        file: str,
+        file: PathLike,
         *,
         grid: Optional[str] = None,
         scale: Optional[float] = None,
@@ -109,7 +168,7 @@ class Shape(Record):
 
     @classmethod
     def union(cls, *shapes: Shape) -> Shape:
-        """Everything inside any of `shapes`."""
+        """Return everything inside any of `shapes`."""
         return cls(type="union", shapes=list(shapes))
 
     @classmethod
@@ -126,5 +185,5 @@ class Shape(Record):
         angle: Optional[float] = None,
         translate: Optional[Vector] = None,
     ) -> Shape:
-        """`shape` turned by `angle` degrees about `axis` through the origin, then moved."""
+        """Return `shape` turned by `angle` degrees about `axis` through the origin, then moved."""
         return cls(type="transform", shapes=[shape], axis=axis, angle=angle, translate=translate)

@@ -28,7 +28,7 @@ from snowshed.study.factors import (
 )
 from snowshed.study.formats import export, to_dataset
 from snowshed.study.scene_hash import Run
-from snowshed.study.session import StudyProgress, expected_duration, resume
+from snowshed.study.session import resume
 from snowshed.study.table import read_table
 
 __all__ = [
@@ -38,9 +38,7 @@ __all__ = [
     "Study",
     "StudyError",
     "StudyInterrupted",
-    "StudyProgress",
     "axis",
-    "expected_duration",
     "export",
     "latin_hypercube",
     "linear",

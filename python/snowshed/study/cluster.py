@@ -38,10 +38,10 @@ class DaskWorkers:
 
     capacity = AT_ONCE
 
-    def __init__(self, scheduler: Any) -> None:
+    def __init__(self, scheduler: object) -> None:
         self._dask = require("distributed", "cluster", "computing on a cluster")
         self._owned = not isinstance(scheduler, self._dask.Client)
-        self._client = self._connect(scheduler) if self._owned else scheduler
+        self._client: Any = self._connect(scheduler) if self._owned else scheduler
         self._futures: dict[str, Any] = {}
 
     def threads(self, unfinished: int) -> int:
@@ -87,7 +87,7 @@ class DaskWorkers:
         if self._owned:
             self._client.close()
 
-    def _connect(self, scheduler: Any) -> Any:
+    def _connect(self, scheduler: object) -> Any:
         where = {"address": scheduler}
         if isinstance(scheduler, (str, os.PathLike)) and os.fspath(scheduler).endswith(".json"):
             if not Path(scheduler).exists():  # Dask would wait for it forever

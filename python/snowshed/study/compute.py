@@ -12,15 +12,16 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Optional
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.run.events import Progress, run_events
+from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder
 from snowshed.scene.scene import ResolvedScene
-from snowshed.study.scene_hash import content_hash
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome, Task
+from snowshed.study.scene_hash import content_hash
 from snowshed.study.store import COUNTS, WORDS
 
 FractionReporter = Callable[[float], None]
@@ -74,7 +75,7 @@ def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Ou
     return _outcome(task, folder, None)
 
 
-def _run_or_resume(task: Task, folder: Path, report: Optional[Callable[[Progress], None]]) -> None:
+def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None:
     """Run the events; an attempt that left nothing to resume from is thrown away."""
     if (folder / "scene.json").is_file():
         try:
@@ -126,14 +127,15 @@ def _kind(error: Exception) -> str:
     return "" if expected else f"{type(error).__name__}: "
 
 
-def _weighted(report: Optional[FractionReporter]) -> Optional[Callable[[Progress], None]]:
+def _weighted(report: Optional[FractionReporter]) -> Optional[Reporter]:
     """Turn a run's progress into the part of its work: event k moves the snow of k slabs."""
     if report is None:
         return None
 
     def tell(progress: Progress) -> None:
         event, count = progress.event, progress.count
-        done = event * (event - 1) / 2 + progress.fraction * event
+        within = progress.fraction * count - (event - 1)  # part of this event
+        done = event * (event - 1) / 2 + within * event
         report(done / (count * (count + 1) / 2))
 
     return tell

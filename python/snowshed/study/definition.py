@@ -8,25 +8,24 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.io.atomic import write_text
+from snowshed.run.progress import Reporter
 from snowshed.scene.scene import PathLike, Scene
-from snowshed.study.factors import Factor, axis
+from snowshed.study import session, study_file
+from snowshed.study.factors import SEED, Part, axis
 from snowshed.study.scene_hash import Run
+from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from snowshed.study.session import Reporter
-
 LARGEST_STUDY = 1_000_000  # runs
-SEED = "seeding.seed"
 
 #: What may not be varied, because it does not change a result: all its values are the same run.
 WITHOUT_EFFECT = ("title", "output", "numerics.threads")
-
-Part = Sequence[Factor]
 
 
 @dataclass(frozen=True)
@@ -45,6 +44,8 @@ class Study:
     seeds
         Seeds of the particles' placement; every point is run with each of them. None keeps the
         scene's own.
+    description
+        What it is for, for readers of its file.
 
     Raises
     ------
@@ -68,12 +69,13 @@ class Study:
     parts: Sequence[Part] = ((),)
     name: str = "study"
     seeds: Optional[Sequence[int]] = None
+    description: str = ""
 
     @classmethod
     def product(
         cls,
         scene: Scene,
-        axes: Mapping[str, Sequence[Any]],
+        axes: Mapping[str, Sequence[object]],
         *,
         name: str = "study",
         seeds: Optional[Sequence[int]] = None,
@@ -100,9 +102,44 @@ class Study:
         OSError
             If the file cannot be read.
         """
-        from snowshed.study.study_file import load
+        path = Path(file)
+        with study_file.naming(path):
+            found = study_file.read(path)
+            study = cls(found.scene, found.parts, found.name, found.seeds, found.description)
+            study.runs()  # a wrong scene is the file's error
+        return study
 
-        return load(Path(file))
+    def to_toml(self) -> str:
+        """Return the study as the text of a study file, which `load` reads.
+
+        Raises
+        ------
+        InputError
+            If it holds a value that TOML does not have.
+
+        Examples
+        --------
+        >>> scene = Scene().update({"dimension": 2, "panel.height": 1.5})
+        >>> print(Study.product(scene, {"panel.tilt": [40, 50]}, name="tilts", seeds=[1]).to_toml())
+        name = "tilts"
+        seeds = [1]
+        <BLANKLINE>
+        [scene]
+        snowshed = 1
+        dimension = 2
+        panel.height = 1.5
+        <BLANKLINE>
+        [axes]
+        panel.tilt = [40, 50]
+        <BLANKLINE>
+        """
+        return study_file.text(
+            study_file.Content(self.scene, self.parts, self.name, self.seeds, self.description)
+        )
+
+    def save(self, file: PathLike) -> None:
+        """Write the study to a study file; see `to_toml`."""
+        write_text(file, self.to_toml())
 
     def __post_init__(self) -> None:
         if not self.name or not self.name.isprintable():
@@ -137,20 +174,20 @@ class Study:
             runs.setdefault(run.hash, run)
         return list(runs.values())
 
-    def run(
+    def compute(
         self,
         folder: PathLike,
         *,
         jobs: Optional[int] = None,
         threads: Optional[int] = None,
-        scheduler: Any = None,
+        scheduler: object = None,
         retry_failed: bool = False,
         progress: Optional[Reporter] = None,
-    ) -> pd.DataFrame:
-        """Compute what is not yet in the store in `folder`, and return the study's table.
+    ) -> None:
+        """Compute what is not yet in the store in `folder`.
 
-        Whenever this is interrupted, even killed, calling it again goes on from there, and the
-        table is the same, bit for bit, as if nothing had happened.
+        Whenever this is interrupted, even killed, calling it again goes on from there, and
+        the results are the same, bit for bit, as if nothing had happened.
 
         Parameters
         ----------
@@ -167,12 +204,7 @@ class Study:
         retry_failed
             Whether to compute failed runs again.
         progress
-            Called with a `StudyProgress` a few times a second.
-
-        Returns
-        -------
-        pandas.DataFrame
-            The study's table, as `read_table` returns it; failed runs are rows in it.
+            Called with a `Progress` a few times a second.
 
         Raises
         ------
@@ -183,6 +215,40 @@ class Study:
             computed is safe.
         StudyInterrupted
             After Ctrl-C.
+        """
+        session.compute_runs(
+            folder,
+            self.name,
+            self.axes,
+            self.runs(),
+            jobs=jobs,
+            threads=threads,
+            scheduler=scheduler,
+            retry_failed=retry_failed,
+            progress=progress,
+        )
+
+    def run(
+        self,
+        folder: PathLike,
+        *,
+        jobs: Optional[int] = None,
+        threads: Optional[int] = None,
+        scheduler: object = None,
+        retry_failed: bool = False,
+        progress: Optional[Reporter] = None,
+    ) -> pd.DataFrame:
+        """Compute what is not yet in the store in `folder`, and return the study's table.
+
+        Parameters
+        ----------
+        folder, jobs, threads, scheduler, retry_failed, progress
+            As for `compute`, which also says what may be raised.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The study's table, as `read_table` returns it; failed runs are rows in it.
 
         Examples
         --------
@@ -195,11 +261,7 @@ class Study:
         >>> table[["panel.friction", "event", "ended"]].values.tolist()
         [[0.2, 1, 'time_limit'], [0.3, 1, 'time_limit']]
         """
-        from snowshed.study.session import run_study
-        from snowshed.study.table import read_table
-
-        run_study(
-            self,
+        self.compute(
             folder,
             jobs=jobs,
             threads=threads,
@@ -209,17 +271,29 @@ class Study:
         )
         return read_table(folder, self.name)
 
+    def expected_duration(self, *, jobs: Optional[int] = None) -> tuple[float, int]:
+        """Return how long all runs are expected to take on this machine, s, and its runs at once.
+
+        Measures the machine's speed for a fraction of a second.
+
+        Parameters
+        ----------
+        jobs
+            As for `compute`.
+        """
+        return session.expected_duration([run.scene for run in self.runs()], jobs=jobs)
+
     def _seeded(self) -> Iterator[Part]:
         seeds = [] if self.seeds is None else [axis(SEED, self.seeds)]
         for part in self.parts:
             yield [*part, *seeds]
 
-    def _points(self) -> Iterator[dict[str, Any]]:
+    def _points(self) -> Iterator[dict[str, object]]:
         for part in self._seeded():
             for points in itertools.product(*(factor.points() for factor in part)):
                 yield {path: value for point in points for path, value in point.items()}
 
-    def _run(self, point: Mapping[str, Any]) -> Run:
+    def _run(self, point: Mapping[str, object]) -> Run:
         scene = copy.deepcopy(self.scene)
         try:
             for path, value in point.items():
@@ -244,7 +318,7 @@ class Study:
                 _try_to_set(scene, path, values[0])
 
 
-def _try_to_set(scene: Scene, path: str, value: Any) -> None:
+def _try_to_set(scene: Scene, path: str, value: object) -> None:
     try:
         scene.set(path, value)
     except InputError as error:

@@ -10,7 +10,7 @@ import math
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.io.extras import require
@@ -18,6 +18,8 @@ from snowshed.io.messages import shortened
 
 LARGEST_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
 SCALES = ("linear", "log")
+#: Path of the seed of the particles' placement, which repeats a point of a study.
+SEED = "seeding.seed"
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ class Factor:
     {'panel.height': 2.0, 'panel.length': 4.0}
     """
 
-    columns: Mapping[str, Sequence[Any]]
+    columns: Mapping[str, Sequence[object]]
 
     def __post_init__(self) -> None:
         counts = {path: len(values) for path, values in self.columns.items()}
@@ -57,12 +59,16 @@ class Factor:
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))
 
-    def points(self) -> list[dict[str, Any]]:
+    def points(self) -> list[dict[str, object]]:
         """Return the points, each as ``{path: value}``."""
         return [dict(zip(self.columns, values)) for values in zip(*self.columns.values())]
 
 
-def axis(path: str, values: Sequence[Any]) -> Factor:
+#: Factors that a study crosses with each other.
+Part = Sequence[Factor]
+
+
+def axis(path: str, values: Sequence[object]) -> Factor:
     """Return the factor of one parameter.
 
     Examples

@@ -10,7 +10,7 @@ import statistics
 import time
 from collections.abc import Iterable, Sequence
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
 
 THIRDS = (1 / 6, 3 / 6, 5 / 6)  # the middle of each third

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 from snowshed._core import InputError
 from snowshed.io.atomic import replacing
 from snowshed.io.extras import require
+from snowshed.io.units import unit_of_column
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import scene_parameters
 from snowshed.study.store import MEASURES
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SUFFIXES = {".csv": "csv", ".parquet": "parquet", ".nc": "netcdf"}
-UNITS = {"m": "m", "m3": "m3", "kg_m3": "kg/m3", "kg": "kg", "s": "s", "mb": "MB"}
 
 
 def export(
@@ -125,7 +125,6 @@ def _units() -> dict[str, str]:
     """Return the units of parameters, from the core's schema, and of measures, from their names."""
     units = {parameter.path: parameter.unit for parameter in scene_parameters() if parameter.unit}
     for name in (*MEASURES, "wall_s", "run_wall_s", "peak_memory_mb"):
-        endings = [ending for ending in UNITS if name.endswith(f"_{ending}")]
-        if endings:
-            units[name] = UNITS[max(endings, key=len)]
+        if unit := unit_of_column(name):
+            units[name] = unit
     return units

@@ -54,16 +54,3 @@ class Outcome:
     events: Sequence[Mapping[str, Any]] = ()
     timing: Mapping[str, Any] = field(default_factory=dict)
     error: Optional[str] = None
-
-
-@dataclass(frozen=True)
-class Ready:
-    """What a worker says first: it has started."""
-
-
-@dataclass(frozen=True)
-class Fraction:
-    """How much of a run's work is done, 0 to 1."""
-
-    hash: str
-    done: float

@@ -17,11 +17,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.scene.scene import ResolvedScene
 
 HASH_DIGITS = 32  # hexadecimal: 128 bits
 WITHOUT_EFFECT = ("title", "output")
+#: Settings keep the name that they had when they were first hashed, so that runs computed then are
+#: found; for the same reason a scene of the default method does not name it.
+HASHED_AS = {"courant_factor": "step_factor"}
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,7 @@ class Run:
         >>> one.hash == Run.of(lab.set("panel.tilt", 51).resolve()).hash
         False
         """
-        data = scene.data
+        data: dict[str, Any] = scene.data
         data["numerics"]["threads"] = 0
         data["output"].update(snapshot_interval=0.0, energy=False)
         return cls(content_hash(data), json.dumps(data))
@@ -73,7 +76,9 @@ def content_hash(scene: Mapping[str, Any]) -> str:
         If a file that the scene names cannot be read.
     """
     content = {key: value for key, value in scene.items() if key not in WITHOUT_EFFECT}
-    content["numerics"] = {k: v for k, v in scene["numerics"].items() if k != "threads"}
+    content["numerics"] = {
+        HASHED_AS.get(k, k): v for k, v in scene["numerics"].items() if k != "threads"
+    }
     whole = {"snowshed": _core.version, "scene": _with_file_contents(content)}
     text = json.dumps(whole, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]

@@ -11,19 +11,21 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Optional
+from typing import Optional
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.run.pool import available_cores
+from snowshed.run.progress import Progress, Reporter
 from snowshed.scene.scene import PathLike
 from snowshed.study import forecast
-from snowshed.study.definition import Study
 from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.local import LocalWorkers
 from snowshed.study.locks import is_held
 from snowshed.study.outcome import Outcome, Task
 from snowshed.study.owner import ownership, release_dead
+from snowshed.study.scene_hash import Run
 from snowshed.study.store import Store, StoredRun
 from snowshed.study.workers import Workers
 
@@ -33,43 +35,12 @@ DEATHS = 3  # workers that may die of a run before it counts as failed
 
 
 @dataclass(frozen=True)
-class StudyProgress:
-    """How far a study has come.
-
-    Attributes
-    ----------
-    runs, done, failed
-        Runs in all, and how many are done or have failed, earlier ones included.
-    running, elsewhere
-        Runs being computed by this process's workers, and by other processes on the same store.
-    fraction
-        Part of the work that was left at the start which is done, 0 to 1.
-    at_once
-        Runs that are computed at once.
-    expected_s
-        Time that the work left at the start is expected to take, s.
-    """
-
-    runs: int
-    done: int
-    failed: int
-    running: int
-    elsewhere: int
-    fraction: float
-    at_once: int
-    expected_s: float
-
-
-Reporter = Callable[[StudyProgress], None]
-
-
-@dataclass(frozen=True)
 class Resources:
     """What a study may use; see `Study.run` for the fields."""
 
     jobs: Optional[int] = None
     threads: Optional[int] = None
-    scheduler: Any = None
+    scheduler: object = None
 
     def __post_init__(self) -> None:
         for name in ("jobs", "threads"):
@@ -91,29 +62,31 @@ class Resources:
         return LocalWorkers(processes, self.threads, cores), processes
 
 
-def available_cores() -> int:
-    """Return the number of cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def run_study(
-    study: Study,
+def compute_runs(
     folder: PathLike,
+    study: str,
+    axes: Sequence[str],
+    runs: Sequence[Run],
     *,
     jobs: Optional[int] = None,
     threads: Optional[int] = None,
-    scheduler: Any = None,
+    scheduler: object = None,
     retry_failed: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
-    """Compute what is missing of a study; see `Study.run`."""
+    """Enter a study's runs into the store in a folder and compute what is missing.
+
+    Parameters
+    ----------
+    study, axes, runs
+        Its name, the paths of what varies in it, and its runs.
+    folder, jobs, threads, scheduler, retry_failed, progress
+        As for `Study.compute`.
+    """
     resources = Resources(jobs, threads, scheduler)
-    runs = study.runs()
     with Store.create(folder) as store:
-        store.register(study.name, study.axes, runs)
-        _compute(store, [study.name], resources, retry_failed, progress)
+        store.register(study, axes, runs)
+        _compute(store, [study], resources, retry_failed, progress)
 
 
 def resume(
@@ -122,7 +95,7 @@ def resume(
     *,
     jobs: Optional[int] = None,
     threads: Optional[int] = None,
-    scheduler: Any = None,
+    scheduler: object = None,
     retry_failed: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
@@ -150,12 +123,18 @@ def resume(
         _compute(store, names, resources, retry_failed, progress)
 
 
-def expected_duration(study: Study, *, jobs: Optional[int] = None) -> tuple[float, int]:
-    """Return how long a study is expected to take on this machine, s, and its runs at once.
+def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> tuple[float, int]:
+    """Return how long runs are expected to take on this machine, s, and how many run at once.
 
     Measures the machine's speed for a fraction of a second.
+
+    Parameters
+    ----------
+    scenes
+        The complete scenes of the runs, as JSON.
+    jobs
+        As for `Study.compute`.
     """
-    scenes = [run.scene for run in study.runs()]
     workers, at_once = Resources(jobs).workers(len(scenes))
     works = [forecast.work(scene) for scene in scenes]
     threads = workers.threads(len(scenes))
@@ -356,13 +335,14 @@ class _Narrator:
         for hash_, fraction in session.workers.fractions.items():
             left -= session.work.get(hash_, 0.0) * fraction
         self._report(
-            StudyProgress(
-                runs=sum(session.counts.values()),
-                done=session.counts["done"],
+            Progress(
+                min(1.0, max(0.0, 1.0 - left / self._work)),
+                session.counts["done"],
+                sum(session.counts.values()),
+                "runs",
                 failed=session.counts["failed"],
                 running=len(session.running),
                 elsewhere=len(session.elsewhere),
-                fraction=min(1.0, max(0.0, 1.0 - left / self._work)),
                 at_once=self._at_once,
                 expected_s=self._expected,
             )

@@ -26,15 +26,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.json_file import check_values, parse_object
 from snowshed.run.results import EVENT_COLUMNS
 from snowshed.scene.scene import PathLike
 from snowshed.study.errors import StudyError
-from snowshed.study.scene_hash import Run
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome
+from snowshed.study.scene_hash import Run
 
 FILE = "store.sqlite"
 RUNNING = "running"

@@ -1,24 +1,30 @@
-"""Study files: TOML in, a `Study` out, and the commented template."""
+"""Study files: TOML read and written, and the commented template."""
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping
+import textwrap
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Optional, TypeVar
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
 from snowshed.io.messages import shortened
-from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.io.record import check_once
+from snowshed.io.toml import toml_lines, toml_value
+from snowshed.methods.mpm import MpmSettings
+from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
-from snowshed.study.definition import Part, Study
 from snowshed.study.factors import (
     LARGEST_COUNT,
     SCALES,
     Factor,
+    Part,
     Span,
     axis,
     latin_hypercube,
@@ -35,7 +41,11 @@ else:
 Made = TypeVar("Made")
 
 FACTOR_KEYS = ("axes", "zip", "sample")
-KEYS = ("name", "scene", "dimension", "events", "seeds", "accuracy", *FACTOR_KEYS, "part")
+KEYS = (
+    *("name", "description", "scene", "dimension", "events", "seeds", "accuracy"),
+    *FACTOR_KEYS,
+    "part",
+)
 SCENE_SOURCES = ("preset", "file", "snow_preset")
 SAMPLE_KEYS = ("method", "count", "seed", "axes")
 RANGE_KEYS = ("from", "to", "step", "count", "scale")
@@ -45,7 +55,7 @@ SAMPLE_METHODS: Mapping[str, Callable[..., Factor]] = {
     "sobol": sobol,
 }
 
-TEMPLATE = """\
+_TEMPLATE = """\
 # A study: one scene, and the parameters that vary in it.
 #   snowshed study plan FILE          how many runs, and how long they will take
 #   snowshed study run FILE -o DIR    compute them; again after an interruption to go on
@@ -65,7 +75,7 @@ panel.friction = 0.2          # any field of a scene
 
 [accuracy]                    # settings that every row of the table records
 dx = 0.02
-# particles_per_voxel, pattern, precision, transfer, flip_ratio, basis, step_factor, strain_limit
+@OTHERS@
 
 # Every value of every axis with every value of the others.
 [axes]
@@ -93,17 +103,90 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 # [[part]]
 # axes.panel.tilt = [50, 60]
 """
+_OTHER_SETTINGS = ", ".join(name for name in ACCURACY if name != MpmSettings.RESOLUTION)
+
+#: A commented study file to begin with.
+TEMPLATE = _TEMPLATE.replace(
+    "@OTHERS@", textwrap.fill(_OTHER_SETTINGS, 98, initial_indent="# ", subsequent_indent="# ")
+)
 
 
-def load(file: Path) -> Study:
-    """Read a study file; see `Study.load`."""
-    content = read_input(file)
+@dataclass(frozen=True)
+class Content:
+    """What a study file holds; see `Study` for the fields."""
+
+    scene: Scene
+    parts: Sequence[Part]
+    name: str
+    seeds: Optional[Sequence[int]]
+    description: str
+
+
+@contextmanager
+def naming(file: Path) -> Iterator[None]:
+    """Name the file in errors about what it holds."""
     try:
-        return _study(_parsed(content), file)
+        yield
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
     except RecursionError:
         raise InputError(f"{file}: nested too deep") from None
+
+
+def read(file: Path) -> Content:
+    """Return what a study file holds; see `Study.load`, which names the file in errors."""
+    return _content(_parsed(read_input(file)), file)
+
+
+def text(content: Content) -> str:
+    """Return the text of a study file; see `Study.to_toml`."""
+    head: dict[str, object] = {"name": content.name}
+    if content.description:
+        head["description"] = content.description
+    if content.seeds is not None:
+        head["seeds"] = list(content.seeds)
+    folder = Path(content.scene._base_dir).absolute()
+    scene = _with_absolute_files(content.scene.to_data(), folder)
+    blocks = [list(toml_lines(head)), ["[scene]", *toml_lines(scene)]]
+    common = _shared_axes(content.parts)
+    blocks += _factor_blocks(common, "", folder)
+    for part in content.parts:
+        if len(content.parts) > 1:
+            blocks.append(["[[part]]"])
+            blocks += _factor_blocks(part[len(common) :], "part.", folder)
+    return "\n".join(line for block in blocks for line in [*block, ""])
+
+
+def _shared_axes(parts: Sequence[Part]) -> Part:
+    """Return the factors with which all parts begin; of a single part all."""
+    if len(parts) == 1:
+        return parts[0]
+    shared: list[Factor] = []
+    for first, *others in zip(*parts):
+        if len(first.columns) > 1 or any(other != first for other in others):
+            break
+        shared.append(first)
+    return shared
+
+
+def _factor_blocks(part: Part, prefix: str, folder: Path) -> Iterator[list[str]]:
+    """Yield the lines of each table that stands for factors, which reading finds in this order."""
+    columns = [_with_absolute_files(dict(factor.columns), folder) for factor in part]
+    single = [len(one) == 1 for one in columns]
+    first = single.index(False) if False in single else len(columns)
+    axes = {path: values for one in columns[:first] for path, values in one.items()}
+    if axes:
+        yield [f"[{prefix}axes]", *_axis_lines(axes)]
+    for one in columns[first:]:
+        yield [f"[[{prefix}zip]]", *_axis_lines(one)]
+
+
+def _axis_lines(axes: Mapping[str, Any]) -> list[str]:
+    """Return a line for each axis, such that reading finds them in this order."""
+    lines = list(toml_lines(axes))
+    if list(_flatten(tomllib.loads("\n".join(lines)))) == list(axes):
+        return lines
+    return [f"{toml_value(path)} = {toml_value(values)}" for path, values in axes.items()]
 
 
 def _parsed(content: bytes) -> dict[str, Any]:
@@ -116,7 +199,7 @@ def _parsed(content: bytes) -> dict[str, Any]:
         raise InputError(f"not TOML: {shortened(str(error), 200)}") from None
 
 
-def _study(data: dict[str, Any], file: Path) -> Study:
+def _content(data: dict[str, Any], file: Path) -> Content:
     _check_keys(data, KEYS, "")
     folder = file.absolute().parent
     data = _with_absolute_files(data, folder)
@@ -124,14 +207,13 @@ def _study(data: dict[str, Any], file: Path) -> Study:
     parts: list[Part] = [common]
     if "part" in data:
         parts = [[*common, *_part(part, where)] for part, where in _tables(data, "part", "")]
-    study = Study(
+    return Content(
         _scene(data, folder),
         parts,
         _typed(data.get("name", file.stem), str, "name", "a text"),
         _seeds(data["seeds"]) if "seeds" in data else None,
+        _typed(data.get("description", ""), str, "description", "a text"),
     )
-    study.runs()  # a wrong scene is the file's error
-    return study
 
 
 def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
@@ -148,12 +230,17 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
         snow = _named("scene", Snow.preset, sources["snow_preset"])
         scene.update({"snow": snow.to_data()})
     _named("scene", scene.update, given)
+    for key, value in given.items():
+        if value == {} and getattr(scene, key, None) is None:  # a part with all its defaults
+            _named("scene", scene.set, key, value)
     for key, path in (("dimension", "dimension"), ("events", "events.count")):
         if key in data:
             scene.set(path, _typed(data[key], int, key, "a whole number"))
     accuracy = _table(data.get("accuracy", {}), "accuracy")
-    _check_keys(accuracy, tuple(ACCURACY), "accuracy.")
-    return scene.update({ACCURACY[key]: value for key, value in accuracy.items()})
+    names = {key: FORMER_NAMES.get(key, key) for key in accuracy}
+    _check_keys(names.values(), tuple(ACCURACY), "accuracy.")
+    _named("accuracy", check_once, names, "")
+    return scene.update({ACCURACY[names[key]]: value for key, value in accuracy.items()})
 
 
 def _scene_file(file: Path) -> dict[str, Any]:
@@ -179,7 +266,7 @@ def _absolute(value: Any, folder: Path) -> Any:
     """Return a file's path, or those of an axis of files, found from `folder`."""
     if isinstance(value, list):
         return [_absolute(item, folder) for item in value]
-    return os.fspath(folder / value) if isinstance(value, str) else value
+    return os.fspath(folder / value) if value and isinstance(value, (str, os.PathLike)) else value
 
 
 def _seeds(value: Any) -> list[int]:
@@ -304,7 +391,7 @@ def _table(value: Any, where: str) -> Mapping[str, Any]:
     return value
 
 
-def _check_keys(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> None:
+def _check_keys(data: Iterable[str], allowed: tuple[str, ...], where: str) -> None:
     for key in data:
         if key not in allowed:
             raise InputError(f"{where}{key}: unknown key; allowed: {', '.join(allowed)}")

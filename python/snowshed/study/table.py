@@ -11,7 +11,8 @@ from snowshed.io.json_file import is_number
 from snowshed.io.messages import shortened
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import PathLike
-from snowshed.study.definition import SEED
+from snowshed.scene.schema import current_path, with_current_names
+from snowshed.study.factors import SEED
 from snowshed.study.store import COUNTS, MEASURES, TIMING, WORDS, Store, StoredRun
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def _rows(store: Store, study: str) -> Iterator[dict[str, Any]]:
 
 def _facts(run: StoredRun, axes: Sequence[str]) -> dict[str, Any]:
     """Return the columns that all events of a run share."""
-    scene = json.loads(run.scene)
+    scene = with_current_names(json.loads(run.scene))
     return {
         **{path: _cell(value_at(scene, path)) for path in axes},
         "hash": run.hash,
@@ -152,7 +153,7 @@ def value_at(scene: Mapping[str, Any], path: str) -> Any:
     0.3
     """
     value: Any = scene
-    for key in path.split("."):
+    for key in current_path(path).split("."):
         if isinstance(value, list) and key.isdigit() and int(key) < len(value):
             value = value[int(key)]
         elif isinstance(value, dict) and key in value:

@@ -31,9 +31,7 @@ def evaluated(tmp_path_factory):
     """The folder of a calibration on the thesis's grid, whose runs are made up."""
     folder = tmp_path_factory.mktemp("calibration")
     write_measurements(measured(TRUTH), folder / "stacks.csv")
-    text = calibration_study(read_measurements(folder / "stacks.csv"))
-    (folder / "grid.toml").write_text(text, encoding="utf-8")
-    fill(folder / "store", Study.load(folder / "grid.toml"))
+    fill(folder / "store", calibration_study(read_measurements(folder / "stacks.csv")))
     options = ("--stored", folder / "store", "-o", folder / "out")
     assert run("calibrate", folder / "stacks.csv", *options, "-q") == 0
     return folder
@@ -86,7 +84,8 @@ def test_what_it_prints(evaluated, capsys):
 def test_runs_that_are_not_computed_are_told(evaluated, tmp_path, capsys):
     from snowshed.cli.display.calibration import print_calibration
 
-    fill(tmp_path / "store", Study.load(evaluated / "grid.toml"), pending=40)
+    grid = calibration_study(read_measurements(evaluated / "stacks.csv"))
+    fill(tmp_path / "store", grid, pending=40)
     stacks = read_simulated(tmp_path / "store")
     assert stacks.pending == 40
     print_calibration(calibrate(read_measurements(evaluated / "stacks.csv"), stacks, steps=100))

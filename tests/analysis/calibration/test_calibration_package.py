@@ -30,7 +30,10 @@ def test_every_public_name_is_there():
 
 
 def test_the_command_line_starts_without_what_calibration_needs():
-    script = "import sys, snowshed.cli.main; print([m for m in ('emcee', 'sklearn') if m in sys.modules])"
+    script = (
+        "import sys, snowshed.cli.main; "
+        "print([m for m in ('emcee', 'sklearn') if m in sys.modules])"
+    )
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from stand_in import COHESION, HIGH, LOW, measured, table_of, thesis_triplets
 
 from snowshed import InputError
@@ -97,11 +98,40 @@ def test_a_model_that_cannot_be_right_says_so(surrogate):
 
 
 def test_ranges_that_the_box_cuts_off_are_open(surrogate):
-    samples = np.random.default_rng(1).uniform(size=(2000, 3)) ** [4, 1, 0.25]
-    posterior = Posterior(surrogate, surrogate.physical(samples), samples[:, :1], ["height"], 1e3)
-    assert posterior.ranges()["open"].tolist() == ["below", "both", "above"]
-    middle = Posterior(surrogate, surrogate.physical(0.4 + 0.2 * samples), samples, ["height"], 1e3)
+    samples = np.random.default_rng(1).uniform(size=(4, 500, 3)) ** [4, 1, 0.25]
+    assert posterior_with(surrogate, samples).ranges()["open"].tolist() == [
+        "below",
+        "both",
+        "above",
+    ]
+    middle = posterior_with(surrogate, 0.4 + 0.2 * samples)
     assert middle.ranges()["open"].tolist() == ["", "", ""]
+
+
+def posterior_with(surrogate, unit):
+    """The posterior with these draws of the unit cube, shape (chains, draws, parameters)."""
+    values = np.moveaxis(surrogate.physical(unit), -1, 0)
+    columns = dict(zip([*surrogate.parameters, "discrepancy_height"], [*values, unit[..., 0]]))
+    draws = xr.Dataset({name: (("chain", "draw"), of) for name, of in columns.items()})
+    return Posterior(surrogate, ["height"], draws)
+
+
+def test_chains_that_have_not_converged_are_told(surrogate):
+    """Independent draws are worth their number; few ones, or chains that disagree, are too little."""
+    unit = np.random.default_rng(1).uniform(0.4, 0.6, size=(8, 500, 3))
+    good = posterior_with(surrogate, unit)
+    assert good.converged and 3000 < good.effective < 5000
+    assert (good.diagnostics["r_hat"] - 1).abs().max() < 0.01
+    assert not posterior_with(surrogate, unit[:, :20]).converged
+    apart = posterior_with(surrogate, unit + 0.1 * np.arange(8)[:, None, None])
+    assert not apart.converged and apart.diagnostics["r_hat"].max() > 1.5
+    ranges = good.ranges().set_index("parameter")
+    columns = ["ess_bulk", "ess_tail", "r_hat"]
+    assert (ranges[columns] == good.diagnostics.loc[ranges.index, columns]).all(axis=None)
+
+
+def test_the_default_number_of_steps_converges(surrogate):
+    assert sample_posterior(surrogate, measured((0.55, 5.5e3, 0.12))).converged
 
 
 def test_the_same_seed_gives_the_same_samples(surrogate):

@@ -40,7 +40,7 @@ def test_the_geometry_study_is_the_thesis_data_set(tmp_path, between):
 def test_the_trial_is_small(capsys):
     assert run("geometry", "--trial") == 0
     shown = capsys.readouterr().out
-    assert shown == geometry_study(trial=True) and "dx = 0.05" in shown
+    assert shown == geometry_study(trial=True).to_toml() and "numerics.dx = 0.05" in shown
     assert run("geometry", "--trial", "--dx", "0.02") == 2
     assert "--dx does nothing with --trial" in capsys.readouterr().err
     assert run("geometry", "--between", "melt") == 2

@@ -11,31 +11,28 @@ from snowshed import InputError, Scene, run_events
 from snowshed.analysis.regression import OutsideDataError, load_model, predict
 from snowshed.analysis.regression.dataset import MODEL, MODEL_BETWEEN, geometry_rows, geometry_table
 from snowshed.analysis.regression.geometry import BETWEEN, geometry_study
-from snowshed.study import Study
 
 PANEL = ["panel.height", "panel.length", "panel.tilt"]
 
 
-def scenes_of(folder, **settings):
+def scenes_of(**settings):
     """The complete scenes of the study, by height, length and tilt of the panel."""
-    (folder / "study.toml").write_text(geometry_study(**settings))
-    scenes = [json.loads(run.scene) for run in Study.load(folder / "study.toml").runs()]
+    scenes = [json.loads(run.scene) for run in geometry_study(**settings).runs()]
     names = ("height", "length", "tilt")
     return {tuple(scene["panel"][name] for name in names): scene for scene in scenes}
 
 
 @pytest.mark.parametrize("between", BETWEEN)
-def test_the_rows_are_those_of_the_study(between, tmp_path):
-    panels = set(scenes_of(tmp_path, between=between))
+def test_the_rows_are_those_of_the_study(between):
+    panels = set(scenes_of(between=between))
     rows = geometry_rows(between)
     assert len(rows) == 610 and len(panels) == 122
     assert {tuple(row) for row in rows.inputs[:, 1:]} == panels
     assert set(rows.inputs[:, 0]) == {1, 2, 3, 4, 5}
 
 
-def test_short_panels_have_more_seeds(tmp_path):
-    (tmp_path / "study.toml").write_text(geometry_study(seeds=16))
-    panels = [json.loads(run.scene)["panel"] for run in Study.load(tmp_path / "study.toml").runs()]
+def test_short_panels_have_more_seeds():
+    panels = [json.loads(run.scene)["panel"] for run in geometry_study(seeds=16).runs()]
     counts = Counter((one["length"], one["height"], one["tilt"]) for one in panels)
     assert len(counts) == 122
     for (length, _, _), count in counts.items():
@@ -62,7 +59,7 @@ def test_a_row_is_what_its_scene_gives(tmp_path):
     panel = (2.0, 2.0, 70.0)
     table = pd.read_csv(geometry_table())
     row = table[(table[PANEL] == panel).all(axis=1) & (table["event"] == 1)].iloc[0]
-    scene = Scene.from_data(scenes_of(tmp_path, dx=row["dx"])[panel])
+    scene = Scene.from_data(scenes_of(dx=row["dx"])[panel])
     scene.update({"events.count": 1, "seeding.seed": int(row["seed"])})
     found = run_events(scene, tmp_path / "out").iloc[0]
     assert found["height_m"] == pytest.approx(row["height_m"], rel=0.05)

@@ -1,5 +1,6 @@
 """Folds, the nested cross-validation over them, and what is kept of it."""
 
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +10,14 @@ from made_up_rows import few_inputs, made_up_rows
 from snowshed import InputError
 from snowshed.analysis.regression import CrossValidation, RegressionInterrupted, nested, regress
 from snowshed.analysis.regression.fold_result import FoldResult
+from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kinds import kinds, kinds_named
 from snowshed.analysis.regression.nested import cross_validate
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.task import Task, compute
 
 ROWS = made_up_rows(few_inputs())
+X = ROWS.inputs
 SMALL = CrossValidation(rounds=2, folds=3, inner_folds=2)
 LINEAR = kinds_named(["linear"])
 
@@ -22,14 +25,20 @@ LINEAR = kinds_named(["linear"])
 @pytest.mark.parametrize("by", ["rows", "panels"])
 def test_every_row_is_validated_once_a_round_and_tested_once_a_fold(by):
     scheme = CrossValidation(rounds=1, folds=4, inner_folds=3, by=by)
-    outer = scheme.outer(ROWS, 0)
+    groups = scheme.groups(ROWS)
+    outer = list(scheme.outer(0).split(ROWS.inputs, groups=groups))
     np.testing.assert_array_equal(
         np.sort(np.concatenate([validation for _, validation in outer])), np.arange(len(ROWS))
     )
     for fold, (development, validation) in enumerate(outer):
         assert not set(development) & set(validation)
         assert len(development) + len(validation) == len(ROWS)
-        inner = scheme.inner(ROWS, development, 0, fold)
+        inner = [
+            (development[train], development[test])
+            for train, test in scheme.inner(0, fold).split(
+                ROWS.inputs[development], groups=groups[development]
+            )
+        ]
         tested = np.sort(np.concatenate([test for _, test in inner]))
         np.testing.assert_array_equal(tested, np.sort(development))
         for train, test in inner:
@@ -39,9 +48,21 @@ def test_every_row_is_validated_once_a_round_and_tested_once_a_fold(by):
 
 
 def test_rounds_differ_and_repeat():
-    first, second = (SMALL.outer(ROWS, round_)[0][1] for round_ in (0, 1))
+    first, second, again = (next(SMALL.outer(round_).split(X))[1] for round_ in (0, 1, 0))
     assert set(first) != set(second)
-    np.testing.assert_array_equal(first, SMALL.outer(ROWS, 0)[0][1])
+    np.testing.assert_array_equal(first, again)
+
+
+def test_the_folds_are_those_of_the_published_models():
+    """Parts of a permutation by NumPy: other folds would make other models of the same rows."""
+    panels = np.repeat([3, 5, 8, 9], 3)
+    for groups, units in ((None, range(12)), (panels, [3, 5, 8, 9])):
+        of_row = np.arange(12) if groups is None else groups
+        parts = np.array_split(np.random.default_rng([1, 0]).permutation(list(units)), 3)
+        folds = list(ShuffledGroupKFold(3, (1, 0)).split(X[:12], groups=groups))
+        assert len(folds) == len(parts)
+        for (train, test), part in zip(folds, parts):
+            assert set(of_row[test]) == set(part) and set(train) == set(range(12)) - set(test)
 
 
 @pytest.mark.parametrize(
@@ -74,7 +95,8 @@ def test_each_kind_predicts_what_it_has_not_seen(name):
     plain = np.median(np.abs(values - np.median(values)))
     assert result.validation_score < plain * (0.6 if name == "linear" else 0.35)
     inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
-    final = kinds()[name].fit(result.parameters, inputs, (values - values.mean()) / values.std())
+    scaled = (values - values.mean()) / values.std()
+    final = kinds()[name].estimator(result.parameters).fit(inputs, scaled)
     expected = final.predict(inputs) * values.std() + values.mean()
     np.testing.assert_allclose(result.predictions, expected)
     if result.expansion is not None:
@@ -110,7 +132,7 @@ def test_an_interrupted_regression_goes_on_where_it_was(tmp_path, monkeypatch):
     def compute_then_interrupt(task, rows, scheme):
         done.append(task)
         if len(done) == 3:
-            nested.signal.raise_signal(nested.signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
         return compute(task, rows, scheme)
 
     monkeypatch.setattr(nested, "compute", compute_then_interrupt)
@@ -131,7 +153,7 @@ def test_rounds_may_be_added(tmp_path):
     more = run(tmp_path / "out", progress=seen.append)
     assert (seen[0].done, seen[-1].count) == (3, 6)
     assert predictions(more) == predictions(run(tmp_path / "whole"))
-    with pytest.raises(InputError, match="or with other"):
+    with pytest.raises(InputError, match="with other folds"):
         run(tmp_path / "out", scheme=replace(SMALL, folds=4))
 
 
@@ -146,7 +168,7 @@ def test_a_folder_of_something_else_is_refused(tmp_path):
     (tmp_path / "damaged" / "regression.json").write_bytes(b"\xff\x00")
     with pytest.raises(InputError, match=r"regression\.json: damaged: "):
         run(tmp_path / "damaged")
-    with pytest.raises(InputError, match="holds a regression of another table, or with other"):
+    with pytest.raises(InputError, match="holds a regression of another table, with other folds"):
         cross_validate(
             made_up_rows(few_inputs(), seed=2),
             tmp_path / "out",

@@ -43,7 +43,7 @@ def ensemble_model(rows, target="ratio", rounds=2, folds=5):
     values = rows.targets[target]
     scaled = (values - values.mean()) / values.std()
     choices = [{**PARAMETERS, "epsilon": epsilon} for epsilon in np.linspace(0.005, 0.05, folds)]
-    models = [kind.fit(parameters, inputs, scaled) for parameters in choices]
+    models = [kind.estimator(parameters).fit(inputs, scaled).expansion_ for parameters in choices]
     ensemble = Ensemble(
         inputs,
         np.array([model.coefficients for model in models]),
@@ -190,12 +190,82 @@ def test_outside_the_data_nothing_is_answered_unless_forced(file, question, mess
         ({"length": float("nan")}, "length: nan is not"),
         ({"tilt": 90}, "tilt: 90 is outside the allowed range"),
         ({"events": 0}, "events: 0 is outside the allowed range"),
+        ({"events": 1.5}, "events: 1.5 is not a whole number"),
+        ({"height": None}, "height: missing; needed are height, length, tilt, events"),
+        ({"height": "tall"}, "height: not a number, nor numbers"),
+        ({"height": [[2, 3]]}, r"height: shape \(1, 2\); must be a number or a sequence"),
+        ({"height": []}, "no panels"),
+        ({"height": [2, 3], "tilt": [40, 50, 60]}, "tilt: 3 values, but height has 2"),
+        ({"height": [2, -1]}, "panel 1, height: -1 is not a positive length"),
+        ({"height": [2] * 21, "events": 1000}, "21000 events of all panels; at most 20000"),
         ({"kind": "linear"}, "the model holds no 'linear'; it has: rbf"),
     ],
 )
 def test_impossible_questions_are_refused(file, values, message):
     with pytest.raises(InputError, match=message):
         predict(**{"height": 2, "length": 2, "tilt": 40, "events": 1, "model": file, **values})
+
+
+PANELS = {"height": [2.0, 3.0, 4.0], "length": [2.0, 4.0, 1.0], "events": [2, 5, 1]}
+
+
+def test_arrays_and_tables_are_answered_as_each_panel_alone(file):
+    """Numbers stand for all panels; columns of a table come in any order."""
+    several = predict(**PANELS, tilt=50, model=file)
+    table = pd.DataFrame(PANELS | {"tilt": 50})[["tilt", "events", "length", "height"]]
+    labelled = predict(table.set_axis(["a", "b", "c"]), model=file)
+    assert list(dict.fromkeys(labelled.table["panel"])) == ["a", "b", "c"]
+    for number, label in enumerate("abc"):
+        alone = {name: values[number] for name, values in PANELS.items()}
+        expected = predict(**alone, tilt=50, model=file).table.drop(columns="panel")
+        for found, panel in ((several, number), (labelled, label)):
+            rows = found.table[found.table["panel"] == panel].drop(columns="panel")
+            pd.testing.assert_frame_equal(rows.reset_index(drop=True), expected, rtol=1e-9)
+    array = labelled.array("ratio")
+    assert array.shape == (3, 5) and np.isfinite(array).sum() == 8
+    np.testing.assert_array_equal(array[0, :2], labelled.table["value"][:2])
+    for wrong in ({"target": "height"}, {"target": "ratio", "column": "panel"}):
+        with pytest.raises(InputError, match="is unknown; allowed: "):
+            several.array(**wrong)
+
+
+def test_panels_outside_the_data_are_named_and_marked(file):
+    asked = {"height": [2.0, 9.0, 3.0, 2.0], "length": 2.0, "tilt": [40, 40, 50, 89], "events": 1}
+    with pytest.raises(OutsideDataError) as refused:
+        predict(**asked, model=file)
+    said = str(refused.value)
+    assert said.startswith("2 of 4 panels lie outside the data: panel 1: panel height 9 m is")
+    assert "; panel 3: panel tilt 89 degrees is outside the data" in said
+    forced = predict(**asked, model=file, extrapolate=True)
+    assert forced.table["extrapolated"].tolist() == [False, True, False, True]
+    assert [text[:8] for text in forced.objections] == ["panel 1:", "panel 3:"]
+    many = predict(height=[9.0] * 8, length=2, tilt=40, events=1, model=file, extrapolate=True)
+    assert len(many.objections) == 8
+    with pytest.raises(OutsideDataError, match=r"panel 4: .*; and 3 more panels; no model"):
+        predict(height=[9.0] * 8, length=2, tilt=40, events=1, model=file)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda t: t.drop(columns="tilt"),
+            "tilt: missing; needed are height, length, tilt, events",
+        ),
+        (lambda t: t.rename(columns={"tilt": "tlit"}), "column 'tlit' is unknown; allowed: height"),
+        (lambda t: t.assign(friction=0.3), "column 'friction' is unknown; allowed: height"),
+        (lambda t: t.set_axis([7, 7]), "index holds 7 twice"),
+        (lambda t: t[["tilt", *t]], "column 'tilt' occurs twice"),
+        (lambda t: t.assign(height=[2, np.nan]), "panel 1, height: nan is not a positive length"),
+        (lambda t: t.to_numpy(), "panels: ndarray is no DataFrame; give arrays as height"),
+    ],
+)
+def test_tables_that_are_no_panels_are_refused(file, change, message):
+    table = pd.DataFrame({"height": [2.0, 3.0], "length": 2.0, "tilt": 40.0, "events": 2})
+    with pytest.raises(InputError, match=message):
+        predict(change(table), model=file)
+    with pytest.raises(InputError, match="tilt: not beside a table of panels"):
+        predict(table, tilt=40, model=file)
 
 
 def altered(file, change, tmp_path):

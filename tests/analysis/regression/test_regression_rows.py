@@ -164,3 +164,11 @@ def test_the_made_up_rows_look_like_the_thesis_data():
     quartiles = np.quantile(rows.targets["ratio"], (0.25, 0.5, 0.75, 1))
     np.testing.assert_allclose(quartiles, (0.057, 0.092, 0.142, 0.240), rtol=0.35)
     assert len(thesis_inputs()) == 610
+
+
+def test_columns_of_the_last_version_are_read_by_the_names_of_today(tmp_path):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    table.assign(step_factor=0.5).to_csv(tmp_path / "rows.csv", index=False)
+    for name in ("step_factor", "courant_factor"):
+        read = read_rows(tmp_path / "rows.csv", where={name: "0.5"})
+        assert read.settings["courant_factor"] == "0.5"

@@ -3,24 +3,23 @@
 import numpy as np
 import pytest
 from made_up_rows import few_inputs, made_up_rows
+from sklearn.model_selection import GridSearchCV, GroupKFold
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVR
+from sklearn.utils.estimator_checks import parametrize_with_checks
 
 from snowshed import InputError
-from snowshed.analysis.regression import support_vectors
-from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.analysis.regression import EpsilonSVR, support_vectors
+from snowshed.analysis.regression.folds import CrossValidation, ShuffledGroupKFold
+from snowshed.analysis.regression.gradient_boosting import StagedGradientBoosting
+from snowshed.analysis.regression.grid_kinds import EPSILON, GAMMA, rbf_svr
+from snowshed.analysis.regression.grid_kinds import C as BOUNDS
 from snowshed.analysis.regression.interior_point import solve
-from snowshed.analysis.regression.kernels import Expansion, kernel_matrix
-from snowshed.analysis.regression.kinds import Development
+from snowshed.analysis.regression.kernels import kernel_matrix
+from snowshed.analysis.regression.path_search import PathSearchCV
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.support_vectors import fit_along_c
-from snowshed.analysis.regression.svr_kinds import (
-    EPSILON,
-    GAMMA,
-    SupportVectorRegression,
-    linear_svr,
-    rbf_svr,
-)
-from snowshed.analysis.regression.svr_kinds import C as BOUNDS
 from snowshed.analysis.regression.task import Task, compute
 
 ROWS = made_up_rows(few_inputs())
@@ -91,14 +90,40 @@ def test_points_that_do_not_converge_are_not_elected(monkeypatch):
     monkeypatch.setattr(support_vectors, "solve", diverge)
     fits = list(fit_along_c(kernel(0.01), Y, 1e-4, BOUNDS))
     assert np.isfinite(fits[0].intercept) and np.isnan(fits[-1].intercept)
-    kind = SupportVectorRegression("rbf", "RBF SVR", 1, (0.01,))
-    half = np.arange(len(Y)) % 2 == 0
-    splits = [(np.flatnonzero(half), np.flatnonzero(~half))]
-    choice = kind.search(Development(X, Y, np.arange(len(Y)), splits))
-    assert np.isfinite(choice.score)
+    grid = {"epsilon": EPSILON, "C": BOUNDS}
+    search = PathSearchCV(EpsilonSVR(gamma=0.01), grid, cv=ShuffledGroupKFold(2, (1,))).fit(X, Y)
+    scores = search.cv_results_["mean_test_score"]
+    assert np.isneginf(scores).any() and search.best_score_ == scores.max() > -np.inf
     monkeypatch.setattr(support_vectors, "_libsvm", lambda *arguments: None)
     with pytest.raises(InputError, match="C 10000, gamma 1 does not converge"):
-        kind.fit({"epsilon": 1e-4, "C": 1e4, "gamma": 1.0}, X, Y)
+        EpsilonSVR(epsilon=1e-4, C=1e4, gamma=1.0).fit(X, Y)
+
+
+@parametrize_with_checks([EpsilonSVR("rbf"), EpsilonSVR("linear")])
+def test_it_is_an_estimator_of_scikit_learn(estimator, check):
+    check(estimator)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({"kernel": "cubic"}, "kernel: 'cubic' is unknown; allowed: linear, rbf"),
+        ({"C": 0}, "C: 0 is not positive"),
+        ({"epsilon": -1}, "epsilon: -1 is not zero or positive"),
+        ({"gamma": 0.0}, "gamma: 0.0 is not positive"),
+    ],
+)
+def test_impossible_parameters_are_refused(parameters, message):
+    with pytest.raises(InputError, match=message):
+        EpsilonSVR(**parameters).fit(X, Y)
+
+
+def test_it_goes_into_a_pipeline_and_a_grid_search_of_scikit_learn():
+    grid = {"epsilonsvr__C": [0.1, 10.0], "epsilonsvr__epsilon": [0.01, 0.1]}
+    pipeline = make_pipeline(StandardScaler(), EpsilonSVR(gamma=0.1))
+    search = GridSearchCV(pipeline, grid, cv=GroupKFold(4), scoring="neg_median_absolute_error")
+    search.fit(ROWS.inputs, Y, groups=ROWS.panels)
+    assert search.best_params_["epsilonsvr__C"] == 10.0 and search.best_score_ > -0.2
 
 
 def test_grid_is_the_thesis_grid():
@@ -107,40 +132,48 @@ def test_grid_is_the_thesis_grid():
     assert (GAMMA[0], GAMMA[-1], len(GAMMA)) == (1e-4, 1e2, 7)
 
 
-@pytest.mark.parametrize("kind", [linear_svr(), SupportVectorRegression("rbf", "RBF", 1, (0.1,))])
-def test_search_finds_what_a_plain_grid_search_finds(kind):
-    """Scores of scikit-learn's SVR, one by one, at the chosen point and at others."""
-    scheme = CrossValidation(folds=2, inner_folds=3)
-    development, _ = scheme.outer(ROWS, 0)[0]
-    splits = scheme.inner(ROWS, development, 0, 0)
-    choice = kind.search(Development(X, Y, development, splits))
-    options = {"kernel": "rbf", "gamma": 0.1} if kind.gammas else {"kernel": "linear"}
+GRIDS = {
+    "linear": (EpsilonSVR("linear"), {"epsilon": [0.01, 0.1, 1.0], "C": [0.01, 1.0, 10.0]}),
+    "rbf": (EpsilonSVR(), {"gamma": [0.01, 0.1], "epsilon": [0.01, 0.1], "C": [0.1, 10.0]}),
+    "trees": (
+        StagedGradientBoosting(random_state=0),
+        {"max_depth": [1, 3], "n_estimators": [5, 20, 40]},
+    ),
+}
 
-    def score(c, epsilon):
-        found = []
-        for train, test in splits:
-            model = SVR(C=c, epsilon=epsilon, **options).fit(X[train], Y[train])
-            found.append(np.median(np.abs(model.predict(X[test]) - Y[test])))
-        return np.mean(found)
 
-    own = score(choice.parameters["C"], choice.parameters["epsilon"])
-    assert choice.score == pytest.approx(own, rel=0.05)
-    for c, epsilon in [(0.1, 0.1), (10, 0.01), (1, 1), (10, 0.1)]:
-        assert choice.score <= score(c, epsilon) * 1.05
-    assert choice.fits == 3 * 56
+@pytest.mark.parametrize("name", GRIDS)
+def test_the_path_search_scores_as_a_grid_search_of_scikit_learn(name):
+    """Every point of the grid, on the same folds; fits may stop at different tolerances."""
+    model, grid = GRIDS[name]
+    folds = ShuffledGroupKFold(3, (1, 0, 0))
+    ours = PathSearchCV(model, grid, cv=folds).fit(X, Y, ROWS.panels)
+    plain = SVR(kernel=model.kernel, gamma=1.0, tol=1e-5) if name != "trees" else model
+    theirs = GridSearchCV(plain, grid, cv=folds, scoring="neg_median_absolute_error")
+    theirs.fit(X, Y, groups=ROWS.panels)
+    expected = {
+        tuple(sorted(point.items())): score
+        for point, score in zip(theirs.cv_results_["params"], theirs.cv_results_["mean_test_score"])
+    }
+    results = ours.cv_results_
+    assert len(results["params"]) == len(expected)
+    for point, score in zip(results["params"], results["mean_test_score"]):
+        assert score == pytest.approx(expected[tuple(sorted(point.items()))], rel=0.02)
+    assert ours.best_params_ == theirs.best_params_
+    np.testing.assert_allclose(ours.predict(X), theirs.predict(X), atol=5e-3)
+    assert ours.n_fits_ == 3 * (2 if name == "trees" else len(expected))
 
 
 def test_the_grid_of_the_rbf_kernel_is_counted():
-    assert len(rbf_svr().gammas) * len(EPSILON) * len(BOUNDS) * 5 * 100 == 196_000
+    assert np.prod([len(values) for values in rbf_svr().grid.values()]) * 5 * 100 == 196_000
 
 
-def test_an_expansion_is_the_support_vector_machine():
-    kind = rbf_svr()
-    model = kind.fit({"epsilon": 0.01, "C": 10.0, "gamma": 0.1}, X, Y)
-    assert isinstance(model, Expansion)
+def test_the_expansion_of_a_model_is_the_support_vector_machine():
+    model = EpsilonSVR(epsilon=0.01, C=10.0, gamma=0.1).fit(X, Y)
     reference = SVR(C=10.0, epsilon=0.01, gamma=0.1, tol=1e-6).fit(X, Y)
     question = np.array([[0.1, -0.3, 0.7, 0.2]])
-    np.testing.assert_allclose(model.predict(question), reference.predict(question), atol=5e-3)
+    expected = reference.predict(question)
+    np.testing.assert_allclose(model.expansion_.predict(question), expected, atol=5e-3)
 
 
 @pytest.mark.slow

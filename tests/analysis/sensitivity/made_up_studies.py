@@ -3,15 +3,12 @@
 import functools
 import itertools
 import json
-import tempfile
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from snowshed.analysis.sensitivity import StoredRuns, sensitivity_study
 from snowshed.analysis.sensitivity.sampling import SAMPLERS
-from snowshed.study import Study
 from snowshed.study.table import value_at
 
 M, P0, BETA, XI, E = (
@@ -53,10 +50,7 @@ def designed_points(method, **options):
     if method in SAMPLERS:
         points = pd.DataFrame(SAMPLERS[method](options["samples"]))
         return tuple(points), points
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "study.toml"
-        file.write_text(sensitivity_study(method, **options), encoding="utf-8")
-        study = Study.load(file)
+    study = sensitivity_study(method, **options)
     scenes = [json.loads(run.scene) for run in study.runs()]
     paths = [*study.axes, SEED]
     return tuple(study.axes), pd.DataFrame(

@@ -93,9 +93,8 @@ def test_designs_are_read_off_the_store(tmp_path, capsys):
     """Written as a study file, stored, and evaluated; one run is missing."""
     from snowshed.analysis.sensitivity import sensitivity_study
 
-    file = tmp_path / "morris.toml"
-    file.write_text(sensitivity_study("morris", quick=True, samples=3), encoding="utf-8")
-    study = Study.load(file)
+    sensitivity_study("morris", quick=True, samples=3).save(tmp_path / "morris.toml")
+    study = Study.load(tmp_path / "morris.toml")
     last = study.runs()[-1].hash
     fill(tmp_path / "store", study, lambda one: one.hash != last)
     options = ("--method", "morris", "--stored", tmp_path / "store", "-o", tmp_path / "out")
@@ -113,7 +112,7 @@ def test_a_second_design_in_the_same_folder_is_evaluated_too(tmp_path):
     out = tmp_path / "out"
     fill(out / "runs", grid("earlier"))
     file = tmp_path / "morris.toml"
-    file.write_text(sensitivity_study("morris", quick=True, samples=2), encoding="utf-8")
+    sensitivity_study("morris", quick=True, samples=2).save(file)
     fill(out / "runs", Study.load(file))
     assert run("sensitivity", "--method", "morris", "--study", file, "-o", out, "-q") == 0
     assert (out / "morris.csv").is_file()

@@ -32,7 +32,7 @@ def test_particles_come_back_as_they_were(stored):
         "velocity": simulation.velocities(),
         "mass": simulation.masses(),
         "event": simulation.events(),
-        "density": simulation.density(),
+        "density": simulation.densities(),
         "pressure": simulation.pressures(),
     }.items():
         assert np.allclose(particles[name], expected, rtol=1e-6, atol=1e-7), name

@@ -50,7 +50,7 @@ def test_a_block_settles_as_a_column_of_thin_layers():
     upper = before[inner, 2] > 0.5
     assert drops[upper].mean() == pytest.approx(expected[upper].mean(), rel=0.02)
     assert np.abs(drops - expected).max() < 0.1 * expected.max()
-    density = np.average(simulation.density()[inner], weights=simulation.masses()[inner])
+    density = np.average(simulation.densities()[inner], weights=simulation.masses()[inner])
     assert density == pytest.approx(np.average(column.densities), rel=0.02)
     assert simulation.masses().sum() == mass
     assert simulation.positions()[:, :2] == pytest.approx(before[:, :2], abs=1e-7)

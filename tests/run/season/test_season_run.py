@@ -9,13 +9,13 @@ import sys
 import numpy as np
 import pandas as pd
 import pytest
+from snowshed.run.season.figure import season_figure
 
 from snowshed import InputError, Scene, _core
 from snowshed.cli.display.season import verdict
 from snowshed.cli.main import main
 from snowshed.run.season import SeasonSettings, accumulate, read_season, run_season
 from snowshed.run.season.clearance import below_panel, clearance, first_reached
-from snowshed.run.season.figure import season_figure
 from snowshed.run.season.slabs import season_scene
 from snowshed.scene.builders.panel_edge import panel_edge
 

@@ -1,8 +1,9 @@
 import numpy as np
+import pandas as pd
 import pytest
 from piles import ball, cone, triangle
 
-from snowshed import level, measure_stack
+from snowshed import InputError, level, measure_stack
 
 
 def measure(positions, *, dimension=2, density=200.0, mass=0.001, dx=0.02, **options):
@@ -115,3 +116,48 @@ def test_input_is_left_alone():
     before = pile.copy()
     measure(pile)
     assert np.array_equal(pile, before)
+
+
+def test_anything_array_like_is_measured_alike():
+    pile = triangle(1.0, 0.3, count=300).astype(np.float32)
+    table = pd.DataFrame({"x": pile[:, 0], "z": pile[:, 2], "mass": 0.25, "density": 200})
+    exclude = [i < 5 for i in range(300)]
+    options = {"dimension": 2, "dx": 0.1, "exclude": exclude, "ground_tilt_deg": 10}
+    expected = measure_stack(pile, np.full(300, 0.25), np.full(300, 200.0), **options)
+    of_lists = measure_stack(pile.tolist(), [0.25] * 300, [200] * 300, **options)
+    of_table = measure_stack(table[["x", "z"]], table["mass"], table["density"], **options)
+    for stack in (of_lists, of_table):
+        assert repr(stack) == repr(expected)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"positions": np.zeros(3)}, r"positions: an array of shape \(3,\); needed: \(n, 3\)"),
+        ({"positions": np.zeros((4, 2))}, r"positions: .* needed: \(n, 3\) in 3D"),
+        ({"positions": [[0, 0, 0], [1]]}, "positions: not an array of numbers"),
+        ({"positions": np.full((2, 3), np.nan)}, r"positions: nan at index \(0, 0\)"),
+        ({"positions": np.array([["a"] * 3] * 2)}, "positions: not an array of numbers"),
+        ({"masses": [1.0]}, r"masses: an array of shape \(1,\); needed: \(2,\)"),
+        ({"masses": [1.0, -2.0]}, "masses: -2 at index 1; no number may be negative"),
+        ({"masses": [1.0, np.inf]}, "masses: inf at index 1; all must be finite"),
+        ({"densities": [[1.0, 1.0]]}, r"densities: an array of shape \(1, 2\)"),
+        ({"densities": [-1.0, 1.0]}, "densities: -1 at index 0"),
+        ({"exclude": [True]}, r"exclude: an array of shape \(1,\); needed: \(2,\)"),
+        ({"exclude": [0, 1]}, "exclude: values of type int64; only booleans"),
+        ({"dimension": 4}, "dimension: 4; allowed: 2, 3"),
+        ({"dx": 0.0}, "dx: 0; it must be above 0"),
+        ({"dx": "small"}, "dx: 'small'; a finite number"),
+        ({"ground_tilt_deg": np.nan}, "ground_tilt_deg: nan; a finite number"),
+    ],
+)
+def test_errors_name_the_argument(given, message):
+    sound = {
+        "positions": np.zeros((2, 3)),
+        "masses": np.ones(2),
+        "densities": np.ones(2),
+        "dimension": 3,
+        "dx": 0.1,
+    }
+    with pytest.raises(InputError, match=message):
+        measure_stack(**{**sound, **given})

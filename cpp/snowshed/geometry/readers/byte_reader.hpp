@@ -1,4 +1,4 @@
-// Numbers from the bytes of a file that is not to be trusted.
+// Reading numbers from the bytes of an untrusted file.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +14,7 @@ namespace snowshed {
 
 enum class ByteOrder { little, big };
 
+/// Reads numbers one after another. Throws InputError with the file and the byte.
 class ByteReader {
  public:
   ByteReader(const std::filesystem::path& path, std::string_view bytes, std::size_t offset,

@@ -1,4 +1,4 @@
-// Reading whole files that are not to be trusted.
+// Reading whole untrusted files.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace snowshed {
 
-/// The content of a regular file of at most 1 GiB; InputError otherwise (pipes and devices
-/// could block or never end).
+/// Returns the content of a regular file of at most 1 GiB. Throws InputError for anything else: a
+/// pipe or a device could block or never end.
 std::string read_bytes(const std::filesystem::path& path);
 
-/// InputError unless `path` is a regular file of at most 1 GiB; its size.
+/// Returns the size of the file. Throws InputError unless it is a regular file of at most 1 GiB.
 std::uintmax_t check_readable(const std::filesystem::path& path);
 
-/// "path: byte n", the place in an InputError.
+/// Returns "path: byte n", a location for an InputError.
 std::string at_byte(const std::filesystem::path& path, std::size_t offset);
 
 }  // namespace snowshed

@@ -1,4 +1,4 @@
-// The mesh file formats, each from the bytes of a file. Vertices in file units, not merged.
+// Parsers of the mesh file formats. Vertices are in the file's unit and not merged.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,8 @@
 
 namespace snowshed {
 
-/// No more vertices or triangles are read, so that a small file cannot take much memory.
+/// The largest number of vertices or triangles that is read, so that a small file cannot take much
+/// memory.
 inline constexpr std::size_t max_mesh_items = 20'000'000;
 
 TriangleMesh parse_stl(const std::filesystem::path& path, std::string_view bytes);

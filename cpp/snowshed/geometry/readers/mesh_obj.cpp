@@ -6,7 +6,8 @@
 namespace snowshed {
 namespace {
 
-/// "7", "7/1", "7/1/2", "7//2", or counted back from the last vertex: "-1".
+/// Returns the vertex that `word` refers to: "7", "7/1", "7/1/2", "7//2", or "-1" for the last of
+/// the `count` vertices so far.
 std::uint32_t vertex_index(const TextScanner& scanner, std::string_view word, std::size_t count) {
   const auto given = scanner.parse<std::int64_t>(word.substr(0, word.find('/')));
   const auto last = static_cast<std::int64_t>(count);
@@ -38,7 +39,7 @@ TriangleMesh parse_obj(const std::filesystem::path& path, std::string_view bytes
         if (mesh.triangles.size() >= max_mesh_items) scanner.fail("more than 2e7 triangles");
         mesh.triangles.push_back({first, corner(i - 1), corner(i)});
       }
-    }  // anything else is about looks
+    }  // other lines concern the appearance only
   }
   return mesh;
 }

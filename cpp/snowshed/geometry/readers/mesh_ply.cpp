@@ -36,7 +36,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-/// The values of the body, row by row.
+/// The values after the header, row by row.
 class Rows {
  public:
   virtual ~Rows() = default;
@@ -46,7 +46,7 @@ class Rows {
   virtual std::size_t remaining_bytes() const = 0;
   [[noreturn]] virtual void fail(const std::string& what) const = 0;
 
-  /// A value that counts or points at something.
+  /// Reads a count or an index, which must be a whole number below `below`.
   std::uint64_t whole(Type type, std::uint64_t below, const char* what) {
     const double v = value(type);
     if (!(v >= 0 && v < static_cast<double>(below)) || v != std::floor(v))
@@ -162,7 +162,7 @@ class MeshBuilder {
   }
 
   void read(const Element& element) {
-    // Every row takes at least a byte; more rows than bytes are a lie, and would never end.
+    // Every row takes at least a byte. A larger count is wrong, and reading it would never end.
     if (element.count > rows_.remaining_bytes() || element.count > max_mesh_items ||
         (element.count > 0 && element.properties.empty()))
       rows_.fail(std::to_string(element.count) + " of element '" + element.name.substr(0, 40) +

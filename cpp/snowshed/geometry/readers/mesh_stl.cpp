@@ -12,7 +12,7 @@ TriangleMesh parse_binary(ByteReader reader, std::size_t count) {
   mesh.vertices.reserve(3 * count);
   mesh.triangles.reserve(count);
   for (std::size_t n = 0; n < count; ++n) {
-    reader.skip(3 * sizeof(float));  // the normal, which the vertices give better
+    reader.skip(3 * sizeof(float));  // the normal; that of the vertices is more accurate
     const auto first = static_cast<std::uint32_t>(3 * n);
     for (int i = 0; i < 3; ++i) {
       Vec3 vertex;
@@ -57,7 +57,7 @@ TriangleMesh parse_ascii(TextScanner scanner) {
 }  // namespace
 
 TriangleMesh parse_stl(const std::filesystem::path& path, std::string_view bytes) {
-  // Binary headers may begin with "solid" too: what tells is whether the size fits the count.
+  // Binary headers may begin with "solid", too. A file is binary if its size fits its count.
   const bool solid = bytes.substr(0, 5) == "solid";
   if (bytes.size() < header_size) {
     if (solid) return parse_ascii(TextScanner(path, bytes));

@@ -22,7 +22,7 @@ struct ArrayHeader {
   throw InputError(at_byte(path, offset), what);
 }
 
-/// The value of `key` in the header's dictionary, as written.
+/// Returns the text of the value of `key` in the header's dictionary.
 std::string entry(const std::filesystem::path& path, const std::string& header,
                   const std::string& key, const std::string& pattern, const char* allowed) {
   std::smatch match;
@@ -65,7 +65,7 @@ ArrayHeader parse_header(const std::filesystem::path& path, const std::string& b
   return header;
 }
 
-/// The number of values, which must fill the rest of the file.
+/// Returns the number of values. They must fill the rest of the file.
 std::size_t checked_count(const std::filesystem::path& path, const ArrayHeader& header,
                           std::size_t bytes_left) {
   const std::size_t value_size = header.type == "'<f4'" ? 4 : 8;

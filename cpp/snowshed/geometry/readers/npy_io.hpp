@@ -7,15 +7,15 @@
 
 namespace snowshed {
 
-/// An array in C order: the last index runs fastest.
+/// An array in C order; the last index runs fastest.
 struct NpyArray {
   std::vector<std::size_t> shape;
   std::vector<float> values;
 };
 
-/// Reads a .npy file of format version 1, 2 or 3 that holds little-endian f4 or f8 values in
-/// C order, two- or three-dimensional. The file is not trusted: whatever is wrong gives an
-/// InputError that names the file, the place and what is allowed.
+/// Reads a .npy file of format version 1, 2 or 3 that holds a two- or three-dimensional array of
+/// little-endian f4 or f8 values in C order. The file is untrusted. Every fault gives an InputError
+/// that names the file, the byte and what is allowed.
 NpyArray read_npy(const std::filesystem::path& path);
 
 }  // namespace snowshed

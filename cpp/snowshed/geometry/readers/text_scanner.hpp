@@ -1,4 +1,4 @@
-// Lines, words and numbers of a text that is not to be trusted.
+// Lines, words and numbers of an untrusted text.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,13 @@
 
 namespace snowshed {
 
+/// Splits a text into lines of words. Throws InputError with the file and the line.
 class TextScanner {
  public:
   TextScanner(const std::filesystem::path& path, std::string_view text)
       : path_(path), text_(text) {}
 
-  /// Goes on to the next line that has words; false at the end of the text.
+  /// Moves to the next line that has words. Returns false at the end of the text.
   bool next_line() {
     while (offset_ < text_.size()) {
       const std::size_t end = std::min(text_.find('\n', offset_), text_.size());
@@ -31,12 +32,13 @@ class TextScanner {
     return false;
   }
 
+  /// Returns the words of the current line.
   const std::vector<std::string_view>& words() const { return words_; }
 
-  /// Where the next line begins.
+  /// Returns the byte at which the next line begins.
   std::size_t offset() const { return offset_; }
 
-  /// The i-th word as a number; locale plays no part.
+  /// Returns the i-th word as a number, independent of the locale.
   template <class Number>
   Number number(std::size_t i) const {
     if (i >= words_.size()) fail("too few values");
@@ -54,7 +56,8 @@ class TextScanner {
     return value;
   }
 
-  /// What the message quotes of the text may be any bytes; they become printable.
+  /// Throws the error. A message may quote any bytes of the text; those that cannot be printed are
+  /// replaced.
   [[noreturn]] void fail(std::string what) const {
     for (char& c : what)
       if (c < ' ' || c > '~') c = '?';
@@ -64,10 +67,10 @@ class TextScanner {
  private:
   void split(std::string_view line) {
     constexpr std::string_view blanks = " \t\r\v\f";
-    constexpr std::size_t most_words = 100'000;  // far more than the corners of any polygon
+    constexpr std::size_t max_words = 100'000;  // far more than the corners of any polygon
     words_.clear();
     for (std::size_t begin = line.find_first_not_of(blanks); begin != std::string_view::npos;) {
-      if (words_.size() == most_words) fail("more than 100000 words in a line");
+      if (words_.size() == max_words) fail("more than 100000 words in a line");
       const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
       words_.push_back(line.substr(begin, end - begin));
       begin = line.find_first_not_of(blanks, end);

@@ -16,8 +16,8 @@ std::string where(const VdbSource& source) {
   return source.path.string() + (source.grid.empty() ? "" : ": grid '" + source.grid + "'");
 }
 
-/// What snowshed-vdb wrote; an InputError if it refused the file or died of it.
-std::string ask_reader(const VdbSource& source) {
+/// Returns the output of snowshed-vdb. Throws InputError if it refused the file or crashed on it.
+std::string run_reader(const VdbSource& source) {
   const auto program = beside_this_binary("snowshed-vdb");
   if (!program)
     throw InputError(where(source),
@@ -37,6 +37,7 @@ std::string ask_reader(const VdbSource& source) {
   return result.output;
 }
 
+/// Returns the header of the answer, checked against its length.
 VdbHeader take_header(const std::string& answer) {
   VdbHeader header;
   if (answer.size() >= sizeof header) std::memcpy(&header, answer.data(), sizeof header);
@@ -47,7 +48,7 @@ VdbHeader take_header(const std::string& answer) {
   return header;
 }
 
-/// Turns densities into values that are negative in the solid.
+/// Replaces densities by values that are negative in the solid.
 void subtract_from(double threshold, std::vector<float>& values) {
   for (float& value : values) value = static_cast<float>(threshold - value);
 }
@@ -55,7 +56,7 @@ void subtract_from(double threshold, std::vector<float>& values) {
 }  // namespace
 
 GridSamples read_vdb(const VdbSource& source) {
-  const std::string answer = ask_reader(source);
+  const std::string answer = run_reader(source);
   const VdbHeader header = take_header(answer);
   GridSamples samples;
   samples.origin = source.scale * Vec3(header.origin[0], header.origin[1], header.origin[2]);
@@ -68,7 +69,7 @@ GridSamples read_vdb(const VdbSource& source) {
     rebuild_distance(samples, 0, where(source));
   } else {
     for (float& value : samples.values) value = static_cast<float>(source.scale * value);
-    // Less a little, so that what was cut off at the band counts as beyond it after rounding.
+    // The factor makes values that were cut off at the band count as outside it despite rounding.
     rebuild_distance(samples, 0.999 * source.scale * header.background, where(source));
   }
   return samples;

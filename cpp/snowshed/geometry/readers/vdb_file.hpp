@@ -8,23 +8,24 @@
 
 namespace snowshed {
 
-/// Which grid of a file, and what its values mean.
+/// A grid of a file, and the meaning of its values.
 struct VdbSource {
   std::filesystem::path path;
-  std::string grid;        // its name; empty: the only one of floats
-  double threshold = 0.5;  // of a fog volume: the solid is where the value is above it
+  std::string grid;        // the name of the grid; empty: the only grid of floats
+  double threshold = 0.5;  // of a fog volume; values above it are solid
   double scale = 1.0;      // metres per unit of the file
 };
 
-/// Signed distances in metres on the box of what the grid holds: those of a level set within its
-/// narrow band, rebuilt beyond it; of a fog volume, distances to where it passes the threshold.
+/// Returns signed distances in metres on the box around the grid's active voxels. Those of a level
+/// set are taken from the file within its narrow band and rebuilt outside it. Those of a fog volume
+/// are distances to the surface on which its value is the threshold.
 ///
-/// OpenVDB is no match for damaged files, so they are read by the program snowshed-vdb, in a
-/// process with little memory and time.
+/// OpenVDB crashes on damaged files. The program snowshed-vdb therefore reads them, in a process
+/// with limits on memory and time.
 ///
-/// Throws InputError naming the file and the grid if it cannot be read or is not of floats, of
-/// these two classes, on a uniform lattice along the axes and at most `max_vdb_samples` large; or
-/// if snowshed was built without OpenVDB.
+/// Throws InputError with the file and the grid if the grid cannot be read, is not a level set or
+/// fog volume of floats, has voxels that are not cubes along the axes, or has a box of more than
+/// `max_vdb_samples`; and if snowshed was built without OpenVDB.
 GridSamples read_vdb(const VdbSource& source);
 
 }  // namespace snowshed

@@ -1,17 +1,17 @@
-// What the program snowshed-vdb answers when it is asked for a grid. It is built together with
-// whoever asks, so that structs can travel as they are.
+// The output of the program snowshed-vdb when it reads a grid. It is built together with the
+// library that starts it, so the two can exchange structs as they are in memory.
 #pragma once
 
 #include <cstdint>
 
 namespace snowshed {
 
-/// Larger boxes around what a grid holds are refused.
+/// The largest number of voxels in the box around a grid's active voxels.
 inline constexpr std::uint64_t max_vdb_samples = 50'000'000;
 
 enum class VdbKind : std::uint32_t { level_set, fog_volume };
 
-/// Stands before the samples, which are floats with z running fastest; lengths in the file's unit.
+/// Precedes the samples, which are floats with z running fastest. Lengths are in the file's unit.
 struct VdbHeader {
   static constexpr std::uint64_t expected_mark = 0x31626476'776f6e73;  // "snowvdb1"
 
@@ -19,7 +19,7 @@ struct VdbHeader {
   std::uint64_t counts[3] = {};
   double origin[3] = {};
   double spacing = 0;
-  double background = 0;  // of a level set: the width of its band
+  double background = 0;  // of a level set: the width of its narrow band
   VdbKind kind = VdbKind::level_set;
   std::uint32_t padding = 0;
 };

@@ -27,18 +27,26 @@ std::int32_t find(const std::vector<BlockKey>& sorted, BlockKey key) {
 }  // namespace
 
 template <int D>
-bool BlockLayout<D>::assign(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
-                            int threads) {
-  first = std::move(starts);
-  if (blocks == particle_blocks) return false;
-  particle_blocks = std::move(blocks);
-  connect(threads);
-  return true;
+BlockLayout<D> BlockLayout<D>::of(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
+                                  int threads) {
+  BlockLayout layout;
+  layout.particle_blocks = std::move(blocks);
+  layout.first = std::move(starts);
+  layout.connect(threads);
+  return layout;
+}
+
+template <int D>
+BlockLayout<D> BlockLayout<D>::rearranged(std::vector<BlockKey> blocks,
+                                          std::vector<std::int32_t> starts, int threads) const {
+  if (blocks != particle_blocks) return of(std::move(blocks), std::move(starts), threads);
+  BlockLayout layout = *this;
+  layout.first = std::move(starts);
+  return layout;
 }
 
 template <int D>
 void BlockLayout<D>::connect(int threads) {
-  grid_blocks.clear();
   grid_blocks.reserve(particle_blocks.size() * 4);
   for (BlockKey key : particle_blocks)
     for_each_neighbour<D>(key, [this](int, BlockKey k) { grid_blocks.push_back(k); });

@@ -52,8 +52,13 @@ struct BlockLayout {
   /// For each grid block, the particle blocks around it, or -1.
   std::vector<Neighbours> around_nodes;
 
-  /// Sets the particle blocks; the rest follows. Returns whether the blocks changed at all.
-  bool assign(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts, int threads);
+  /// The layout of other particle blocks.
+  static BlockLayout of(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
+                        int threads);
+
+  /// The same; cheaper where the blocks are those of this layout and only particles have moved.
+  BlockLayout rearranged(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
+                         int threads) const;
 
  private:
   void connect(int threads);

@@ -15,7 +15,7 @@ Obstacle thick_enough(Obstacle obstacle, double dx) {
 }
 
 template <class T, int D>
-Contacts<T, D>::Contacts(std::vector<Obstacle> obstacles, double dx) : dx_(dx) {
+Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx) : dx_(dx) {
   for (Obstacle& o : obstacles) {
     laws_.push_back(o.law);
     any_motion_ = any_motion_ || o.motion.has_value();
@@ -44,8 +44,8 @@ VecD<D> block_centre(const BlockCoord<D>& block, double dx) {
 }  // namespace
 
 template <class T, int D>
-void Contacts<T, D>::find_block(BlockKey key, double time, bool moving,
-                                std::vector<Contact<T>>& found) const {
+void Boundary<T, D>::find(BlockKey key, double time, bool moving,
+                          std::vector<Contact<T>>& found) const {
   const BlockCoord<D> block = block_coord<D>(key);
   const double reach = 0.5 * block_edge<D> * dx_ * std::sqrt(double(D));
   const double on_surface = 1e-6 * dx_;  // a node on the surface belongs to the obstacle
@@ -78,7 +78,9 @@ void Contacts<T, D>::find_block(BlockKey key, double time, bool moving,
 }
 
 template <class T, int D>
-void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double time, int threads) {
+Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
+                                         const std::vector<BlockKey>& grid_blocks, double time,
+                                         int threads) const {
   const std::ptrdiff_t n = std::ptrdiff_t(grid_blocks.size());
   std::vector<std::vector<Contact<T>>> found(grid_blocks.size());
   parallel_for(n, threads, 8, [&](std::ptrdiff_t i) {
@@ -87,29 +89,30 @@ void Contacts<T, D>::relocate(const std::vector<BlockKey>& grid_blocks, double t
       const std::size_t b = std::size_t(old - blocks_.begin());
       found[i].assign(contacts_.begin() + first_[b], contacts_.begin() + first_[b + 1]);
     } else {
-      find_block(grid_blocks[i], time, false, found[i]);
-      if (any_motion_) find_block(grid_blocks[i], time, true, found[i]);
+      boundary.find(grid_blocks[i], time, false, found[i]);
+      if (boundary.any_motion()) boundary.find(grid_blocks[i], time, true, found[i]);
     }
   });
-  blocks_ = grid_blocks;
-  first_.assign(1, 0);
-  contacts_.clear();
+  Contacts next;
+  next.blocks_ = grid_blocks;
+  next.first_.reserve(grid_blocks.size() + 1);
   for (const auto& block : found) {
-    contacts_.insert(contacts_.end(), block.begin(), block.end());
-    first_.push_back(contacts_.size());
+    next.contacts_.insert(next.contacts_.end(), block.begin(), block.end());
+    next.first_.push_back(next.contacts_.size());
   }
+  return next;
 }
 
 template <class T, int D>
-void Contacts<T, D>::follow(double time) {
-  if (!any_motion_) return;
+void Contacts<T, D>::follow(const Boundary<T, D>& boundary, double time) {
+  if (!boundary.any_motion()) return;
   const std::vector<StoredImpulse> stored = stored_impulses();
   std::vector<Contact<T>> all;
   std::vector<std::size_t> first{0};
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
-      if (!obstacles_[contacts_[i].obstacle].motion) all.push_back(contacts_[i]);
-    find_block(blocks_[b], time, true, all);
+      if (!boundary.is_moving(contacts_[i])) all.push_back(contacts_[i]);
+    boundary.find(blocks_[b], time, true, all);
     first.push_back(all.size());
   }
   contacts_ = std::move(all);
@@ -119,7 +122,6 @@ void Contacts<T, D>::follow(double time) {
 
 template <class T, int D>
 bool Contacts<T, D>::moves(std::size_t block) const {
-  if (!any_motion_) return false;
   const auto in_motion = [](const Contact<T>& c) {
     return std::any_of(c.velocity, c.velocity + D, [](T v) { return v != T(0); });
   };
@@ -150,6 +152,10 @@ void Contacts<T, D>::restore(const std::vector<StoredImpulse>& stored) {
   }
 }
 
+template class Boundary<float, 2>;
+template class Boundary<float, 3>;
+template class Boundary<double, 2>;
+template class Boundary<double, 3>;
 template class Contacts<float, 2>;
 template class Contacts<float, 3>;
 template class Contacts<double, 2>;

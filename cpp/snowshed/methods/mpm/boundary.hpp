@@ -19,32 +19,53 @@ namespace snowshed {
 /// the nodes, so its surface is moved out until it is two cells thick.
 Obstacle thick_enough(Obstacle obstacle, double dx);
 
-/// All contacts of a layout's grid blocks.
+/// The obstacles as the grid sees them. It never changes.
+template <class T, int D>
+class Boundary {
+ public:
+  Boundary(std::vector<Obstacle> obstacles, double dx);
+
+  const std::vector<ContactLaw>& laws() const { return laws_; }
+  bool any_motion() const { return any_motion_; }
+  bool is_moving(const Contact<T>& c) const { return obstacles_[c.obstacle].motion.has_value(); }
+
+  /// Appends a block's contacts at a time: with the obstacles that move, or with those at rest.
+  void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& found) const;
+
+ private:
+  std::vector<Obstacle> obstacles_;
+  std::vector<ContactLaw> laws_;
+  double dx_;
+  bool any_motion_ = false;
+};
+
+/// All contacts of a layout's grid blocks, with their stored impulses.
 template <class T, int D>
 class Contacts {
  public:
-  Contacts(std::vector<Obstacle> obstacles, double dx);
+  /// The contacts of other grid blocks at a time; blocks that stay keep theirs.
+  Contacts relocated(const Boundary<T, D>& boundary, const std::vector<BlockKey>& grid_blocks,
+                     double time, int threads = 1) const;
 
-  const std::vector<ContactLaw>& laws() const { return laws_; }
-  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
-  bool any_motion() const { return any_motion_; }
-
-  /// Finds the constrained nodes of new grid blocks; blocks that stay keep theirs.
-  void relocate(const std::vector<BlockKey>& grid_blocks, double time, int threads = 1);
-
-  /// Follows moving obstacles to `time`. Nothing to do where none moves.
-  void follow(double time);
+  /// Follows moving obstacles to `time`. Nothing to do where none moves. All or nothing.
+  void follow(const Boundary<T, D>& boundary, double time);
 
   Contact<T>* of_block(std::size_t block) { return contacts_.data() + first_[block]; }
   int count(std::size_t block) const { return int(first_[block + 1] - first_[block]); }
 
-  /// Whether an obstacle moves through a block.
+  /// Whether a contact of a block is with an obstacle in motion.
   bool moves(std::size_t block) const;
 
   /// Makes the stored impulses of the step just taken the present ones.
   void commit(std::size_t block) {
     for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
       contacts_[i].normal_impulse = contacts_[i].next_normal_impulse;
+  }
+
+  /// Takes back the stored impulses of a step that failed.
+  void reject(std::size_t block) {
+    for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
+      contacts_[i].next_normal_impulse = contacts_[i].normal_impulse;
   }
 
   /// A contact with stored impulse (N s), for checkpoints.
@@ -57,12 +78,6 @@ class Contacts {
   void restore(const std::vector<StoredImpulse>& stored_impulses);
 
  private:
-  void find_block(BlockKey block, double time, bool moving, std::vector<Contact<T>>& found) const;
-
-  std::vector<Obstacle> obstacles_;
-  std::vector<ContactLaw> laws_;
-  double dx_;
-  bool any_motion_ = false;
   std::vector<BlockKey> blocks_;
   std::vector<std::size_t> first_{0};
   std::vector<Contact<T>> contacts_;

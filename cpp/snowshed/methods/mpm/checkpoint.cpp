@@ -53,16 +53,17 @@ typename Sleep<D>::State sleep_state(const double* record) {
 
 template <class T, int D>
 void MpmSolver<T, D>::save(BinaryWriter& out) const {
-  particles_.for_each_array([&out](const char* name, const auto& array) {
+  require_sound();
+  state_.particles.for_each_array([&out](const char* name, const auto& array) {
     out.add(std::string("particles/") + name, array);
   });
-  out.add("blocks/keys", layout_.particle_blocks);
-  out.add("blocks/first", layout_.first);
+  out.add("blocks/keys", state_.layout.particle_blocks);
+  out.add("blocks/first", state_.layout.first);
 
   std::vector<std::uint64_t> block;
   std::vector<std::int32_t> node, obstacle;
   std::vector<double> amount;
-  for (const auto& d : contacts_.stored_impulses()) {
+  for (const auto& d : state_.contacts.stored_impulses()) {
     block.push_back(d.block);
     node.push_back(d.node);
     obstacle.push_back(d.obstacle);
@@ -74,62 +75,74 @@ void MpmSolver<T, D>::save(BinaryWriter& out) const {
   out.add("pressed/amount", std::move(amount));
 
   std::vector<double> sleep;
-  for (const auto& s : sleep_.states())
+  for (const auto& s : state_.sleep.states())
     for (const double value : sleep_record<D>(s)) sleep.push_back(value);
   out.add("sleep", std::move(sleep));
 
-  const EnergyBalance& b = energy_balance_;
+  const Progress& p = state_.progress;
+  const EnergyBalance& e = p.energy;
+  const StepCounters& c = p.counters;
   out.add("energy",
-          std::vector<double>{b.kinetic, b.gravitational, b.elastic, b.plastic, b.friction,
-                              b.sticking, b.impact, b.transfer, b.sleep, b.added});
-  out.add("clock", std::vector<double>{time_, dt_, speed_, counters_.smallest_dt, stress_power_});
-  out.add("counters", std::vector<std::int64_t>{counters_.steps, counters_.rejected,
-                                                counters_.sorts, counters_.particle_updates,
-                                                counters_.slept_updates, std::int64_t(next_id_)});
+          std::vector<double>{e.kinetic, e.gravitational, e.elastic, e.plastic, e.friction,
+                              e.sticking, e.impact, e.transfer, e.sleep, e.added});
+  out.add("clock", std::vector<double>{p.time, p.dt, p.speed, c.smallest_dt, p.stress_power});
+  out.add("counters", std::vector<std::int64_t>{c.steps, c.rejected, c.sorts, c.particle_updates,
+                                                c.slept_updates, std::int64_t(p.next_id)});
 }
 
+namespace {
+
 template <class T, int D>
-void MpmSolver<T, D>::load(const BinaryReader& in) {
+void read_particles(const BinaryReader& in, std::size_t materials, Particles<T, D>& particles) {
   const std::size_t n = in.view<T>("particles/mass").size;
-  particles_.resize(n);
-  particles_.for_each_array([&in, n](const char* name, auto& array) {
+  particles.resize(n);
+  particles.for_each_array([&in, n](const char* name, auto& array) {
     using Value = typename std::remove_reference_t<decltype(array)>::value_type;
     const auto values = in.get<Value>(std::string("particles/") + name, n);
     std::copy(values.begin(), values.end(), array.begin());
   });
-  for (const std::uint8_t material_id : particles_.material_id)
-    if (material_id >= materials_.size())
+  for (const std::uint8_t material_id : particles.material_id)
+    if (material_id >= materials)
       throw InputError(in.path().string(), "a particle of snow " + std::to_string(material_id) +
-                                               " of " + std::to_string(materials_.size()));
-  find_elastic_limits();
+                                               " of " + std::to_string(materials));
+}
+
+template <class T, int D>
+BlockLayout<D> read_layout(const BinaryReader& in, std::size_t particles, int tile_size,
+                           int threads) {
   auto keys = in.get<std::uint64_t>("blocks/keys");
   auto first = in.get<std::int32_t>("blocks/first", keys.size() + 1);
-  if (!are_sound<D>(keys, first, n))
+  if (!are_sound<D>(keys, first, particles))
     throw InputError(in.path().string(), "the blocks of particles are empty or not in order");
-  layout_ = {};
-  layout_.assign(std::move(keys), std::move(first), threads());
-  if (bytes_of_grid<T>(layout_, grid_.tile_size) > double(available_memory_bytes()))
-    throw InputError(in.path().string(), "its " + std::to_string(layout_.particle_blocks.size()) +
+  auto layout = BlockLayout<D>::of(std::move(keys), std::move(first), threads);
+  if (bytes_of_grid<T>(layout, tile_size) > double(available_memory_bytes()))
+    throw InputError(in.path().string(), "its " + std::to_string(layout.particle_blocks.size()) +
                                              " blocks of particles do not fit into memory");
+  return layout;
+}
 
+Progress read_progress(const BinaryReader& in) {
+  Progress p;
   const auto clock = in.get<double>("clock", 5);
-  time_ = clock[0];
-  dt_ = clock[1];
-  speed_ = clock[2];
-  counters_.smallest_dt = clock[3];
-  stress_power_ = clock[4];
+  p.time = clock[0];
+  p.dt = clock[1];
+  p.speed = clock[2];
+  p.counters.smallest_dt = clock[3];
+  p.stress_power = clock[4];
   const auto counts = in.get<std::int64_t>("counters", 6);
-  counters_.steps = counts[0];
-  counters_.rejected = counts[1];
-  counters_.sorts = counts[2];
-  counters_.particle_updates = counts[3];
-  counters_.slept_updates = counts[4];
-  next_id_ = std::uint32_t(counts[5]);
+  p.counters.steps = counts[0];
+  p.counters.rejected = counts[1];
+  p.counters.sorts = counts[2];
+  p.counters.particle_updates = counts[3];
+  p.counters.slept_updates = counts[4];
+  p.next_id = std::uint32_t(counts[5]);
   const auto e = in.get<double>("energy", 10);
-  energy_balance_ = {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9]};
+  p.energy = {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9]};
+  return p;
+}
 
-  contacts_.relocate({}, time_);
-  contacts_.relocate(layout_.grid_blocks, time_);
+template <class T, int D>
+std::vector<typename Contacts<T, D>::StoredImpulse> read_impulses(const BinaryReader& in) {
   const auto block = in.get<std::uint64_t>("pressed/block");
   const auto node = in.get<std::int32_t>("pressed/node", block.size());
   const auto obstacle = in.get<std::int32_t>("pressed/obstacle", block.size());
@@ -137,16 +150,35 @@ void MpmSolver<T, D>::load(const BinaryReader& in) {
   std::vector<typename Contacts<T, D>::StoredImpulse> stored;
   for (std::size_t i = 0; i < block.size(); ++i)
     stored.push_back({block[i], node[i], obstacle[i], amount[i]});
-  contacts_.restore(stored);
-  grid_.resize(layout_);
-  const std::size_t blocks = layout_.particle_blocks.size();
-  const auto sleep = in.get<double>("sleep", blocks * sleep_values<D>);
+  return stored;
+}
+
+template <int D>
+std::vector<typename Sleep<D>::State> read_sleep(const BinaryReader& in, std::size_t blocks) {
+  const auto records = in.get<double>("sleep", blocks * sleep_values<D>);
   std::vector<typename Sleep<D>::State> states;
   for (std::size_t i = 0; i < blocks; ++i)
-    states.push_back(sleep_state<D>(&sleep[i * sleep_values<D>]));
-  sleep_.restore(layout_, std::move(states));
-  tiles_valid_ = false;
-  since_sort_ = 0;
+    states.push_back(sleep_state<D>(&records[i * sleep_values<D>]));
+  return states;
+}
+
+}  // namespace
+
+template <class T, int D>
+void MpmSolver<T, D>::load(const BinaryReader& in) {
+  MpmState<T, D> next(model_);
+  read_particles(in, model_.materials.size(), next.particles);
+  next.find_elastic_limits(model_);
+  next.layout = read_layout<T, D>(in, next.particles.size(), work_.grid.tile_size, 1);
+  next.progress = read_progress(in);
+  next.contacts =
+      next.contacts.relocated(model_.boundary, next.layout.grid_blocks, next.progress.time);
+  next.contacts.restore(read_impulses<T, D>(in));
+  next.sleep =
+      next.sleep.restored(next.layout, read_sleep<D>(in, next.layout.particle_blocks.size()));
+  accept(std::move(next));
+  work_.since_sort = 0;
+  broken_ = false;
 }
 
 template class MpmSolver<float, 2>;

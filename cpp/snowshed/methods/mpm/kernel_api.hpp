@@ -69,6 +69,7 @@ template <class T>
 struct StepParameters {
   T dt, dx, gravity, flip_ratio;
   T friction_rate;                    // dt over the friction memory, see NodeKernels::apply
+  T friction_rate_per_speed;          // s/m, the same for each m/s at which snow slides
   const MaterialConstants<T>* snows;  // by kind
 };
 
@@ -154,12 +155,12 @@ struct KernelChoice {
   bool material_per_particle() const { return several_materials || energy; }
 };
 
-/// The best build of the chosen kernels for this machine.
+/// The best build of the chosen kernels for this machine, or the one that SNOWSHED_KERNELS names.
 template <class T>
 Kernels<T> select_kernels(const KernelChoice&);
 
 /// "avx512", "avx2" or "baseline": what select_kernels uses here. The environment variable
-/// SNOWSHED_KERNELS forces one.
+/// SNOWSHED_KERNELS forces one; InputError where it names none that runs here.
 const char* kernel_variant();
 
 }  // namespace snowshed

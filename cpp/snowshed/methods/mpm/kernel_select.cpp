@@ -1,7 +1,12 @@
 // Picks, once, the widest instruction set that both the build and the machine have.
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <string>
+#include <vector>
 
+#include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
 namespace snowshed {
@@ -25,28 +30,62 @@ SNOWSHED_DECLARE(avx512)
 namespace {
 
 enum class Variant { baseline, avx2, avx512 };
+constexpr Variant all_variants[] = {Variant::baseline, Variant::avx2, Variant::avx512};
 
-[[maybe_unused]] bool wanted(const char* name) {
-  const char* forced = std::getenv("SNOWSHED_KERNELS");
-  return !forced || std::strcmp(forced, name) == 0;
+const char* name_of(Variant variant) {
+  switch (variant) {
+    case Variant::avx512:
+      return "avx512";
+    case Variant::avx2:
+      return "avx2";
+    default:
+      return "baseline";
+  }
 }
 
-Variant best_variant() {
+/// Whether both the build and the machine have a variant.
+bool is_supported(Variant variant) {
 #ifdef SNOWSHED_HAS_KERNELS_avx512
-  if (wanted("avx512") && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-    return Variant::avx512;
+  if (variant == Variant::avx512)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
 #endif
 #ifdef SNOWSHED_HAS_KERNELS_avx2
-  if (wanted("avx2") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-      __builtin_cpu_supports("bmi2"))
-    return Variant::avx2;
+  if (variant == Variant::avx2)
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+           __builtin_cpu_supports("bmi2");
 #endif
-  return Variant::baseline;
+  return variant == Variant::baseline;
+}
+
+std::vector<Variant> supported_variants() {
+  std::vector<Variant> supported;
+  std::copy_if(std::begin(all_variants), std::end(all_variants), std::back_inserter(supported),
+               is_supported);
+  return supported;
+}
+
+template <class Variants>
+std::string list_of(const Variants& variants) {
+  std::string list;
+  for (const Variant v : variants) list += (list.empty() ? "" : ", ") + std::string(name_of(v));
+  return list;
+}
+
+/// The widest variant that runs here, or the one that the user asks for.
+Variant chosen_variant() {
+  const std::vector<Variant> supported = supported_variants();
+  const char* forced = std::getenv("SNOWSHED_KERNELS");
+  if (!forced || !*forced) return supported.back();
+  for (const Variant v : supported)
+    if (std::strcmp(forced, name_of(v)) == 0) return v;
+  throw InputError("SNOWSHED_KERNELS", "is \"" + std::string(forced) +
+                                           "\"; allowed: " + list_of(all_variants) +
+                                           "; this machine can run: " + list_of(supported));
 }
 
 Variant variant() {
-  static const Variant chosen = best_variant();
+  static const Variant chosen = chosen_variant();
   return chosen;
 }
 
@@ -58,16 +97,7 @@ Kernels<T> from(Kernels<T> (*two)(const KernelChoice&), Kernels<T> (*three)(cons
 
 }  // namespace
 
-const char* kernel_variant() {
-  switch (variant()) {
-    case Variant::avx512:
-      return "avx512";
-    case Variant::avx2:
-      return "avx2";
-    default:
-      return "baseline";
-  }
-}
+const char* kernel_variant() { return name_of(variant()); }
 
 #define SNOWSHED_SELECT(T)                                       \
   template <>                                                    \

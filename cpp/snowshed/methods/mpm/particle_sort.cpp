@@ -1,8 +1,8 @@
 #include "snowshed/methods/mpm/particle_sort.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "snowshed/core/errors.hpp"
@@ -27,24 +27,44 @@ Placement<D> Placement<D>::of(const VecD<D>& position, double dx, Basis basis) {
 
 namespace {
 
-/// Moves a particle that has strayed beyond its block into the one it is in now.
 template <class T, int D>
-bool rebase(Particles<T, D>& particles, std::size_t i, BlockKey& block) {
+bool lies_within(T x) {
+  return x >= T(0) && x < T(block_edge<D>);
+}
+
+/// How many blocks a cell coordinate lies beyond its own.
+template <class T, int D>
+double blocks_beyond(T x) {
+  return std::floor(double(x) / block_edge<D>);
+}
+
+/// The block that a particle is in, whose `cell` refers to `block`; none beyond the grid.
+template <class T, int D>
+std::optional<BlockKey> block_it_is_in(const Particles<T, D>& particles, std::size_t i,
+                                       BlockKey block) {
   BlockCoord<D> c = block_coord<D>(block);
   bool moved = false;
   for (int d = 0; d < D; ++d) {
-    T& x = particles.cell[d][i];
-    if (x >= T(0) && x < T(block_edge<D>)) continue;
-    const double shift = std::floor(double(x) / block_edge<D>);
-    if (!(std::abs(shift) < block_coord_limit)) return false;
-    c[d] += std::int32_t(shift);
-    if (std::abs(c[d]) > block_coord_limit) return false;
-    x = T(double(x) - shift * block_edge<D>);
-    if (x >= T(block_edge<D>)) x = std::nextafter(T(block_edge<D>), T(0));  // rounded up
+    const T x = particles.cell[d][i];
+    if (lies_within<T, D>(x)) continue;
+    const double beyond = blocks_beyond<T, D>(x);
+    if (!(std::abs(beyond) < block_coord_limit)) return std::nullopt;
+    c[d] += std::int32_t(beyond);
+    if (std::abs(c[d]) > block_coord_limit) return std::nullopt;
     moved = true;
   }
-  if (moved) block = block_key<D>(c);
-  return true;
+  return moved ? block_key<D>(c) : block;
+}
+
+/// Makes a particle's `cell` refer to the block it is in.
+template <class T, int D>
+void rebase(Particles<T, D>& particles, std::size_t i) {
+  for (int d = 0; d < D; ++d) {
+    T& x = particles.cell[d][i];
+    if (lies_within<T, D>(x)) continue;
+    x = T(double(x) - blocks_beyond<T, D>(x) * block_edge<D>);
+    if (x >= T(block_edge<D>)) x = std::nextafter(T(block_edge<D>), T(0));  // rounded up
+  }
 }
 
 /// Stable counting sort of the particles by block.
@@ -79,20 +99,29 @@ std::vector<BlockKey> unique_blocks(const std::vector<BlockKey>& blocks) {
 }  // namespace
 
 template <class T, int D>
-bool sort_particles(Particles<T, D>& particles, std::vector<BlockKey> blocks,
-                    BlockLayout<D>& layout, int threads) {
-  std::atomic<std::int64_t> lost{-1};
+ParticleSort<T, D>::ParticleSort(const Particles<T, D>& particles, std::vector<BlockKey> blocks,
+                                 const BlockLayout<D>& present, int threads)
+    : threads_(threads) {
   parallel_for_each(std::ptrdiff_t(blocks.size()), threads, [&](std::ptrdiff_t i) {
-    if (!rebase(particles, std::size_t(i), blocks[i])) lost = i;
+    const auto block = block_it_is_in(particles, std::size_t(i), blocks[i]);
+    if (!block)
+      throw SimulationError("particle " + std::to_string(particles.id[std::size_t(i)]) +
+                            " has left the addressable grid or is not finite");
+    blocks[i] = *block;
   });
-  if (lost >= 0)
-    throw SimulationError("particle " + std::to_string(particles.id[std::size_t(lost)]) +
-                          " has left the addressable grid or is not finite");
   std::vector<BlockKey> unique = unique_blocks(blocks);
   std::vector<std::int32_t> first;
-  const std::vector<std::uint32_t> order = order_by_block(blocks, unique, first, threads);
-  if (!std::is_sorted(order.begin(), order.end())) particles.permute(order, threads);
-  return layout.assign(std::move(unique), std::move(first), threads);
+  order_ = order_by_block(blocks, unique, first, threads);
+  if (std::is_sorted(order_.begin(), order_.end())) order_.clear();
+  spare_ = particles.spare(order_.size());
+  layout = present.rearranged(std::move(unique), std::move(first), threads);
+}
+
+template <class T, int D>
+void ParticleSort<T, D>::apply(Particles<T, D>& particles) noexcept {
+  parallel_for_each(std::ptrdiff_t(particles.size()), threads_,
+                    [&](std::ptrdiff_t i) { rebase(particles, std::size_t(i)); });
+  if (!order_.empty()) particles.permute(order_, spare_, threads_);
 }
 
 template <int D>
@@ -106,10 +135,10 @@ std::vector<BlockKey> blocks_of_particles(const BlockLayout<D>& layout) {
 
 template struct Placement<2>;
 template struct Placement<3>;
-template bool sort_particles(Particles<float, 2>&, std::vector<BlockKey>, BlockLayout<2>&, int);
-template bool sort_particles(Particles<float, 3>&, std::vector<BlockKey>, BlockLayout<3>&, int);
-template bool sort_particles(Particles<double, 2>&, std::vector<BlockKey>, BlockLayout<2>&, int);
-template bool sort_particles(Particles<double, 3>&, std::vector<BlockKey>, BlockLayout<3>&, int);
+template class ParticleSort<float, 2>;
+template class ParticleSort<float, 3>;
+template class ParticleSort<double, 2>;
+template class ParticleSort<double, 3>;
 template std::vector<BlockKey> blocks_of_particles(const BlockLayout<2>&);
 template std::vector<BlockKey> blocks_of_particles(const BlockLayout<3>&);
 

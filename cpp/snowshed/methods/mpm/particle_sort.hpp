@@ -28,12 +28,28 @@ VecD<D> position_of(const Particles<T, D>& particles, std::size_t i, BlockKey bl
 }
 
 /// Sorts particles that have moved back into blocks; stable, so the result does not depend on the
-/// number of threads. `blocks` holds the block each particle's `cell` refers to. Returns whether
-/// the set of blocks changed. Throws SimulationError where one has left the addressable grid
-/// (2^20 blocks to each side) or is not finite.
+/// number of threads. All that can fail is done as it is made, all that alters particles as it is
+/// applied.
 template <class T, int D>
-bool sort_particles(Particles<T, D>& particles, std::vector<BlockKey> blocks, BlockLayout<D>&,
-                    int threads);
+class ParticleSort {
+ public:
+  /// Finds where the particles belong. `blocks` holds the block that each one's `cell` refers to,
+  /// `present` the layout before. Throws SimulationError where one has left the addressable grid
+  /// (2^20 blocks to each side) or is not finite.
+  ParticleSort(const Particles<T, D>&, std::vector<BlockKey> blocks, const BlockLayout<D>& present,
+               int threads);
+
+  /// The layout of the particles once they are sorted; it may be moved away.
+  BlockLayout<D> layout;
+
+  /// Sorts the particles it was made of. Once only.
+  void apply(Particles<T, D>&) noexcept;
+
+ private:
+  int threads_;
+  std::vector<std::uint32_t> order_;  // empty: they are in order
+  typename Particles<T, D>::Spare spare_;
+};
 
 /// The block of each particle as the layout has it.
 template <int D>

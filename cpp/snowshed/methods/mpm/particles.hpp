@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/particles/id_order.hpp"
 
 namespace snowshed {
 
@@ -47,6 +49,7 @@ struct Particles {
   }
 
   void resize(std::size_t n) {
+    order_by_id_.clear();
     for_each_array([n](const char*, auto& array) { array.resize(n); });
   }
 
@@ -90,11 +93,34 @@ struct Particles {
       for (auto& c : affine) stop(c);
   }
 
-  /// Rearranges: the new particle i is the old particle order[i].
-  void permute(const std::vector<std::uint32_t>& order, int threads) {
-    for_each_array([&order, threads](const char*, auto& array) {
-      std::remove_reference_t<decltype(array)> sorted;
-      sorted.resize(order.size());
+  /// Whether the `cell`s of the particles [begin, end) lie within the block they refer to.
+  bool lie_within_block(std::ptrdiff_t begin, std::ptrdiff_t end) const {
+    return std::all_of(cell.begin(), cell.end(), [&](const auto& x) {
+      return std::all_of(x.begin() + begin, x.begin() + end,
+                         [](T at) { return at >= T(0) && at < T(block_edge<D>); });
+    });
+  }
+
+  /// One array of each type: the room that `permute` needs.
+  using Spare = std::tuple<AlignedVector<T>, AlignedVector<std::uint32_t>,
+                           AlignedVector<std::uint16_t>, AlignedVector<std::uint8_t>>;
+  Spare spare(std::size_t n) const {
+    return {AlignedVector<T>(n), AlignedVector<std::uint32_t>(n), AlignedVector<std::uint16_t>(n),
+            AlignedVector<std::uint8_t>(has_material_id ? n : 0)};
+  }
+
+  /// Where the particles are, ordered by id: computed when first asked for, then known until they
+  /// are rearranged.
+  const std::vector<std::uint32_t>& order_by_id() const {
+    if (order_by_id_.size() != size()) order_by_id_ = snowshed::order_by_id(id.data(), size());
+    return order_by_id_;
+  }
+
+  /// Rearranges: the new particle i is the old particle order[i]. `spare` is of as many particles.
+  void permute(const std::vector<std::uint32_t>& order, Spare& spare, int threads) noexcept {
+    order_by_id_.clear();
+    for_each_array([&](const char*, auto& array) {
+      auto& sorted = std::get<std::remove_reference_t<decltype(array)>>(spare);
       parallel_for_each(std::ptrdiff_t(order.size()), threads,
                         [&](std::ptrdiff_t i) { sorted[i] = array[order[i]]; });
       array.swap(sorted);
@@ -119,6 +145,8 @@ struct Particles {
     f("event", self.event);
     if (self.has_material_id) f("kind", self.material_id);
   }
+
+  mutable std::vector<std::uint32_t> order_by_id_;  // empty: not known
 };
 
 }  // namespace snowshed

@@ -14,11 +14,14 @@ struct MpmSettings {
   Transfer transfer = Transfer::flip;
   double flip_ratio = 0.99;
   Basis basis = Basis::quadratic;
-  double step_factor = 0.9;   // of the stable time step
-  double strain_limit = 0.2;  // largest |dt grad v| a step may impose on a particle
-  double sleep_speed = 0.02;  // m/s, snow slower than this drops out of the steps; 0: never
-  double sleep_time = 0.04;   // s, for how long it must have been slower
-  int threads = 0;            // 0: all
+  double courant_factor = 0.9;  // time step over the largest stable one
+  double strain_limit = 0.2;    // largest |dt grad v| a step may impose on a particle
+  double sleep_speed = 0.02;    // m/s, snow slower than this drops out of the steps; 0: never
+  double sleep_time = 0.04;     // s, for how long it must have been slower
+  int threads = 0;              // 0: all
+
+  /// The size of the smallest thing the method resolves, m.
+  double resolution() const { return dx; }
 };
 
 }  // namespace snowshed

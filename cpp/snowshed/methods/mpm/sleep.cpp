@@ -39,9 +39,9 @@ typename Sleep<D>::State Sleep<D>::awake_since(double now) {
 }
 
 template <int D>
-void Sleep<D>::relocate(const BlockLayout<D>& layout, double now) {
+Sleep<D> Sleep<D>::relocated(const BlockLayout<D>& layout, double now) const {
   std::vector<State> states(layout.particle_blocks.size(), awake_since(now));
-  std::vector<std::int32_t> counts = particle_counts(layout);
+  const std::vector<std::int32_t> counts = particle_counts(layout);
   std::size_t old = 0;
   for (std::size_t b = 0; b < states.size(); ++b) {
     while (old < keys_.size() && keys_[old] < layout.particle_blocks[b]) ++old;
@@ -51,29 +51,33 @@ void Sleep<D>::relocate(const BlockLayout<D>& layout, double now) {
     // Snow that sleeps does not leave its block, so any change is snow that came.
     if (states[b].asleep && counts[b] != counts_[old]) states[b] = awake_since(now);
   }
-  keys_ = layout.particle_blocks;
-  counts_ = std::move(counts);
-  states_ = std::move(states);
-  list_blocks(layout);
+  return restored(layout, std::move(states));
 }
 
 template <int D>
-void Sleep<D>::wake_all(const BlockLayout<D>& layout, double now) {
+Sleep<D> Sleep<D>::restored(const BlockLayout<D>& layout, std::vector<State> states) const {
+  Sleep next(limit_, time_, gravity_);
+  const std::size_t blocks = layout.particle_blocks.size(), nodes = layout.grid_blocks.size();
+  for (auto* list : {&next.awake_, &next.border_, &next.fallen_}) list->reserve(blocks);
+  for (auto* list : {&next.active_, &next.idle_}) list->reserve(nodes);
+  next.touched_.resize(nodes);
+  next.keys_ = layout.particle_blocks;
+  next.counts_ = particle_counts(layout);
+  next.states_ = std::move(states);
+  next.list_blocks(layout);
+  return next;
+}
+
+template <int D>
+void Sleep<D>::wake_all(const BlockLayout<D>& layout, double now) noexcept {
   std::fill(states_.begin(), states_.end(), awake_since(now));
   list_blocks(layout);
 }
 
 template <int D>
-void Sleep<D>::restore(const BlockLayout<D>& layout, std::vector<State> states) {
-  keys_ = layout.particle_blocks;
-  counts_ = particle_counts(layout);
-  states_ = std::move(states);
-  list_blocks(layout);
-}
-
-template <int D>
-std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double now, int steps,
-                                           double dt, const BlockProbe& block_probe) {
+const std::vector<std::int32_t>& Sleep<D>::update(const BlockLayout<D>& layout, double now,
+                                                  int steps, double dt,
+                                                  const BlockProbe& block_probe) noexcept {
   bool woken = false;
   const auto wake = [&](std::int32_t b) {
     states_[b] = awake_since(now);
@@ -84,19 +88,20 @@ std::vector<std::int32_t> Sleep<D>::update(const BlockLayout<D>& layout, double 
   }
   for (std::size_t b = 0; b < states_.size(); ++b)
     if (states_[b].asleep && block_probe.obstacle_moves(std::int32_t(b))) wake(std::int32_t(b));
-  std::vector<std::int32_t> fallen;
+  fallen_.clear();
   for (std::int32_t b : awake_) {
     if (!is_slow(block_probe.speed(b), block_probe.fastest(b)) || block_probe.obstacle_moves(b))
       states_[b] = awake_since(now);
-    else if (falls_asleep(states_[b], now, block_probe.velocity(b)))
-      fallen.push_back(b);
+    else if (falls_asleep(states_[b], now, block_probe.velocity(b)) &&
+             block_probe.holds_its_snow(b))
+      fallen_.push_back(b);
   }
-  for (std::int32_t b : fallen) {
+  for (std::int32_t b : fallen_) {
     states_[b].asleep = true;
     states_[b].sum.setZero();
   }
-  if (woken || !fallen.empty()) list_blocks(layout);
-  return fallen;
+  if (woken || !fallen_.empty()) list_blocks(layout);
+  return fallen_;
 }
 
 template <int D>
@@ -137,7 +142,7 @@ bool Sleep<D>::falls_asleep(State& s, double now, const VecD<D>& velocity) const
 }
 
 template <int D>
-void Sleep<D>::list_blocks(const BlockLayout<D>& layout) {
+void Sleep<D>::list_blocks(const BlockLayout<D>& layout) noexcept {
   awake_.clear();
   awake_particles_ = 0;
   for (std::size_t b = 0; b < states_.size(); ++b) {
@@ -145,7 +150,7 @@ void Sleep<D>::list_blocks(const BlockLayout<D>& layout) {
     awake_.push_back(std::int32_t(b));
     awake_particles_ += counts_[b];
   }
-  touched_.assign(layout.grid_blocks.size(), false);
+  std::fill(touched_.begin(), touched_.end(), false);
   for (std::int32_t b : awake_)
     for (std::int32_t g : layout.around_particles[b]) touched_[g] = true;
   active_.clear();

@@ -8,6 +8,10 @@
 // neighbours rest on it. It wakes when nodes that it shares with awake snow would carry it faster
 // than the limit, or when the forces at them, left to act for as long as it takes to fall asleep,
 // would make it so; when particles come to it; and when an obstacle moves through its nodes.
+//
+// The particles of a sleeping block lie within it: a block in which one has strayed beyond falls
+// asleep only after the next sort. So sorting takes no particle from a sleeping block, and one that
+// holds another number of them than before has got some.
 #pragma once
 
 #include <cstdint>
@@ -33,17 +37,20 @@ class Sleep {
     std::function<VecD<D>(std::int32_t)> velocity;       // mean, m/s
     std::function<CarriedMotion(std::int32_t)> carried;  // how its nodes would have moved it
     std::function<bool(std::int32_t)> obstacle_moves;    // whether one does, through its nodes
+    std::function<bool(std::int32_t)> holds_its_snow;    // whether its particles lie within it
   };
 
-  /// Looks at all blocks, at a time, after some steps of dt; returns the blocks that fall asleep.
-  std::vector<std::int32_t> update(const BlockLayout<D>& layout, double now, int steps, double dt,
-                                   const BlockProbe& block_probe);
+  /// Looks at all blocks, at a time, after some steps of dt; returns the blocks that fall asleep,
+  /// until the next call.
+  const std::vector<std::int32_t>& update(const BlockLayout<D>& layout, double now, int steps,
+                                          double dt, const BlockProbe& block_probe) noexcept;
 
-  /// After a sort: blocks that kept their particles keep their state, all others are awake.
-  void relocate(const BlockLayout<D>& layout, double now);
+  /// The same after a sort: blocks that kept their particles keep their state, all others are
+  /// awake.
+  Sleep relocated(const BlockLayout<D>& layout, double now) const;
 
   /// Everything awake, from now on.
-  void wake_all(const BlockLayout<D>& layout, double now);
+  void wake_all(const BlockLayout<D>& layout, double now) noexcept;
 
   /// Whether anything can sleep at all.
   bool allowed() const { return limit_ > 0; }
@@ -67,21 +74,22 @@ class Sleep {
     VecD<D> first_half = VecD<D>::Zero();  // the mean velocity in it, m/s
   };
   const std::vector<State>& states() const { return states_; }
-  /// States from a checkpoint, one for each particle block of the layout.
-  void restore(const BlockLayout<D>& layout, std::vector<State> states);
+  /// The same with states from a checkpoint, one for each particle block of the layout.
+  Sleep restored(const BlockLayout<D>& layout, std::vector<State> states) const;
 
  private:
   static State awake_since(double now);
   bool is_slow(double rms_speed, double fastest) const;
   bool is_pushed(State& state, int steps, double dt, const CarriedMotion& carried) const;
   bool falls_asleep(State& state, double now, const VecD<D>& velocity) const;
-  void list_blocks(const BlockLayout<D>& layout);
+  void list_blocks(const BlockLayout<D>& layout) noexcept;
 
   double limit_, time_, gravity_;
   std::vector<BlockKey> keys_;        // of the layout that `states_` belongs to
   std::vector<std::int32_t> counts_;  // particles in each of its blocks
   std::vector<State> states_;
-  std::vector<std::int32_t> awake_, active_, idle_;
+  // The lists have room for all blocks, so that no step needs memory for them.
+  std::vector<std::int32_t> awake_, active_, idle_, fallen_;
   std::vector<bool> touched_;         // by awake snow: whether a grid block is active
   std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow
   std::int64_t awake_particles_ = 0;

@@ -195,7 +195,7 @@ TEST_F(MeshIo, RefusesBrokenPly) {
                  "nothing");
 }
 
-/// Whatever a file holds, reading it gives a mesh or an InputError.
+// Reading a damaged file must give a mesh or an InputError.
 TEST_F(MeshIo, SurvivesDamage) {
   const TriangleMesh mesh = sphere_mesh(1, 4);
   const std::pair<const char*, std::string> files[] = {{"a.stl", binary_stl(mesh)},
@@ -208,7 +208,7 @@ TEST_F(MeshIo, SurvivesDamage) {
   for (const auto& [name, content] : files)
     for (int n = 0; n < 200; ++n) {
       std::string damaged = content;
-      for (int hit = 0; hit < 3; ++hit)
+      for (int change = 0; change < 3; ++change)
         damaged[random.next() % damaged.size()] = static_cast<char>(random.next());
       if (n % 2) damaged.resize(random.next() % damaged.size());
       try {

@@ -1,4 +1,4 @@
-// .npy files for tests.
+// .npy files shared by tests.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace snowshed::geometry_testing {
 
-/// The bytes of a .npy file with the given header dictionary.
+/// Returns the bytes of a .npy file with the given header dictionary.
 inline std::string npy_file(int major, std::string dictionary, const std::string& data) {
   dictionary += "  \n";
   std::string out = "\x93NUMPY";

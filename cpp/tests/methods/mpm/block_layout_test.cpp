@@ -24,23 +24,10 @@ class Layout : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Layout, Dimensions);
 
-TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
-  constexpr int D = TypeParam::value;
-  Random random(1);
-  std::set<BlockKey> keys;
-  while (keys.size() < 40) {
-    BlockCoord<D> c;
-    for (int d = 0; d < D; ++d) c[d] = int(random.uniform() * 6) - 3;
-    keys.insert(block_key<D>(c));
-    if (D == 2 && keys.size() == 30) break;  // of 36 possible
-  }
-  std::vector<BlockKey> blocks(keys.begin(), keys.end());
-  std::vector<std::int32_t> starts(blocks.size() + 1);
-  for (std::size_t i = 0; i < starts.size(); ++i) starts[i] = int(3 * i);
-  BlockLayout<D> layout;
-  EXPECT_TRUE(layout.assign(blocks, starts, 1));
-  EXPECT_FALSE(layout.assign(blocks, starts, 2));
-
+/// Whether the neighbours of all blocks are where they should be.
+template <int D>
+void expect_connected(const BlockLayout<D>& layout, const std::set<BlockKey>& keys) {
+  const std::vector<BlockKey>& blocks = layout.particle_blocks;
   std::set<BlockKey> expected;
   const auto around = [](BlockKey key, int n) {
     BlockCoord<D> c = block_coord<D>(key);
@@ -62,6 +49,29 @@ TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
       else
         EXPECT_EQ(found, -1);
     }
+}
+
+TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
+  constexpr int D = TypeParam::value;
+  Random random(1);
+  std::set<BlockKey> keys;
+  while (keys.size() < 40) {
+    BlockCoord<D> c;
+    for (int d = 0; d < D; ++d) c[d] = int(random.uniform() * 6) - 3;
+    keys.insert(block_key<D>(c));
+    if (D == 2 && keys.size() == 30) break;  // of 36 possible
+  }
+  std::vector<BlockKey> blocks(keys.begin(), keys.end());
+  std::vector<std::int32_t> starts(blocks.size() + 1);
+  for (std::size_t i = 0; i < starts.size(); ++i) starts[i] = int(3 * i);
+  const auto one = BlockLayout<D>::of({blocks[0]}, {0, 1}, 1);
+  for (const BlockLayout<D>& before : {BlockLayout<D>::of(blocks, starts, 1), one}) {
+    SCOPED_TRACE(before.first.size());  // the blocks it has already, or others
+    const BlockLayout<D> layout = before.rearranged(blocks, starts, 2);
+    EXPECT_EQ(layout.particle_blocks, blocks);
+    EXPECT_EQ(layout.first, starts);
+    expect_connected(layout, keys);
+  }
 }
 
 }  // namespace

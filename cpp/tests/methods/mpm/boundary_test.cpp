@@ -209,9 +209,9 @@ TEST(Contact, AMovingPlateCarriesSnowAlong) {
 }
 
 TEST(Contact, TheUndersideOfASlipObstacleDoesNotHold) {
-  Contacts<double, 2> contacts(
+  const Boundary<double, 2> boundary(
       {fixed(make_box(Vec3(0.035, 0, 0.035), Vec3(0.04, 1e9, 0.04)), Condition::slip, 0.3)}, 0.01);
-  contacts.relocate({block_key<2>({0, 0})}, 0.0);
+  auto contacts = Contacts<double, 2>().relocated(boundary, {block_key<2>({0, 0})}, 0.0);
   ASSERT_EQ(contacts.count(0), 16);  // nodes 2 to 5 in each direction
   for (int i = 0; i < 16; ++i) {
     const Contact<double>& c = contacts.of_block(0)[i];
@@ -221,10 +221,10 @@ TEST(Contact, TheUndersideOfASlipObstacleDoesNotHold) {
 }
 
 TEST(Contact, StoredImpulsesSurviveRelocation) {
-  Contacts<float, 2> contacts(
+  const Boundary<float, 2> boundary(
       {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3)}, 0.01);
   const std::vector<BlockKey> few{block_key<2>({0, -1}), block_key<2>({0, 0})};
-  contacts.relocate(few, 0.0);
+  auto contacts = Contacts<float, 2>().relocated(boundary, few, 0.0);
   ASSERT_EQ(contacts.count(0), 64);
   ASSERT_EQ(contacts.count(1), 8);
   contacts.of_block(1)[3].next_normal_impulse = 2.5f;
@@ -235,12 +235,10 @@ TEST(Contact, StoredImpulsesSurviveRelocation) {
   EXPECT_EQ(stored[0].amount, 2.5);
 
   std::vector<BlockKey> more{block_key<2>({-1, 0}), few[0], few[1]};
-  contacts.relocate(more, 0.0);
+  contacts = contacts.relocated(boundary, more, 0.0);
   EXPECT_EQ(contacts.of_block(2)[3].normal_impulse, 2.5f);
 
-  Contacts<float, 2> fresh({fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3)},
-                           0.01);
-  fresh.relocate(more, 0.0);
+  auto fresh = Contacts<float, 2>().relocated(boundary, more, 0.0);
   EXPECT_TRUE(fresh.stored_impulses().empty());
   fresh.restore(stored);
   EXPECT_EQ(fresh.of_block(2)[3].normal_impulse, 2.5f);

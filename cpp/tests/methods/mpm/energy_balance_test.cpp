@@ -113,7 +113,7 @@ TEST(Energy, BooksGoOnWhenSnowIsAddedOrRemoved) {
   EXPECT_NEAR(solver->energy().added - added, weight * 1.025, 1e-9);
   EXPECT_NEAR(solver->energy().residual(), residual, 1e-9);
   run_until(*solver, 0.15);
-  solver->clear();
+  solver->replace({});
   EXPECT_EQ(solver->energy().stored(), 0.0);
   EXPECT_NEAR(solver->energy().residual(), 2 * residual, std::abs(3 * residual));
 }

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <cstdlib>
+
 #include "methods/mpm/solver_testing.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mpm/material_constants.hpp"
 #include "snowshed/methods/mpm/particles.hpp"
 
@@ -42,7 +46,7 @@ void expect_exact_sums(const Way& way) {
   const int nodes = tile_nodes<D>(way.basis), edge = tile_edge<D>(way.basis);
   AlignedVector<T> tile(std::size_t(nodes) * node_values, T(7));  // scatter must clear it
   const auto snow = material_constants<T>(Snow(), D);
-  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99), T(0.02), &snow};
+  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99), T(0.02), T(0), &snow};
   BlockStats stats;
   kernels.scatter(step, particles.view(), 0, n, tile.data(), stats);
   ASSERT_FALSE(stats.escaped);
@@ -91,13 +95,33 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
       select_kernels<float>({2, Transfer::flip, Basis::quadratic, SnowModel::cam_clay, false});
   AlignedVector<float> tile(std::size_t(tile_nodes<2>(Basis::quadratic)) * node_values);
   const auto snow = material_constants<float>(Snow(), 2);
-  const StepParameters<float> step{1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, &snow};
+  const StepParameters<float> step{1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, 0.0f, &snow};
   for (float cell : {-1.01f, 9.0f, std::nanf("")}) {
     particles.cell[1][2] = cell;
     BlockStats stats;
     kernels.scatter(step, particles.view(), 0, 3, tile.data(), stats);
     EXPECT_TRUE(stats.escaped) << cell;
   }
+}
+
+/// In a process of its own, since the choice is made once.
+[[noreturn]] void choose_kernels(const char* name) {
+  setenv("SNOWSHED_KERNELS", name, 1);
+  try {
+    std::fprintf(stderr, "chose %s", kernel_variant());
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s", error.what());
+  }
+  std::exit(0);
+}
+
+TEST(KernelChoiceDeathTest, KnowsTheNamesOfItsVariants) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto ended = testing::ExitedWithCode(0);
+  EXPECT_EXIT(choose_kernels("baseline"), ended, "chose baseline");
+  EXPECT_EXIT(choose_kernels("avx-2"), ended,
+              "SNOWSHED_KERNELS: is \"avx-2\"; allowed: baseline, avx2, avx512; this machine can "
+              "run: baseline");
 }
 
 }  // namespace

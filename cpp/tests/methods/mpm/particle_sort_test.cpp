@@ -23,6 +23,15 @@ TEST(Placement, FindsBlockAndCell) {
   EXPECT_THROW((Placement<2>::of(VecD<2>(std::nan(""), 0), dx, basis)), SimulationError);
 }
 
+/// Sorts particles; returns their layout.
+template <class T, int D>
+BlockLayout<D> sorted(Particles<T, D>& particles, const std::vector<BlockKey>& blocks,
+                      const BlockLayout<D>& before, int threads) {
+  ParticleSort<T, D> sort(particles, blocks, before, threads);
+  sort.apply(particles);
+  return std::move(sort.layout);
+}
+
 template <class T, int D_>
 struct SortCase {
   using Scalar = T;
@@ -30,7 +39,7 @@ struct SortCase {
 };
 
 template <class C>
-class ParticleSort : public testing::Test {
+class ParticleSorting : public testing::Test {
  protected:
   static constexpr int D = C::D;
   using T = typename C::Scalar;
@@ -56,20 +65,19 @@ class ParticleSort : public testing::Test {
 };
 using SortCases = testing::Types<SortCase<float, 2>, SortCase<float, 3>, SortCase<double, 2>,
                                  SortCase<double, 3>>;
-TYPED_TEST_SUITE(ParticleSort, SortCases);
+TYPED_TEST_SUITE(ParticleSorting, SortCases);
 
-TYPED_TEST(ParticleSort, PutsEveryParticleIntoItsBlock) {
+TYPED_TEST(ParticleSorting, PutsEveryParticleIntoItsBlock) {
   constexpr int D = TypeParam::D;
   using T = typename TypeParam::Scalar;
   this->add_random(6000, 0.3);  // enough to sort in parallel
-  BlockLayout<D> layout;
-  EXPECT_TRUE(sort_particles(this->particles, this->blocks, layout, 2));
+  const BlockLayout<D> layout = sorted(this->particles, this->blocks, BlockLayout<D>(), 2);
   const auto& p = this->particles;
   ASSERT_EQ(layout.first.size(), layout.particle_blocks.size() + 1);
   EXPECT_EQ(layout.first.front(), 0);
   EXPECT_EQ(layout.first.back(), 6000);
   EXPECT_TRUE(std::is_sorted(layout.particle_blocks.begin(), layout.particle_blocks.end()));
-  const std::vector<BlockKey> sorted = blocks_of_particles(layout);
+  const std::vector<BlockKey> in = blocks_of_particles(layout);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::uint32_t id = p.id[i];
     EXPECT_EQ(p.mass[i], T(id));  // everything travels with it
@@ -79,37 +87,44 @@ TYPED_TEST(ParticleSort, PutsEveryParticleIntoItsBlock) {
       EXPECT_LT(p.cell[d][i], T(block_edge<D>));
     }
     const double rounding = 16 * std::numeric_limits<T>::epsilon() * dx;
-    EXPECT_LT((position_of(p, i, sorted[i], dx, basis) - this->where[id]).norm(), rounding + 1e-15);
+    EXPECT_LT((position_of(p, i, in[i], dx, basis) - this->where[id]).norm(), rounding + 1e-15);
   }
 }
 
-TYPED_TEST(ParticleSort, IsStableAndIdempotent) {
+TYPED_TEST(ParticleSorting, IsStableAndIdempotent) {
   constexpr int D = TypeParam::D;
   this->add_random(6000, 0.3);
-  BlockLayout<D> layout;
-  sort_particles(this->particles, this->blocks, layout, 2);
+  const BlockLayout<D> layout = sorted(this->particles, this->blocks, BlockLayout<D>(), 2);
   for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
     for (int i = layout.first[b] + 1; i < layout.first[b + 1]; ++i)
       ASSERT_LT(this->particles.id[i - 1], this->particles.id[i]);
   const auto before = this->particles.id;
-  EXPECT_FALSE(sort_particles(this->particles, blocks_of_particles(layout), layout, 1));
+  const BlockLayout<D> again =
+      sorted(this->particles, blocks_of_particles(layout), layout, 1);
   EXPECT_EQ(this->particles.id, before);
+  EXPECT_EQ(again.particle_blocks, layout.particle_blocks);
+  EXPECT_EQ(again.first, layout.first);
+  EXPECT_EQ(again.around_nodes, layout.around_nodes);
 }
 
-TYPED_TEST(ParticleSort, RefusesParticlesThatAreNowhere) {
+TYPED_TEST(ParticleSorting, RefusesParticlesThatAreNowhere) {
   constexpr int D = TypeParam::D;
   using T = typename TypeParam::Scalar;
   for (T bad : {std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity(), T(1e30)}) {
     this->blocks.clear();
     this->add_random(10, 0.1);
     this->particles.cell[1][7] = bad;
-    BlockLayout<D> layout;
+    this->particles.cell[0][9] = bad;  // the error names the first
+    const Particles<T, D> before = this->particles;
     try {
-      sort_particles(this->particles, this->blocks, layout, 1);
+      sorted(this->particles, this->blocks, BlockLayout<D>(), 2);
       FAIL();
     } catch (const SimulationError& error) {
       EXPECT_NE(std::string(error.what()).find("particle 7 "), std::string::npos);
     }
+    EXPECT_EQ(this->particles.id, before.id);
+    for (int i = 0; i < 7; ++i)  // those before it have not been moved either
+      EXPECT_EQ(this->particles.cell[0][i], before.cell[0][i]);
   }
 }
 
@@ -119,8 +134,7 @@ TEST(ParticleSortFloat, ACellJustBelowZeroStaysInsideItsBlock) {
   p.resize(1);
   p.cell[0][0] = -1e-9f;
   p.cell[1][0] = 3;
-  BlockLayout<2> layout;
-  sort_particles(p, {block_key<2>({0, 0})}, layout, 1);
+  const BlockLayout<2> layout = sorted(p, {block_key<2>({0, 0})}, BlockLayout<2>(), 1);
   EXPECT_EQ(layout.particle_blocks[0], block_key<2>({-1, 0}));
   EXPECT_LT(p.cell[0][0], 8.0f);
 }

@@ -106,8 +106,9 @@ TEST(MaterialPerParticle, TheStiffestThereIsLimitsTheStep) {
   o.gravity = 0;
   o.snows = {soft_snow(), Snow()};
   const auto limit = [&](const Snow& s) {
-    return o.numerics.step_factor * elastic_time_step(s.youngs_modulus, s.poissons_ratio, s.density,
-                                                      2, o.numerics.dx, Basis::quadratic);
+    return o.numerics.courant_factor * elastic_time_step(s.youngs_modulus, s.poissons_ratio,
+                                                         s.density, 2, o.numerics.dx,
+                                                         Basis::quadratic);
   };
   ASSERT_LT(limit(o.snows[1]), 0.8 * limit(o.snows[0]));
   const auto solver = make_mpm(o, {});

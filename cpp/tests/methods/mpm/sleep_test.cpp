@@ -202,5 +202,40 @@ TEST_F(SleepFiles, GoesOnFromACheckpointWithTheSameBits) {
   EXPECT_EQ(resumed->energy().residual(), whole->energy().residual());
 }
 
+/// The cells of the particles in sleeping blocks, as a checkpoint has them.
+std::vector<float> sleeping_cells(const BinaryReader& in) {
+  const auto first = in.get<std::int32_t>("blocks/first");
+  const auto sleep = in.get<double>("sleep");
+  const std::size_t blocks = first.size() - 1, values = sleep.size() / blocks;
+  std::vector<float> cells;
+  for (const char* axis : {"particles/cell0", "particles/cell1"}) {
+    const auto cell = in.get<float>(axis);
+    for (std::size_t b = 0; b < blocks; ++b)
+      if (sleep[b * values] != 0)
+        cells.insert(cells.end(), cell.begin() + first[b], cell.begin() + first[b + 1]);
+  }
+  return cells;
+}
+
+TEST_F(SleepFiles, SnowThatSleepsLiesWithinItsBlock) {
+  MpmOptions o = sleepy(two_d, 0.2);  // loose snow falls asleep while it still creeps
+  o.numerics.sleep_time = 0.01;
+  const auto solver = make_mpm(o, {floor()});
+  solver->add(wall(two_d));
+  std::size_t asleep = 0;
+  for (int k = 0; k < 100; ++k) {
+    run_steps(*solver, 8);
+    BinaryWriter out;
+    solver->save(out);
+    out.save(path("checkpoint"));
+    for (const float cell : sleeping_cells(BinaryReader::load(path("checkpoint")))) {
+      ASSERT_GE(cell, 0.0f);
+      ASSERT_LT(cell, 8.0f);
+      ++asleep;
+    }
+  }
+  EXPECT_GT(asleep, 10000u);
+}
+
 }  // namespace
 }  // namespace snowshed

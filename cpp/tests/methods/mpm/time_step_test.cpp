@@ -53,7 +53,7 @@ double pressure_from_round_off(Transfer transfer, Basis basis, double fraction, 
   MpmOptions o = options_for({2, Precision::float64, transfer, basis});
   o.gravity = 0;
   o.snows[0].model = SnowModel::elastic;
-  o.numerics.step_factor = factor;
+  o.numerics.courant_factor = factor;
   o.numerics.strain_limit = 1e6;
   const auto solver = make_mpm(o, {});
   ParticleBatch one;

@@ -11,7 +11,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import QUANTITIES, Measurement, to_table
 from snowshed.scene.scene import PathLike
-from snowshed.study.definition import SEED
+from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,40 +1,31 @@
-"""The study of chapter 4, as a study file: the grid of triplets at the tilts that were measured."""
+"""The study of chapter 4: the grid of triplets at the tilts that were measured."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement
-from snowshed.io.formatting import exact
-from snowshed.study.template import filled
+from snowshed.scene.components import Snow
+from snowshed.scene.scene import Scene
+from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
+from snowshed.study.definition import Study
 
-#: Table 4.1.1, SI units.
-FULL = {
-    "name": "calibration",
-    "dimension": "3",
-    "dx": "0.01",
-    "slopes": "[0.4, 0.5, 0.6, 0.7]",
-    "pressures": "[4e3, 5e3, 6e3, 7e3]",
-    "cohesions": "[0.05, 0.1, 0.2]",
-}
-#: The corners of that grid, coarse, to see the way.
-QUICK = {
-    "name": "calibration-quick",
-    "dimension": "2",
-    "dx": "0.03",
-    "slopes": "[0.4, 0.7]",
-    "pressures": "[4e3, 7e3]",
-    "cohesions": "[0.05, 0.1, 0.2]",
+#: The corners of the thesis's grid, to see the way.
+QUICK: Mapping[str, Sequence[float]] = {
+    SLOPE: (min(CALIBRATION[SLOPE]), max(CALIBRATION[SLOPE])),
+    PRESSURE: (min(CALIBRATION[PRESSURE]), max(CALIBRATION[PRESSURE])),
+    COHESION: CALIBRATION[COHESION],
 }
 SEEDS = 2
 
 
 def calibration_study(
     measurements: Sequence[Measurement], *, quick: bool = False, seeds: Optional[int] = None
-) -> str:
-    """Return the study file of the calibration: 48 triplets M x p0 x beta (Table 4.1.1).
+) -> Study:
+    """Return the study of the calibration: 48 triplets M x p0 x beta (Table 4.1.1).
 
     Parameters
     ----------
@@ -45,18 +36,37 @@ def calibration_study(
     seeds
         Seedings of each triplet and tilt; 2 if not given, so that their noise is known.
 
+    Raises
+    ------
+    InputError
+        If `seeds` is not positive.
+
     Examples
     --------
     >>> from snowshed.analysis.calibration.measurements import Measurement
     >>> measured = [Measurement(tilt, 5, 1, "height", 0.1, 0.01) for tilt in (40, 50)]
-    >>> "panel.tilt = [40, 50]" in calibration_study(measured)
-    True
+    >>> len(calibration_study(measured).runs())  # 48 triplets, 2 tilts, 2 seedings
+    192
     """
     if seeds is not None and seeds < 1:
         raise InputError(f"seeds: {seeds} is not positive")
-    values = dict(QUICK if quick else FULL)
+    scene = Scene.preset("lab-40").update(
+        {
+            "snow": Snow.preset("reference").to_data(),
+            "dimension": 2 if quick else 3,
+            "events.count": max(one.event for one in measurements),
+            "numerics.dx": 0.03 if quick else 0.01,
+        }
+    )
     tilts = sorted({one.tilt for one in measurements})
-    values["tilts"] = f"[{', '.join(map(exact, tilts))}]"
-    values["events"] = str(max(one.event for one in measurements))
-    values["seeds"] = str(SEEDS if seeds is None else seeds)
-    return filled("snowshed.analysis.calibration", "grid", values)
+    study = Study.product(
+        scene,
+        {"panel.tilt": tilts, **(QUICK if quick else CALIBRATION)},
+        name="calibration-quick" if quick else "calibration",
+        seeds=range(1, (SEEDS if seeds is None else seeds) + 1),
+    )
+    return replace(
+        study,
+        description="The calibration's grid (Table 4.1.1): every triplet of internal friction, "
+        "preconsolidation pressure and cohesion factor, at every panel tilt that was measured.",
+    )

@@ -14,7 +14,10 @@ from matplotlib.ticker import MaxNLocator
 
 from snowshed.analysis.calibration.comparison import SET
 from snowshed.analysis.calibration.misfit import RANKED
-from snowshed.analysis.calibration.posterior import Posterior
+from snowshed.analysis.calibration.posterior import LEVELS, Posterior
+from snowshed.analysis.calibration.surrogate import EXTRA
+from snowshed.io.arrays import Booleans
+from snowshed.io.extras import require
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import word
 
@@ -100,9 +103,7 @@ def _bars(
     return figure
 
 
-def _name_sets(
-    axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: np.ndarray[Any, Any]
-) -> None:
+def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: Booleans) -> None:
     words = [word(path) for path in parameters]
     axes.set_xlabel(
         " · ".join(f"{one.symbol} ({one.unit})" if one.unit else one.symbol for one in words)
@@ -210,7 +211,7 @@ def predicted_bands(posterior: Posterior, *, seed: int = 1) -> pd.DataFrame:
     )
 
 
-def posterior_figure(posterior: Posterior, best: pd.Series[Any]) -> Figure:
+def posterior_figure(posterior: Posterior, best: pd.Series[float]) -> Figure:
     """Draw the posterior of the parameters: one by one on the diagonal, in pairs below it.
 
     Parameters
@@ -219,73 +220,40 @@ def posterior_figure(posterior: Posterior, best: pd.Series[Any]) -> Figure:
         Its samples.
     best
         The parameters of the grid's best set, marked for comparison.
+
+    Raises
+    ------
+    InputError
+        If corner (extra ``calibration``) is not installed.
     """
+    corner = require("corner", EXTRA, "the figure of the posterior")
     paths = list(posterior.surrogate.parameters)
     scales = np.array([word(path).scale for path in paths])
-    samples = posterior.samples / scales
     low, high = posterior.surrogate.low / scales, posterior.surrogate.high / scales
-    marks = np.array([float(best[path]) for path in paths]) / scales
-    ranges = posterior.ranges()
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context({**STYLE, "axes.grid": False}):
         figure = blank(1.2 + 2.1 * len(paths), 1.4 + 2.0 * len(paths))
+        figure.set_layout_engine("none")  # corner places its diagrams itself
+        corner.corner(
+            posterior.samples / scales,
+            bins=30,
+            range=list(zip(low, high)),
+            labels=[word(path).label for path in paths],
+            truths=[float(best[path]) / scale for path, scale in zip(paths, scales)],
+            truth_color=BEST,
+            quantiles=[*LEVELS.values()],
+            levels=(0.68, 0.95),
+            color=ALLOWED,
+            plot_datapoints=False,
+            hist_kwargs={"density": True},
+            fig=figure,
+        )
+        for number, axes in enumerate(figure.axes[:: len(paths) + 1]):
+            axes.axhline(1 / (high[number] - low[number]), color=FAINT, linestyle=":")
         headline(figure, "Parameters that the measurements allow")
-        grid = figure.subplots(len(paths), len(paths), sharex="col", squeeze=False)
-        for i, row in enumerate(grid):
-            for j, axes in enumerate(row):
-                axes.set_xlim(low[j], high[j])
-                axes.grid(visible=False)
-                if j > i:
-                    axes.axis("off")
-                elif i == j:
-                    _draw_marginal(axes, samples[:, i], ranges.iloc[i], scales[i], marks[i])
-                else:
-                    axes.hexbin(
-                        samples[:, j],
-                        samples[:, i],
-                        gridsize=24,
-                        extent=(low[j], high[j], low[i], high[i]),
-                        cmap="Blues",
-                        linewidths=0.1,
-                    )
-                    axes.set_ylim(low[i], high[i])
-                    axes.plot(
-                        marks[j],
-                        marks[i],
-                        "X",
-                        color=BEST,
-                        markeredgecolor="white",
-                        markersize=9,
-                        clip_on=False,
-                        zorder=5,
-                    )
-            if i:
-                row[0].set_ylabel(word(paths[i]).label)
-        for axes, path in zip(grid[-1], paths):
-            axes.set_xlabel(word(path).label)
-        keys: list[Any] = [
-            Line2D([], [], color=INK, linewidth=2.5, label="68 %"),
-            Line2D([], [], color=INK, linewidth=1, label="95 %"),
-            Line2D([], [], color=FAINT, linestyle="--", label="before measuring"),
-            Line2D([], [], color=BEST, marker="X", ls="", label="best set of the grid"),
+        keys = [
+            Line2D([], [], color=ALLOWED, ls="--", label="median, 68 % and 95 %"),
+            Line2D([], [], color=FAINT, ls=":", label="before measuring"),
+            Line2D([], [], color=BEST, marker="s", label="best set of the grid"),
         ]
-        figure.legend(handles=keys, loc="outside lower center", ncols=4)
+        figure.legend(handles=keys, loc="upper right")
     return figure
-
-
-def _draw_marginal(
-    axes: Axes,
-    values: np.ndarray[Any, Any],
-    range_: pd.Series[Any],
-    scale: float,
-    mark: float,
-) -> None:
-    low, high = axes.get_xlim()
-    heights, _, _ = axes.hist(values, 30, range=(low, high), density=True, color=ALLOWED, alpha=0.6)
-    axes.axhline(1 / (high - low), color=FAINT, linestyle="--", linewidth=1)
-    axes.axvline(mark, color=BEST, linewidth=1.4)
-    top = 1.12 * float(np.max(heights))
-    for level, width in (("95", 1.0), ("68", 2.5)):
-        ends = [range_[f"lower_{level}"] / scale, range_[f"upper_{level}"] / scale]
-        axes.plot(ends, [top, top], color=INK, linewidth=width, solid_capstyle="butt")
-    axes.set_ylim(0, 1.2 * float(np.max(heights)))
-    axes.set_yticks([])

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
-from snowshed.io.input_file import read_input
+from snowshed.io.csv_table import Row, read_text_table
 from snowshed.io.messages import quoted
 from snowshed.scene.scene import PathLike
+from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: What can be measured of a stack, m.
-QUANTITIES = ("height", "length", "head", "tail")
 POSITIVE = ("height", "length")
 KEYS = ("tilt_deg", "event")
 ROUND = "round"
-COMMENT = "#"
 STEEPEST = 90.0  # degrees, not allowed itself
 FAR = 3.0  # standard deviations by which length and tail - head may differ
 
@@ -135,35 +132,15 @@ def read_measurements(file: PathLike) -> list[Measurement]:
     [('height', 0.05, 2)]
     """
     path = Path(file)
-    try:
-        text = read_input(path).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a text in UTF-8: {error}") from None
-    try:
-        return measurements_in(text)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-
-
-def measurements_in(text: str) -> list[Measurement]:
-    """Return the measurements in the text of a file; see `read_measurements`."""
-    lines = _lines(text)
-    header = next(lines, None)
-    if header is None:
-        raise InputError("is empty; `snowshed calibrate --template FILE` writes one to fill in")
-    names = [cell.strip() for cell in header[1]]
-    _check_header(names, header[0])
+    hint = "`snowshed calibrate --template FILE` writes one to fill in"
+    table = read_text_table(path, hint, _check_header)
     found: list[Measurement] = []
     seen: dict[tuple[float, int, int], int] = {}
-    for number, cells in lines:
-        if len(cells) != len(names):
-            raise InputError(
-                f"line {number}: has {len(cells)} cells, but the header has {len(names)} columns"
-            )
-        row = _Row(number, dict(zip(names, (cell.strip() for cell in cells))))
-        found += row.measurements(seen)
+    for row in table.rows:
+        if any(row.cells.values()):
+            found += _Row(row).measurements(seen)
     if not found:
-        raise InputError("no measurement in it: all cells for measured values are empty")
+        raise InputError(f"{path}: no measurement in it: all cells for measured values are empty")
     return found
 
 
@@ -174,29 +151,13 @@ def to_table(measurements: Sequence[Measurement]) -> pd.DataFrame:
     return pd.DataFrame([vars(one) for one in measurements])
 
 
-def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the cells of every line that is neither empty nor a comment."""
-    for number, line in enumerate(text.splitlines(), 1):
-        if not line.strip() or line.lstrip().startswith(COMMENT):
-            continue
-        try:
-            (cells,) = csv.reader([line], strict=True)
-        except csv.Error as error:
-            raise InputError(f"line {number}: not CSV: {error}") from None
-        if any(cell.strip() for cell in cells):
-            yield number, cells
-
-
-def _check_header(names: Sequence[str], number: int) -> None:
-    where = f"line {number}"
+def _check_header(names: Sequence[str], where: str) -> None:
     for name in names:
         if name not in COLUMNS:
             raise InputError(
                 f"{where}: {quoted(name)} is no column; allowed: {', '.join(COLUMNS)} "
                 "(separated by commas)"
             )
-        if names.count(name) > 1:
-            raise InputError(f"{where}: column {name} occurs twice")
     for name in KEYS:
         if name not in names:
             raise InputError(f"{where}: no column {name}")
@@ -214,23 +175,26 @@ def _check_header(names: Sequence[str], number: int) -> None:
 
 @dataclass(frozen=True)
 class _Row:
-    """One line of the file."""
+    """One line of the file, as measurements."""
 
-    number: int
-    cells: Mapping[str, str]
+    row: Row
+
+    @property
+    def cells(self) -> Mapping[str, str]:
+        return self.row.cells
 
     def measurements(self, seen: dict[tuple[float, int, int], int]) -> list[Measurement]:
         """Return what was measured; `seen` tells the line of every stack so far."""
         key = self._tilt(), self._whole("event"), self._whole(ROUND, 1)
         values = {quantity: self._value(quantity) for quantity in QUANTITIES}
         found = [
-            Measurement(*key, quantity, *value, self.number)
+            Measurement(*key, quantity, *value, self.row.number)
             for quantity, value in values.items()
             if value is not None
         ]
         if found:
-            earlier = seen.setdefault(key, self.number)
-            if earlier != self.number:
+            earlier = seen.setdefault(key, self.row.number)
+            if earlier != self.row.number:
                 raise self._error(
                     f"tilt {key[0]:g}, event {key[1]}, round {key[2]} is in line {earlier} "
                     "already; give repetitions another round"
@@ -296,4 +260,4 @@ class _Row:
         return number
 
     def _error(self, message: str) -> InputError:
-        return InputError(f"line {self.number}: {message}")
+        return InputError(f"{self.row.where}: {message}")

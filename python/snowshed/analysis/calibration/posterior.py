@@ -17,9 +17,11 @@ calibration of computer models, J. R. Statist. Soc. B 63, 2001, with an independ
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Union
 
 import numpy as np
 
@@ -31,7 +33,9 @@ from snowshed.io.extras import require
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
+PURPOSE = "the posterior of the parameters"
 WALKERS_PER_DIMENSION = 8
 STEPS = 2000
 FEWEST_STEPS = 100  # shorter chains do not even show how correlated they are
@@ -49,7 +53,11 @@ LEVELS = {
     "upper_68": 0.84,
     "upper_95": 0.975,
 }
-ENOUGH = 400  # independent samples, for quantiles of 95 %
+#: Convergence of the chains: independent samples that quantiles of 95 % need, and the largest
+#: r_hat of chains that have forgotten where they began.
+ENOUGH = 400
+LARGEST_R_HAT = 1.1
+DIAGNOSTICS = ("ess_bulk", "ess_tail", "r_hat")
 
 
 @dataclass(frozen=True)
@@ -60,21 +68,48 @@ class Posterior:
     ----------
     surrogate
         What they rest on.
-    samples
-        Shape (n, k): parameters in their units.
-    discrepancy
-        Shape (n, q): the model's error for each quantity, relative to its measured mean.
     quantities
         The q measured quantities.
-    effective
-        How many independent samples they are worth.
+    draws
+        All of them, as arviz takes them: a variable for each parameter, in its unit, and for each
+        quantity ``discrepancy_height``, ..., the model's error relative to the measured mean; with
+        the dimensions ``chain`` (walker) and ``draw``.
     """
 
     surrogate: Surrogate
-    samples: Floats
-    discrepancy: Floats
     quantities: Sequence[str]
-    effective: float
+    draws: xr.Dataset
+
+    @cached_property
+    def samples(self) -> Floats:
+        """Parameters in their units, shape (n, k); of many draws every few."""
+        return self._thinned(self.surrogate.parameters)
+
+    @cached_property
+    def discrepancy(self) -> Floats:
+        """The model's error for each quantity, relative to its measured mean, shape (n, q)."""
+        return self._thinned(_discrepancies(self.quantities))
+
+    def _thinned(self, names: Sequence[str]) -> Floats:
+        columns = [self.draws[name].transpose("draw", "chain").to_numpy().ravel() for name in names]
+        return np.column_stack(columns)[:: max(1, self.draws[names[0]].size // KEPT)]
+
+    @cached_property
+    def diagnostics(self) -> pd.DataFrame:
+        """Convergence of the chains by arviz, indexed by the variables of `draws`.
+
+        ``ess_bulk`` and ``ess_tail``: how many independent samples the draws are worth for the
+        median and for the ends of the ranges; ``r_hat``: deviation of all chains over that within
+        single ones, 1 if they agree (Vehtari et al., Rank-normalization, folding, and localization,
+        Bayesian Analysis 16, 2021). The walkers, which are taken for the chains, learn from each
+        other; chains that are independent may differ a little more.
+        """
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what arviz has to say of its own next version
+            arviz = require("arviz", EXTRA, PURPOSE)
+            found = arviz.summary(self.draws, kind="diagnostics", round_to="none")
+        columns: pd.DataFrame = found[[*DIAGNOSTICS]]
+        return columns
 
     def ranges(self) -> pd.DataFrame:
         """Return the range of each parameter that the measurements allow.
@@ -85,7 +120,8 @@ class Posterior:
             ``parameter``; ``low`` and ``high``: the box that was searched; the quantiles
             ``lower_95``, ``lower_68``, ``median``, ``upper_68``, ``upper_95``; ``open``: "below",
             "above" or "both" where the density at an end of the box is more than half of the
-            prior's, so that the range would go on beyond it; else empty.
+            prior's, so that the range would go on beyond it; else empty; and the columns of
+            `diagnostics`.
         """
         import pandas as pd
 
@@ -93,23 +129,29 @@ class Posterior:
         for number, path in enumerate(self.surrogate.parameters):
             values = self.samples[:, number]
             low, high = self.surrogate.low[number], self.surrogate.high[number]
-            row: dict[str, Any] = {"parameter": path, "low": low, "high": high}
+            row: dict[str, Union[str, float]] = {"parameter": path, "low": low, "high": high}
             row.update({name: np.quantile(values, level) for name, level in LEVELS.items()})
             row["open"] = _open_ends((values - low) / (high - low))
-            rows.append(row)
+            rows.append({**row, **self.diagnostics.loc[path]})
         return pd.DataFrame(rows)
 
     def table(self) -> pd.DataFrame:
         """Return the samples: the parameters, and ``discrepancy_height``, ... as parts."""
         import pandas as pd
 
-        columns = [*self.surrogate.parameters, *(f"discrepancy_{q}" for q in self.quantities)]
+        columns = [*self.surrogate.parameters, *_discrepancies(self.quantities)]
         return pd.DataFrame(np.hstack([self.samples, self.discrepancy]), columns=columns)
 
     @property
     def converged(self) -> bool:
-        """Whether the samples are enough for the quantiles of 95 %."""
-        return self.effective >= ENOUGH
+        """Whether the draws are enough for the quantiles of 95 %, and the chains agree."""
+        enough = self.effective >= ENOUGH
+        return bool(enough and (self.diagnostics["r_hat"] <= LARGEST_R_HAT).all())
+
+    @property
+    def effective(self) -> float:
+        """How many independent samples the draws are worth where they are worth least."""
+        return float(self.diagnostics[["ess_bulk", "ess_tail"]].min(axis=None))
 
 
 def outputs_of(measurements: Sequence[Measurement]) -> list[Output]:
@@ -130,7 +172,7 @@ def sample_posterior(
     steps: int = STEPS,
     seed: int = 1,
 ) -> Posterior:
-    """Sample the posterior with emcee's affine-invariant ensemble.
+    """Sample the posterior with emcee's ensemble of walkers, by differential evolution.
 
     Parameters
     ----------
@@ -146,31 +188,32 @@ def sample_posterior(
     Raises
     ------
     InputError
-        If there are too few steps, or emcee (extra ``calibration``) is not installed.
+        If there are too few steps, or a library of the extra ``calibration`` is not installed.
     """
     if steps < FEWEST_STEPS:
         raise InputError(f"steps: {steps} are too few; at least {FEWEST_STEPS} are needed")
-    emcee = require("emcee", EXTRA, "sampling the posterior")
+    emcee, xarray = require("emcee", EXTRA, PURPOSE), require("xarray", EXTRA, PURPOSE)
     density = _Density.of(surrogate, measurements)
     dimensions = len(surrogate.parameters) + len(density.quantities)
     random = np.random.RandomState(seed)
     walkers = WALKERS_PER_DIMENSION * dimensions
     start = emcee.State(density.starts(walkers, random), random_state=random.get_state())
-    sampler = emcee.EnsembleSampler(walkers, dimensions, density, vectorize=True)
+    # Six times as many independent samples as emcee's default, the stretch move.
+    moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
+    sampler = emcee.EnsembleSampler(walkers, dimensions, density, moves=moves, vectorize=True)
     sampler.run_mcmc(start, steps)
     burnt = int(BURN_IN * steps)
-    times = sampler.get_autocorr_time(discard=burnt, tol=0)
-    effective = walkers * (steps - burnt) / float(np.nanmax(times))
-    chain = sampler.get_chain(discard=burnt, flat=True)
-    kept = chain[:: max(1, len(chain) // KEPT)]
+    chain = sampler.get_chain(discard=burnt)  # draws x walkers x dimensions
     count = len(surrogate.parameters)
-    return Posterior(
-        surrogate,
-        surrogate.physical(kept[:, :count]),
-        kept[:, count:],
-        density.quantities,
-        effective,
-    )
+    values = np.concatenate([surrogate.physical(chain[..., :count]), chain[..., count:]], axis=-1)
+    names = [*surrogate.parameters, *_discrepancies(density.quantities)]
+    columns = {name: (("chain", "draw"), values[..., i].T) for i, name in enumerate(names)}
+    return Posterior(surrogate, density.quantities, xarray.Dataset(columns))
+
+
+def _discrepancies(quantities: Sequence[str]) -> list[str]:
+    """Return the names of the variables that hold the model's error for each quantity."""
+    return [f"discrepancy_{quantity}" for quantity in quantities]
 
 
 @dataclass(frozen=True)

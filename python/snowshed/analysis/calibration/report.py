@@ -13,7 +13,7 @@ from snowshed.analysis.calibration.measurements import QUANTITIES, Measurement
 from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import Surrogate
-from snowshed.io.atomic import write_text
+from snowshed.io.atomic import replacing, write_text
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
@@ -156,6 +156,8 @@ def write(found: Calibration, folder: Path) -> None:
         "surrogate": posterior.surrogate.accuracy(),
     }.items():
         write_text(folder / f"{name}.csv", table.to_csv(index=False))
+    with replacing(folder / "posterior.nc") as beside:
+        posterior.draws.to_netcdf(beside, engine="scipy")
     for name, figure in {
         "relative-error": figures.relative_error_figure(found.ranked, parameters),
         "rmse": figures.rmse_figure(found.ranked, parameters),

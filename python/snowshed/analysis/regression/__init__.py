@@ -8,6 +8,7 @@ from typing import Any
 
 _WHERE = {
     "CrossValidation": "folds",
+    "EpsilonSVR": "svr",
     "OutsideDataError": "predictor",
     "Prediction": "predictor",
     "RegressionInterrupted": "nested",

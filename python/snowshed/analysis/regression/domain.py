@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy import optimize, spatial
 
 from snowshed.analysis.regression.rows import INPUT_UNITS, INPUT_WORDS
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 
 TOLERANCE = 1e-6  # of standardised inputs
 #: Part of the panels whose nearest neighbours are not farther than what counts as spacing: a few
@@ -108,7 +108,6 @@ class Domain:
 
 def _in_hull(points: Floats, place: Floats) -> bool:
     """Whether a place is a weighted mean of points: weights, none negative, that sum to one."""
-    optimize = require("scipy.optimize", "regression", "the domain of a model")
     equal = np.vstack([points.T, np.ones(len(points))])
     _, miss = optimize.nnls(equal, np.append(place, 1.0))
     return bool(miss <= TOLERANCE)
@@ -121,7 +120,6 @@ def _widest_gap(points: Floats) -> float:
     """
     if len(points) < 2:
         return 0.0
-    spatial = require("scipy.spatial", "regression", "the domain of a model")
     to_nearest = spatial.cKDTree(points).query(points, k=2)[0][:, 1]
     spacing = float(np.quantile(to_nearest, SPACED, method="lower"))
     dimension = int((np.ptp(points, axis=0) > 0).sum())

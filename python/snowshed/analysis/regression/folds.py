@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.rows import StackRows
@@ -13,6 +15,68 @@ from snowshed.io.arrays import Integers
 
 Split = tuple[Integers, Integers]
 BY = ("rows", "panels")
+
+
+@dataclass(frozen=True)
+class ShuffledGroupKFold:
+    """Folds of whole groups in random order, with the interface of scikit-learn's splitters.
+
+    scikit-learn's own `KFold` and `GroupKFold` shuffle by NumPy's old random numbers and so cannot
+    give the folds of the published models; those fill folds by rows, these by groups.
+
+    Attributes
+    ----------
+    n_splits
+        Number of folds.
+    seeds
+        What the random order depends on.
+
+    Examples
+    --------
+    >>> folds = ShuffledGroupKFold(2, (1,))
+    >>> for train, test in folds.split(np.zeros((5, 1)), groups=[7, 7, 8, 9, 9]):
+    ...     print(train.tolist(), test.tolist())
+    [3, 4] [0, 1, 2]
+    [0, 1, 2] [3, 4]
+    """
+
+    n_splits: int
+    seeds: tuple[int, ...]
+
+    def get_n_splits(
+        self,
+        X: Optional[ArrayLike] = None,
+        y: Optional[ArrayLike] = None,
+        groups: Optional[ArrayLike] = None,
+    ) -> int:
+        """Return the number of folds; the arguments are scikit-learn's and do not matter."""
+        return self.n_splits
+
+    def split(
+        self, X: ArrayLike, y: Optional[ArrayLike] = None, groups: Optional[ArrayLike] = None
+    ) -> Iterator[Split]:
+        """Yield the rows to train on and the rows to test on, fold by fold.
+
+        Parameters
+        ----------
+        X
+            Shape (n, k); only n matters.
+        y
+            Does not matter.
+        groups
+            The group of each row, shape (n,); None: each row is a group.
+
+        Yields
+        ------
+        tuple
+            Indices of training and test rows, ascending. The numbers of groups in the folds differ
+            by one at most.
+        """
+        of_row = np.arange(len(np.asarray(X))) if groups is None else np.asarray(groups)
+        shuffled = np.random.default_rng(list(self.seeds)).permutation(np.unique(of_row))
+        for fold in np.array_split(shuffled, self.n_splits):
+            tested = np.isin(of_row, fold)
+            yield np.flatnonzero(~tested), np.flatnonzero(tested)
 
 
 @dataclass(frozen=True)
@@ -56,32 +120,14 @@ class CrossValidation:
                 f"least {self.folds * self.inner_folds} are needed, or fewer folds"
             )
 
-    def outer(self, rows: StackRows, round_: int) -> list[Split]:
-        """Return (development, validation) rows for each outer fold of a round."""
-        everything = np.arange(len(rows))
-        return list(self._split(rows, everything, self.folds, [self.seed, round_]))
+    def groups(self, rows: StackRows) -> Integers:
+        """Return the group of each row, shape (n,): what no fold may tear apart."""
+        return np.arange(len(rows)) if self.by == "rows" else rows.panels
 
-    def inner(self, rows: StackRows, development: Integers, round_: int, fold: int) -> list[Split]:
-        """Return (training, test) rows for each inner fold."""
-        key = [self.seed, round_, fold]
-        return list(self._split(rows, development, self.inner_folds, key))
+    def outer(self, round_: int) -> ShuffledGroupKFold:
+        """Return the folds that split all rows into development and validation sets."""
+        return ShuffledGroupKFold(self.folds, (self.seed, round_))
 
-    def _split(
-        self, rows: StackRows, among: Integers, folds: int, key: list[int]
-    ) -> Iterator[Split]:
-        units = among if self.by == "rows" else rows.panels[among]
-        for rest in shuffled_parts(np.unique(units), folds, key):
-            held_out = np.isin(units, rest)
-            yield among[~held_out], among[held_out]
-
-
-def shuffled_parts(units: Integers, folds: int, key: list[int]) -> list[Integers]:
-    """Return a random partition into parts whose sizes differ by one at most.
-
-    Examples
-    --------
-    >>> parts = shuffled_parts(np.arange(7), 3, [1])
-    >>> [len(part) for part in parts], sorted(np.concatenate(parts).tolist())
-    ([3, 2, 2], [0, 1, 2, 3, 4, 5, 6])
-    """
-    return np.array_split(np.random.default_rng(key).permutation(units), folds)
+    def inner(self, round_: int, fold: int) -> ShuffledGroupKFold:
+        """Return the folds that split the development set of an outer fold."""
+        return ShuffledGroupKFold(self.inner_folds, (self.seed, round_, fold))

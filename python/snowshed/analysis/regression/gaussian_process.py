@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Optional
 
 import numpy as np
+from sklearn.base import BaseEstimator
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Sum, WhiteKernel
 
-from snowshed.analysis.regression.kernels import Expansion, kernel_matrix
-from snowshed.analysis.regression.kinds import Choice, Development, Parameters
-from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
+from snowshed.analysis.regression.folds import ShuffledGroupKFold
+from snowshed.analysis.regression.kernels import Expansion
+from snowshed.io.arrays import Floats, Integers
 
+#: Bounds of the hyper-parameters.
 LENGTHS = (1e-2, 1e3)
 AMPLITUDE = (1e-3, 1e5)
 NOISE = (1e-7, 1e1)
@@ -22,40 +26,69 @@ NOISE = (1e-7, 1e1)
 class GaussianProcess:
     """Squared exponential covariance with a length for each input, and white noise.
 
-    Its hyper-parameters maximise the marginal likelihood of the development set, so that it needs
-    no inner folds. As a predictor of the mean it is a sum of kernels like the others.
+    Its hyper-parameters maximise the marginal likelihood, so that it needs no inner folds. As a
+    predictor of the mean it is a sum of kernels like the support vector machines.
+
+    Attributes
+    ----------
+    name, title, cost_s
+        See `Kind`.
     """
 
     name: str = "gaussian-process"
     title: str = "Gaussian process"
     cost_s: float = 6.0
 
-    def search(self, development: Development) -> Choice:
-        """Maximise the marginal likelihood."""
-        gp = require("sklearn.gaussian_process", "regression", "Gaussian process regression")
-        inputs, targets = development.inputs, development.targets
-        kernels = gp.kernels
-        lengths = np.ones(inputs.shape[1])
-        covariance = kernels.ConstantKernel(1.0, AMPLITUDE) * kernels.RBF(lengths, LENGTHS)
-        covariance += kernels.WhiteKernel(0.1, NOISE)
-        model = gp.GaussianProcessRegressor(covariance, alpha=0.0)
+    def searcher(self, cv: ShuffledGroupKFold) -> LikelihoodSearch:
+        """Return what maximises the marginal likelihood; the folds are not needed."""
+        return LikelihoodSearch()
+
+    def estimator(self, parameters: Mapping[str, float]) -> GaussianProcessRegressor:
+        """Return the process with these hyper-parameters, which training leaves as they are."""
+        lengths = [value for name, value in parameters.items() if name.startswith("length_")]
+        covariance = _covariance(parameters["amplitude"], np.array(lengths), parameters["noise"])
+        return GaussianProcessRegressor(covariance, alpha=0.0, optimizer=None)
+
+    def expansion(self, model: GaussianProcessRegressor) -> Expansion:
+        """Return the mean of a trained process as a sum of kernels."""
+        signal = model.kernel_.k1
+        rates = 0.5 / np.square(np.ravel(signal.k2.length_scale))
+        weights = signal.k1.constant_value * model.alpha_
+        return Expansion(model.X_train_, weights, 0.0, rates)
+
+
+class LikelihoodSearch(BaseEstimator):
+    """Search of the greatest marginal likelihood, with the interface of `GridSearchCV`.
+
+    Attributes
+    ----------
+    best_params_
+        ``amplitude`` and ``noise`` (variances), ``length_1``, ``length_2``, ... of the inputs.
+    best_score_
+        NaN: there are no folds to score on.
+    best_estimator_
+        The trained process.
+    n_fits_
+        1.
+    """
+
+    def fit(self, X: Floats, y: Floats, groups: Optional[Integers] = None) -> LikelihoodSearch:
+        """Find the hyper-parameters of the rows, shapes (n, k) and (n,), and train with them."""
+        model = GaussianProcessRegressor(_covariance(1.0, np.ones(X.shape[1]), 0.1), alpha=0.0)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that a length is at its bound: the input is no matter
-            model.fit(inputs[development.rows], targets[development.rows])
+            model.fit(X, y)
         signal, noise = model.kernel_.k1, model.kernel_.k2
-        found = {
+        lengths = np.ravel(signal.k2.length_scale)
+        self.best_params_ = {
             "amplitude": float(signal.k1.constant_value),
             "noise": float(noise.noise_level),
-            **{f"length_{i}": float(x) for i, x in enumerate(np.ravel(signal.k2.length_scale), 1)},
+            **{f"length_{number}": float(length) for number, length in enumerate(lengths, 1)},
         }
-        return Choice(found, float("nan"), 1)
+        self.best_score_, self.best_estimator_, self.n_fits_ = float("nan"), model, 1
+        return self
 
-    def fit(self, parameters: Parameters, inputs: Floats, targets: Floats) -> Expansion:
-        """Return the mean of the process, given all of the rows."""
-        linalg: Any = require("scipy.linalg", "regression", "Gaussian process regression")
-        lengths = [parameters[f"length_{i}"] for i in range(1, inputs.shape[1] + 1)]
-        rates = 0.5 / np.square(lengths)
-        covariance = parameters["amplitude"] * kernel_matrix(inputs, inputs, rates)
-        np.einsum("ii->i", covariance)[...] += parameters["noise"]
-        weights = linalg.cho_solve(linalg.cho_factor(covariance), targets)
-        return Expansion(inputs, parameters["amplitude"] * weights, 0.0, rates)
+
+def _covariance(amplitude: float, lengths: Floats, noise: float) -> Sum:
+    signal = ConstantKernel(amplitude, AMPLITUDE) * RBF(lengths, LENGTHS)
+    return signal + WhiteKernel(noise, NOISE)

@@ -1,21 +1,34 @@
-"""The study of section 5.1: the data set of 610 rows, as files for ``snowshed study``."""
+"""The study of section 5.1: the data set of 610 rows."""
 
 from __future__ import annotations
 
-from math import ceil
+from collections.abc import Mapping, Sequence
+from math import ceil, inf
 
 from snowshed._core import InputError
-from snowshed.io.formatting import exact
-from snowshed.study.template import filled
+from snowshed.scene.components import Snow
+from snowshed.scene.scene import Scene
+from snowshed.scene.thesis_tables import (
+    PANEL_HEIGHTS,
+    PANEL_LENGTHS,
+    STEEP_HEIGHTS,
+    STEEP_LENGTHS,
+    STEEP_TILTS,
+)
+from snowshed.study.definition import Study
+from snowshed.study.factors import SEED, Factor, axis
 
 #: How snow goes from one event to the next; each is a study of its own.
 BETWEEN = ("carry", "reseed")
 #: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
 FRICTION = 0.8
-#: Panels up to 1 m have all seeds; those up to 2 m one for so many, up to 4 m, and beyond. What one
-#: more stack takes from the scatter of the rows for its time asks for about as many.
-TO_2_M, TO_4_M, BEYOND = 3, 6, 16
+#: For how many seeds of the shortest panels those up to some length, m, have one: the stacks of
+#: short panels scatter most, and long panels take longest. What one more stack takes from the
+#: scatter of the rows for its time asks for about as many.
+SHARES: Mapping[float, int] = {1.0: 1, 2.0: 3, 4.0: 6, inf: 16}
+FLAT_TILT = 40.0  # degrees, of the panels with all heights and lengths
+DESCRIPTION = "The geometry data set: 122 panels, 5 events each, 610 rows (Tables 5.1.1 and 5.2.1)."
 
 
 def geometry_study(
@@ -25,8 +38,8 @@ def geometry_study(
     dx: float = 0.01,
     seeds: int = 1,
     trial: bool = False,
-) -> str:
-    """Return the study file of the geometry data set, Tables 5.1.1 and 5.2.1.
+) -> Study:
+    """Return the study of the geometry data set, Tables 5.1.1 and 5.2.1.
 
     At 40 degrees 7 heights x 11 lengths x 5 events are 385 rows; 3 tilts x 3 heights x 5 lengths x
     5 events are another 225.
@@ -48,22 +61,74 @@ def geometry_study(
         A few panels on a coarse grid, which take seconds, to try the way from study to prediction;
         its numbers mean nothing.
 
+    Raises
+    ------
+    InputError
+        If `between` is unknown.
+
     Examples
     --------
-    >>> geometry_study("reseed").splitlines()[0]
-    '# The geometry data set: 122 panels, 5 events each, 610 rows (Tables 5.1.1 and 5.2.1).'
+    >>> len(geometry_study("reseed").runs())  # panels
+    122
     """
     check_between(between)
-    values = {
-        "between": between,
-        "friction": exact(friction),
-        "dx": exact(dx),
-        "seeds_to_1_m": _seeds(seeds),
-        "seeds_to_2_m": _seeds(ceil(seeds / TO_2_M)),
-        "seeds_to_4_m": _seeds(ceil(seeds / TO_4_M)),
-        "seeds_beyond": _seeds(ceil(seeds / BEYOND)),
-    }
-    return filled("snowshed.analysis.regression", "geometry-trial" if trial else "geometry", values)
+    scene = Scene.preset("geometry").update({"snow": Snow.preset("calibrated").to_data()})
+    if trial:
+        return _trial(scene, between, friction, seeds)
+    scene.update(
+        {
+            "dimension": 2,
+            "events.count": 5,
+            "events.max_time": 30.0,  # s; 10 m at 40 degrees alone take 9 s
+            "seeding.particles_per_voxel": 4,  # the fewest in 2D (A.3.2)
+            "numerics.dx": dx,
+        }
+    )
+    # One value each, which the table shows.
+    common = [axis("panel.friction", [friction]), axis("events.between", [between])]
+    grids = (
+        ((FLAT_TILT,), PANEL_HEIGHTS, PANEL_LENGTHS),
+        (STEEP_TILTS, STEEP_HEIGHTS, STEEP_LENGTHS),
+    )
+    parts = [
+        [*common, *_panels(tilts, heights, some), axis(SEED, _seeds(seeds, share))]
+        for tilts, heights, lengths in grids
+        for share in SHARES.values()
+        if (some := [one for one in lengths if _share(one) == share])
+    ]
+    return Study(scene, parts, f"geometry-{between}", description=DESCRIPTION)
+
+
+def _trial(scene: Scene, between: str, friction: float, seeds: int) -> Study:
+    """Return 9 panels on a coarse grid, 3 events each."""
+    scene.update(
+        {
+            "dimension": 2,
+            "events": {"count": 3, "between": between},
+            "panel.friction": friction,
+            "numerics.dx": 0.05,
+        }
+    )
+    heights = (0.5, 1.0, 1.5)
+    parts = [_panels((40.0,), heights, (0.5, 1.0)), _panels((50.0,), heights, (1.0,))]
+    return Study(
+        scene,
+        parts,
+        f"geometry-trial-{between}",
+        range(1, seeds + 1),
+        "A trial of the geometry data set: 9 panels on a coarse grid, 3 events each, 27 rows. "
+        "It shows the way from study to prediction; its numbers mean nothing.",
+    )
+
+
+def _panels(
+    tilts: Sequence[float], heights: Sequence[float], lengths: Sequence[float]
+) -> list[Factor]:
+    return [
+        axis("panel.tilt", tilts),
+        axis("panel.height", heights),
+        axis("panel.length", lengths),
+    ]
 
 
 def check_between(between: str) -> None:
@@ -72,6 +137,10 @@ def check_between(between: str) -> None:
         raise InputError(f"between: {between!r} is unknown; allowed: {', '.join(BETWEEN)}")
 
 
-def _seeds(count: int) -> str:
-    """Return the first seeds as a list of TOML."""
-    return str(list(range(1, count + 1)))
+def _share(length: float) -> int:
+    """Return for how many seeds of a short panel one of this length, m, has one."""
+    return next(share for longest, share in SHARES.items() if length <= longest)
+
+
+def _seeds(count: int, share: int) -> list[int]:
+    return list(range(1, ceil(count / share) + 1))

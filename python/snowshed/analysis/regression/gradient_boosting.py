@@ -1,65 +1,47 @@
-"""Gradient boosted trees beside the support vector machines."""
+"""Gradient boosted trees whose smaller ensembles come with the largest one."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
+from sklearn.base import clone
+from sklearn.ensemble import GradientBoostingRegressor
 
-from snowshed.analysis.regression.kinds import (
-    Choice,
-    Development,
-    Fitted,
-    Parameters,
-    median_absolute_error,
-)
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
-
-DEPTHS = (2, 3, 4)
-RATES = (0.1,)
-MOST_TREES = 400
-STEP = 10  # numbers of trees that are scored
 
 
-@dataclass(frozen=True)
-class GradientBoosting:
-    """Boosted regression trees; depth and number of trees are chosen on the inner folds."""
+class StagedGradientBoosting(GradientBoostingRegressor):
+    """scikit-learn's gradient boosting, of which a search sees each stage of a single fit."""
 
-    name: str = "gradient-boosting"
-    title: str = "gradient boosting"
-    cost_s: float = 5.0
+    #: What `path_predictions` varies.
+    path_parameters = ("n_estimators",)
 
-    def search(self, development: Development) -> Choice:
-        """Score each depth at every tenth number of trees."""
-        grid = [(depth, rate) for depth in DEPTHS for rate in RATES]
-        scores = np.array([self._scores(development, *point) for point in grid])
-        best = np.unravel_index(np.argmin(scores), scores.shape)
-        depth, rate = grid[best[0]]
-        trees = (int(best[1]) + 1) * STEP
-        parameters = {"depth": float(depth), "rate": rate, "trees": float(trees)}
-        return Choice(parameters, float(scores[best]), len(grid) * len(development.splits))
+    def path_predictions(
+        self, X: Floats, y: Floats, at: Floats, grid: Mapping[str, Sequence[int]]
+    ) -> Iterator[Floats]:
+        """Train the largest ensemble of a grid; yield what it predicted with fewer trees.
 
-    def fit(self, parameters: Parameters, inputs: Floats, targets: Floats) -> Fitted:
-        """Train on all of the given rows."""
-        model = _model(parameters["depth"], parameters["rate"], parameters["trees"])
-        fitted: Fitted = model.fit(inputs, targets)
-        return fitted
+        Parameters
+        ----------
+        X, y
+            Training rows, shapes (n, k) and (n,).
+        at
+            Inputs to predict, shape (m, k).
+        grid
+            Values of "n_estimators".
 
-    def _scores(self, development: Development, depth: int, rate: float) -> Floats:
-        """Return the mean score over the inner folds against the number of trees."""
-        inputs, targets = development.inputs, development.targets
-        scores = []
-        for train, test in development.splits:
-            model = _model(depth, rate, MOST_TREES).fit(inputs[train], targets[train])
-            stages = list(model.staged_predict(inputs[test]))[STEP - 1 :: STEP]
-            scores.append([median_absolute_error(stage - targets[test]) for stage in stages])
-        return np.asarray(np.mean(scores, axis=0))
+        Yields
+        ------
+        numpy.ndarray
+            Shape (m,), for each number of trees.
+        """
+        trees = grid["n_estimators"]
+        model = clone(self).set_params(n_estimators=max(trees)).fit(X, y)
+        stages = list(model.staged_predict(at))
+        for count in trees:
+            yield np.asarray(stages[count - 1])
 
-
-def _model(depth: float, rate: float, trees: float) -> Any:
-    ensemble = require("sklearn.ensemble", "regression", "gradient boosting")
-    return ensemble.GradientBoostingRegressor(
-        max_depth=int(depth), learning_rate=rate, n_estimators=int(trees), random_state=0
-    )
+    def path_fits(self, grid: Mapping[str, Sequence[int]]) -> int:
+        """Return how many models `path_predictions` fits: one."""
+        return 1

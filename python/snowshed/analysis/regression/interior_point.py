@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.linalg import lapack
 
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 
 MOST_STEPS = 80
 INTERIOR = 0.995  # part of the way to the boundary that a step takes
@@ -100,7 +100,6 @@ class _Iteration:
     """The unknowns of one fit, and the factors of the Newton system."""
 
     def __init__(self, kernel: Floats, y: Floats, c: float, epsilon: float) -> None:
-        lapack = require("scipy.linalg.lapack", "regression", "support vector regression")
         self._factorise, self._substitute = lapack.dpotrf, lapack.dpotrs
         self._kernel = np.asfortranarray(kernel)
         self._matrix = np.empty_like(self._kernel)

@@ -2,67 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Protocol, Sequence
-
-import numpy as np
+from collections.abc import Mapping, Sequence
+from typing import Optional, Protocol
 
 from snowshed._core import InputError
-from snowshed.analysis.regression.folds import Split
+from snowshed.analysis.regression.folds import ShuffledGroupKFold
+from snowshed.analysis.regression.kernels import Expansion
 from snowshed.io.arrays import Floats, Integers
+from snowshed.io.extras import require
 
 Parameters = Mapping[str, float]
 
 
-@dataclass(frozen=True)
-class Development:
-    """What a model may be chosen and trained on.
+class Regressor(Protocol):
+    """An estimator of scikit-learn, or one with its interface."""
 
-    Attributes
-    ----------
-    inputs, targets
-        All rows, standardised: shapes (n, k) and (n,).
-    rows
-        The rows of the development set.
-    splits
-        Its inner folds.
-    """
+    def fit(self, X: Floats, y: Floats) -> Regressor:
+        """Train on inputs, shape (n, k), and targets, shape (n,)."""
 
-    inputs: Floats
-    targets: Floats
-    rows: Integers
-    splits: Sequence[Split]
+    def predict(self, X: Floats) -> Floats:
+        """Return predictions, shape (m,), for inputs of shape (m, k)."""
 
 
-@dataclass(frozen=True)
-class Choice:
-    """What a search found.
+class Searcher(Protocol):
+    """A search of hyper-parameters, with the interface of scikit-learn's `GridSearchCV`."""
 
-    Attributes
-    ----------
-    parameters
-        Hyper-parameters of the best model.
-    score
-        Its median absolute error, mean over the inner folds; NaN if the search needs none.
-    fits
-        Models that were fitted for it.
-    """
+    best_params_: Parameters
+    best_score_: float
+    best_estimator_: Regressor
+    n_fits_: int
 
-    parameters: Parameters
-    score: float
-    fits: int
-
-
-class Fitted(Protocol):
-    """A trained model."""
-
-    def predict(self, inputs: Floats) -> Floats:
-        """Return predictions, shape (m,), for standardised inputs of shape (m, k)."""
+    def fit(self, X: Floats, y: Floats, groups: Optional[Integers] = None) -> Searcher:
+        """Choose hyper-parameters, and train with them on all of the rows."""
 
 
 class Kind(Protocol):
-    """A kind of model: how its hyper-parameters are chosen, and how it is trained."""
+    """A kind of model: how its hyper-parameters are chosen, and what is trained with them."""
 
     @property
     def name(self) -> str:
@@ -76,35 +51,44 @@ class Kind(Protocol):
     def cost_s(self) -> float:
         """Roughly how long one outer fold of 600 rows takes, s; for the time left."""
 
-    def search(self, development: Development) -> Choice:
-        """Choose hyper-parameters."""
+    def searcher(self, cv: ShuffledGroupKFold) -> Searcher:
+        """Return a search of hyper-parameters on these inner folds."""
 
-    def fit(self, parameters: Parameters, inputs: Floats, targets: Floats) -> Fitted:
-        """Train a model."""
+    def estimator(self, parameters: Parameters) -> Regressor:
+        """Return the model with these hyper-parameters, not trained."""
 
-
-def median_absolute_error(errors: Floats) -> float:
-    """Return the score of section 5.2.4; smaller is better."""
-    return float(np.median(np.abs(errors)))
+    def expansion(self, model: Regressor) -> Optional[Expansion]:
+        """Return a trained model as a sum of kernels; None: it is none."""
 
 
 def kinds() -> dict[str, Kind]:
-    """Return all kinds by name, those of the thesis first."""
-    from snowshed.analysis.regression.gaussian_process import GaussianProcess
-    from snowshed.analysis.regression.gradient_boosting import GradientBoosting
-    from snowshed.analysis.regression.svr_kinds import linear_svr, rbf_svr
-
-    every: list[Kind] = [linear_svr(), rbf_svr(), GaussianProcess(), GradientBoosting()]
-    return {kind.name: kind for kind in every}
-
-
-def kinds_named(names: Sequence[str]) -> dict[str, Kind]:
-    """Return some kinds by name.
+    """Return all kinds by name, those of the thesis first.
 
     Raises
     ------
     InputError
-        If there is no such kind.
+        If scikit-learn (extra ``regression``) is not installed.
+    """
+    require("sklearn", "regression", "regression")  # of which the modules below are made
+    from snowshed.analysis.regression import grid_kinds
+    from snowshed.analysis.regression.gaussian_process import GaussianProcess
+
+    every: list[Kind] = [
+        grid_kinds.linear_svr(),
+        grid_kinds.rbf_svr(),
+        GaussianProcess(),
+        grid_kinds.gradient_boosting(),
+    ]
+    return {kind.name: kind for kind in every}
+
+
+def kinds_named(names: Sequence[str]) -> dict[str, Kind]:
+    """Return some kinds by name; none named: all.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind, or scikit-learn is not installed.
     """
     every = kinds()
     for name in names:

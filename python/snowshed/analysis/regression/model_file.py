@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from snowshed import _core
 from snowshed._core import InputError
+from snowshed._core import version as snowshed_version
 from snowshed.analysis.regression.damage import DAMAGED
 from snowshed.analysis.regression.domain import Domain
 from snowshed.analysis.regression.ensemble import Ensemble
@@ -22,6 +22,7 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
+from snowshed.scene.accuracy_settings import FORMER_NAMES
 from snowshed.scene.scene import PathLike
 
 FORMAT = "snowshed stack model"
@@ -114,7 +115,7 @@ def save_model(model: StackModel, file: PathLike) -> None:
     facts = {
         "format": FORMAT,
         "format_version": VERSION,
-        "snowshed": _core.version,
+        "snowshed": snowshed_version,
         "title": model.title,
         "measure": model.measure,
         "settings": dict(model.settings),
@@ -177,6 +178,7 @@ class _Reader:
         settings = _entry(facts, "settings", dict)
         if not all(isinstance(value, str) for value in settings.values()):
             raise InputError("settings: not texts")
+        settings = {FORMER_NAMES.get(key, key): value for key, value in settings.items()}
         return StackModel(inputs, members, _entry(facts, "title", str), measure, settings)
 
     def _facts(self) -> dict[str, Any]:

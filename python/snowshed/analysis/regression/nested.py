@@ -3,14 +3,9 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
-import os
-import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Optional
 
@@ -25,33 +20,14 @@ from snowshed.analysis.regression.threads import one_thread
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import read_object
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.run.pool import Ended, Pool
+from snowshed.run.progress import Progress, Reporter
 
 IDENTITY = "regression.json"
-FORMAT = 1  # of the results of folds; another one is computed anew
+FORMAT = 2  # of the results of folds; another one is computed anew
 POLL_S = 0.25  # s between looks at interrupts
 
 
-@dataclass(frozen=True)
-class FoldProgress:
-    """How far a nested cross-validation has come.
-
-    Attributes
-    ----------
-    done, count
-        Outer folds, those of earlier runs included.
-    fraction
-        Part of the work that was left at the start, 0 to 1.
-    doing
-        What is being computed.
-    """
-
-    done: int
-    count: int
-    fraction: float
-    doing: str
-
-
-Reporter = Callable[[FoldProgress], None]
 Results = dict[Task, FoldResult]
 
 
@@ -146,7 +122,7 @@ class _Tracker:
         if self._report is not None:
             doing = f"{task.target}, {self._title[task.kind]}"
             fraction = self._finished / self._work
-            self._report(FoldProgress(self._done, self._count, fraction, doing))
+            self._report(Progress(fraction, self._done, self._count, "folds", doing))
 
 
 def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
@@ -161,8 +137,8 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
     if path.is_file():
         if read_object(path) != identity:
             raise InputError(
-                f"{folder}: holds a regression of another table, or with other folds; take a new "
-                "folder"
+                f"{folder}: holds a regression of another table, with other folds, or by another "
+                "version of snowshed; take a new folder"
             )
         return
     if folder.exists() and any(folder.iterdir()):
@@ -188,68 +164,43 @@ def _computed(
                 compute(task, rows, scheme).save(folder / task.file)
                 yield task
         return
-    with _pool(jobs, rows, scheme, folder) as pool:
-        open_: set[Future[Task]] = {pool.submit(_work, task) for task in tasks}
-        while open_ and not request.requested:
-            done, open_ = wait(open_, timeout=POLL_S, return_when=FIRST_COMPLETED)
-            yield from (_outcome(future) for future in done)
+    waiting = list(reversed(tasks))
+    with Pool(min(jobs, len(tasks)), partial(_work, rows, scheme, folder.absolute())) as pool:
+        try:
+            while (waiting or pool.fractions) and not request.requested:
+                while waiting and len(pool.fractions) < pool.capacity:
+                    pool.submit(waiting.pop())
+                for ended in pool.collect(POLL_S):
+                    yield _outcome(ended)
+        finally:
+            _end(pool, folder)
 
 
-def _outcome(future: Future[Task]) -> Task:
-    try:
-        return future.result()
-    except BrokenProcessPool:
-        raise OSError(None, "a process was killed, perhaps for lack of memory") from None
+def _outcome(ended: Ended[Task, None]) -> Task:
+    if ended.error is not None:
+        raise ended.error
+    if ended.death:
+        raise OSError(None, f"a process {ended.death}, perhaps for lack of memory")
+    return ended.task
 
 
-@contextmanager
-def _pool(
-    jobs: int, rows: StackRows, scheme: CrossValidation, folder: Path
-) -> Iterator[ProcessPoolExecutor]:
-    """Yield worker processes, which are ended at once, whatever they do, when no longer needed."""
-    pool = ProcessPoolExecutor(
-        jobs,
-        mp_context=multiprocessing.get_context("spawn"),
-        initializer=_Worker.start,
-        initargs=(rows, scheme, folder),
-    )
-    try:
-        yield pool
-    finally:
-        workers = list((getattr(pool, "_processes", None) or {}).values())
-        pool.shutdown(wait=False, cancel_futures=True)
-        for worker in workers:
-            worker.terminate()
-        for worker in workers:
-            worker.join()
-            for unfinished in folder.rglob(f".*.{worker.pid}.npz"):
-                unfinished.unlink(missing_ok=True)
+def _end(pool: Pool[Task, None], folder: Path) -> None:
+    """End the processes, whatever they do, and remove what they have half written."""
+    processes = pool.process_ids
+    pool.close()
+    for process in processes:
+        for unfinished in folder.rglob(f".*.{process}.npz"):
+            unfinished.unlink(missing_ok=True)
 
 
-class _Worker:
-    """What a worker process keeps between tasks."""
-
-    rows: StackRows
-    scheme: CrossValidation
-    folder: Path
-
-    @classmethod
-    def start(cls, rows: StackRows, scheme: CrossValidation, folder: Path) -> None:
-        """Prepare a worker process; interrupts are its parent's business."""
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        cls.rows, cls.scheme, cls.folder = rows, scheme, folder
-
-
-def _work(task: Task) -> Task:
+def _work(
+    rows: StackRows,
+    scheme: CrossValidation,
+    folder: Path,
+    task: Task,
+    report: Callable[[float], None],
+) -> None:
+    """Compute a fold in a process of its own and store its result."""
     with one_thread():
-        result = compute(task, _Worker.rows, _Worker.scheme)
-    result.save(_Worker.folder / task.file)
-    return task
-
-
-def available_jobs() -> int:
-    """Return the number of cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+        result = compute(task, rows, scheme)
+    result.save(folder / task.file)

@@ -14,13 +14,15 @@ from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.kinds import Kind, kinds_named
 from snowshed.analysis.regression.model_file import STORED_KINDS, Member, StackModel, save_model
-from snowshed.analysis.regression.nested import Reporter, Results, available_jobs, cross_validate
+from snowshed.analysis.regression.nested import Results, cross_validate
 from snowshed.analysis.regression.rows import TARGETS, StackRows
 from snowshed.analysis.regression.spread import stack_spread, unseen_panels
 from snowshed.analysis.regression.threads import one_thread
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing, write_text
 from snowshed.plot.figure_style import save
+from snowshed.run.pool import available_cores
+from snowshed.run.progress import Reporter
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
@@ -111,7 +113,7 @@ def regress(
         targets=chosen,
         kinds=kinds,
         scheme=scheme or CrossValidation(),
-        jobs=jobs or available_jobs(),
+        jobs=jobs or available_cores(),
         progress=progress,
     )
     with one_thread():

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Optional, Union
 
 import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.dataset import MODEL
 from snowshed.analysis.regression.model_file import StackModel, load_model
+from snowshed.analysis.regression.questions import Questions
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD
 from snowshed.io.arrays import Floats
@@ -20,6 +21,10 @@ from snowshed.scene.scene import PathLike
 if TYPE_CHECKING:
     import pandas as pd
 
+    from snowshed.analysis.regression.questions import Numbers
+
+SHOWN = 5  # panels that a refusal names
+
 
 class OutsideDataError(InputError):
     """A question lies outside the data of the model that should answer it."""
@@ -27,20 +32,22 @@ class OutsideDataError(InputError):
 
 @dataclass(frozen=True)
 class Prediction:
-    """Answers for the events of one panel.
+    """Answers for the events of one or more panels.
 
     Attributes
     ----------
     table
-        One row per event and target: ``event``, ``target``, ``value``, ``spread`` (half width that
-        holds 68 % of the stacks), ``low`` and ``high`` (between which 90 % lie), ``models``
-        (standard deviation of the models); m, or 1 for the ratio.
+        One row per panel, event and target: ``panel`` (its label in the table that was asked, or
+        its number from 0), ``event``, ``target``, ``value``, ``spread`` (half width that holds
+        68 % of the stacks), ``low`` and ``high`` (between which 90 % lie), ``models`` (standard
+        deviation of the models), in m, or 1 for the ratio; ``extrapolated``: whether the panel lies
+        outside the data.
     kind, title
         The kind of model, and what data it comes from.
     measure, settings
         What of the snow was measured, and what the data have in common, as in `StackModel`.
     objections
-        Why the question lies outside the data, in words; empty: it lies inside.
+        Why panels lie outside the data, in words; empty: all lie inside.
     """
 
     table: pd.DataFrame
@@ -52,77 +59,103 @@ class Prediction:
 
     @property
     def extrapolated(self) -> bool:
-        """Whether the question lies outside the data."""
+        """Whether a panel lies outside the data."""
         return bool(self.objections)
+
+    def array(self, target: str, column: str = "value") -> Floats:
+        """Return a column of the table for one target as an array.
+
+        Parameters
+        ----------
+        target
+            "ratio", "height" or "length".
+        column
+            Of `table`.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (panels, events), in the order that was asked; NaN beyond the last event of a
+            panel that has fewer than others.
+
+        Raises
+        ------
+        InputError
+            If the table has no such target or column.
+        """
+        targets = list(dict.fromkeys(self.table["target"]))
+        if target not in targets:
+            raise InputError(f"target: {target!r} is unknown; allowed: {', '.join(targets)}")
+        numbers = list(self.table.select_dtypes("float"))
+        if column not in numbers:
+            raise InputError(f"column: {column!r} is unknown; allowed: {', '.join(numbers)}")
+        rows = self.table[self.table["target"] == target]
+        wide = rows.pivot(index="panel", columns="event", values=column)
+        return wide.reindex(rows["panel"].unique()).to_numpy(float)
 
 
 def predict(
+    panels: Optional[pd.DataFrame] = None,
     *,
-    height: float,
-    length: float,
-    tilt: float,
-    events: int,
+    height: Optional[Numbers] = None,
+    length: Optional[Numbers] = None,
+    tilt: Optional[Numbers] = None,
+    events: Optional[Numbers] = None,
     model: Union[PathLike, StackModel, None] = None,
     kind: Optional[str] = None,
     extrapolate: bool = False,
 ) -> Prediction:
-    """Predict the stack below a panel after each of several events.
+    """Predict the stacks below panels after each of several events.
 
     Parameters
     ----------
+    panels
+        One row for each panel, with the columns ``height``, ``length``, ``tilt`` and ``events`` in
+        any order and no other: a column that means something else must not be taken for nothing.
     height, length
-        Of the panel: its lower edge above the ground, and along the slope, m.
+        Instead of a table: of the panel, its lower edge above the ground, and along the slope, m.
+        Each of the four is a number, or a sequence or array with one for each panel.
     tilt
         Of the panel from the horizontal, degrees.
     events
-        Slide-offs, 1 or more.
+        Slide-offs, 1 or more; each is answered, from the first on.
     model
         A model file of ``snowshed regress``, or what `load_model` made of it, which spares reading
         it for every question; None: the one that comes with snowshed.
     kind
         "rbf", "gaussian-process" or "linear"; None: the first of these that the file holds.
     extrapolate
-        Answer even if the question lies outside the data; the answer is marked.
+        Answer even if panels lie outside the data; their answers are marked.
 
     Raises
     ------
     OutsideDataError
-        If the question lies outside the data.
+        If a panel lies outside the data; it names the panels.
     InputError
-        If there is no such model, or a value is not possible.
+        If there is no such model, or a column or value is not possible.
 
     Examples
     --------
     >>> found = predict(height=2, length=4, tilt=60, events=1).table
     >>> found["target"].tolist()
     ['ratio', 'height', 'length']
+    >>> predict(height=2, length=[2, 4, 6], tilt=60, events=5).array("height").shape
+    (3, 5)
     """
-    import pandas as pd
-
-    _check(height=height, length=length, tilt=tilt, events=events)
+    named = {"height": height, "length": length, "tilt": tilt, "events": events}
+    questions = Questions.of(panels, named)
     if not isinstance(model, StackModel):
         model = _shipped() if model is None else load_model(model)
     kind = model.kinds[0] if kind is None else kind
     if kind not in model.kinds:
         raise InputError(f"kind: the model holds no {kind!r}; it has: {', '.join(model.kinds)}")
-    asked = [[event, height, length, tilt] for event in range(1, events + 1)]
-    questions = np.array(asked, dtype=float)
-    objections = model.domain.objections(questions)
-    if objections and not extrapolate:
-        raise OutsideDataError(
-            f"the question lies outside the data: {'; '.join(objections)}; no model can be "
-            "trusted there. Simulate this panel (snowshed panel), or force an answer with "
-            "--extrapolate"
-        )
-    scaled = Scaling.of(model.inputs).scaled(questions)
-    parts = [
-        _columns(model, target, kind, scaled)
-        for target in model.targets
-        if (target, kind) in model.members
-    ]
-    columns = {name: np.stack([part[name] for part in parts], axis=1).ravel() for name in parts[0]}
-    table = pd.DataFrame(columns)
-    return Prediction(table, kind, model.title, model.measure, model.settings, tuple(objections))
+    outside = _objections(model, questions)
+    if outside and not extrapolate:
+        raise OutsideDataError(_refusal(outside, questions))
+    table = _answers(model, kind, questions)
+    table["extrapolated"] = np.isin(table["panel"], [questions.labels[n] for n in outside])
+    told = tuple(text for number in outside for text in _told(outside, number, questions))
+    return Prediction(table, kind, model.title, model.measure, model.settings, told)
 
 
 @cache
@@ -130,16 +163,60 @@ def _shipped() -> StackModel:
     return load_model(MODEL)
 
 
-def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[str, Any]:
-    """Return the columns of one target, each with a value for every event."""
+def _objections(model: StackModel, questions: Questions) -> dict[int, list[str]]:
+    """Return, for the panels that lie outside the data, why, by their numbers."""
+    starts = np.flatnonzero(np.diff(questions.panel)) + 1
+    found = map(model.domain.objections, np.split(questions.inputs, starts))
+    return {number: texts for number, texts in enumerate(found) if texts}
+
+
+def _told(outside: Mapping[int, list[str]], number: int, questions: Questions) -> list[str]:
+    """Return the objections to a panel, with its label if there are others."""
+    if len(questions.labels) == 1:
+        return outside[number]
+    return [f"panel {questions.labels[number]}: {text}" for text in outside[number]]
+
+
+def _refusal(outside: Mapping[int, list[str]], questions: Questions) -> str:
+    count = len(questions.labels)
+    subject = "the question lies" if count == 1 else f"{len(outside)} of {count} panels lie"
+    shown = [text for number in list(outside)[:SHOWN] for text in _told(outside, number, questions)]
+    if len(outside) > SHOWN:
+        shown.append(f"and {len(outside) - SHOWN} more panels")
+    this = "this panel" if len(outside) == 1 else "these panels"
+    return (
+        f"{subject} outside the data: {'; '.join(shown)}; no model can be trusted there. Simulate "
+        f"{this} (snowshed panel), or force an answer with --extrapolate"
+    )
+
+
+def _answers(model: StackModel, kind: str, questions: Questions) -> pd.DataFrame:
+    """Return the answers of one kind of model, the targets of an event below each other."""
+    import pandas as pd
+
+    scaled = Scaling.of(model.inputs).scaled(questions.inputs)
+    targets = [target for target in model.targets if (target, kind) in model.members]
+    parts = [_columns(model, target, kind, scaled) for target in targets]
+    rows, count = len(scaled), len(targets)
+    columns = {name: np.stack([part[name] for part in parts], axis=1).ravel() for name in parts[0]}
+    return pd.DataFrame(
+        {
+            "panel": questions.labels.take(np.repeat(questions.panel, count)),
+            "event": np.repeat(questions.inputs[:, 0].astype(int), count),
+            "target": targets * rows,
+            **columns,
+        }
+    )
+
+
+def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[str, Floats]:
+    """Return the numbers of one target, each with a value for every event."""
     member = model.members[target, kind]
     found = member.ensemble.predict(scaled) * member.deviation + member.mean
     value, deviation = found.mean(axis=0), found.std(axis=0)
     spread = member.spread.half_width(value, deviation, SPREAD)
     reach = member.spread.half_width(value, deviation, INTERVAL)
     return {
-        "event": np.arange(1, len(scaled) + 1),
-        "target": np.full(len(scaled), target, dtype=object),
         # Neither a length nor a ratio is negative; a linear model may be.
         "value": np.maximum(value, 0.0),
         "spread": spread,
@@ -147,13 +224,3 @@ def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[
         "high": np.maximum(value + reach, 0.0),
         "models": deviation,
     }
-
-
-def _check(*, height: float, length: float, tilt: float, events: int) -> None:
-    for name, value in (("height", height), ("length", length)):
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(f"{name}: {value:g} is not a positive length in m")
-    if not 0 <= tilt < 90:
-        raise InputError(f"tilt: {tilt:g} is outside the allowed range (0 <= value < 90 degrees)")
-    if not 1 <= events <= 1000:
-        raise InputError(f"events: {events} is outside the allowed range (1 to 1000)")

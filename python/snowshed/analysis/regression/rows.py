@@ -15,7 +15,7 @@ from snowshed.io.arrays import Booleans, Floats, Integers
 from snowshed.io.csv_table import read_csv
 from snowshed.io.extras import require
 from snowshed.io.messages import shortened
-from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def read_rows(
     if measure not in MEASURES:
         raise InputError(f"measure: {measure!r} is unknown; allowed: {', '.join(MEASURES)}")
     path = Path(file)
-    table = _read(path)
+    table = _read(path).rename(columns=FORMER_NAMES)
     try:
         return _rows(_chosen(table, where or {}), MEASURES[measure])
     except InputError as error:
@@ -185,7 +185,7 @@ def _read(path: Path) -> pd.DataFrame:
 
     try:
         if path.suffix != ".parquet":
-            return read_csv(path, dtype=str, keep_default_na=False)
+            return read_csv(path, as_text=True)
         parquet = require("pyarrow.parquet", "study", "reading Parquet")
         count = parquet.read_metadata(path).num_rows
         if count > LARGEST_TABLE:
@@ -201,7 +201,8 @@ def _read(path: Path) -> pd.DataFrame:
 
 def _chosen(table: pd.DataFrame, where: Mapping[str, str]) -> pd.DataFrame:
     """Return the rows that `where` asks for."""
-    for column, value in where.items():
+    for given, value in where.items():
+        column = FORMER_NAMES.get(given, given)
         if column not in table:
             raise InputError(f"{column}: no such column; the table has {_names(table)}")
         cells = table[column].astype(str)

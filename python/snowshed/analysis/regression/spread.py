@@ -10,13 +10,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import optimize
 
-from snowshed.analysis.regression.folds import shuffled_parts
+from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kinds import Kind, Parameters
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 
 #: Part of the cases that lie within the spread, and within the interval.
 SPREAD, INTERVAL = 0.68, 0.90
@@ -53,7 +53,6 @@ class Spread:
             On rows of unseen panels, shape (n,): error, prediction, and standard deviation of the
             models.
         """
-        optimize = require("scipy.optimize", "regression", "the spread of predictions")
         noise = np.sqrt(np.maximum(errors**2 - deviations**2, 0.0))
         design = np.column_stack([np.ones_like(predictions), np.abs(predictions)])
         floor, slope = optimize.nnls(design, noise)[0]
@@ -107,14 +106,12 @@ def unseen_panels(
     values = rows.targets[target]
     scaling = Scaling.of(values[:, None])
     scaled = scaling.scaled(values[:, None])[:, 0]
-    panels = rows.panels
     found = np.empty((len(elected), len(rows)))
     for number, choices in enumerate(elected):
-        folds = min(len(choices), rows.panel_count)
-        parts = shuffled_parts(np.unique(panels), folds, [seed, number, 1])
-        for part, parameters in zip(parts, choices):
-            held_out = np.isin(panels, part)
-            model = kind.fit(parameters, inputs[~held_out], scaled[~held_out])
+        folds = ShuffledGroupKFold(min(len(choices), rows.panel_count), (seed, number, 1))
+        splits = folds.split(inputs, groups=rows.panels)
+        for (train, held_out), parameters in zip(splits, choices):
+            model = kind.estimator(parameters).fit(inputs[train], scaled[train])
             found[number, held_out] = model.predict(inputs[held_out])
     return np.asarray(found.mean(axis=0) * scaling.deviation[0] + scaling.mean[0])
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
-from typing import Any, Optional
+from typing import Optional
 
 import numpy as np
+from sklearn.svm import SVR
 
 from snowshed.analysis.regression.interior_point import SupportVectors, solve
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 
 #: Changes of multipliers that libsvm is allowed; beyond, the interior point method is faster.
 LIBSVM_ITERATIONS = 2500
@@ -72,8 +72,7 @@ def _exact(kernel: Floats, y: Floats, c: float, epsilon: float) -> SupportVector
 
 def _libsvm(kernel: Floats, y: Floats, c: float, epsilon: float) -> Optional[SupportVectors]:
     """Return scikit-learn's fit, or None if it would take long."""
-    svm = require("sklearn.svm", "regression", "support vector regression")
-    model: Any = svm.SVR(
+    model = SVR(
         kernel="precomputed",
         C=c,
         epsilon=epsilon,

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.folds import CrossValidation
-from snowshed.analysis.regression.kernels import Expansion
-from snowshed.analysis.regression.kinds import Development, kinds, median_absolute_error
+from snowshed.analysis.regression.kinds import kinds
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
+from snowshed.analysis.regression.score import median_absolute_error
 
 
 @dataclass(frozen=True)
@@ -38,27 +38,28 @@ def compute(task: Task, rows: StackRows, scheme: CrossValidation) -> FoldResult:
     scaling = Scaling.of(values[:, None])
     targets = scaling.scaled(values[:, None])[:, 0]
     unit, offset = float(scaling.deviation[0]), float(scaling.mean[0])
-    development, validation = scheme.outer(rows, task.round)[task.fold]
-    splits = scheme.inner(rows, development, task.round, task.fold)
+    groups = scheme.groups(rows)
+    outer = list(scheme.outer(task.round).split(inputs, groups=groups))
+    development, validation = outer[task.fold]
     kind = kinds()[task.kind]
 
     start = time.process_time()
-    choice = kind.search(Development(inputs, targets, development, splits))
-    model = kind.fit(choice.parameters, inputs[development], targets[development])
+    search = kind.searcher(scheme.inner(task.round, task.fold))
+    search.fit(inputs[development], targets[development], groups=groups[development])
     elapsed = time.process_time() - start
 
-    found = model.predict(inputs)
+    found = search.best_estimator_.predict(inputs)
     errors = (found - targets) * unit
-    final = kind.fit(choice.parameters, inputs, targets)
+    final = kind.estimator(search.best_params_).fit(inputs, targets)
     return FoldResult(
-        choice.parameters,
-        choice.score * unit,
+        search.best_params_,
+        -search.best_score_ * unit,
         median_absolute_error(errors[development]),
         median_absolute_error(errors[validation]),
-        choice.fits + 1,
+        search.n_fits_ + 1,
         elapsed,
         validation,
         found[validation] * unit + offset,
         final.predict(inputs) * unit + offset,
-        final if isinstance(final, Expansion) else None,
+        kind.expansion(final),
     )

@@ -1,4 +1,4 @@
-"""The studies of chapter 3, as study files."""
+"""The studies of chapter 3."""
 
 from __future__ import annotations
 
@@ -8,7 +8,11 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.sampling import SAMPLERS
-from snowshed.study.template import filled
+from snowshed.scene.components import Snow
+from snowshed.scene.scene import Scene
+from snowshed.scene.thesis_tables import GROUPS, PAIRS, SENSITIVITY
+from snowshed.study.definition import Study
+from snowshed.study.factors import Factor, Part, axis
 
 
 @dataclass(frozen=True)
@@ -42,13 +46,20 @@ QUICK: Mapping[str, Size] = {
     "morris": Size(samples=4),
 }
 METHODS = tuple(FULL)
-DESIGNS = {
-    "sobol": "{count} base points of Sobol's sequence, arranged after Saltelli",
-    "morris": "{count} trajectories after Morris on a grid of 4 levels",
+#: What the studies are, for readers of their files.
+DESCRIPTIONS: Mapping[str, str] = {
+    "s": "Single-parameter variation, section 3.3: nominal and altered values of Table 3.3.1, all "
+    "other parameters at the reference values of Table 3.2.1.",
+    "fixation": "Single-parameter fixation, section 3.4: the values of Table 3.2.1. Parameters of "
+    "the yield criterion vary with the hardening law at its reference, and the other way round.",
+    "sobol": "{count} base points of Sobol's sequence, arranged after Saltelli, in the ranges of "
+    "Table 3.2.1. The order of the points is the design.",
+    "morris": "{count} trajectories after Morris on a grid of 4 levels, in the ranges of Table "
+    "3.2.1. The order of the points is the design.",
 }
-#: Dimension, grid size in m, and events, as Table 3.2.1 has them and for a trial.
-FULL_SCENE = {"dimension": "3", "dx": "0.01", "events": "3"}
-QUICK_SCENE = {"dimension": "2", "dx": "0.03", "events": "2"}
+#: As Table 3.2.1 has it, and for a trial.
+FULL_SCENE: Mapping[str, object] = {"dimension": 3, "events.count": 3, "numerics.dx": 0.01}
+QUICK_SCENE: Mapping[str, object] = {"dimension": 2, "events.count": 2, "numerics.dx": 0.03}
 
 
 def sensitivity_study(
@@ -57,8 +68,8 @@ def sensitivity_study(
     quick: bool = False,
     seeds: Optional[int] = None,
     samples: Optional[int] = None,
-) -> str:
-    """Return the study file of one method of sensitivity analysis.
+) -> Study:
+    """Return the study of one method of sensitivity analysis.
 
     Parameters
     ----------
@@ -79,13 +90,7 @@ def sensitivity_study(
 
     Examples
     --------
-    >>> from tempfile import TemporaryDirectory
-    >>> from pathlib import Path
-    >>> from snowshed.study import Study
-    >>> with TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "study.toml"
-    ...     _ = file.write_text(sensitivity_study("fixation", seeds=1), encoding="utf-8")
-    ...     len(Study.load(file).runs())  # 27 + 9, with the reference in both
+    >>> len(sensitivity_study("fixation", seeds=1).runs())  # 27 + 9, with the reference in both
     35
     """
     if method not in METHODS:
@@ -98,21 +103,25 @@ def sensitivity_study(
         raise InputError(f"samples: not for {method}, whose points are those of the thesis")
     seeds = _checked("seeds", seeds, size.seeds)
     samples = _checked("samples", samples, size.samples)
-    values = dict(QUICK_SCENE if quick else FULL_SCENE)
-    values["name"] = f"sensitivity-{method}{'-quick' if quick else ''}"
-    values["seeds"] = str(seeds)
-    if sampled:
-        values["design"] = DESIGNS[method].format(count=samples)
-        values["points"] = _points(SAMPLERS[method](samples))
-    return filled("snowshed.analysis.sensitivity", "sampled" if sampled else method, values)
+    scene = Scene.preset("sensitivity").update({"snow": Snow.preset("reference").to_data()})
+    return Study(
+        scene.update(QUICK_SCENE if quick else FULL_SCENE),
+        _parts(method, samples),
+        f"sensitivity-{method}{'-quick' if quick else ''}",
+        None if sampled else range(1, seeds + 1),
+        DESCRIPTIONS[method].format(count=samples),
+    )
+
+
+def _parts(method: str, samples: int) -> list[Part]:
+    if method in SAMPLERS:
+        return [[Factor(SAMPLERS[method](samples))]]
+    if method == "s":
+        return [[axis(path, values)] for path, values in PAIRS.items()]
+    return [[axis(path, SENSITIVITY[path]) for path in group] for group in GROUPS.values()]
 
 
 def _checked(name: str, given: Optional[int], default: int) -> int:
     if given is not None and given < 1:
         raise InputError(f"{name}: {given} is not positive")
     return default if given is None else given
-
-
-def _points(columns: Mapping[str, list[float]]) -> str:
-    """Return the columns of a sample as TOML."""
-    return "\n".join(f"{path} = {values!r}" for path, values in columns.items())

@@ -17,7 +17,7 @@ from snowshed.analysis.sensitivity.stored import TARGETS
 from snowshed.io.arrays import Floats
 from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import word
-from snowshed.study.definition import SEED
+from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
     import pandas as pd

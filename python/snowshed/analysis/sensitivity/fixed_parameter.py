@@ -11,19 +11,10 @@ from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
 from snowshed.io.arrays import Floats
+from snowshed.scene.thesis_tables import GROUPS
 
 if TYPE_CHECKING:
     import pandas as pd
-
-#: The parameters that vary together (3.4).
-GROUPS: Mapping[str, Sequence[str]] = {
-    "yield": (
-        "snow.critical_state_slope",
-        "snow.preconsolidation_pressure",
-        "snow.cohesion",
-    ),
-    "hardening": ("snow.hardening_factor", "snow.youngs_modulus"),
-}
 
 
 def rescaled(values: Floats) -> Floats:

@@ -18,7 +18,7 @@ from snowshed.analysis.sensitivity.sampling import EXTRA, LEVELS, problem
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.extras import require
-from snowshed.study.definition import SEED
+from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
     import pandas as pd

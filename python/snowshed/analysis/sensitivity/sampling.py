@@ -14,19 +14,16 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.arrays import Floats
 from snowshed.io.extras import require
-from snowshed.study.definition import SEED
-from snowshed.study.factors import Span
+from snowshed.scene.thesis_tables import HARDENING, SENSITIVITY
+from snowshed.study.factors import SEED, Span
 
 EXTRA = "sensitivity"
 LEVELS = 4  # of Morris's grid
 RANDOM = 1  # seed of the samples: the same sample whenever it is asked for
 #: Ranges of Table 3.2.1; the hardening factor spans a decade, and so is sampled by its logarithm.
 SPANS: Mapping[str, Span] = {
-    "snow.critical_state_slope": Span(0.3, 0.7),
-    "snow.preconsolidation_pressure": Span(2e3, 8e3),
-    "snow.cohesion": Span(0.1, 0.3),
-    "snow.hardening_factor": Span(0.1, 1.0, "log"),
-    "snow.youngs_modulus": Span(1e6, 3e6),
+    path: Span(min(values), max(values), "log" if path == HARDENING else "linear")
+    for path, values in SENSITIVITY.items()
 }
 
 Columns = dict[str, list[float]]

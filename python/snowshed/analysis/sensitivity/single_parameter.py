@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,18 +10,11 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
+from snowshed.scene.thesis_tables import PAIRS
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Nominal and altered values of Table 3.3.1, SI units.
-PAIRS: Mapping[str, tuple[float, float]] = {
-    "snow.critical_state_slope": (0.3, 0.6),
-    "snow.preconsolidation_pressure": (3e3, 6e3),
-    "snow.cohesion": (0.15, 0.3),
-    "snow.hardening_factor": (0.1, 0.2),
-    "snow.youngs_modulus": (1e6, 2e6),
-}
 CONFIDENT = 1.96  # standard errors on either side: 95 %
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
 from snowshed.scene.scene import PathLike
-from snowshed.study.definition import SEED
+from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
     import pandas as pd

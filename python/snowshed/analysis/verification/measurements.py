@@ -1,25 +1,28 @@
-"""What was measured, as lines of a file that grows and as a table.
-
-A measurement is one entry of a case's matrix, solved once. It is written the moment it is there, so
-an interrupted suite loses nothing, and what has been measured is not measured again.
-"""
+"""Measurements of errors against known answers, as JSON and as a table."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Union
 
 from snowshed._core import InputError
-from snowshed.analysis.verification.case import Measured, Settings
-from snowshed.io.json_file import check_values, is_number, parse_object
+from snowshed.io.json_file import check_values, is_number
 from snowshed.io.messages import quoted, shortened
+from snowshed.scene.accuracy_settings import FORMER_NAMES
 
 if TYPE_CHECKING:
     import pandas as pd
+
+Value = Union[str, int, float, bool]
+
+#: One way of solving a problem: names of scene parameters without their section ("dx", "transfer",
+#: "flip_ratio", "basis", "precision", "particles_per_voxel", "courant_factor", "between",
+#: "dimension", "seed", ...) or of the problem's own parameters ("friction", "law"), and their
+#: values.
+Settings = Mapping[str, Value]
 
 #: Columns of the table before and after the settings.
 IDENTITY = ("case", "quantity")
@@ -54,15 +57,26 @@ NUMBERS_MEASURED = ("value", "exact", "error")
 
 
 @dataclass(frozen=True)
+class Measured:
+    """One quantity of one solution: its value, the value it should have, and the error."""
+
+    quantity: str
+    value: float
+    exact: float
+    error: float
+
+
+@dataclass(frozen=True)
 class Measurement:
-    """One entry of a case's matrix, solved once.
+    """One way of solving a problem with a known answer, solved once.
 
     Attributes
     ----------
     measured
         All quantities of the case; their numbers are NaN if the measurement failed.
     wall_s, updates, steps, particles
-        As in `snowshed.analysis.verification.case.Outcome`; 0 if the measurement failed.
+        Time of the solution alone (without seeding, imports or evaluation), s; particles times
+        steps; steps; particles. 0 if the measurement failed.
     peak_memory_mb
         The most memory its process held, that of Python and its libraries (20 to 100 MB) included.
     elapsed_s
@@ -87,7 +101,7 @@ class Measurement:
 
     @property
     def key(self) -> str:
-        """What was measured: the case and its settings.
+        """Key of what was measured: the case and its settings.
 
         Examples
         --------
@@ -124,61 +138,13 @@ class Measurement:
         measured = [
             _measured(one, f"{where}: /measured/{i}") for i, one in enumerate(data["measured"])
         ]
-        return cls(**{**data, "measured": measured})
+        settings = {FORMER_NAMES.get(k, k): v for k, v in data["settings"].items()}
+        return cls(**{**data, "settings": settings, "measured": measured})
 
 
 def key_of(case: str, settings: Settings) -> str:
     """Return the key under which a case with these settings is kept."""
     return f"{case} {json.dumps(dict(settings), sort_keys=True)}"
-
-
-class MeasurementFile:
-    """Measurements as JSON lines; a line that was cut off by a crash is dropped.
-
-    Parameters
-    ----------
-    path
-        The file; it need not exist.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> with TemporaryDirectory() as folder:
-    ...     file = MeasurementFile(Path(folder) / "m.jsonl")
-    ...     file.append(Measurement("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)]))
-    ...     [one.case for one in file.read()]
-    ['bar']
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-
-    def read(self) -> list[Measurement]:
-        """Return all measurements, in the order in which they were made.
-
-        Raises
-        ------
-        InputError
-            If a line that is whole holds none, naming file and line.
-        """
-        lines = self._whole().split(b"\n")[:-1]
-        places = [f"{self.path}:{number}" for number in range(1, len(lines) + 1)]
-        return [
-            Measurement.from_json(parse_object(line, where), where)
-            for line, where in zip(lines, places)
-        ]
-
-    def append(self, measurement: Measurement) -> None:
-        """Add a measurement; it is on disk when this returns."""
-        line = json.dumps(measurement.to_json(), allow_nan=False) + "\n"
-        with self.path.open("ab") as file:
-            file.truncate(len(self._whole()))
-            file.write(line.encode())
-
-    def _whole(self) -> bytes:
-        """Return what is in the file up to the end of its last complete line."""
-        data = self.path.read_bytes() if self.path.exists() else b""
-        return data[: data.rfind(b"\n") + 1]
 
 
 def to_table(measurements: Iterable[Measurement]) -> pd.DataFrame:

@@ -1,8 +1,8 @@
 """Measurements that come with the package: what ``--accuracy`` chooses from.
 
-They were made by a full suite::
+They were made by the full suite of the folder ``validation`` in the source of snowshed::
 
-    snowshed verify --full --record python/snowshed/verify/recorded.json -o results
+    python -m validation --full --record python/snowshed/analysis/verification/recorded.json -o out
 
 Their durations also say how long a suite will take.
 """

@@ -1,34 +1,13 @@
-"""Numbers and settings as people read them."""
+"""Settings as people read them."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from typing import Optional
 
-from snowshed.analysis.verification.case import Settings, Value
-from snowshed.io.formatting import NOTHING, SMALL, TIMES, count, duration, number, percent
+from snowshed.analysis.verification.measurements import Settings, Value
+from snowshed.io.formatting import NOTHING, number
 from snowshed.scene.accuracy_settings import ACCURACY
-
-__all__ = [
-    "NOTHING",
-    "SMALL",
-    "TIMES",
-    "count",
-    "duration",
-    "error",
-    "number",
-    "paragraphs",
-    "percent",
-    "setting",
-    "settings",
-    "unset",
-]
-
-
-def error(value: Optional[float], *, relative: bool) -> str:
-    """Return an error: in percent, or in the quantity's unit."""
-    return percent(value) if relative else number(value)
 
 
 def setting(name: str, value: Optional[Value]) -> str:
@@ -74,8 +53,3 @@ def settings(chosen: Settings, names: Optional[Iterable[str]] = None) -> str:
     """
     kept = chosen if names is None else [name for name in names if name in chosen]
     return ", ".join(setting(name, chosen[name]) for name in kept)
-
-
-def paragraphs(text: str) -> list[str]:
-    """Return the paragraphs of a text, each in one line."""
-    return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text) if part.strip()]

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import click
 
 from snowshed.cli.designed_study import (
     PATH,
     check_options,
-    compute,
+    chosen_study,
+    computed,
     design_options,
-    plan,
-    write_study,
 )
 
 
@@ -33,19 +33,18 @@ from snowshed.cli.designed_study import (
 @click.pass_context
 def calibrate(
     context: click.Context,
+    /,
     measurements: Optional[Path],
     template: Optional[Path],
     quantities: Sequence[str],
     folder: Optional[Path],
     quick: bool,
     seeds: Optional[int],
-    plan_only: bool,
-    file: Optional[Path],
     stored: Optional[Path],
     name: Optional[str],
     measure: str,
-    jobs: Optional[int],
     quiet: bool,
+    **options: Any,
 ) -> None:
     """Find the snow whose simulated stacks are those that were measured.
 
@@ -72,12 +71,11 @@ def calibrate(
     folder = check_options(context)
     measured = reading.read_measurements(measurements)
     if stored is None:
-        if file is None:
-            file = write_study(calibration_study(measured, quick=quick, seeds=seeds), folder)
-        if plan_only:
-            plan(context, file, jobs)
+        design = partial(calibration_study, measured, quick=quick, seeds=seeds)
+        runs = computed(context, chosen_study(context, folder, design), folder)
+        if runs is None:
             return
-        stored, name = compute(context, file, folder, jobs, quiet)
+        stored, name = runs
     found = evaluate(
         measured,
         stored,

@@ -1,21 +1,53 @@
-"""What the command ``snowshed lua`` does with the scenes of scripts."""
+"""The command ``snowshed lua``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Optional
 
 import click
 
 from snowshed._core import InputError
+from snowshed.cli.commands.run import PATH, run_options, run_scene
 from snowshed.run.results import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
-from snowshed.scene.scene import ResolvedScene
 
 
-def load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:
+@click.command()
+@click.argument("init", type=PATH)
+@click.argument("update", type=PATH, required=False)
+@click.option(
+    "--to-json",
+    "file",
+    type=PATH,
+    help="Write the scene to this file; if the scripts name runs, one file each to this folder.",
+)
+@partial(run_options, required=False)
+def lua(
+    init: Path,
+    update: Optional[Path],
+    file: Optional[Path],
+    folder: Optional[Path],
+    resume: bool,
+    quiet: bool,
+) -> None:
+    """Run a scene that Lua scripts describe, or leave Lua behind.
+
+    UPDATE runs after INIT; its values override those before. Needs the extra snowshed[lua].
+    """
+    if file is None and folder is None:
+        raise click.UsageError("give -o DIR to run the scene, or --to-json FILE to write it")
+    runs = _load(init, update, quiet=quiet)
+    if file is not None:
+        _save_all(runs, file)
+    if folder is not None:
+        _run_all(runs, folder, resume=resume, quiet=quiet)
+
+
+def _load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:
     """Load the scenes; what the scripts print goes to stderr."""
 
     def echo(line: str) -> None:
@@ -24,7 +56,7 @@ def load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:
     return load_lua(init, update, echo=None if quiet else echo)
 
 
-def save_all(runs: Sequence[LuaRun], path: Path) -> None:
+def _save_all(runs: Sequence[LuaRun], path: Path) -> None:
     """Write the scene to the file `path`; runs that have names go to a folder of that name."""
     if not runs[0].name:
         runs[0].scene.save(path)
@@ -38,20 +70,13 @@ def save_all(runs: Sequence[LuaRun], path: Path) -> None:
         run.scene.save(path / f"{run.name}.json")
 
 
-def run_all(
-    runs: Sequence[LuaRun],
-    folder: Path,
-    run_one: Callable[[ResolvedScene, Path, bool], None],
-    *,
-    resume: bool,
-    quiet: bool,
-) -> None:
+def _run_all(runs: Sequence[LuaRun], folder: Path, *, resume: bool, quiet: bool) -> None:
     """Run the scene into `folder`; runs that have names go to folders of these names inside it.
 
     Resuming also starts the named runs that had not begun.
     """
     if not runs[0].name:
-        run_one(runs[0].scene, folder, resume)
+        run_scene(runs[0].scene, folder, resume, quiet)
         return
     if not resume:
         check_empty(folder)
@@ -59,4 +84,4 @@ def run_all(
         if not quiet:
             click.echo(f"run {i} of {len(runs)}: {run.name}")
         target = folder / run.name
-        run_one(run.scene, target, resume and target.exists())
+        run_scene(run.scene, target, resume and target.exists(), quiet)

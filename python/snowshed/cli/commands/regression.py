@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Optional
 
@@ -66,15 +65,14 @@ def geometry(
       snowshed regress rows.csv -o regression
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.regression.geometry import geometry_study
-    from snowshed.io.atomic import write_text
 
     if trial and context.get_parameter_source("dx") == ParameterSource.COMMANDLINE:
         raise click.UsageError("--dx does nothing with --trial, which has cells of its own")
-    text = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
+    study = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
     if file is None:
-        click.echo(text, nl=False)
+        click.echo(study.to_toml(), nl=False)
     else:
-        write_text(file, text)
+        study.save(file)
 
 
 @click.command()
@@ -148,7 +146,8 @@ def regress(
     from snowshed.analysis.regression.pipeline import MODEL
     from snowshed.analysis.regression.pipeline import regress as run
     from snowshed.analysis.regression.rows import read_rows
-    from snowshed.cli.display.regression import print_reports, progress_bar
+    from snowshed.cli.display.regression import print_reports
+    from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
 
     rows = read_rows(table, measure, dict(map(_condition, conditions)))
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
@@ -159,7 +158,7 @@ def regress(
             f"note: {rows.moving} stacks were not at rest when their time was over", err=True
         )
     try:
-        with nullcontext() if quiet else progress_bar() as progress:
+        with progress_bar(quiet=quiet, speed_period_s=LONG_PERIOD_S) as progress:
             reports = run(
                 rows,
                 folder,

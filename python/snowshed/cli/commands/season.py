@@ -20,7 +20,6 @@ from snowshed.run.season.settings import SeasonSettings
 from snowshed.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from snowshed.run.events import Reporter
     from snowshed.run.season.driver import SeasonResult
     from snowshed.scene.scene import ResolvedScene
 
@@ -162,19 +161,13 @@ def _run(
     resume: bool,
     quiet: bool,
 ) -> SeasonResult:
+    from snowshed.cli.progress import progress_bar
     from snowshed.run.season.driver import run_season
 
-    def run(progress: Optional[Reporter]) -> SeasonResult:
-        return run_season(
-            season_file, scene, folder, settings=settings, resume=resume, progress=progress
-        )
-
     try:
-        if quiet:
-            return run(None)
-        from snowshed.cli.console import progress_bar
-
-        with progress_bar() as progress:
-            return run(progress)
+        with progress_bar(quiet=quiet) as progress:
+            return run_season(
+                season_file, scene, folder, settings=settings, resume=resume, progress=progress
+            )
     except Interrupted:
         raise Stopped("interrupted; go on with the same command and --resume") from None

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import click
 
-from snowshed.cli.designed_study import check_options, compute, design_options, plan, write_study
+from snowshed.cli.designed_study import check_options, chosen_study, computed, design_options
 
 
 @click.command()
@@ -23,18 +24,17 @@ from snowshed.cli.designed_study import check_options, compute, design_options, 
 @click.pass_context
 def sensitivity(
     context: click.Context,
+    /,
     method: str,
     samples: Optional[int],
     folder: Optional[Path],
     quick: bool,
     seeds: Optional[int],
-    plan_only: bool,
-    file: Optional[Path],
     stored: Optional[Path],
     name: Optional[str],
     measure: str,
-    jobs: Optional[int],
     quiet: bool,
+    **options: Any,
 ) -> None:
     """Find which snow parameters matter for the stack, beside its noise.
 
@@ -51,13 +51,11 @@ def sensitivity(
 
     folder = check_options(context)
     if stored is None:
-        if file is None:
-            text = sensitivity_study(method, quick=quick, seeds=seeds, samples=samples)
-            file = write_study(text, folder)
-        if plan_only:
-            plan(context, file, jobs)
+        design = partial(sensitivity_study, method, quick=quick, seeds=seeds, samples=samples)
+        found = computed(context, chosen_study(context, folder, design), folder)
+        if found is None:
             return
-        stored, name = compute(context, file, folder, jobs, quiet)
+        stored, name = found
     note = None if quiet else lambda text: click.echo(f"note: {text}", err=True)
     table = evaluate(stored, folder, method, study=name, measure=measure, note=note)
     if not quiet:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any, Optional, TypeVar
 
@@ -12,6 +12,8 @@ import click
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.io.atomic import write_text
+from snowshed.io.formatting import about
+from snowshed.run.progress import Reporter
 from snowshed.study.definition import Study
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.store import NO_STUDY, Store
@@ -69,14 +71,7 @@ def template(file: Optional[Path]) -> None:
 @click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]")
 def plan(file: Path, jobs: Optional[int]) -> None:
     """Say how many runs a file makes, and how long they take."""
-    from snowshed.cli.display.study import in_words
-    from snowshed.study.session import expected_duration
-
-    loaded = Study.load(file)
-    seconds, at_once = expected_duration(loaded, jobs=jobs)
-    count = len(loaded.runs())
-    click.echo(f"{loaded.name}: {count} runs, {at_once} at once, {in_words(seconds)}")
-    click.echo(f"varying: {', '.join(loaded.axes) or 'nothing'}")
+    print_plan(Study.load(file), jobs)
 
 
 @study.command()
@@ -90,12 +85,7 @@ def run(file: Path, folder: Path, quiet: bool, **options: Any) -> None:
 
     After an interruption the same command goes on.
     """
-    from snowshed.study.session import run_study
-
-    loaded = Study.load(file)
-    with _outcome_as_exit_code(), _progress(quiet) as progress:
-        run_study(loaded, folder, progress=progress, **options)
-    _finish(folder, [loaded.name], quiet)
+    compute_study(Study.load(file), folder, quiet=quiet, **options)
 
 
 @study.command()
@@ -164,6 +154,21 @@ def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
         write_text(file, text + "\n")
 
 
+def print_plan(study: Study, jobs: Optional[int]) -> None:
+    """Say how many runs a study has, and how long they take."""
+    seconds, at_once = study.expected_duration(jobs=jobs)
+    count = len(study.runs())
+    click.echo(f"{study.name}: {count} runs, {at_once} at once, {about(seconds)}")
+    click.echo(f"varying: {', '.join(study.axes) or 'nothing'}")
+
+
+def compute_study(study: Study, folder: Path, *, quiet: bool, **options: Any) -> None:
+    """Compute what is missing of a study, with a progress bar, and say where its results are."""
+    with _outcome_as_exit_code(), _progress(quiet) as progress:
+        study.compute(folder, progress=progress, **options)
+    _finish(folder, [study.name], quiet)
+
+
 @contextmanager
 def _outcome_as_exit_code() -> Iterator[None]:
     try:
@@ -172,12 +177,11 @@ def _outcome_as_exit_code() -> Iterator[None]:
         raise Stopped(str(interrupted)) from None
 
 
-def _progress(quiet: bool) -> Any:
-    if quiet:
-        return nullcontext()
-    from snowshed.cli.display.study import progress_bar
+def _progress(quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
+    from snowshed.cli.display.study import announcement
+    from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
 
-    return progress_bar()
+    return progress_bar(quiet=quiet, announce=announcement, speed_period_s=LONG_PERIOD_S)
 
 
 def _finish(folder: Path, names: list[str], quiet: bool) -> None:

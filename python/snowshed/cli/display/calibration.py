@@ -27,6 +27,10 @@ def print_calibration(found: Calibration) -> None:
     console = wide_console()
     console.print(_ranking(found))
     console.print(_ranges(found))
+    worst = found.posterior.diagnostics["r_hat"].max()
+    console.print(
+        f" {found.posterior.effective:.0f} independent samples or more (ESS), r_hat at most {worst:.3f}"
+    )
     if any(found.ranges["open"]):
         console.print(" open, undecided: the range goes on beyond the grid")
     for warning in warnings(found):
@@ -79,10 +83,7 @@ def warnings(found: Calibration) -> list[str]:
     if missing:
         said.append(f"{missing} parameter sets lack measured stacks and are not ranked")
     if not found.posterior.converged:
-        said.append(
-            f"the chains are worth {found.posterior.effective:.0f} independent samples only; "
-            "the ends of the ranges are uncertain"
-        )
+        said.append("the Markov chains have not converged: the ends of the ranges are uncertain")
     accuracy = found.posterior.surrogate.accuracy()
     poor = accuracy[accuracy["explained"] < POOR]
     if len(poor):

@@ -3,37 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rich.markup import escape
 from rich.table import Table
 
-from snowshed.analysis.regression.nested import FoldProgress, Reporter
 from snowshed.analysis.regression.pipeline import TargetReport
 from snowshed.analysis.regression.rows import TARGETS
 from snowshed.analysis.regression.summary import QUARTILES
-from snowshed.cli.terminal import one_bar, plain_table, wide_console
+from snowshed.cli.terminal import plain_table, wide_console
 
 if TYPE_CHECKING:
     from snowshed.analysis.regression.predictor import Prediction
 
-SPEED_PERIOD_S = 3600.0  # folds take many seconds, and the time left should not jump
 MEASURE_WORDS = {"stack": "97 % of the snow", "body": "the largest connected body of snow"}
 TARGET_WORDS = {"ratio": "height / length", "height": "height", "length": "length"}
-
-
-@contextmanager
-def progress_bar() -> Iterator[Reporter]:
-    """Show one bar over all outer folds, with the time that is left, on stderr."""
-    with one_bar(speed_period_s=SPEED_PERIOD_S) as bar:
-
-        def report(progress: FoldProgress) -> None:
-            what = f"{progress.done}/{progress.count} folds; {progress.doing}"
-            bar.show(progress.fraction, what)
-
-        yield report
 
 
 def print_reports(reports: Sequence[TargetReport]) -> None:
@@ -115,7 +100,7 @@ def prediction_json(prediction: Prediction) -> str:
         "units": TARGETS,
         "extrapolated": prediction.extrapolated,
         "objections": list(prediction.objections),
-        "predictions": prediction.table.to_dict("records"),
+        "predictions": prediction.table.drop(columns=["panel", "extrapolated"]).to_dict("records"),
     }
     return json.dumps(content, indent=1)
 

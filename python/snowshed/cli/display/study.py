@@ -1,75 +1,26 @@
-"""What the commands of studies show: forecast, progress bar, status."""
+"""What the commands of studies show: how long they will take, and their status."""
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 
 from rich.console import Console
 
-from snowshed.cli.terminal import one_bar
+from snowshed.io.formatting import about
+from snowshed.run.progress import Progress
 from snowshed.study.owner import is_alive
-from snowshed.study.session import Reporter, StudyProgress
 from snowshed.study.store import Store, StoredRun
 
-#: Up to how many seconds a duration is told in which unit, of how many seconds, to what digit.
-UNITS = (
-    (100, 1, "s", 0),
-    (6000, 60, "min", 1),
-    (172800, 3600, "h", 1),
-    (math.inf, 86400, "days", 1),
-)
-SPEED_PERIOD_S = 3600.0  # runs may take long, and the time left should not jump when one ends
 
-
-def in_words(seconds: float) -> str:
-    """Return an estimated duration for people.
-
-    Examples
-    --------
-    >>> [in_words(t) for t in (0.4, 42.3, 200, 8000)]
-    ['under 1 s', 'about 42 s', 'about 3.3 min', 'about 2.2 h']
-    """
-    if seconds < 1:
-        return "under 1 s"
-    unit, name, digits = next(
-        (unit, name, digits) for limit, unit, name, digits in UNITS if seconds < limit
-    )
-    return f"about {seconds / unit:.{digits}f} {name}"
-
-
-@contextmanager
-def progress_bar() -> Iterator[Reporter]:
-    """Say what will be computed and how long that should take; then show one bar, on stderr."""
-    with one_bar(speed_period_s=SPEED_PERIOD_S) as bar:
-
-        def report(progress: StudyProgress) -> None:
-            if not bar.started:
-                bar.console.print(announcement(progress))
-            bar.show(progress.fraction, description(progress))
-
-        yield report
-
-
-def announcement(progress: StudyProgress) -> str:
+def announcement(progress: Progress) -> str:
     """Return what is said before the first run starts."""
-    left = progress.runs - progress.done - progress.failed
-    earlier = f" ({progress.runs - left} of {progress.runs} are there already)"
+    left = progress.count - progress.done - progress.failed
+    earlier = f" ({progress.count - left} of {progress.count} are there already)"
     return (
-        f"{_runs(left)} to compute{earlier if left < progress.runs else ''}, "
-        f"{progress.at_once} at once; expected time: {in_words(progress.expected_s)}"
+        f"{_runs(left)} to compute{earlier if left < progress.count else ''}, "
+        f"{progress.at_once} at once; expected time: {about(progress.expected_s or 0.0)}"
     )
-
-
-def description(progress: StudyProgress) -> str:
-    """Return the text beside the bar."""
-    parts = [f"{progress.done}/{progress.runs} runs"]
-    parts += [f"{progress.failed} failed"] if progress.failed else []
-    parts += [f"{progress.running} running"] if progress.running else []
-    parts += [f"{progress.elsewhere} in other processes"] if progress.elsewhere else []
-    return ", ".join(parts)
 
 
 def print_status(store: Store) -> None:

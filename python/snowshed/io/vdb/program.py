@@ -6,9 +6,10 @@ import os
 import subprocess
 from pathlib import Path
 
-from snowshed import _core
+from snowshed._core import InputError
+from snowshed._core import __file__ as core_file
 
-PROGRAM = Path(_core.__file__).with_name("snowshed-vdb")
+PROGRAM = Path(core_file).with_name("snowshed-vdb")
 REFUSED = 2  # exit code; the reason is on standard output
 
 
@@ -28,7 +29,7 @@ def run_writer(path: Path, request: bytes) -> bytes:
         If it cannot be run or dies.
     """
     if not available():
-        raise _core.InputError(
+        raise InputError(
             "writing OpenVDB files needs OpenVDB, without which this snowshed was built; install "
             "it (Debian, Ubuntu: libopenvdb-dev libboost-dev) and build snowshed again"
         )
@@ -36,7 +37,7 @@ def run_writer(path: Path, request: bytes) -> bytes:
         [PROGRAM, "write", path], input=request, stdout=subprocess.PIPE, check=False
     )
     if done.returncode == REFUSED:
-        raise _core.InputError(done.stdout.decode(errors="replace"))
+        raise InputError(done.stdout.decode(errors="replace"))
     if done.returncode != 0:
         raise OSError(f"{PROGRAM} ended with exit code {done.returncode}")
     return done.stdout

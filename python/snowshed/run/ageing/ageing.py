@@ -18,6 +18,7 @@ import numpy as np
 from snowshed import _core
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats
+from snowshed.methods.registry import resolution_of
 from snowshed.run.ageing.columns import SnowColumns
 from snowshed.snow.relations.relation import choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
@@ -158,17 +159,17 @@ class _Snow:
         self.gravity = float(scene["gravity"])
         self.masses = simulation.masses()
         self.plastic_strains = simulation.plastic_strains()
-        self.positions, densities = simulation.positions(), simulation.density()
+        self.positions, densities = simulation.positions(), simulation.densities()
         self.stack: Booleans = ~simulation.on_panel()
         self.columns = SnowColumns(
             self.positions[self.stack],
             self.masses[self.stack],
             densities[self.stack],
             simulation.dimension,
-            float(scene["numerics"]["dx"]),
+            resolution_of(scene),
         )
         snows = [json.loads(snow) for snow in simulation.snows]
-        self._kinds = simulation.kinds()
+        self._kinds = simulation.material_ids()
         self._laws = [_law(snow) for snow in snows]
         self._p0 = np.array([snow["preconsolidation_pressure"] for snow in snows])[self._kinds]
         self.yields = np.array([law is not None for law in self._laws])[self._kinds]

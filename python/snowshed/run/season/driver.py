@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
@@ -11,16 +10,18 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import read_csv
-from snowshed.run.events import Reporter, run_events
+from snowshed.methods.registry import resolution_of
+from snowshed.run.events import run_events
+from snowshed.run.progress import Reporter
 from snowshed.run.results import EVENT_COLUMNS, check_empty
 from snowshed.run.season.accumulation import Day, accumulate, pauses
-from snowshed.run.season.clearance import first_reached
+from snowshed.run.season.clearance import first_reached, panel_ends
 from snowshed.run.season.results import SeasonFolder
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
 from snowshed.run.season.table import season_table
-from snowshed.run.season.weather import Weather, read_season
-from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+from snowshed.run.season.weather import Season, read_season
+from snowshed.scene.scene import PathLike, ResolvedScene, Scene
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,7 +60,7 @@ class SeasonResult:
 
 
 def run_season(
-    season: Union[PathLike, Sequence[Weather]],
+    season: Season,
     scene: Union[Scene, ResolvedScene],
     out_dir: PathLike,
     *,
@@ -73,7 +74,7 @@ def run_season(
     Parameters
     ----------
     season
-        A season file (`read_season`), or its rows.
+        A season file or a pandas DataFrame (see `read_season`), or rows of `Weather`.
     scene
         Panel, ground, obstacles, snow and method (`season_scene` says what holds of it). The
         panel's friction is that of snow that slides.
@@ -99,6 +100,7 @@ def run_season(
     --------
     >>> from datetime import datetime
     >>> from tempfile import TemporaryDirectory
+    >>> from snowshed.run.season import Weather
     >>> row = Weather(2, datetime(2024, 12, 1), 0.1, 100.0, -4.0)
     >>> with TemporaryDirectory() as folder:
     ...     flat = Scene.preset("lab-40").set("panel.tilt", 20)
@@ -106,11 +108,12 @@ def run_season(
     0
     """
     settings = settings or SeasonSettings()
-    rows = read_season(season) if isinstance(season, (str, os.PathLike)) else season
+    rows = read_season(season)
     ready = scene.resolve() if isinstance(scene, Scene) else scene
-    if "panel" not in ready.data:
+    data: dict[str, Any] = ready.data
+    if "panel" not in data:
         raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
-    days = accumulate(rows, settings, ready.data["panel"]["tilt"], ready.data["gravity"])
+    days = accumulate(rows, settings, data["panel"]["tilt"], data["gravity"])
     folder = SeasonFolder(out_dir)
     if not resume:
         check_empty(folder.folder)
@@ -142,7 +145,7 @@ def _result(
     outlines = _table_or_empty(folder.run.outlines.path, ("event", "x", "z"))
     table = season_table(scene.data, days, settings, events, outlines)
     simulated = table[pd.notna(table["event"]) & pd.notna(table["stack_height_m"])]
-    dx = float(scene.data["numerics"]["dx"])
+    dx = resolution_of(scene.data)
     staying = _first_staying(events)
     return SeasonResult(
         table,
@@ -189,7 +192,7 @@ def _notes(
     if estimated:
         notes.append(f"{estimated} densities are estimates ({settings.density})")
     if released:
-        dx = scene["numerics"]["dx"]
+        dx = resolution_of(scene)
         thinnest = min(day.thickness for day in released)
         if thinnest < 2.0 * dx:
             notes.append(
@@ -230,7 +233,22 @@ def _write(
     write_text(folder.summary, text + "\n")
     if pictures:
         from snowshed.plot.figure_style import save
-        from snowshed.run.season.figure import season_figure
+        from snowshed.plot.season_figure import season_figure
 
-        outlines = _table_or_empty(folder.run.outlines.path, ("event", "x", "z"))
-        save(season_figure(result, outlines, scene.data), folder.figure)
+        figure = season_figure(
+            result.table,
+            _table_or_empty(folder.run.outlines.path, ("event", "x", "z")),
+            scene.data,
+            panel=panel_ends(scene.data),
+            burial_event=result.burial_event,
+            title=f"{result.releases} releases{_verdict(result)}",
+        )
+        save(figure, folder.figure)
+
+
+def _verdict(result: SeasonResult) -> str:
+    if result.burial_event is not None:
+        return f"; the stack reaches the panel's lower edge with event {result.burial_event}"
+    if result.simulated:
+        return "; the stack does not reach the panel's lower edge"
+    return ""

@@ -7,6 +7,7 @@ and the mean density that had gathered.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from snowshed._core import InputError
 from snowshed.run.season.accumulation import Day
@@ -33,7 +34,7 @@ def season_scene(base: ResolvedScene, days: Sequence[Day]) -> ResolvedScene:
     InputError
         If the scene has snow of its own, or there are too many releases.
     """
-    scene = base.data
+    scene: dict[str, Any] = base.data
     released = [day for day in days if day.event is not None]
     if len(released) > MOST_EVENTS:
         raise InputError(f"{len(released)} releases; a scene has at most {MOST_EVENTS} events")

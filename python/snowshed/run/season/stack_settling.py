@@ -1,9 +1,9 @@
 """How far the stack has settled since the last slide-off, at any time before the next.
 
-The simulated stack ages just before the next event (``snowshed.run.ageing``). For the time until then
-the snow below its crest is taken as a column of its mean density, which settles under its own
-weight; the ratio of its thickness to the simulated height lowers the whole profile. The estimate
-serves the table only.
+The simulated stack ages just before the next event (`snowshed.run.ageing`). Until then the snow
+below its crest is taken as a column of its mean density, which settles under its own weight. The
+ratio of its thickness to the simulated height lowers the whole profile. The estimate serves the
+table only.
 """
 
 from __future__ import annotations

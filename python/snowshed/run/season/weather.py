@@ -1,34 +1,37 @@
-"""The season file: when it snowed, how much, and what snow.
+"""The season's weather: when it snowed, how much, and what snow.
 
-A table of comma-separated values with a header. Lines that are empty or begin with ``#`` are left
-out. A row may be without snowfall: it then only lets time pass, and tests the release with the
-friction and adhesion of that day.
+A table in a file of comma-separated values, in which lines that are empty or begin with ``#`` are
+left out, or a DataFrame. A row may be without snowfall: it then only lets time pass, and tests the
+release with the friction and adhesion of that day.
 """
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Optional
+from typing import TYPE_CHECKING, Optional, Union
 
 from snowshed._core import InputError
-from snowshed.io.input_file import read_input
+from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.messages import quoted
 from snowshed.scene.scene import PathLike
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
 class Weather:
-    """One row of a season file.
+    """One row of a season.
 
     Attributes
     ----------
     line
-        Its line in the file, from 1.
+        Its line in the file, or its row in the table, from 1.
     date
         When the snow had fallen.
     snowfall
@@ -69,90 +72,86 @@ COLUMNS: Mapping[str, _Column] = {
     "adhesion_pa": _Column(0.0, 1e6, "Pa"),
 }
 ALLOWED = ("date", *COLUMNS)
+#: Other spellings of units.
+SAME_UNITS: Mapping[str, Sequence[str]] = {"degrees C": ("degC", "°C"), "": ("1",)}
 MOST_ROWS = 20_000  # twice an hourly season
 
 
-def read_season(path: PathLike) -> list[Weather]:
-    r"""Read a season file.
+Season = Union[PathLike, "pd.DataFrame", Sequence[Weather]]
+
+
+def read_season(season: Season) -> list[Weather]:
+    r"""Return the rows of a season, checked.
 
     Parameters
     ----------
-    path
-        A CSV file with the columns ``date`` (ISO 8601, increasing), ``snowfall_m``,
-        ``temperature_c`` and, if known, ``density_kg_m3``, ``friction`` and ``adhesion_pa``.
+    season
+        A CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or timestamps,
+        increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c`` and, if
+        known, ``density_kg_m3``, ``friction`` and ``adhesion_pa``. Names tell the units; where a
+        DataFrame's ``attrs["units"]`` has the unit of a column, it must agree. Rows of `Weather`
+        are returned as they are.
 
     Raises
     ------
     InputError
-        Naming the file, the line and the column, what is wrong there and what is allowed.
+        Naming the file, the line (of a DataFrame the row) and the column, what is wrong there and
+        what is allowed.
     OSError
         If the file cannot be read.
 
     Examples
     --------
-    >>> from tempfile import TemporaryDirectory
-    >>> with TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "season.csv"
-    ...     _ = file.write_text("date,snowfall_m,temperature_c\n2024-12-01,0.2,-4\n")
-    ...     read_season(file)[0].snowfall
-    0.2
+    >>> import pandas as pd
+    >>> dates = pd.to_datetime(["2024-12-01", "2024-12-02"])
+    >>> table = pd.DataFrame({"date": dates, "snowfall_m": [0.2, 0.0], "temperature_c": [-4, 1.5]})
+    >>> [(row.snowfall, row.temperature) for row in read_season(table)]
+    [(0.2, -4.0), (0.0, 1.5)]
     """
-    path = Path(path)
-    rows = _rows(path)
-    first = next(rows, None)
-    if first is None:
-        raise InputError(f"{path}: empty; the first line names the columns: {', '.join(ALLOWED)}")
-    header = _header(first[1], f"{path}, line {first[0]}")
-    season = [_weather(line, cells, header, f"{path}, line {line}") for line, cells in rows]
-    _check_season(season, path)
-    return season
+    if isinstance(season, (str, os.PathLike)):
+        hint = f"the first line names the columns: {', '.join(ALLOWED)}"
+        table, name = read_text_table(Path(season), hint, _check_columns), str(season)
+    elif isinstance(season, Sequence):
+        return [*season]
+    else:
+        table, name = frame_as_text(season, "the season", index="date"), "the season"
+        _check_columns(table.columns, name)
+        _check_units(season.attrs.get("units", {}))
+    rows = [_weather(row) for row in table.rows]
+    _check_season(rows, table.rows, name)
+    return rows
 
 
-def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield the lines that hold something, with their numbers."""
-    try:
-        text = read_input(path).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        before = error.object[: error.start].count(b"\n")
-        raise InputError(f"{path}, line {before + 1}: not UTF-8 text") from None
-    for number, line in enumerate(text.splitlines(), 1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        try:
-            cells = next(csv.reader([line], strict=True))
-        except csv.Error as error:
-            raise InputError(f"{path}, line {number}: not a row of a CSV file: {error}") from None
-        yield number, [cell.strip() for cell in cells]
-
-
-def _header(cells: Sequence[str], where: str) -> list[str]:
-    for name in cells:
+def _check_columns(names: Sequence[str], where: str) -> None:
+    for name in names:
         if name not in ALLOWED:
             raise InputError(
                 f"{where}: unknown column {quoted(name)}; allowed: {', '.join(ALLOWED)}"
             )
-        if cells.count(name) > 1:
-            raise InputError(f"{where}: the column {name!r} is given twice")
     required = ("date", *(name for name, column in COLUMNS.items() if column.required))
     for name in required:
-        if name not in cells:
+        if name not in names:
             raise InputError(f"{where}: no column {name!r}; needed: {', '.join(required)}")
-    return list(cells)
 
 
-def _weather(line: int, cells: Sequence[str], header: Sequence[str], where: str) -> Weather:
-    if len(cells) != len(header):
-        raise InputError(
-            f"{where}: {len(cells)} values in {len(header)} columns ({', '.join(header)})"
-        )
-    row = dict(zip(header, cells))
+def _check_units(units: Mapping[str, str]) -> None:
+    for name, column in COLUMNS.items():
+        unit = units.get(name, column.unit)
+        if unit not in (column.unit, *SAME_UNITS.get(column.unit, ())):
+            raise InputError(
+                f"the season, column {name}: its units are {unit!r}; convert it to "
+                f"{column.unit or 'a plain number'}"
+            )
+
+
+def _weather(row: Row) -> Weather:
     number = {
-        name: _number(row.get(name, ""), column, f"{where}, column {name}")
+        name: _number(row.cells.get(name, ""), column, f"{row.where}, column {name}")
         for name, column in COLUMNS.items()
     }
     return Weather(
-        line,
-        _date(row["date"], f"{where}, column date"),
+        row.number,
+        _date(row.cells["date"], f"{row.where}, column date"),
         number["snowfall_m"] or 0.0,
         number["density_kg_m3"],
         number["temperature_c"] or 0.0,
@@ -190,16 +189,16 @@ def _date(text: str, where: str) -> datetime:
     return date if date.tzinfo is None else date.astimezone(timezone.utc).replace(tzinfo=None)
 
 
-def _check_season(season: Sequence[Weather], path: Path) -> None:
+def _check_season(season: Sequence[Weather], rows: Sequence[Row], name: str) -> None:
     if not season:
-        raise InputError(f"{path}: no rows below the header")
+        raise InputError(f"{name}: no rows below the header")
     if len(season) > MOST_ROWS:
-        raise InputError(f"{path}: {len(season)} rows; at most {MOST_ROWS} are allowed")
-    for earlier, later in zip(season, season[1:]):
+        raise InputError(f"{name}: {len(season)} rows; at most {MOST_ROWS} are allowed")
+    for earlier, later, before, row in zip(season, season[1:], rows, rows[1:]):
         if later.date <= earlier.date:
             raise InputError(
-                f"{path}, line {later.line}, column date: {later.date.isoformat(' ')} is not after "
-                f"line {earlier.line}, {earlier.date.isoformat(' ')}"
+                f"{row.where}, column date: {later.date.isoformat(' ')} is not after "
+                f"{before.place}, {earlier.date.isoformat(' ')}"
             )
     if not any(row.snowfall for row in season):
-        raise InputError(f"{path}: it never snows; every snowfall_m is 0")
+        raise InputError(f"{name}: it never snows; every snowfall_m is 0")

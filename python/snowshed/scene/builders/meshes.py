@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from snowshed.io.paths import PathLike
+from snowshed.methods.mpm import MpmSettings
 from snowshed.scene.builders.slope import check_positive
-from snowshed.scene.components import Body, Ground, Numerics, Obstacle
-from snowshed.scene.scene import PathLike, Scene
+from snowshed.scene.components import Body, Ground, Obstacle
+from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
 
@@ -65,7 +67,7 @@ def mesh_structure(
         ground=Ground(tilt=ground_tilt),
         obstacles=[Obstacle(name="structure", shape=solid, condition="slip", friction=friction)],
         bodies=[Body(shape=Shape.difference(Shape.union(*raised), solid), event=0)],
-        numerics=Numerics(dx=dx),
+        numerics=MpmSettings(dx=dx),
     )
 
 

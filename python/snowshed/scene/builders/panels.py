@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.methods.mpm import MpmSettings
 from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.slope import (
     BOARD_CELLS,
@@ -15,7 +16,7 @@ from snowshed.scene.builders.slope import (
     check_seen,
     upright_box,
 )
-from snowshed.scene.components import Body, Ground, Numerics, Obstacle, Panel, Slab
+from snowshed.scene.components import Body, Ground, Obstacle, Panel, Slab
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
@@ -60,7 +61,7 @@ def single_panel(
         panel=Panel(height=height, length=length, width=width, tilt=tilt, friction=friction),
         slab=Slab(thickness=snow),
         ground=Ground(tilt=ground_tilt),
-        numerics=Numerics(dx=dx),
+        numerics=MpmSettings(dx=dx),
     )
 
 

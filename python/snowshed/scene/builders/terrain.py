@@ -15,15 +15,16 @@ from typing import Union
 
 import numpy as np
 
-from snowshed import _core
-from snowshed._core import InputError
+from snowshed._core import InputError, Simulation
 from snowshed.io.arrays import Floats, Integers
 from snowshed.io.atomic import replacing
+from snowshed.io.paths import PathLike
 from snowshed.io.raster import Raster, read_raster
+from snowshed.methods.mpm import MpmSettings
 from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.slope import check_positive
-from snowshed.scene.components import Body, Numerics, Obstacle
-from snowshed.scene.scene import PathLike, Scene
+from snowshed.scene.components import Body, Condition, Obstacle
+from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
 DEEP, HIGH = 6, 3  # cells of the grid below the lowest and above the highest ground
@@ -42,7 +43,7 @@ def on_terrain(
     x: Span,
     y: Span = (0.0, 0.0),
     spacing: float = 0.1,
-    condition: str = "sticky",
+    condition: Condition = "sticky",
     friction: float = 0.3,
 ) -> Scene:
     """Return a scene whose ground is terrain.
@@ -204,7 +205,7 @@ def _distances(mesh: Mesh, points: Floats, spacing: float) -> Floats:
             dimension=3,
             obstacles=[Obstacle(name="terrain", shape=Shape.mesh(str(file)))],
             bodies=[Body(shape=Shape.sphere(above, 2.0 * spacing))],  # a scene needs some snow
-            numerics=Numerics(dx=spacing, threads=1),
+            numerics=MpmSettings(dx=spacing, threads=1),
         )
         ready = scene.resolve()
-        return _core.Simulation(ready.json, ready.base_dir).obstacle_distance(points)
+        return Simulation(ready.json, ready.base_dir).obstacle_distance(points)

@@ -6,9 +6,10 @@ import math
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.methods.mpm import MpmSettings
 from snowshed.scene.builders.panels import snow_layer
 from snowshed.scene.builders.slope import BOARD_CELLS, Slope, check_positive
-from snowshed.scene.components import Events, Ground, Motion, Numerics, Obstacle
+from snowshed.scene.components import Events, Ground, Motion, Obstacle
 from snowshed.scene.scene import Scene
 
 
@@ -92,7 +93,7 @@ def tracker(
         ground=Ground(),
         obstacles=[board],
         bodies=[snow_layer(slope, 0.0, length, snow)],
-        numerics=Numerics(dx=dx),
+        numerics=MpmSettings(dx=dx),
         # Snow that rests on a slowly moving board must not end the event: rest has to last for
         # longer than the board moves.
         events=Events(count=1, rest_time=seconds, max_time=2.0 * seconds + settle),

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
+from snowshed.io.paths import PathLike
 from snowshed.scene.lua.origins import Origins
 from snowshed.scene.lua.sandbox import Place
-from snowshed.scene.scene import ResolvedScene, PathLike, Scene
+from snowshed.scene.scene import ResolvedScene, Scene
 
 
 @dataclass(frozen=True)

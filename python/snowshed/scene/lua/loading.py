@@ -8,11 +8,11 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
+from snowshed.io.paths import PathLike
 from snowshed.scene.lua.builder import Builder, LuaRun
 from snowshed.scene.lua.limits import Limits
 from snowshed.scene.lua.sandbox import Place, Script, run_sandboxed
 from snowshed.scene.lua.vocabulary import SHAPES, WORDS, apply
-from snowshed.scene.scene import PathLike
 
 
 def load_lua(

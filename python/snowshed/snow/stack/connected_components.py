@@ -46,14 +46,18 @@ def connected_bodies(positions: Floats, dx: float) -> Integers:
     (n,)
         Body of each particle, numbered from 0.
     """
+    from scipy.sparse import coo_matrix  # here: it takes longer to load than all of snowshed
+    from scipy.sparse.csgraph import connected_components
+
     voxel = np.floor((positions - positions.min(axis=0)) / dx).astype(np.int64)
     extent = voxel.max(axis=0) + 2  # an empty layer, so that rows do not touch each other's ends
     stride = np.array([extent[1] * extent[2], extent[2], 1])
     keys, voxel_of = np.unique(voxel @ stride, return_inverse=True)
     first, second = _touching(keys, stride)
-    roots = _join(len(keys), first, second)
-    _, labels = np.unique(roots[voxel_of.reshape(-1)], return_inverse=True)
-    return labels.reshape(-1)
+    links = coo_matrix((np.ones(len(first)), (first, second)), (len(keys), len(keys)))
+    _, labels = connected_components(links, directed=False)
+    of_particles: Integers = labels.astype(np.int64)[voxel_of.reshape(-1)]
+    return of_particles
 
 
 def _touching(keys: Integers, stride: Integers) -> tuple[Integers, Integers]:
@@ -65,15 +69,3 @@ def _touching(keys: Integers, stride: Integers) -> tuple[Integers, Integers]:
         hit = np.flatnonzero(keys[found] == other)
         pairs.append((hit, found[hit]))
     return np.concatenate([a for a, _ in pairs]), np.concatenate([b for _, b in pairs])
-
-
-def _join(count: int, first: Integers, second: Integers) -> Integers:
-    """Return the lowest member of each item's set, given the pairs that belong together."""
-    root = np.arange(count)
-    while True:
-        a, b = root[first], root[second]
-        if np.array_equal(a, b):
-            return root
-        np.minimum.at(root, np.maximum(a, b), np.minimum(a, b))
-        while not np.array_equal(root, root[root]):
-            root = root[root]

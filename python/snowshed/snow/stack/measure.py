@@ -4,14 +4,14 @@ The steps, in this order:
 
 1. Snow still on the panel is set aside and reported.
 2. The ground is turned level (A.4.4).
-3. The outermost 3 % are dropped (A.4.1, A.4.2; ``snowshed.snow.stack.trimming``).
-4. The shell is extracted (A.4.3; ``snowshed.snow.stack.surface``); height, length, head, tail and width are
+3. The outermost 3 % are dropped (A.4.1, A.4.2; module ``trimming``).
+4. The shell is extracted (A.4.3; module ``surface``); height, length, head, tail and width are
    those of the shell, as in the thesis.
 
-Steps 3 and 4 are repeated on the largest connected body alone (``snowshed.snow.stack.connected_components``), because the
-lab measured a continuous body and left out what had rolled away. Mass and volume are those of all
-snow off the panel, outliers included; a particle that has flown apart counts with no more than a
-voxel, whatever its deformation says. In 2D the snow is a strip one metre wide.
+Steps 3 and 4 are repeated on the largest connected body alone (module ``connected_components``),
+because the lab measured a continuous body and left out what had rolled away. Mass and volume are
+those of all snow off the panel, outliers included; a particle that has flown apart counts with no
+more than a voxel, whatever its deformation says. In 2D the snow is a strip one metre wide.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ from dataclasses import dataclass, field
 from typing import Optional
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from snowshed.io.arrays import Booleans, Floats
+from snowshed._core import InputError
+from snowshed.io.array_arguments import column, finite, flags, points, positive
+from snowshed.io.arrays import Floats
 from snowshed.snow.stack.connected_components import largest_body
 from snowshed.snow.stack.surface import outline, shell
 from snowshed.snow.stack.trimming import inliers
@@ -97,25 +100,28 @@ def level(positions: Floats, ground_tilt_deg: float) -> Floats:
 
 
 def measure_stack(
-    positions: Floats,
-    masses: Floats,
-    densities: Floats,
+    positions: ArrayLike,
+    masses: ArrayLike,
+    densities: ArrayLike,
     *,
     dimension: int,
     dx: float,
     ground_tilt_deg: float = 0.0,
-    exclude: Optional[Booleans] = None,
+    exclude: Optional[ArrayLike] = None,
 ) -> StackMeasure:
     """Measure the stack that particles form.
 
+    Arrays may be anything that NumPy makes an array of: lists, single precision, columns of a
+    DataFrame. They are not changed.
+
     Parameters
     ----------
-    positions : (n, 3)
-        Positions, m; y is ignored in 2D.
+    positions : (n, 3), or (n, 2) in 2D
+        Positions, m; y is ignored in 2D, and two columns are x and z.
     masses : (n,)
-        Masses, kg (per metre of width in 2D).
+        Masses, kg (per metre of width in 2D); none is negative.
     densities : (n,)
-        Current densities, kg/m3.
+        Current densities, kg/m3; none is negative.
     dimension
         2 or 3.
     dx
@@ -123,12 +129,18 @@ def measure_stack(
     ground_tilt_deg
         Psi, degrees; positive falls in the slide direction.
     exclude : (n,), optional
-        Particles that are not part of the stack, because they lie on the panel.
+        Booleans: True for particles that are not part of the stack, because they lie on the panel.
 
     Returns
     -------
     StackMeasure
         All zero, with NaN positions, if no snow is off the panel.
+
+    Raises
+    ------
+    InputError
+        If an array has another shape or length, or holds anything but finite numbers, or a mass or
+        density is negative, or `dimension` or `dx` is none; the message names the argument.
 
     Examples
     --------
@@ -139,8 +151,20 @@ def measure_stack(
     >>> round(stack.height, 3), round(stack.density)
     (0.2, 200)
     """
-    off = np.ones(len(masses), dtype=bool) if exclude is None else ~exclude
-    snow, mass = level(positions[off], ground_tilt_deg), masses[off]
+    if dimension not in (2, 3):
+        raise InputError(f"dimension: {dimension!r}; allowed: 2, 3")
+    voxel = positive("dx", dx) ** dimension
+    places = points("positions", positions, dimension)
+    every_mass = column("masses", masses, len(places), non_negative=True)
+    every_density = column("densities", densities, len(places), non_negative=True)
+    on_panel = (
+        np.zeros(len(places), dtype=bool)
+        if exclude is None
+        else flags("exclude", exclude, len(places))
+    )
+    off = ~on_panel
+    snow = level(places[off], finite("ground_tilt_deg", ground_tilt_deg))
+    mass = every_mass[off]
     if dimension == 2:
         snow[:, 1] = 0.0
     body = largest_body(snow, mass, dx)
@@ -149,9 +173,9 @@ def measure_stack(
         **vars(_extent(snow[kept], dimension)),
         body=_extent(snow[body][inliers(snow[body], mass[body], dimension)], dimension),
         mass=float(mass.sum()),
-        volume=_volume(mass, densities[off], dx**dimension),
+        volume=_volume(mass, every_density[off], voxel),
         detached_mass=float(mass[~body].sum()),
-        on_panel_mass=float(masses[~off].sum()),
+        on_panel_mass=float(every_mass[on_panel].sum()),
     )
 
 

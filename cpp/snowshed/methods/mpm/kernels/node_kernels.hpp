@@ -165,6 +165,18 @@ struct NodeKernels {
     }
   };
 
+  /// The part of its store of normal impulse that a contact is charged for in this step.
+  static T drain_rate(const StepParameters<T>& step, const Contact<T>& c, T normal_speed,
+                      const T (&free)[D]) {
+    T squared = 0;
+    for (int d = 0; d < D; ++d) {
+      const T sliding = free[d] - c.velocity[d] - normal_speed * c.normal[d];
+      squared += sliding * sliding;
+    }
+    const T rate = step.friction_rate_per_speed * std::sqrt(squared);
+    return rate < step.friction_rate ? step.friction_rate : rate < T(1) ? rate : T(1);
+  }
+
   /// STICKY, SLIP, SEPARATE (thesis 1.2.3), with Coulomb friction on the running mean of the net
   /// normal impulse. Each contact has a store of normal impulse: what presses on the obstacle
   /// fills it, pull empties it, and it drains at the rate 1/(friction memory); friction is charged
@@ -172,6 +184,10 @@ struct NodeKernels {
   /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates
   /// on its panel (SLIP cancels the pulls but forgets them), up to holding it where it should
   /// slide. Pull beyond the store is let go, so that SLIP does not glue.
+  ///
+  /// The store stays at the node while the snow moves on, so fast snow must be charged before it
+  /// has left: the store drains at least in the time that the snow takes to slide over a given part
+  /// of a cell.
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const Node<T>& sum, Node<T>& node, NodeStats& stats) {
     const T mass = sum[0];
@@ -190,7 +206,7 @@ struct NodeKernels {
       }
       return;
     }
-    const T drained = c.normal_impulse * step.friction_rate;
+    const T drained = c.normal_impulse * drain_rate(step, c, normal_speed, free);
     const T left = c.normal_impulse - drained;
     const T least_push = c.bilateral ? -left : T(0);
     T push = -mass * normal_speed;

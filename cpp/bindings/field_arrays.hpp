@@ -1,0 +1,16 @@
+// Fields of particles as NumPy arrays.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include "snowshed/methods/method.hpp"
+
+namespace snowshed {
+
+/// A read-only array over the view's memory, which it keeps; (n,), (n, 3) or (n, 3, 3).
+pybind11::array array_of(const FieldView&);
+
+/// A copy of a field ordered by id, in double or, of whole numbers, in 64 bits.
+pybind11::array array_by_id(const Method&, const std::string& name);
+
+}  // namespace snowshed

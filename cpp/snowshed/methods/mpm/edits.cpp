@@ -1,0 +1,126 @@
+// What others do to the snow between steps: adding, replacing, pushing and settling it. The new
+// state is built beside the old one, which stays where anything fails.
+#include <cmath>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mpm/solver_impl.hpp"
+
+namespace snowshed {
+namespace {
+
+void check_count(const char* what, std::size_t given, std::size_t particles) {
+  if (given != particles)
+    throw InputError(
+        what, std::to_string(given) + " given for " + std::to_string(particles) + " particles");
+}
+
+/// Appends the batches to a state and makes all else follow.
+template <class T, int D>
+void add_to(MpmState<T, D>& state, const MpmModel<T, D>& model,
+            const std::vector<ParticleBatch>& batches) {
+  const bool energy = model.options.energy;
+  const double before = energy ? state.energy(model).stored() : 0.0;
+  std::vector<BlockKey> blocks = blocks_of_particles(state.layout);
+  for (const ParticleBatch& batch : batches) state.append(model, batch, blocks);
+  state.find_elastic_limits(model);
+  state.arrange(model, std::move(blocks));
+  if (energy) state.record_added(model, before);
+}
+
+}  // namespace
+
+template <class T, int D>
+void MpmSolver<T, D>::accept(MpmState<T, D> next) noexcept {
+  state_ = std::move(next);
+  work_.tiles_valid = false;
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::add(const std::vector<ParticleBatch>& batches) {
+  require_sound();
+  MpmState<T, D> next = state_;
+  add_to(next, model_, batches);
+  accept(std::move(next));
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::replace(const std::vector<ParticleBatch>& batches) {
+  require_sound();
+  MpmState<T, D> next(model_);
+  next.progress = state_.progress;
+  if (model_.options.energy) {
+    EnergyBalance& balance = next.progress.energy;
+    balance.added -= state_.energy(model_).stored();
+    balance.kinetic = balance.gravitational = balance.elastic = 0;
+  }
+  add_to(next, model_, batches);
+  accept(std::move(next));
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
+  require_sound();
+  const std::vector<std::uint32_t>& at = order_by_id();
+  check_count("velocity changes", velocity_changes.size(), at.size());
+  for (const Vec3& change : velocity_changes)
+    if (!change.allFinite()) throw InputError("velocity changes", "not finite");
+  // Nothing from here on fails.
+  const double before = model_.options.energy ? state_.kinetic_energy(model_) : 0.0;
+  double fastest = 0;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    double v2 = 0;
+    const VecD<D> change = section<D>(velocity_changes[k]);
+    for (int d = 0; d < D; ++d) {
+      T& v = state_.particles.velocity[d][at[k]];
+      v += T(change[d]);
+      v2 += double(v) * double(v);
+    }
+    fastest = std::max(fastest, v2);
+  }
+  state_.progress.speed = std::sqrt(fastest);
+  if (model_.options.energy) {
+    EnergyBalance& balance = state_.progress.energy;
+    balance.kinetic = state_.kinetic_energy(model_);
+    balance.added += balance.kinetic - before;
+  }
+  state_.sleep.wake_all(state_.layout, state_.progress.time);
+  work_.tiles_valid = false;
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::settle(const std::vector<double>& drops,
+                             const std::vector<double>& plastic_changes) {
+  require_sound();
+  const std::vector<std::uint32_t>& at = order_by_id();
+  check_count("drops", drops.size(), at.size());
+  check_count("plastic changes", plastic_changes.size(), at.size());
+  for (std::size_t k = 0; k < at.size(); ++k)
+    if (!std::isfinite(drops[k]) || !std::isfinite(plastic_changes[k]))
+      throw InputError("settling", "not finite");
+  const MpmSettings& n = model_.options.numerics;
+  const double stored = model_.options.energy ? energy().stored() : 0.0;
+  MpmState<T, D> next = state_;
+  std::vector<BlockKey> blocks = blocks_of_particles(next.layout);
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const std::size_t i = at[k];
+    VecD<D> x = position_of(next.particles, i, blocks[i], n.dx, n.basis);
+    x[D - 1] -= drops[k];
+    blocks[i] = next.put(model_, i, x);
+    if (next.particles.has_plastic) next.particles.plastic[i] += T(plastic_changes[k]);
+  }
+  next.arrange(model_, std::move(blocks));
+  next.sleep.wake_all(next.layout, next.progress.time);
+  if (model_.options.energy) {
+    EnergyBalance& balance = next.progress.energy;
+    balance.gravitational = next.gravitational_energy(model_);
+    balance.added += balance.stored() - stored;
+  }
+  accept(std::move(next));
+}
+
+template class MpmSolver<float, 2>;
+template class MpmSolver<float, 3>;
+template class MpmSolver<double, 2>;
+template class MpmSolver<double, 3>;
+
+}  // namespace snowshed

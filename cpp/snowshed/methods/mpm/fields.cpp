@@ -1,0 +1,204 @@
+// The fields of a solver's particles: those it stores as views, the others computed.
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/material/sym_tensor.hpp"
+#include "snowshed/methods/mpm/solver_impl.hpp"
+#include "snowshed/particles/quantities.hpp"
+
+namespace snowshed {
+namespace {
+
+FieldInfo field_of(const Quantity& q, FieldType type, bool stored) {
+  return {q.name, q.unit, q.meaning, q.components, type, stored};
+}
+
+/// One component of a vector or tensor, such as velocity_x.
+FieldInfo component_of(const Quantity& q, const std::string& axes, FieldType type) {
+  return {q.name + "_" + axes, q.unit, q.meaning + "; component " + axes, 1, type, true};
+}
+
+template <int D>
+constexpr const char* axis_names() {
+  return D == 2 ? "xz" : "xyz";
+}
+
+/// The axes of the component k of a symmetric tensor, as `Sym` orders them.
+template <int D>
+std::string symmetric_axes(int k) {
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j)
+      if (Sym<double, D>::index(i, j) == k) return {axis_names<D>()[i], axis_names<D>()[j]};
+  return {};
+}
+
+template <class T>
+FieldView stored_view(const FieldInfo& info, const AlignedVector<T>& array) {
+  return {info, array.size(), sizeof(T), share(array)};
+}
+
+/// A view of values computed for it: `info.components` of each particle.
+template <class T>
+FieldView computed_view(const FieldInfo& info, std::vector<T> values) {
+  const auto owner = std::make_shared<const std::vector<T>>(std::move(values));
+  return {info, owner->size() / std::size_t(info.components),
+          std::ptrdiff_t(sizeof(T)) * info.components,
+          std::shared_ptr<const void>(owner, owner->data())};
+}
+
+/// The values that f(particle) returns: numbers, vectors or matrices (by rows).
+template <class F>
+std::vector<double> values_of_each(std::size_t count, int threads, F f) {
+  using Value = decltype(f(std::size_t()));
+  if constexpr (std::is_arithmetic_v<Value>) {
+    std::vector<double> values(count);
+    parallel_for_each(std::ptrdiff_t(count), threads,
+                      [&](std::ptrdiff_t i) { values[i] = f(std::size_t(i)); });
+    return values;
+  } else {
+    constexpr int rows = Value::RowsAtCompileTime, columns = Value::ColsAtCompileTime;
+    std::vector<double> values(count * rows * columns);
+    parallel_for_each(std::ptrdiff_t(count), threads, [&](std::ptrdiff_t i) {
+      const Value value = f(std::size_t(i));
+      for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) values[(i * rows + r) * columns + c] = value(r, c);
+    });
+    return values;
+  }
+}
+
+}  // namespace
+
+template <class T, int D>
+double MpmSolver<T, D>::elastic_volume(std::size_t i) const {
+  Sym<double, D> a;
+  for (int k = 0; k < a.size; ++k) a.c[k] = double(state_.particles.be_minus_identity[k][i]);
+  return trace(hencky_strain(a));
+}
+
+template <class T, int D>
+double MpmSolver<T, D>::plastic_strain(std::size_t i) const {
+  return state_.particles.has_plastic ? double(state_.particles.plastic[i]) : 0.0;
+}
+
+template <class T, int D>
+double MpmSolver<T, D>::volume_ratio(std::size_t i) const {
+  return std::exp(elastic_volume(i) + plastic_strain(i) -
+                  state_.material_of(model_, i).initial_plastic_strain);
+}
+
+template <class T, int D>
+double MpmSolver<T, D>::pressure(std::size_t i) const {
+  return -state_.material_of(model_, i).elastic.bulk * elastic_volume(i);
+}
+
+template <class T, int D>
+Vec3 MpmSolver<T, D>::velocity(std::size_t i) const {
+  VecD<D> v;
+  for (int d = 0; d < D; ++d) v[d] = double(state_.particles.velocity[d][i]);
+  return embed(v);
+}
+
+/// In the space (x, y, z); without y in 2D.
+template <class T, int D>
+Mat3 MpmSolver<T, D>::affine(std::size_t i) const {
+  const auto axis = [](int d) { return d == D - 1 ? 2 : d; };
+  Mat3 c = Mat3::Zero();
+  for (int r = 0; r < D; ++r)
+    for (int k = 0; k < D; ++k) c(axis(r), axis(k)) = double(state_.particles.affine[r * D + k][i]);
+  return c;
+}
+
+template <class T, int D>
+std::vector<double> MpmSolver<T, D>::positions() const {
+  std::vector<double> values(3 * state_.particles.size());
+  parallel_for(std::ptrdiff_t(state_.layout.particle_blocks.size()), model_.max_threads, 64,
+               [&](std::ptrdiff_t b) {
+                 for (std::int32_t i = state_.layout.first[b]; i < state_.layout.first[b + 1]; ++i)
+                   Vec3::Map(&values[3 * std::size_t(i)]) = embed(position_of(
+                       state_.particles, std::size_t(i), state_.layout.particle_blocks[b],
+                       model_.options.numerics.dx, model_.options.numerics.basis));
+               });
+  return values;
+}
+
+/// Calls visit(info, view) for each field; view() returns its view.
+template <class T, int D>
+template <class Visit>
+void MpmSolver<T, D>::visit_fields(Visit visit) const {
+  const auto stored = [&visit](const FieldInfo& info, const auto& array) {
+    visit(info, [&] { return stored_view(info, array); });
+  };
+  const auto column = [&stored](const char* name, const auto& array) {
+    stored(field_of(quantity(name), field_type<std::decay_t<decltype(array[0])>>(), true), array);
+  };
+  const auto components = [&stored](const char* name, const auto& arrays, auto axes) {
+    for (int k = 0; k < int(arrays.size()); ++k)
+      stored(component_of(quantity(name), axes(k), field_type<T>()), arrays[k]);
+  };
+  const auto computed = [&visit](const char* name, auto values) {
+    using Value = typename decltype(values())::value_type;
+    const FieldInfo info = field_of(quantity(name), field_type<Value>(), false);
+    visit(info, [&] { return computed_view(info, values()); });
+  };
+  const auto of_each = [&](const char* name, auto value) {
+    computed(name,
+             [&] { return values_of_each(state_.particles.size(), model_.max_threads, value); });
+  };
+
+  computed("position", [this] { return positions(); });
+  of_each("velocity", [this](std::size_t i) { return velocity(i); });
+  components("velocity", state_.particles.velocity,
+             [](int d) { return std::string(1, axis_names<D>()[d]); });
+  column("mass", state_.particles.mass);
+  of_each("density", [this](std::size_t i) {
+    return state_.material_of(model_, i).density / volume_ratio(i);
+  });
+  of_each("volume_ratio", [this](std::size_t i) { return volume_ratio(i); });
+  of_each("pressure", [this](std::size_t i) { return pressure(i); });
+  if (state_.particles.has_plastic)
+    column("volumetric_plastic_strain", state_.particles.plastic);
+  else
+    of_each("volumetric_plastic_strain", [](std::size_t) { return 0.0; });
+  components("be_minus_identity", state_.particles.be_minus_identity, symmetric_axes<D>);
+  if (state_.particles.has_affine) {
+    of_each("affine", [this](std::size_t i) { return affine(i); });
+    components("affine", state_.particles.affine,
+               [](int k) { return std::string{axis_names<D>()[k / D], axis_names<D>()[k % D]}; });
+  }
+  column("id", state_.particles.id);
+  column("event", state_.particles.event);
+  if (state_.particles.has_material_id)
+    column("material_id", state_.particles.material_id);
+  else
+    computed("material_id", [this] { return std::vector<std::uint8_t>(state_.particles.size()); });
+}
+
+template <class T, int D>
+std::vector<FieldInfo> MpmSolver<T, D>::fields() const {
+  std::vector<FieldInfo> all;
+  visit_fields([&all](const FieldInfo& info, const auto&) { all.push_back(info); });
+  return all;
+}
+
+template <class T, int D>
+FieldView MpmSolver<T, D>::field(const std::string& name) const {
+  std::optional<FieldView> found;
+  std::string names;
+  visit_fields([&](const FieldInfo& info, const auto& view) {
+    if (info.name == name) found = view();
+    names += (names.empty() ? "" : ", ") + info.name;
+  });
+  if (!found) throw InputError("field", "no \"" + name + "\"; there are " + names);
+  return *found;
+}
+
+template class MpmSolver<float, 2>;
+template class MpmSolver<float, 3>;
+template class MpmSolver<double, 2>;
+template class MpmSolver<double, 3>;
+
+}  // namespace snowshed

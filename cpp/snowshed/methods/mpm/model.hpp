@@ -1,0 +1,60 @@
+// What a run of the solver is about and never changes: options, snows, obstacles, kernels.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/methods/mpm/boundary.hpp"
+#include "snowshed/methods/mpm/material_constants.hpp"
+#include "snowshed/methods/mpm/solver.hpp"
+
+namespace snowshed {
+
+/// Fewer particles than this are not worth waking another thread for, twice a step.
+inline constexpr int particles_per_thread = 2000;
+
+template <class T, int D>
+struct MpmModel {
+  MpmModel(const MpmOptions& options, std::vector<Obstacle> obstacles)
+      : MpmModel(options, std::move(obstacles), choice_of(options)) {}
+
+  MpmOptions options;
+  bool material_per_particle;
+  Kernels<T> kernels;
+  int max_threads;
+  Boundary<T, D> boundary;
+  std::vector<Material> materials;              // of options.snows
+  std::vector<MaterialConstants<T>> constants;  // the same for the kernels
+
+  bool has_affine() const { return options.numerics.transfer == Transfer::apic; }
+  bool has_plastic() const {
+    return material_per_particle || options.snows.front().model == SnowModel::cam_clay;
+  }
+
+  /// Threads worth using for so many particles.
+  int threads(std::int64_t particles) const {
+    return int(std::min<std::int64_t>(max_threads, particles / particles_per_thread + 1));
+  }
+
+ private:
+  static KernelChoice choice_of(const MpmOptions& options) {
+    const MpmSettings& n = options.numerics;
+    return {options.dimension,        n.transfer,    n.basis, options.snows.front().model,
+            options.snows.size() > 1, options.energy};
+  }
+
+  MpmModel(const MpmOptions& o, std::vector<Obstacle> obstacles, const KernelChoice& choice)
+      : options(o),
+        material_per_particle(choice.material_per_particle()),
+        kernels(select_kernels<T>(choice)),
+        max_threads(threads_to_use(o.numerics.threads)),
+        boundary(std::move(obstacles), o.numerics.dx) {
+    for (const Snow& snow : o.snows) {
+      materials.emplace_back(snow, D, o.numerics);
+      constants.push_back(material_constants<T>(snow, D));
+    }
+  }
+};
+
+}  // namespace snowshed

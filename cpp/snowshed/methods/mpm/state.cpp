@@ -1,0 +1,169 @@
+#include "snowshed/methods/mpm/state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/bounds.hpp"
+#include "snowshed/material/sym_tensor.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Memory of the contacts' friction, in elastic time steps of the slowest snow: longer than the
+/// vibration of a slab a few cells thick.
+constexpr double friction_memory_steps = 40;
+
+void check_batch(const ParticleBatch& batch, std::size_t materials) {
+  if (batch.material_id < 0 || std::size_t(batch.material_id) >= materials)
+    throw InputError("material_id", std::to_string(batch.material_id) + " is none of the " +
+                                        std::to_string(materials) + " snows");
+  if (!(batch.mass > 0) || !std::isfinite(batch.mass))
+    throw InputError("mass", "of a particle must be positive");
+  if (!batch.velocity.allFinite()) throw InputError("velocity", "not finite");
+}
+
+}  // namespace
+
+template <class T, int D>
+MpmState<T, D>::MpmState(const MpmModel<T, D>& model)
+    : sleep(model.options.numerics.sleep_speed, model.options.numerics.sleep_time,
+            model.options.gravity) {
+  particles.has_affine = model.has_affine();
+  particles.has_material_id = model.material_per_particle;
+  particles.has_plastic = model.has_plastic();
+  find_elastic_limits(model);
+  progress.counters.smallest_dt = elastic_limit;
+}
+
+template <class T, int D>
+void MpmState<T, D>::find_elastic_limits(const MpmModel<T, D>& model) {
+  const std::vector<Material>& materials = model.materials;
+  std::vector<bool> present(materials.size(), !particles.has_material_id || particles.size() == 0);
+  for (const std::uint8_t material_id : particles.material_id) present[material_id] = true;
+  double shortest = infinity, longest = 0;
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    if (!present[k]) continue;
+    shortest = std::min(shortest, materials[k].elastic_time_step);
+    longest = std::max(longest, materials[k].elastic_time_step);
+  }
+  elastic_limit = shortest;
+  friction_memory = friction_memory_steps * longest;
+}
+
+template <class T, int D>
+void MpmState<T, D>::append(const MpmModel<T, D>& model, const ParticleBatch& batch,
+                            std::vector<BlockKey>& blocks) {
+  check_batch(batch, model.materials.size());
+  const std::size_t old = particles.size();
+  particles.resize(old + batch.positions.size());
+  particles.for_each_array([old](const char*, auto& array) {
+    using Value = typename std::remove_reference_t<decltype(array)>::value_type;
+    std::fill(array.begin() + std::ptrdiff_t(old), array.end(), Value(0));
+  });
+  const VecD<D> velocity = section<D>(batch.velocity);
+  const T plastic = T(model.materials[std::size_t(batch.material_id)].initial_plastic_strain);
+  for (std::size_t k = 0; k < batch.positions.size(); ++k) {
+    const std::size_t i = old + k;
+    blocks.push_back(put(model, i, section<D>(batch.positions[k])));
+    for (int d = 0; d < D; ++d) particles.velocity[d][i] = T(velocity[d]);
+    if (particles.has_plastic) particles.plastic[i] = plastic;
+    particles.mass[i] = T(batch.mass);
+    particles.id[i] = progress.next_id++;
+    particles.event[i] = std::uint16_t(batch.event);
+    if (particles.has_material_id) particles.material_id[i] = std::uint8_t(batch.material_id);
+  }
+  progress.speed = std::max(progress.speed, velocity.norm());
+}
+
+template <class T, int D>
+BlockKey MpmState<T, D>::put(const MpmModel<T, D>& model, std::size_t particle,
+                             const VecD<D>& position) {
+  const MpmSettings& n = model.options.numerics;
+  const auto place = Placement<D>::of(position, n.dx, n.basis);
+  for (int d = 0; d < D; ++d) particles.cell[d][particle] = T(place.cell[d]);
+  return block_key<D>(place.block);
+}
+
+template <class T, int D>
+void MpmState<T, D>::arrange(const MpmModel<T, D>& model, std::vector<BlockKey> blocks) {
+  const int threads = model.threads(sleep.awake_particles());
+  ParticleSort<T, D> sort(particles, std::move(blocks), layout, threads);
+  std::optional<Contacts<T, D>> relocated;
+  if (sort.layout.grid_blocks != layout.grid_blocks)
+    relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, progress.time, threads);
+  Sleep<D> sleep_after = sleep.relocated(sort.layout, progress.time);
+  // All is at hand: nothing from here on fails.
+  sort.apply(particles);
+  layout = std::move(sort.layout);
+  if (relocated) contacts = std::move(*relocated);
+  sleep = std::move(sleep_after);
+}
+
+template <class T, int D>
+double MpmState<T, D>::gravitational_energy(const MpmModel<T, D>& model) const {
+  const MpmSettings& n = model.options.numerics;
+  double sum = 0;
+  for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
+    for (std::int32_t i = layout.first[b]; i < layout.first[b + 1]; ++i)
+      sum +=
+          double(particles.mass[i]) *
+          position_of(particles, std::size_t(i), layout.particle_blocks[b], n.dx, n.basis)[D - 1];
+  return sum * model.options.gravity;
+}
+
+template <class T, int D>
+double MpmState<T, D>::kinetic_energy(const MpmModel<T, D>& model) const {
+  const MpmSettings& n = model.options.numerics;
+  const double inertia = n.dx * n.dx / (n.basis == Basis::quadratic ? 4.0 : 3.0);
+  double sum = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    double v2 = 0;
+    for (const auto& v : particles.velocity) v2 += double(v[i]) * double(v[i]);
+    if (particles.has_affine)
+      for (const auto& c : particles.affine) v2 += inertia * double(c[i]) * double(c[i]);
+    sum += 0.5 * double(particles.mass[i]) * v2;
+  }
+  return sum;
+}
+
+template <class T, int D>
+double MpmState<T, D>::elastic_energy(const MpmModel<T, D>& model) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const Material& snow = material_of(model, i);
+    const Elasticity<double>& el = snow.elastic;
+    Sym<double, D> a;
+    for (int k = 0; k < a.size; ++k) a.c[k] = double(particles.be_minus_identity[k][i]);
+    const Sym<double, D> e = hencky_strain(a);
+    const double volumetric = trace(e);
+    sum += double(particles.mass[i]) / snow.density *
+           (el.mu * norm_squared(e) + 0.5 * el.lambda * volumetric * volumetric);  // (1.2.5)
+  }
+  return sum;
+}
+
+template <class T, int D>
+EnergyBalance MpmState<T, D>::energy(const MpmModel<T, D>& model) const {
+  EnergyBalance balance = progress.energy;
+  balance.gravitational = gravitational_energy(model);
+  return balance;
+}
+
+template <class T, int D>
+void MpmState<T, D>::record_added(const MpmModel<T, D>& model, double before) {
+  EnergyBalance& balance = progress.energy;
+  balance.gravitational = gravitational_energy(model);
+  balance.kinetic = kinetic_energy(model);
+  balance.elastic = elastic_energy(model);
+  balance.added += balance.stored() - before;
+}
+
+template struct MpmState<float, 2>;
+template struct MpmState<float, 3>;
+template struct MpmState<double, 2>;
+template struct MpmState<double, 3>;
+
+}  // namespace snowshed

@@ -1,0 +1,13 @@
+// Particles in the order of their ids.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace snowshed {
+
+/// Where the particles are stored, in ascending order of their ids: a radix sort, O(n).
+std::vector<std::uint32_t> order_by_id(const std::uint32_t* ids, std::size_t count);
+
+}  // namespace snowshed

@@ -1,0 +1,32 @@
+#include "snowshed/particles/quantities.hpp"
+
+#include <stdexcept>
+
+namespace snowshed {
+
+const std::vector<Quantity>& quantities() {
+  static const std::vector<Quantity> all{
+      {"position", "m", "Position", 3},
+      {"velocity", "m/s", "Velocity", 3},
+      {"mass", "kg", "Mass; in 2D per metre of width"},
+      {"density", "kg/m3", "Current density"},
+      {"volume_ratio", "1", "Current over initial volume"},
+      {"pressure", "Pa", "Kirchhoff pressure, positive in compression"},
+      {"volumetric_plastic_strain", "1",
+       "Volumetric plastic strain, logarithmic, negative in compaction"},
+      {"be_minus_identity", "1", "Elastic left Cauchy-Green tensor less the identity"},
+      {"affine", "1/s", "Affine velocity matrix C of APIC, by rows", 9},
+      {"id", "1", "Number that a particle keeps as long as it exists"},
+      {"event", "1", "Event in which the particle was released, from 1"},
+      {"material_id", "1", "Which of the scene's snows the particle is of, from 0"},
+  };
+  return all;
+}
+
+const Quantity& quantity(const std::string& name) {
+  for (const Quantity& one : quantities())
+    if (one.name == name) return one;
+  throw std::out_of_range("no quantity " + name);
+}
+
+}  // namespace snowshed

@@ -1,0 +1,75 @@
+// The methods a scene may choose: their names, their settings, and the parts of a scene they take.
+//
+// A further method is a further alternative of `MethodSettings`, a `method_info` of its own below,
+// and a `describe` of its settings (describe.hpp).
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "snowshed/methods/mpm/settings.hpp"
+
+namespace snowshed {
+
+/// The settings of the method that a scene has chosen; the first is the default.
+using MethodSettings = std::variant<MpmSettings>;
+
+/// The parts of a scene that a method can use.
+struct TakenParts {
+  bool panel = false;
+  bool slab = false;
+  bool ground = false;
+  bool obstacles = false;
+  bool bodies = false;
+  bool domain = false;
+};
+
+struct MethodInfo {
+  const char* name;  // as scenes give it
+  const char* doc;
+  TakenParts takes;
+};
+
+/// What is known of the method with these settings.
+template <class Settings>
+inline constexpr MethodInfo method_info{};
+
+template <>
+inline constexpr MethodInfo method_info<MpmSettings>{
+    "mpm", "The material point method", {true, true, true, true, true, true}};
+
+/// The method that has been chosen.
+inline const MethodInfo& info_of(const MethodSettings& settings) {
+  return std::visit(
+      [](const auto& own) -> const MethodInfo& { return method_info<std::decay_t<decltype(own)>>; },
+      settings);
+}
+
+/// Calls `visit` with the default settings of every method in turn.
+template <std::size_t I = 0, class F>
+void for_each_method(const F& visit) {
+  visit(std::variant_alternative_t<I, MethodSettings>{});
+  if constexpr (I + 1 < std::variant_size_v<MethodSettings>) for_each_method<I + 1>(visit);
+}
+
+/// The default settings of all methods.
+inline std::vector<MethodSettings> all_methods() {
+  std::vector<MethodSettings> methods;
+  for_each_method([&](const auto& settings) { methods.push_back(settings); });
+  return methods;
+}
+
+/// Their names.
+inline std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const auto& settings : all_methods()) names.push_back(info_of(settings).name);
+  return names;
+}
+
+/// The size of the smallest thing the method resolves: its cell or particle, m.
+inline double resolution(const MethodSettings& settings) {
+  return std::visit([](const auto& own) { return own.resolution(); }, settings);
+}
+
+}  // namespace snowshed

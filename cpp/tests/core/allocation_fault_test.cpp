@@ -1,0 +1,63 @@
+#include "core/allocation_fault.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "snowshed/core/aligned_vector.hpp"
+
+namespace snowshed {
+namespace {
+
+std::atomic<std::int64_t> allocations_left{0};  // until one fails; none does below 1
+
+void* allocate(std::size_t bytes, std::size_t alignment) {
+  if (allocations_left > 0 && --allocations_left == 0) {
+    allocations_left = -1;
+    throw std::bad_alloc();
+  }
+  void* p = nullptr;
+  if (posix_memalign(&p, alignment, bytes > 0 ? bytes : 1) != 0) throw std::bad_alloc();
+  return p;
+}
+
+}  // namespace
+
+AllocationFault::AllocationFault(std::int64_t n) { allocations_left = n; }
+AllocationFault::~AllocationFault() { allocations_left = 0; }
+bool AllocationFault::happened() { return allocations_left < 0; }
+std::int64_t AllocationFault::left() { return allocations_left; }
+
+}  // namespace snowshed
+
+void* operator new(std::size_t bytes) {
+  return snowshed::allocate(bytes, __STDCPP_DEFAULT_NEW_ALIGNMENT__);
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return snowshed::allocate(bytes, std::size_t(alignment));
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace snowshed {
+namespace {
+
+TEST(AllocationFault, LetsTheNthAllocationFailAndNoOther) {
+  std::vector<std::vector<int>> made(4);
+  AlignedVector<float> aligned;
+  const AllocationFault fault(3);
+  made[0].resize(10);
+  EXPECT_FALSE(AllocationFault::happened());
+  aligned.resize(10);
+  EXPECT_THROW(made[1].resize(10), std::bad_alloc);
+  EXPECT_TRUE(AllocationFault::happened());
+  made[1].resize(10);
+}
+
+}  // namespace
+}  // namespace snowshed

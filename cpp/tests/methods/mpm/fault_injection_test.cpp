@@ -1,0 +1,196 @@
+// What becomes of the solver when memory is short: at every allocation of a run with everything in
+// it, the call that fails must leave the state as it was, and the run must end with the same bits.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <new>
+
+#include "core/allocation_fault.hpp"
+#include "io/temporary_folder.hpp"
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double dx = 0.02;
+
+/// All that can be seen of a solver.
+struct Seen {
+  ParticleState particles;
+  double time;
+  StepCounters counters;
+  EnergyBalance energy;
+
+  explicit Seen(const Method& solver)
+      : particles(solver.state()),
+        time(solver.time()),
+        counters(solver.counters()),
+        energy(solver.energy()) {}
+};
+
+void expect_same_counters(const StepCounters& a, const StepCounters& b) {
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.rejected, b.rejected);
+  EXPECT_EQ(a.sorts, b.sorts);
+  EXPECT_EQ(a.particle_updates, b.particle_updates);
+  EXPECT_EQ(a.slept_updates, b.slept_updates);
+  EXPECT_EQ(a.smallest_dt, b.smallest_dt);
+}
+
+/// Positions may have been rounded: the sort of a step that failed stays.
+void expect_same(const Seen& now, const Seen& before) {
+  ASSERT_EQ(now.particles.ids, before.particles.ids);
+  for (std::size_t i = 0; i < before.particles.ids.size(); ++i)
+    ASSERT_LT((now.particles.positions[i] - before.particles.positions[i]).norm(), 1e-6 * dx);
+  EXPECT_TRUE(now.particles.velocities == before.particles.velocities);
+  EXPECT_EQ(now.particles.plastic_strains, before.particles.plastic_strains);
+  EXPECT_EQ(now.particles.pressures, before.particles.pressures);
+  EXPECT_EQ(now.time, before.time);
+  expect_same_counters(now.counters, before.counters);
+  EXPECT_EQ(now.energy.added, before.energy.added);
+  EXPECT_EQ(now.energy.kinetic, before.energy.kinetic);
+  EXPECT_EQ(now.energy.friction, before.energy.friction);
+  EXPECT_EQ(now.energy.sleep, before.energy.sleep);
+}
+
+struct Case {
+  int threads;
+  double spacing;  // of the particles, m
+  int steps;       // between two other calls
+  bool moving;     // whether an obstacle moves, which takes memory in each step
+};
+
+/// Snow that lies on a rough floor, is hit by more, settles, is kicked, replaced and restored.
+class Story {
+ public:
+  Story(const Case& c, const std::filesystem::path& file) : file_(file) {
+    MpmOptions o = options_for({2, Precision::float32}, dx);
+    o.snows[0].youngs_modulus = 1e5;
+    o.numerics.threads = c.threads;
+    o.numerics.sleep_speed = 0.1;
+    o.numerics.sleep_time = 0.005;
+    o.energy = true;
+    std::vector<Obstacle> obstacles{
+        fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.4)};
+    if (c.moving) {
+      Obstacle paddle =
+          fixed(make_box(Vec3(-0.1, 0, 0.05), Vec3(0.0, 1, 0.08)), Condition::sticky);
+      MotionSpec motion;
+      motion.velocity = Vec3(0.5, 0, 0);
+      paddle.motion.emplace(motion);
+      obstacles.push_back(paddle);
+    }
+    solver = make_mpm(o, std::move(obstacles));
+    const ParticleBatch wall =
+        filled_box(2, Vec3(0, 0, 0), Vec3(0.24, 0, 0.08), c.spacing);
+    ParticleBatch lump =
+        filled_box(2, Vec3(0.3, 0, 0.005), Vec3(0.4, 0, 0.05), c.spacing);
+    lump.velocity = Vec3(-3, 0, -1);
+    calls = {[=] { solver->add({wall}); }};
+    step(c.steps);
+    calls.push_back([=] { solver->add({lump, lump_above(lump)}); });
+    step(c.steps);
+    calls.push_back([=] { save(); });
+    calls.push_back([=] {
+      solver->settle(std::vector<double>(solver->size(), 1e-3),
+                     std::vector<double>(solver->size(), -0.01));
+    });
+    step(3);
+    calls.push_back(
+        [=] { solver->add_velocity(std::vector<Vec3>(solver->size(), Vec3(-0.2, 0, 0))); });
+    step(3);
+    calls.push_back([=] { solver->replace({lump, wall}); });
+    step(3);
+    calls.push_back([=] { solver->load(BinaryReader::load(file_)); });
+    step(c.steps);
+  }
+
+  void save() const {
+    BinaryWriter out;
+    solver->save(out);
+    out.save(file_);
+  }
+
+  std::unique_ptr<Method> solver;
+  std::vector<std::function<void()>> calls;
+
+ private:
+  static ParticleBatch lump_above(ParticleBatch lump) {
+    for (Vec3& x : lump.positions) x.z() += 0.06;
+    return lump;
+  }
+  void step(int count) {
+    for (int i = 0; i < count; ++i) calls.push_back([this] { solver->step(); });
+  }
+
+  std::filesystem::path file_;
+};
+
+class AllocationFaults : public TemporaryFolder {
+ protected:
+  /// Lets each allocation of a run fail in turn; returns their number.
+  int try_all(const Case& c);
+};
+
+int AllocationFaults::try_all(const Case& c) {
+  Story whole(c, path("whole"));
+  std::vector<Seen> before;  // each call
+  for (const auto& call : whole.calls) {
+    before.emplace_back(*whole.solver);
+    call();
+  }
+  const Seen end(*whole.solver);
+  EXPECT_GT(end.counters.slept_updates, 0);
+
+  int faults = 0;
+  for (std::int64_t n = 1;; ++n) {
+    Story run(c, path("faulty"));
+    bool happened = false;
+    // The n-th allocation is that of one call; what is seen of it comes between the calls.
+    std::int64_t left = n;
+    for (std::size_t k = 0; k < run.calls.size(); ++k) {
+      if (happened) {
+        run.calls[k]();
+        continue;
+      }
+      bool failed = false;
+      {
+        const AllocationFault fault(left);
+        try {
+          run.calls[k]();
+        } catch (const std::bad_alloc&) {
+          failed = true;
+        }
+        happened = AllocationFault::happened();
+        left = AllocationFault::left();
+      }
+      EXPECT_EQ(failed, happened);
+      if (!failed) continue;
+      ++faults;
+      SCOPED_TRACE("allocation " + std::to_string(n) + ", call " + std::to_string(k));
+      expect_same(Seen(*run.solver), before[k]);
+      run.calls[k]();
+      if (HasFailure()) return faults;
+    }
+    if (!happened) break;
+    SCOPED_TRACE("allocation " + std::to_string(n));
+    const Seen now(*run.solver);
+    expect_same_bits(now.particles, end.particles);
+    expect_same_counters(now.counters, end.counters);
+    EXPECT_EQ(now.energy.residual(), end.energy.residual());
+    if (HasFailure()) return faults;
+  }
+  return faults;
+}
+
+TEST_F(AllocationFaults, OnOneThreadBesideAMovingObstacleLeaveNoTrace) {
+  EXPECT_GE(try_all({1, 0.01, 40, true}), 500);
+}
+
+TEST_F(AllocationFaults, OnTwoThreadsLeaveNoTrace) {
+  EXPECT_GE(try_all({2, 0.0025, 12, false}), 200);
+}
+
+}  // namespace
+}  // namespace snowshed

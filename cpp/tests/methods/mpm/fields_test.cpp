@@ -1,0 +1,78 @@
+#include <algorithm>
+
+#include "methods/mpm/solver_testing.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/particles/quantities.hpp"
+
+namespace snowshed {
+namespace {
+
+class Fields : public testing::TestWithParam<Way> {
+ protected:
+  Fields() : solver_(make_mpm(options_for(GetParam()), {})) {
+    const int dimension = GetParam().dimension;
+    solver_->add(filled_box(dimension, Vec3(-0.03, -0.03, 1.0), Vec3(0.05, 0.03, 1.1), 0.005));
+    std::vector<Vec3> changes;
+    Random random(1);
+    for (std::size_t i = 0; i < solver_->size(); ++i)
+      changes.push_back(random_vector(random, dimension, 0.5));
+    solver_->add_velocity(changes);
+    run_steps(*solver_, 80);
+  }
+
+  std::unique_ptr<Method> solver_;
+};
+
+/// Every field in the order of ids has the bits of the state, which is in that order.
+TEST_P(Fields, AgreeWithTheState) {
+  const ParticleState state = solver_->state();
+  const auto expect = [&](const char* name, const auto& expected) {
+    const FieldView view = solver_->field(name);
+    ASSERT_EQ(view.count, expected.size());
+    for (std::size_t k = 0; k < view.count; ++k) {
+      const std::size_t place = solver_->order_by_id()[k];
+      const auto* values = reinterpret_cast<const double*>(&expected[k]);
+      for (int c = 0; c < view.info.components; ++c)
+        with_field_type(view.info.type, [&](auto zero) {
+          EXPECT_EQ(double(view.at<decltype(zero)>(place)[c]), values[c]) << name;
+        });
+    }
+  };
+  expect("position", state.positions);
+  expect("velocity", state.velocities);
+  expect("mass", state.masses);
+  expect("density", state.densities);
+  expect("volume_ratio", state.volume_ratios);
+  expect("pressure", state.pressures);
+  expect("volumetric_plastic_strain", state.plastic_strains);
+  EXPECT_TRUE(std::is_sorted(state.ids.begin(), state.ids.end()));
+}
+
+TEST_P(Fields, AreOfKnownQuantities) {
+  for (const FieldInfo& info : solver_->fields()) {
+    const auto known = [&](const Quantity& q) {
+      return info.name.compare(0, q.name.size(), q.name) == 0 && info.unit == q.unit;
+    };
+    EXPECT_TRUE(std::any_of(quantities().begin(), quantities().end(), known)) << info.name;
+    EXPECT_EQ(solver_->field(info.name).count, solver_->size()) << info.name;
+  }
+  EXPECT_THROW(solver_->field("masss"), InputError);
+}
+
+/// Particles that are added take the last places by id, and the order is known anew.
+TEST_P(Fields, OrderFollowsParticlesThatAreAdded) {
+  const std::size_t old = solver_->order_by_id().size();
+  solver_->add(
+      filled_box(GetParam().dimension, Vec3(-0.1, -0.03, 1.0), Vec3(-0.05, 0.03, 1.1), 0.01));
+  const std::vector<std::uint32_t>& order = solver_->order_by_id();
+  ASSERT_GT(order.size(), old);
+  const FieldView ids = solver_->field("id");
+  for (std::size_t k = 0; k < order.size(); ++k)
+    ASSERT_EQ(*ids.at<std::uint32_t>(order[k]), std::uint32_t(k));
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, Fields, testing::ValuesIn(all_ways()),
+                         [](const auto& info) { return info.param.name(); });
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,154 @@
+"""What a model is asked: panels and their events, given as numbers, arrays or a table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Optional, Union
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.arrays import Booleans, Floats, Integers
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    #: A number, or one for each panel.
+    Numbers = Union[float, Sequence[float], Floats, Integers, "pd.Series[float]", "pd.Series[int]"]
+
+NAMES = ("height", "length", "tilt", "events")
+MOST_EVENTS = 1000  # of a panel
+MOST = 20_000  # events of all panels: kernel matrices have a row for each
+
+
+@dataclass(frozen=True)
+class Questions:
+    """The events of one or more panels.
+
+    Attributes
+    ----------
+    labels
+        One for each of the p panels: the index of the table, or 0, 1, ...
+    panel
+        Which panel each event belongs to, counted from 0, shape (n,).
+    inputs
+        Shape (n, 4), the columns of `INPUTS`.
+    """
+
+    labels: pd.Index[int]
+    panel: Integers
+    inputs: Floats
+
+    @classmethod
+    def of(
+        cls, table: Optional[pd.DataFrame], columns: Mapping[str, Optional[Numbers]]
+    ) -> Questions:
+        """Return the questions of a table, or of columns by name.
+
+        Parameters
+        ----------
+        table
+            One row for each panel, with the columns of `NAMES` in any order and no other.
+        columns
+            For each of `NAMES` a number, or as many as there are panels; None beside a table.
+
+        Raises
+        ------
+        InputError
+            If a column is missing, unknown, of another length, or holds an impossible value.
+
+        Examples
+        --------
+        >>> asked = Questions.of(None, {"height": 2, "length": [1, 4], "tilt": 40, "events": 2})
+        >>> asked.panel.tolist(), asked.inputs[2].tolist()  # event, height, length, tilt
+        ([0, 0, 1, 1], [1.0, 2.0, 4.0, 40.0])
+        """
+        import pandas as pd
+
+        given = [name for name, value in columns.items() if value is not None]
+        if table is not None:
+            if given:
+                raise InputError(f"{given[0]}: not beside a table of panels, which has it")
+            columns = _columns_of(table)
+        panels = _stacked(columns)
+        labels = pd.RangeIndex(panels.shape[1]) if table is None else table.index
+        _check(panels, labels)
+        counts = panels[-1].astype(int)
+        which = np.repeat(np.arange(len(counts)), counts)
+        events = np.concatenate([np.arange(1, count + 1) for count in counts])
+        return cls(labels, which, np.column_stack([events, panels[:-1, which].T]))
+
+
+def _columns_of(table: pd.DataFrame) -> dict[str, Optional[Numbers]]:
+    import pandas as pd
+
+    if not isinstance(table, pd.DataFrame):
+        raise InputError(
+            f"panels: {type(table).__name__} is no DataFrame; give arrays as height, length, tilt "
+            "and events"
+        )
+    names = list(table.columns)
+    for name in names:
+        if name not in NAMES:
+            raise InputError(f"column {name!r} is unknown; allowed: {', '.join(NAMES)}")
+        if names.count(name) > 1:
+            raise InputError(f"column {name!r} occurs twice")
+    if not table.index.is_unique:
+        twice = table.index[table.index.duplicated()][0]
+        raise InputError(f"the table's index holds {twice} twice, which must tell panels apart")
+    return {name: table.get(name) for name in NAMES}
+
+
+def _stacked(columns: Mapping[str, Optional[Numbers]]) -> Floats:
+    """Return the columns as rows of an array, numbers repeated for each panel."""
+    arrays = {}
+    for name in NAMES:
+        value = columns[name]
+        if value is None:
+            raise InputError(f"{name}: missing; needed are {', '.join(NAMES)}")
+        try:
+            arrays[name] = np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"{name}: not a number, nor numbers") from None
+        if arrays[name].ndim > 1:
+            raise InputError(f"{name}: shape {arrays[name].shape}; must be a number or a sequence")
+    lengths = {name: array.size for name, array in arrays.items() if array.ndim}
+    count = next(iter(lengths.values()), 1)
+    for name, length in lengths.items():
+        if length != count:
+            first = next(iter(lengths))
+            raise InputError(
+                f"{name}: {length} values, but {first} has {count}; give a number, or one for "
+                "each panel"
+            )
+    if count == 0:
+        raise InputError("no panels")
+    return np.stack([np.broadcast_to(arrays[name], count) for name in NAMES])
+
+
+def _check(panels: Floats, labels: pd.Index[int]) -> None:
+    """Raise an InputError about the first impossible value, naming its panel if there are more."""
+    height, length, tilt, events = panels
+    _refuse(
+        "height", height, ~(height > 0) | np.isinf(height), "is not a positive length in m", labels
+    )
+    _refuse(
+        "length", length, ~(length > 0) | np.isinf(length), "is not a positive length in m", labels
+    )
+    outside = "is outside the allowed range (0 <= value < 90 degrees)"
+    _refuse("tilt", tilt, ~((tilt >= 0) & (tilt < 90)), outside, labels)
+    outside = f"is outside the allowed range (1 to {MOST_EVENTS})"
+    _refuse("events", events, ~((events >= 1) & (events <= MOST_EVENTS)), outside, labels)
+    _refuse("events", events, events % 1 != 0, "is not a whole number", labels)
+    if events.sum() > MOST:
+        raise InputError(
+            f"{events.sum():g} events of all panels; at most {MOST} may be asked at once"
+        )
+
+
+def _refuse(name: str, values: Floats, wrong: Booleans, why: str, labels: pd.Index[int]) -> None:
+    if wrong.any():
+        row = int(wrong.argmax())
+        where = f"panel {labels[row]}, {name}" if len(labels) > 1 else name
+        raise InputError(f"{where}: {values[row]:g} {why}")

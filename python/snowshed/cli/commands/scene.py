@@ -1,0 +1,93 @@
+"""The commands that look at a scene: ``snowshed scene|plan|schema|compare``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Optional
+
+import click
+
+import snowshed._core as _core
+from snowshed._core import InputError
+from snowshed.cli.accuracy import accuracy_option, check_alone, choose
+from snowshed.cli.scene_options import in_terms_of_options, scene_from_options, scene_options
+from snowshed.scene.scene import ResolvedScene, Scene
+
+PATH = click.Path(path_type=Path)
+
+
+@click.command()
+@click.argument("scene", type=PATH)
+@accuracy_option
+def plan(scene: Path, accuracy: Optional[float]) -> None:
+    """Say what running a scene file would use and cost, without running it."""
+    from snowshed.cli import console
+
+    ready = ResolvedScene.load(scene)
+    if accuracy is not None:
+        ready = _accurate(Scene.load(scene), accuracy).resolve()
+    console.print_plan(_core.plan(ready.json, ready.base_dir))
+
+
+@click.command()
+@click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+@accuracy_option
+@scene_options
+def scene(
+    file: Optional[Path],
+    accuracy: Optional[float],
+    preset: Optional[str],
+    snow_preset: Optional[str],
+    **options: Any,
+) -> None:
+    """Write the scene that the same options of ``panel`` would run."""
+    ready = resolve_options(preset, snow_preset, options, accuracy)
+    if file is None:
+        click.echo(ready.json)
+    else:
+        ready.save(file)
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON Schema of a scene."""
+    click.echo(_core.scene_schema())
+
+
+@click.command()
+@click.argument("one", type=PATH)
+@click.argument("other", type=PATH)
+def compare(one: Path, other: Path) -> None:
+    """Compare the stack heights of a 3D and a 2D results folder."""
+    from snowshed.analysis.dimension_ratio import compare_folders
+    from snowshed.cli import console
+
+    console.print_ratios(compare_folders(one, other))
+
+
+def resolve_options(
+    preset: Optional[str],
+    snow_preset: Optional[str],
+    options: Mapping[str, Any],
+    accuracy: Optional[float],
+    *,
+    quiet: bool = False,
+) -> ResolvedScene:
+    """Return the scene that options describe; errors are in terms of the options."""
+    try:
+        scene = scene_from_options(preset, snow_preset, options)
+        if accuracy is not None:
+            check_alone(options)
+            scene = _accurate(scene, accuracy, quiet=quiet)
+        return scene.resolve()
+    except InputError as error:
+        raise in_terms_of_options(error) from None
+
+
+def _accurate(scene: Scene, accuracy: float, *, quiet: bool = False) -> Scene:
+    """Return the scene with dx and scheme chosen for an accuracy, and say so."""
+    choice = choose(accuracy, scene)
+    if not quiet:
+        click.echo(choice.reason, err=True)
+    return scene.update(choice.values)

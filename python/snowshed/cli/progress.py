@@ -1,0 +1,98 @@
+"""One progress bar for all commands, on stderr."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Optional
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.progress import Progress as Bar
+
+from snowshed.io.formatting import duration
+from snowshed.run.progress import Progress, Reporter
+
+#: Over how many seconds the speed is averaged that says what time is left.
+SPEED_PERIOD_S = 30.0
+LONG_PERIOD_S = 3600.0  # where units take long, and the time left should not jump when one ends
+
+Announcement = Callable[[Progress], str]
+
+
+@contextmanager
+def progress_bar(
+    *,
+    quiet: bool = False,
+    announce: Optional[Announcement] = None,
+    speed_period_s: float = SPEED_PERIOD_S,
+    width: int = 40,
+    transient: bool = False,
+) -> Iterator[Optional[Reporter]]:
+    """Yield what shows a `Progress` as a bar, which ends with the block.
+
+    The bar appears with the first report, so that errors before it stand alone. It shows the time
+    that is left: the one that the work tells, else the one that follows from the speed so far.
+
+    Parameters
+    ----------
+    quiet
+        Whether to show nothing; None is yielded then.
+    announce
+        Returns a line to print before the bar, of the first report.
+    speed_period_s
+        Over how many seconds that speed is averaged.
+    width
+        Of the bar, in characters.
+    transient
+        Whether the bar vanishes at the end.
+    """
+    if quiet:
+        yield None
+        return
+    bar: Optional[Bar] = None
+    console = Console(stderr=True, highlight=False)
+
+    def report(progress: Progress) -> None:
+        nonlocal bar
+        told = progress.left_s is not None
+        if bar is None:
+            if announce is not None:
+                console.print(announce(progress))
+            bar = Bar(
+                TextColumn("{task.description}", markup=False),
+                BarColumn(bar_width=width),
+                TaskProgressColumn(),
+                TimeElapsedColumn() if told else TimeRemainingColumn(),
+                TextColumn("{task.fields[note]}", markup=False),
+                console=console,
+                speed_estimate_period=speed_period_s,
+                transient=transient,
+            )
+            bar.add_task("", total=1.0, note="")
+            bar.start()
+        bar.update(
+            bar.task_ids[0],
+            completed=progress.fraction,
+            description=progress.description,
+            note=_note(progress),
+        )
+
+    try:
+        yield report
+    finally:
+        if bar is not None:
+            bar.stop()
+
+
+def _note(progress: Progress) -> str:
+    """Return the speed or the time left, as far as they are told."""
+    if progress.updates_per_s:
+        return f"{progress.updates_per_s / 1e6:.1f} M updates/s"
+    return "" if progress.left_s is None else f"{duration(progress.left_s)} left"

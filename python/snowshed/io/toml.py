@@ -1,0 +1,76 @@
+"""Data as TOML text, one value a line. Reading TOML is the standard library's business."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+
+from snowshed._core import InputError
+
+BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def toml_value(value: object) -> str:
+    """Return a value as TOML, in one line.
+
+    Parameters
+    ----------
+    value
+        Text, number, truth value, or a list or mapping of these; NumPy's scalars and arrays too.
+
+    Raises
+    ------
+    InputError
+        If TOML has no such value.
+
+    Examples
+    --------
+    >>> print(toml_value([1, 2.5, "a", {"thickness": 0.1, "at": [True]}]))
+    [1, 2.5, "a", {thickness = 0.1, at = [true]}]
+    """
+    if hasattr(value, "tolist"):  # NumPy's
+        value = value.tolist()
+    if hasattr(value, "__fspath__"):
+        value = value.__fspath__()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        # TOML's escapes are those of JSON; it wants one more character escaped.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, Mapping):
+        inner = ", ".join(f"{_key(str(key))} = {toml_value(item)}" for key, item in value.items())
+        return f"{{{inner}}}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(toml_value, value))}]"
+    raise InputError(f"{value!r} cannot be written as TOML")
+
+
+def toml_lines(values: Mapping[str, object], prefix: str = "") -> Iterator[str]:
+    """Yield a line for each value, nested mappings under dotted keys.
+
+    Parameters
+    ----------
+    values
+        By their keys, which may be dotted.
+    prefix
+        What stands before every key.
+
+    Examples
+    --------
+    >>> list(toml_lines({"panel": {"tilt": 40.0, "friction": 0.3}, "title": "a"}))
+    ['panel.tilt = 40.0', 'panel.friction = 0.3', 'title = "a"']
+    """
+    for key, value in values.items():
+        path = f"{prefix}{_key(key)}"
+        if isinstance(value, Mapping) and value:
+            yield from toml_lines(value, f"{path}.")
+        else:
+            yield f"{path} = {toml_value(value)}"
+
+
+def _key(key: str) -> str:
+    """Return a dotted key, its parts quoted where TOML needs it."""
+    return ".".join(part if BARE.fullmatch(part) else toml_value(part) for part in key.split("."))

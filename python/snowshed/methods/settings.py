@@ -1,0 +1,22 @@
+"""What the settings of all methods have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Optional
+
+from snowshed.io.record import Record
+
+
+@dataclass
+class MethodSettings(Record):
+    """Settings of a method."""
+
+    #: The setting that is the size of the smallest thing the method resolves, m.
+    RESOLUTION: ClassVar[str]
+
+    @property
+    def resolution(self) -> Optional[float]:
+        """The size of the smallest thing the method resolves, m."""
+        size: Optional[float] = getattr(self, self.RESOLUTION)
+        return size

@@ -1,0 +1,175 @@
+"""The picture of a season: the snow on the panel, the stack below it, and its outlines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
+from matplotlib.figure import Figure
+
+from snowshed.io.arrays import Floats
+from snowshed.plot.caption import scene_caption
+from snowshed.plot.figure_style import (
+    BODY,
+    FAINT,
+    FIRST,
+    GRID,
+    INK,
+    LAST,
+    STACK,
+    blank,
+    describe,
+    quiet,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+SIZE = (9.0, 10.2)  # inches
+MOST_NAMED = 8  # events in the legend
+
+
+def season_figure(
+    table: pd.DataFrame,
+    outlines: pd.DataFrame,
+    scene: Mapping[str, Any],
+    *,
+    panel: Sequence[Sequence[float]],
+    burial_event: Optional[int],
+    title: str,
+) -> Figure:
+    """Draw a season.
+
+    Parameters
+    ----------
+    table
+        As in season.csv.
+    outlines
+        The profiles of the stack, as in outline.csv; without rows if nothing slid.
+    scene
+        The complete scene of the slide-offs.
+    panel
+        The panel's upper and lower edge, (x, z) in m.
+    burial_event
+        The event with which the snow reaches the panel's lower edge; None: none.
+    title
+        Above the figure, before the key numbers of the scene.
+    """
+    figure = blank(*SIZE)
+    load, stack, side = figure.subplots(3, 1, height_ratios=(1.0, 1.1, 1.2))
+    moments = [datetime.fromisoformat(date) for date in table["date"]]
+    dates: Floats = date2num(moments)  # type: ignore[no-untyped-call]
+    _draw_panel_snow(load, dates, table)
+    _draw_stack(stack, dates, table, float(scene["panel"]["height"]), burial_event)
+    _draw_outlines(side, outlines, panel)
+    for axes in (load, stack):
+        locator: Any = AutoDateLocator()  # type: ignore[no-untyped-call]
+        formatter: Any = ConciseDateFormatter(locator, show_offset=False)  # type: ignore[no-untyped-call]
+        axes.xaxis.set_major_locator(locator)
+        axes.xaxis.set_major_formatter(formatter)
+    stack.sharex(load)
+    for axes in (load, stack, side):
+        _plain(axes)
+    first, last = (f"{moment:%Y-%m-%d}" for moment in (moments[0], moments[-1]))
+    caption = scene_caption(dict(scene))
+    describe(figure, f"Season from {first} to {last}, {title}\n{caption}")
+    return figure
+
+
+def _draw_panel_snow(axes: Axes, dates: Floats, table: pd.DataFrame) -> None:
+    """Draw what pulls at the snow on the panel and what holds it, and when it lets go."""
+    released = (table["released"] == "yes").to_numpy()
+    axes.vlines(dates, 0.0, table["driving_pa"], color=STACK, linewidth=3.0, label="downslope pull")
+    axes.plot(
+        dates,
+        table["resisting_pa"],
+        "_",
+        color=BODY,
+        markersize=9,
+        markeredgewidth=2,
+        label="friction and adhesion",
+    )
+    axes.plot(
+        dates[released],
+        table["driving_pa"][released],
+        "v",
+        color=INK,
+        markersize=6,
+        label="lets go",
+    )
+    axes.set_title("Snow on the panel: stress at its base, Pa", loc="left", color=INK, fontsize=11)
+    axes.set_ylim(0.0, 1.25 * max(table["driving_pa"].max(), table["resisting_pa"].max()))
+    axes.legend(frameon=False, fontsize=9, ncols=3, loc="upper left")
+
+
+def _draw_stack(
+    axes: Axes, dates: Floats, table: pd.DataFrame, edge: float, burial_event: Optional[int]
+) -> None:
+    """Draw the height of the stack against that of the panel's lower edge."""
+    below = table["clearance_m"].rsub(edge)  # the snow right below the edge
+    axes.axhline(edge, color=INK, linewidth=1.2, linestyle=(0, (4, 3)))
+    axes.annotate(
+        "lower edge of the panel",
+        (1.0, edge),
+        (-2, 4),
+        xycoords=axes.get_yaxis_transform(),
+        textcoords="offset points",
+        ha="right",
+        color=INK,
+        fontsize=9,
+    )
+    steps: dict[str, Any] = {"where": "post", "linewidth": 2.0}
+    axes.step(dates, table["stack_height_m"], color=STACK, label="highest snow", **steps)
+    axes.step(dates, below, color=BODY, label="snow below the edge", **steps)
+    if (table["settled_height_m"] < table["stack_height_m"]).any():
+        name = "highest snow, settled (estimate)"
+        settled = {**steps, "linewidth": 1.3, "linestyle": "--"}
+        axes.step(dates, table["settled_height_m"], color=INK, label=name, **settled)
+    if burial_event is not None:
+        row = table["event"].fillna(0).tolist().index(burial_event)
+        _mark_burial(axes, dates[row], below.iloc[row], burial_event)
+    axes.set_title("Stack: height above the ground, m", loc="left", color=INK, fontsize=11)
+    axes.set_ylim(0.0, 1.25 * max(edge, float(table["stack_height_m"].max() or 0.0)))
+    axes.legend(frameon=False, fontsize=9, loc="upper left", ncols=3)
+
+
+def _mark_burial(axes: Axes, date: float, below: float, event: int) -> None:
+    axes.plot(date, below, "o", color=BODY, markersize=8)
+    axes.annotate(
+        f"event {event}: reached",
+        (date, below),
+        (-8, -4),
+        textcoords="offset points",
+        ha="right",
+        va="top",
+        color=BODY,
+        fontsize=9,
+    )
+
+
+def _draw_outlines(axes: Axes, outlines: pd.DataFrame, panel: Sequence[Sequence[float]]) -> None:
+    """Draw the profile of the stack after every event, and the panel above it."""
+    axes.plot(*zip(*panel), color=INK, linewidth=3.5, solid_capstyle="round")
+    axes.axhline(0.0, color=FAINT, linewidth=1.2)
+    events = sorted(set(outlines["event"]))
+    shades = colormaps["viridis"](np.linspace(FIRST, LAST, max(len(events), 1)))
+    every = 1 + (len(events) - 1) // MOST_NAMED
+    for number, (event, shade) in enumerate(zip(events, shades)):
+        profile = outlines[outlines["event"] == event]
+        name = f"after event {event}" if number % every == 0 else None
+        axes.plot(profile["x"], profile["z"], color=shade, linewidth=1.6, label=name)
+    if events:
+        axes.legend(frameon=False, fontsize=9, loc="upper right")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_title("Outlines, from the side, m", loc="left", color=INK, fontsize=11)
+    axes.set_xlabel("along the ground from the panel's centre, m", color=INK, fontsize=9)
+
+
+def _plain(axes: Axes) -> None:
+    quiet(axes)
+    axes.grid(color=GRID, linewidth=0.8)

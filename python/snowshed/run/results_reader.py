@@ -1,0 +1,159 @@
+"""Reading a results folder: tables as pandas, particles and histories as xarray."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.csv_table import read_csv
+from snowshed.io.extras import require
+from snowshed.io.json_file import read_object
+from snowshed.io.pvd import read_series
+from snowshed.io.units import unit_of_column
+from snowshed.io.vtp import read_particles
+from snowshed.run.particle_dataset import particle_dataset
+from snowshed.run.results import read_events
+from snowshed.scene.scene import PathLike, ResolvedScene
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray
+
+
+class Results:
+    """The results folder of a run, as ``snowshed run`` and `run_events` write it.
+
+    Files are read when they are asked for. Every table has a dict of units by column in
+    ``attrs["units"]``, every variable of a Dataset its ``units`` and ``long_name`` in `attrs`. The
+    methods raise InputError where a file is missing, or holds something else.
+
+    Parameters
+    ----------
+    folder
+        The folder; it holds a ``scene.json``.
+
+    Raises
+    ------
+    InputError
+        If it is no results folder.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene, run_events
+    >>> tiny = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
+    >>> tiny = tiny.update({"events": {"count": 1, "max_time": 0.1}})
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = run_events(tiny, folder, pictures=False)
+    ...     results = Results(folder)
+    ...     results.events.attrs["units"]["height_m"], results.run["status"]
+    ('m', 'finished')
+    """
+
+    def __init__(self, folder: PathLike) -> None:
+        self.folder = Path(folder)
+        if not (self.folder / "scene.json").is_file():
+            raise InputError(f"{folder}: no results; it holds no scene.json")
+
+    @cached_property
+    def scene(self) -> ResolvedScene:
+        """The complete scene that made the results."""
+        return ResolvedScene.load(self.folder / "scene.json")
+
+    @property
+    def run(self) -> dict[str, object]:
+        """Version, machine, size, speed and status of the run (run.json)."""
+        path = self.folder / "run.json"
+        if not path.is_file():
+            raise InputError(f"{path}: not there; a run writes it with its first checkpoint")
+        return dict(read_object(path))
+
+    @property
+    def events(self) -> pd.DataFrame:
+        """One row per event: the stack after it, and how it went (events.csv)."""
+        return _with_units(read_events(self.folder))
+
+    @property
+    def outline(self) -> pd.DataFrame:
+        """The profile of the stack after each event: event, x and z, m (outline.csv)."""
+        table = self._numbers("outline.csv", ("event", "x", "z"), "a run that ended an event")
+        table.attrs["units"] = {"x": "m", "z": "m"}
+        return table
+
+    @property
+    def energy(self) -> xarray.Dataset:
+        """The energy balance at the end of each event, J, along ``event`` (energy.csv).
+
+        Needs xarray (extra ``study``).
+        """
+        table = self._numbers("energy.csv", ("event",), "a run with output.energy = true")
+        library = require("xarray", "study", "a Dataset of energies")
+        dataset: xarray.Dataset = library.Dataset.from_dataframe(table.set_index("event"))
+        for name in dataset.data_vars:
+            dataset[name].attrs["units"] = unit_of_column(str(name))
+        return dataset
+
+    def particles(self, event: Optional[int] = None) -> xarray.Dataset:
+        """Return the particles after an event.
+
+        Parameters
+        ----------
+        event
+            Its number, from 1; None: the last one there is.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions ``particle``, with the ids, and ``component``.
+        """
+        there = {
+            int(file.stem.rpartition("_")[2]): file
+            for file in (self.folder / "particles").glob("event_*.vtp")
+        }
+        if not there:
+            raise InputError(f"{self.folder / 'particles'}: no particles are stored there")
+        number = max(there) if event is None else event
+        if number not in there:
+            allowed = ", ".join(map(str, sorted(there)))
+            raise InputError(f"event: {event!r}; {self.folder / 'particles'} has {allowed}")
+        times = self.events.set_index("event")["sim_time_s"]
+        return particle_dataset(read_particles(there[number]), number, float(times[number]))
+
+    def snapshots(self) -> Iterator[xarray.Dataset]:
+        """Yield the particles of one snapshot after the other, each as `particles` does.
+
+        Their ``time`` counts through all events.
+        """
+        path = self.folder / "snapshots" / "snapshots.pvd"
+        if not path.is_file():
+            raise InputError(f"{path}: not there; a run with output.snapshot_interval writes it")
+        for time, file in read_series(path):
+            values = read_particles(file)
+            yield particle_dataset(values, int(values["event"].max(initial=0)), time)
+
+    def _numbers(self, name: str, columns: tuple[str, ...], writer: str) -> pd.DataFrame:
+        """Return a table of finite numbers only."""
+        path = self.folder / name
+        if not path.is_file():
+            raise InputError(f"{path}: not there; {writer} writes it")
+        table = read_csv(path)
+        if missing := [column for column in columns if column not in table]:
+            raise InputError(f"{path}: no column {', '.join(missing)}")
+        for column in table:
+            if table[column].dtype.kind not in "if" or not np.isfinite(table[column]).all():
+                raise InputError(f"{path}: no finite numbers in the column {column}")
+        return table
+
+    def __repr__(self) -> str:
+        return f"Results({str(self.folder)!r})"
+
+
+def _with_units(table: pd.DataFrame) -> pd.DataFrame:
+    units = {str(name): unit_of_column(str(name)) for name in table}
+    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
+    return table

@@ -1,0 +1,59 @@
+"""What is measured of a stack, by which name, in which column of a table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from snowshed._core import InputError
+
+#: Lengths of a stack that are compared, calibrated on and drawn, m.
+QUANTITIES = ("height", "length", "head", "tail")
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What counts as the stack.
+
+    Attributes
+    ----------
+    name
+        What it is asked for by.
+    label
+        What it is, in words.
+    prefix
+        What its columns begin with.
+
+    Examples
+    --------
+    >>> MEASURES["body"].column("height")
+    'body_height_m'
+    """
+
+    name: str
+    label: str
+    prefix: str = ""
+
+    def column(self, quantity: str) -> str:
+        """Return the column of one of `QUANTITIES`, in m."""
+        return f"{self.prefix}{quantity}_m"
+
+    def columns(self, quantities: Sequence[str]) -> dict[str, str]:
+        """Return the quantity that each column holds."""
+        return {self.column(quantity): quantity for quantity in quantities}
+
+
+MEASURES: Mapping[str, Measure] = {
+    one.name: one
+    for one in (
+        Measure("stack", "97 % of the snow"),
+        Measure("body", "the largest connected body of snow", "body_"),
+    )
+}
+
+
+def measure_named(name: str) -> Measure:
+    """Return one of `MEASURES`; raises InputError if there is none of that name."""
+    if name not in MEASURES:
+        raise InputError(f"measure: {name!r} is unknown; allowed: {', '.join(MEASURES)}")
+    return MEASURES[name]

@@ -1,0 +1,186 @@
+import json
+
+import pytest
+
+from snowshed import InputError, Scene
+from snowshed.analysis.verification import recorded
+from snowshed.analysis.verification.measurements import Measured, Measurement
+from snowshed.analysis.verification.recorded import load_recorded, record
+from snowshed.cli.accuracy import CASE, QUANTITIES, choose
+from snowshed.cli.main import main
+from snowshed.cli.scene_options import option_name
+from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.scene.schema import scene_parameters
+
+THICKNESS = 0.02  # of the laboratory's slab, m
+
+
+def stack(dx, height, length, wall, *, spread=None, **settings):
+    """A recorded stack with these relative errors."""
+    measured = [Measured("height", 0.1, 0.1, height), Measured("length", 0.3, 0.3, length)]
+    if spread is not None:
+        measured += [Measured(f"{name}_spread", spread, 0.0, spread) for name in QUANTITIES]
+    settings = {"dimension": 2, "events": 5, "dx": dx, "transfer": "flip", **settings}
+    return Measurement(CASE, settings, measured, wall_s=wall)
+
+
+RECORDED = [
+    stack(0.02, 0.15, 0.25, 1.0, spread=0.05),
+    stack(0.01, 0.08, 0.09, 8.0, spread=0.04),
+    stack(0.005, 0.03, 0.06, 60.0, spread=0.03),
+    stack(0.02, 0.30, 0.10, 2.0, transfer="apic"),
+    stack(0.01, 0.09, 0.04, 7.0, transfer="apic"),
+    stack(0.005, 0.02, 0.04, 90.0, transfer="apic", basis="cubic"),
+]
+
+
+def scene_with(**values):
+    return Scene.preset("lab-50").update({"dimension": 2, **values})
+
+
+def test_the_quickest_settings_that_are_accurate_enough():
+    for wanted, dx, transfer, basis in (
+        (0.30, 0.02, "flip", None),
+        (0.10, 0.01, "apic", None),
+        (0.06, 0.005, "flip", None),
+        (0.04, 0.005, "apic", "cubic"),
+    ):
+        choice = choose(wanted, scene_with(), RECORDED)
+        assert choice.reached
+        assert choice.values["numerics.dx"] == dx
+        assert choice.values["numerics.transfer"] == transfer
+        assert choice.values["numerics.basis"] == basis
+
+
+def test_cells_are_relative_to_the_slab():
+    thick = scene_with(**{"slab.thickness": 0.5})
+    choice = choose(0.1, thick, RECORDED)
+    assert choice.values["numerics.dx"] == pytest.approx(0.5 * 0.01 / THICKNESS)
+    assert "dx 0.25 m (0.5 of the slab's thickness) with apic." in choice.reason
+
+
+def test_it_says_what_it_chose_and_why():
+    reason = choose(0.06, scene_with(), RECORDED).reason
+    assert reason == (
+        "--accuracy 6 %: dx 0.005 m (0.25 of the slab's thickness) with flip. These were the "
+        "quickest in the recorded runs of lab-50 to stay within it: the height of the stack was "
+        "off by 3 % and its length by 6 %. Random seedings alone made them differ by 3 % and 3 %."
+    )
+
+
+def test_it_says_when_the_accuracy_was_never_reached():
+    choice = choose(0.01, scene_with(), RECORDED)
+    assert not choice.reached
+    assert choice.values["numerics.basis"] == "cubic"
+    assert "No recorded run of lab-50 was that accurate." in choice.reason
+    assert "off by 2 % and its length by 4 %" in choice.reason
+
+
+def test_a_lucky_coarse_run_is_not_chosen():
+    lucky = [stack(0.02, 0.01, 0.01, 1.0), *RECORDED[1:3]]
+    assert choose(0.07, scene_with(), lucky).values["numerics.dx"] == 0.005
+
+
+def test_runs_like_the_scene_count_and_others_are_named():
+    spatial = [*RECORDED, stack(0.01, 0.2, 0.2, 99.0, dimension=3)]
+    choice = choose(0.3, scene_with(dimension=3), spatial)
+    assert choice.values["numerics.dx"] == 0.01
+    assert "Unlike" not in choice.reason
+    assert "those runs were made with 2D" in choose(0.3, scene_with(dimension=3), RECORDED).reason
+    assert (
+        "those runs were made with events 5"
+        in choose(0.3, scene_with(**{"events.count": 9}), RECORDED).reason
+    )
+
+
+def test_what_is_chosen_can_be_set():
+    choice = choose(0.04, scene_with(**{"numerics.precision": "double"}), RECORDED)
+    data = scene_with().update(choice.values).resolve().data
+    assert data["numerics"]["dx"] == 0.005
+    assert data["numerics"]["basis"] == "cubic"
+    assert choice.values["numerics.precision"] is None  # as in the recorded runs: the default
+    assert set(choice.values) == set(ACCURACY.values())
+    assert set(ACCURACY.values()) <= {parameter.path for parameter in scene_parameters()}
+
+
+def test_it_needs_a_slab_and_something_recorded():
+    bodies = [{"shape": {"type": "sphere", "center": [0, 1], "radius": 0.1}}]
+    with pytest.raises(InputError, match="--accuracy: the scene has no slab"):
+        choose(0.1, Scene(dimension=2, bodies=bodies), RECORDED)
+    failed = Measurement(CASE, {"dx": 0.1}, [], failure="no")
+    for nothing in ([], [failed], [Measurement("bar", {"dx": 0.1}, [])]):
+        with pytest.raises(InputError, match="nothing is recorded"):
+            choose(0.1, scene_with(), nothing)
+
+
+@pytest.fixture
+def packaged(tmp_path, monkeypatch):
+    """Let the commands read made-up measurements in place of those of the package."""
+    path = tmp_path / "recorded.json"
+    record(RECORDED, path)
+    monkeypatch.setattr(recorded, "PACKAGED", path)
+
+
+def test_recorded_measurements_are_read_back(tmp_path):
+    path = tmp_path / "recorded.json"
+    record([*RECORDED, Measurement("bar", {}, [], failure="no")], path)
+    assert [one.to_json() for one in load_recorded(path)] == [one.to_json() for one in RECORDED]
+
+
+def test_the_command_chooses_and_says_so(packaged, capsys):
+    options = ["--preset", "lab-50", "--dim", "2", "--thickness", "0.04", "--accuracy", "6%"]
+    assert main(["scene", *options]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["numerics"]["dx"] == 0.01
+    assert err.startswith("--accuracy 6 %: dx 0.01 m (0.25 of the slab's thickness")
+
+
+def test_panel_runs_what_was_chosen(packaged, tmp_path, capsys):
+    options = ["--preset", "lab-50", "--dim", "2", "--events", "1", "--max-time", "0.05"]
+    command = ["panel", *options, "--accuracy", "0.3", "-q", "-o", str(tmp_path / "out")]
+    assert main(command) == 0
+    assert capsys.readouterr() == ("", "")
+    scene = json.loads((tmp_path / "out" / "scene.json").read_text())
+    assert scene["numerics"]["dx"] == 0.02
+
+
+def test_plan_takes_it_in_place_of_what_the_file_says(packaged, tmp_path, capsys):
+    path = tmp_path / "scene.json"
+    scene_with(**{"numerics.dx": 0.02}).resolve().save(path)
+    assert main(["plan", str(path)]) == 0
+    coarse = capsys.readouterr().out
+    assert main(["plan", str(path), "--accuracy", "5%"]) == 0
+    out, err = capsys.readouterr()
+    assert "dx 0.005 m" in err
+
+    per_event = [line for line in out.splitlines() if "per event" in line]
+    assert per_event != [line for line in coarse.splitlines() if "per event" in line]
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [("numerics.dx", "0.01"), ("numerics.transfer", "apic"), ("seeding.pattern", "regular")],
+)
+def test_it_does_not_go_with_what_it_chooses(packaged, capsys, path, value):
+    option = option_name(path)
+    assert main(["scene", "--accuracy", "5%", option, value]) == 2
+    error = capsys.readouterr().err
+    assert error == f"error: {option}: --accuracy chooses grid and scheme; give one of the two\n"
+
+
+@pytest.mark.parametrize("text", ["5", "0", "-3%", "100%", "five", "nan", ""])
+def test_what_is_no_accuracy(capsys, text):
+    assert main(["scene", f"--accuracy={text}"]) == 2
+    assert "is no accuracy; give a percentage such as 5%" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_package_brings_recorded_runs(dimension):
+    choice = choose(0.5, scene_with(dimension=dimension))
+    assert 0 < choice.values["numerics.dx"] <= THICKNESS
+    assert choice.reason.startswith("--accuracy 50 %: dx ")
+
+
+def test_recorded_runs_have_the_names_of_today():
+    names = {name for one in load_recorded() for name in one.settings}
+    assert "courant_factor" in names and "step_factor" not in names

@@ -1,0 +1,44 @@
+"""Docstrings of components say what the core's schema says."""
+
+import typing
+
+import pytest
+from component_docs import attributes_section
+
+from snowshed import Scene
+from snowshed.io.field_type import alternatives_of
+from snowshed.scene.schema import properties, resolve, scene_schema
+
+
+def mirrored(record, node, found):
+    """Collect every class of records with the schema's node that it mirrors."""
+    found[record] = node
+    for key, child in properties(scene_schema(), node).items():
+        kind = record().record_type(key)
+        if kind is not None and kind not in found:
+            full = resolve(scene_schema(), child)
+            mirrored(kind, resolve(scene_schema(), full.get("items", full)), found)
+    return found
+
+
+NODES = mirrored(Scene, scene_schema(), {})
+
+
+@pytest.mark.parametrize("record", NODES, ids=lambda record: record.__name__)
+def test_attributes_are_those_of_the_schema(record):
+    section = attributes_section(record, scene_schema(), NODES[record])
+    assert section in record.__doc__, f"write in the docstring of {record.__name__}:\n{section}"
+
+
+@pytest.mark.parametrize("record", NODES, ids=lambda record: record.__name__)
+def test_enumerations_and_other_names_are_those_of_the_schema(record):
+    hints = typing.get_type_hints(record)
+    aliases = {}
+    for key, child in properties(scene_schema(), NODES[record]).items():
+        full = resolve(scene_schema(), child)
+        field = record.keys()[key]
+        if "enum" in full:
+            ((kind,), choices) = alternatives_of(hints[field]), tuple(full["enum"])
+            assert typing.get_args(kind) == choices
+        aliases.update(dict.fromkeys(full.get("x-aliases", ()), field))
+    assert record.aliases() == aliases

@@ -1,0 +1,102 @@
+"""The house as docs/architecture.md draws it: arrows point down, and nothing grows too large."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from paths import ROOT
+
+CPP = ROOT / "cpp" / "snowshed"
+
+#: What each C++ folder may include besides itself.
+ALLOWED = {
+    "core": set(),
+    "io": {"core"},
+    "particles": {"core"},
+    "geometry": {"core", "particles", "io"},
+    "material": {"core"},
+    "sampling": {"core", "particles", "geometry"},
+    "methods": {"core", "io", "particles", "geometry", "material", "sampling"},
+    "scene": {"core", "io", "particles", "geometry", "material", "sampling", "methods"},
+    "run": {"core", "io", "particles", "geometry", "material", "sampling", "methods", "scene"},
+}
+MOST_LINES = 450
+MOST_ENTRIES = 12
+
+
+def tracked(*patterns):
+    """Return the files of the project that git knows, or may come to know."""
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return [path for name in listed.stdout.splitlines() if (path := ROOT / name).is_file()]
+
+
+def includes(source):
+    """Return the headers of the library that a C++ file includes, from cpp/."""
+    return re.findall(r'^#include "(snowshed/[^"]+)"', source.read_text(), re.MULTILINE)
+
+
+def test_every_folder_of_the_library_has_its_place():
+    assert {path.name for path in CPP.iterdir() if path.is_dir()} == ALLOWED.keys()
+
+
+@pytest.mark.parametrize("folder", ALLOWED)
+def test_no_cpp_include_points_up(folder):
+    wrong = [
+        f"{source.relative_to(ROOT)} includes {header}"
+        for source in sorted((CPP / folder).rglob("*.?pp"))
+        for header in includes(source)
+        if header.split("/")[1] not in ALLOWED[folder] | {folder}
+    ]
+    assert wrong == []
+
+
+def test_no_method_knows_another():
+    wrong = [
+        f"{source.relative_to(ROOT)} includes {header}"
+        for method in (CPP / "methods").iterdir()
+        if method.is_dir()
+        for source in sorted(method.rglob("*.?pp"))
+        for header in includes(source)
+        if header.startswith("snowshed/methods/")
+        and len(Path(header).parts) > 3
+        and Path(header).parts[2] != method.name
+    ]
+    assert wrong == []
+
+
+def test_no_cpp_header_includes_itself_by_a_detour():
+    graph = {f"snowshed/{path.relative_to(CPP)}": includes(path) for path in CPP.rglob("*.hpp")}
+    done = set()
+
+    def visit(header, above):
+        assert header not in above, " includes ".join([*above, header])
+        if header not in done:
+            for other in graph.get(header, ()):
+                visit(other, [*above, header])
+            done.add(header)
+
+    for header in graph:
+        visit(header, [])
+
+
+def test_no_python_import_points_up_or_in_a_circle():
+    """The contracts stand in pyproject.toml."""
+    code = "from importlinter.cli import lint_imports_command; lint_imports_command()"
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_root_of_the_package_is_small():
+    package = ROOT / "python" / "snowshed"
+    entries = {path.relative_to(package).parts[0] for path in tracked("python/snowshed")}
+    assert len(entries) <= MOST_ENTRIES, sorted(entries)
+
+
+def test_no_source_file_is_long():
+    patterns = [f"*.{ending}" for ending in ("py", "hpp", "cpp", "lua", "sh", "cmake")]
+    lengths = {path: len(path.read_text().splitlines()) for path in tracked(*patterns)}
+    assert {str(path): n for path, n in lengths.items() if n > MOST_LINES} == {}

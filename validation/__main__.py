@@ -1,0 +1,9 @@
+"""``python -m validation``."""
+
+import sys
+
+from snowshed.cli.main import main
+from validation.command import validate
+
+if __name__ == "__main__":
+    sys.exit(main(command=validate, name="python -m validation"))

@@ -1,0 +1,93 @@
+"""Balances of momentum and energy, kept from outside the solver during a run."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from snowshed import _core
+
+#: Heights are known to rounding only: energies below the work of lifting all snow by this part of
+#: a cell are no measure for an error.
+LEAST_DROP = 1e-2
+
+_SPENT = ("plastic_j", "friction_j", "sticking_j", "impact_j", "transfer_j", "sleep_j")
+
+
+class Conservation:
+    """The balances of momentum and energy of a simulation.
+
+    Energy comes in with thrown snow and as work of gravity. What is stored in motion and elastic
+    strain can never be more; and with what was spent it must be exactly that. Errors are relative
+    to all that came in over the run.
+    """
+
+    def __init__(self, simulation: _core.Simulation, gravity: float, dx: float) -> None:
+        self.simulation = simulation
+        self.gravity = gravity
+        self.dx = dx
+        self._brought = 0.0  # J, motion of thrown snow, less what reseeding took
+        self._thrown = 0.0  # J, the same without what reseeding took
+        self._laid = 0.0  # J, gravitational energy of all snow where it was laid
+        self._dropped = 0.0  # J, largest work of gravity either way
+        self._residual = (0.0, 0.0)  # J, lowest and highest
+        self._excess = (-math.inf, -math.inf)  # J, highest and last
+        self._mass = 0.0  # kg
+        self._momentum = np.zeros(3)  # kg m/s, of all snow when it was laid
+        self._momenta = 0.0  # kg m/s, sum of their magnitudes
+
+    def begin(self, before: dict[str, float]) -> None:
+        """Take in the snow that an event has brought; `before` is the energy before it."""
+        after = self.simulation.energy()
+        self._brought += _in_motion(after) - _in_motion(before)
+        self._thrown += max(after["kinetic_j"] - before["kinetic_j"], 0.0)
+        self._laid += after["gravitational_j"] - before["gravitational_j"]
+        masses, velocities = self.simulation.masses(), self.simulation.velocities()
+        self._mass = float(masses.sum())
+        self._momentum = masses @ velocities
+        self._momenta = float(masses @ np.linalg.norm(velocities, axis=1))
+
+    def sample(self) -> None:
+        """Compare what is there now with what came in."""
+        energy = self.simulation.energy()
+        work = self._laid - energy["gravitational_j"]
+        excess = _in_motion(energy) - self._brought - work
+        residual = excess + sum(energy[name] for name in _SPENT)
+        if not math.isfinite(residual):
+            work, excess, residual = 0.0, math.inf, math.inf
+        self._dropped = max(self._dropped, abs(work))
+        self._excess = (max(self._excess[0], excess), excess)
+        self._residual = (min(self._residual[0], residual), max(self._residual[1], residual))
+
+    def energy_errors(self) -> dict[str, float]:
+        """Return how far the books did not close, relative to what came in.
+
+        Returns
+        -------
+        dict
+            ``energy_error``: largest |stored + spent - came in|; ``energy_gain``: the same where
+            it is positive; ``stored_excess``: largest (stored - came in), ``final_excess``: the
+            last one.
+        """
+        least = self._mass * self.gravity * self.dx * LEAST_DROP
+        scale = max(self._thrown + self._dropped, least)
+        low, high = self._residual
+        return {
+            "energy_error": max(-low, high) / scale,
+            "energy_gain": high / scale,
+            "stored_excess": self._excess[0] / scale,
+            "final_excess": self._excess[1] / scale,
+        }
+
+    def momentum_error(self, time_s: float) -> float:
+        """Return how far the momentum is from that of free flight for `time_s`, relative."""
+        now = self.simulation.masses() @ self.simulation.velocities()
+        fallen = self._mass * self.gravity * time_s
+        expected = self._momentum - np.array([0.0, 0.0, fallen])
+        return float(np.linalg.norm(now - expected) / (self._momenta + fallen))
+
+
+def _in_motion(energy: dict[str, Any]) -> float:
+    return float(energy["kinetic_j"] + energy["elastic_j"])
