@@ -141,6 +141,8 @@ def test_density_and_pressure_follow_from_what_is_stored(falling):
 
 @pytest.mark.parametrize("name", ARRAYS)
 def test_methods_read_in_either_order(falling, name):
+    falling.run(until=lambda now: not now.on_panel().all(), every=1)
+    assert 0 < falling.on_panel().mean() < 1
     by_id, stored = getattr(falling, name)(), getattr(falling, name)(order="storage")
     assert np.array_equal(by_id[falling.ids("storage")], stored)
     with pytest.raises(InputError, match='"id", "storage"'):
