@@ -93,7 +93,8 @@ class Method {
 
   /// Lowers each particle, ordered by id, by a height (m) and adds to its volumetric plastic
   /// strain, if its law has one. Elastic strains and velocities stay. The energy balance counts it
-  /// as added. Throws as `add_velocity`.
+  /// as added. Throws as `add_velocity`, and SimulationError where a particle would come to lie
+  /// outside the space that the method can address.
   virtual void settle(const std::vector<double>& drops,
                       const std::vector<double>& plastic_changes) = 0;
 
@@ -116,7 +117,7 @@ class Method {
 
   // --- what the snow is and does; also of a method that has failed -----------------------------
 
-  virtual std::size_t size() const = 0;    ///< particles
+  virtual std::size_t size() const = 0;  ///< particles
   virtual ParticleState state() const = 0;
   virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
   /// The energy balance; all zero unless the method was made to keep it.

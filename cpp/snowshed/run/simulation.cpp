@@ -195,9 +195,7 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
 
 Simulation::~Simulation() = default;
 
-int Simulation::threads() const {
-  return threads_to_use(scene_.numerics.threads);
-}
+int Simulation::threads() const { return threads_to_use(scene_.numerics.threads); }
 
 std::optional<Reseeding> Simulation::begin_event() {
   if (running_) throw SimulationError("the present event has not ended yet");

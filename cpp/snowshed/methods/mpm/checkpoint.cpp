@@ -174,7 +174,8 @@ void MpmSolver<T, D>::load(const BinaryReader& in) {
   next.contacts =
       next.contacts.relocated(model_.boundary, next.layout.grid_blocks, next.progress.time);
   next.contacts.restore(read_impulses<T, D>(in));
-  next.sleep = next.sleep.restored(next.layout, read_sleep<D>(in, next.layout.particle_blocks.size()));
+  next.sleep =
+      next.sleep.restored(next.layout, read_sleep<D>(in, next.layout.particle_blocks.size()));
   accept(std::move(next));
   work_.since_sort = 0;
   broken_ = false;

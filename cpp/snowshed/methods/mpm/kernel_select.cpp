@@ -79,9 +79,9 @@ Variant chosen_variant() {
   if (!forced || !*forced) return supported.back();
   for (const Variant v : supported)
     if (std::strcmp(forced, name_of(v)) == 0) return v;
-  throw InputError("SNOWSHED_KERNELS", "is \"" + std::string(forced) + "\"; allowed: " +
-                                           list_of(all_variants) + "; this machine can run: " +
-                                           list_of(supported));
+  throw InputError("SNOWSHED_KERNELS", "is \"" + std::string(forced) +
+                                           "\"; allowed: " + list_of(all_variants) +
+                                           "; this machine can run: " + list_of(supported));
 }
 
 Variant variant() {

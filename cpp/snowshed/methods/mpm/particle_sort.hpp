@@ -36,8 +36,8 @@ class ParticleSort {
   /// Finds where the particles belong. `blocks` holds the block that each one's `cell` refers to,
   /// `present` the layout before. Throws SimulationError where one has left the addressable grid
   /// (2^20 blocks to each side) or is not finite.
-  ParticleSort(const Particles<T, D>&, std::vector<BlockKey> blocks,
-               const BlockLayout<D>& present, int threads);
+  ParticleSort(const Particles<T, D>&, std::vector<BlockKey> blocks, const BlockLayout<D>& present,
+               int threads);
 
   /// The layout of the particles once they are sorted; it may be moved away.
   BlockLayout<D> layout;

@@ -58,8 +58,9 @@ ParticleState MpmSolver<T, D>::state() const {
   ParticleState s;
   s.positions.reserve(n);
   for (std::size_t i : at) {
-    s.positions.push_back(embed(
-        position_of(state_.particles, i, blocks[i], model_.options.numerics.dx, model_.options.numerics.basis)));
+    s.positions.push_back(
+        embed(position_of(state_.particles, i, blocks[i], model_.options.numerics.dx,
+                          model_.options.numerics.basis)));
     VecD<D> v;
     for (int d = 0; d < D; ++d) v[d] = double(state_.particles.velocity[d][i]);
     s.velocities.push_back(embed(v));

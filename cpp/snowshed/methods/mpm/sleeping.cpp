@@ -19,7 +19,8 @@ void MpmSolver<T, D>::let_sleep() noexcept {
   if (!state_.sleep.allowed() || counters().steps % steps_between_checks != 0) return;
   const ParticleView<T> view = state_.particles.view();
   const StepParameters<T> step = parameters(state_.progress.dt);
-  const auto& fallen = state_.sleep.update(state_.layout, time(), steps_between_checks, time_step(), block_probe());
+  const auto& fallen =
+      state_.sleep.update(state_.layout, time(), steps_between_checks, time_step(), block_probe());
   for (std::int32_t b : fallen) {
     state_.progress.energy.sleep += work_.grid.block_stats[b].kinetic;
     state_.progress.energy.kinetic -= work_.grid.block_stats[b].kinetic;
@@ -55,9 +56,9 @@ typename Sleep<D>::BlockProbe MpmSolver<T, D>::block_probe() {
   };
   block_probe.obstacle_moves = [this](std::int32_t b) {
     const auto& around = state_.layout.around_particles[b];
-    return model_.boundary.any_motion() && std::any_of(around.begin(), around.end(), [&](std::int32_t g) {
-             return state_.contacts.moves(std::size_t(g));
-           });
+    return model_.boundary.any_motion() &&
+           std::any_of(around.begin(), around.end(),
+                       [&](std::int32_t g) { return state_.contacts.moves(std::size_t(g)); });
   };
   block_probe.holds_its_snow = [this](std::int32_t b) {
     return state_.particles.lie_within_block(state_.layout.first[b], state_.layout.first[b + 1]);

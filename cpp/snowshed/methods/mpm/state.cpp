@@ -55,7 +55,7 @@ void MpmState<T, D>::find_elastic_limits(const MpmModel<T, D>& model) {
 
 template <class T, int D>
 void MpmState<T, D>::append(const MpmModel<T, D>& model, const ParticleBatch& batch,
-                         std::vector<BlockKey>& blocks) {
+                            std::vector<BlockKey>& blocks) {
   check_batch(batch, model.materials.size());
   const std::size_t old = particles.size();
   particles.resize(old + batch.positions.size());
@@ -80,7 +80,7 @@ void MpmState<T, D>::append(const MpmModel<T, D>& model, const ParticleBatch& ba
 
 template <class T, int D>
 BlockKey MpmState<T, D>::put(const MpmModel<T, D>& model, std::size_t particle,
-                          const VecD<D>& position) {
+                             const VecD<D>& position) {
   const MpmSettings& n = model.options.numerics;
   const auto place = Placement<D>::of(position, n.dx, n.basis);
   for (int d = 0; d < D; ++d) particles.cell[d][particle] = T(place.cell[d]);
@@ -93,8 +93,7 @@ void MpmState<T, D>::arrange(const MpmModel<T, D>& model, std::vector<BlockKey> 
   ParticleSort<T, D> sort(particles, std::move(blocks), layout, threads);
   std::optional<Contacts<T, D>> relocated;
   if (sort.layout.grid_blocks != layout.grid_blocks)
-    relocated =
-        contacts.relocated(model.boundary, sort.layout.grid_blocks, progress.time, threads);
+    relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, progress.time, threads);
   Sleep<D> sleep_after = sleep.relocated(sort.layout, progress.time);
   // All is at hand: nothing from here on fails.
   sort.apply(particles);
@@ -109,9 +108,9 @@ double MpmState<T, D>::gravitational_energy(const MpmModel<T, D>& model) const {
   double sum = 0;
   for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
     for (std::int32_t i = layout.first[b]; i < layout.first[b + 1]; ++i)
-      sum += double(particles.mass[i]) * position_of(particles, std::size_t(i),
-                                                     layout.particle_blocks[b], n.dx,
-                                                     n.basis)[D - 1];
+      sum +=
+          double(particles.mass[i]) *
+          position_of(particles, std::size_t(i), layout.particle_blocks[b], n.dx, n.basis)[D - 1];
   return sum * model.options.gravity;
 }
 

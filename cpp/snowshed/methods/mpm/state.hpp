@@ -38,7 +38,8 @@ struct MpmState {
 
   /// Appends particles; `blocks` gets the block of each. Throws InputError for a batch that is not
   /// of this model, SimulationError outside the addressable grid.
-  void append(const MpmModel<T, D>& model, const ParticleBatch& batch, std::vector<BlockKey>& blocks);
+  void append(const MpmModel<T, D>& model, const ParticleBatch& batch,
+              std::vector<BlockKey>& blocks);
 
   /// Puts a particle at a position (m); returns the block it is in.
   BlockKey put(const MpmModel<T, D>& model, std::size_t particle, const VecD<D>& position);
