@@ -262,7 +262,7 @@ std::unique_ptr<Method> thrown_snow(Way way, int threads, double size, bool ener
   return solver;
 }
 
-/// With books the kernels are others.
+/// The kernels with the energy balance are others.
 class SameBits : public SolverFiles, public testing::WithParamInterface<bool> {};
 
 TEST_P(SameBits, OnAnyNumberOfThreads) {
