@@ -6,6 +6,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
 
 namespace snowshed {
 namespace {
