@@ -91,7 +91,7 @@ def test_a_dict_where_a_component_belongs_becomes_one():
 def test_a_dict_that_is_added_to_a_list_is_not_passed_on_unseen():
     scene = Scene(obstacles=[])
     scene.obstacles.append({"nam": "post"})
-    with pytest.raises(InputError, match="^/obstacles/0/nam: unknown key; .* did you mean name"):
+    with pytest.raises(InputError, match=r"^/obstacles/0/nam: unknown key; .* did you mean name"):
         scene.to_data()
 
 
@@ -114,7 +114,7 @@ def test_the_words_of_pvlib_are_the_same_fields():
     ],
 )
 def test_a_field_by_two_names_is_an_error(use):
-    with pytest.raises(InputError, match="means the same as .*; give one of the two"):
+    with pytest.raises(InputError, match=r"means the same as .*; give one of the two"):
         use()
 
 

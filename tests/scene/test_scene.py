@@ -95,7 +95,7 @@ def test_a_failed_call_leaves_the_scene_as_it_was(tiny):
 def test_the_method_decides_what_the_settings_are(tiny):
     assert tiny.set("method", "mpm").resolve() == Scene.from_data(tiny.to_data()).resolve()
     assert "method" not in tiny.resolve().data
-    with pytest.raises(InputError, match="^/method: 'mps' is none of mpm; did you mean mpm"):
+    with pytest.raises(InputError, match=r"^/method: 'mps' is none of mpm; did you mean mpm"):
         tiny.set("method", "mps")
 
 
@@ -145,6 +145,9 @@ def test_load_says_what_is_no_scene(tmp_path):
         Scene.load(path)
     path.write_text('{"panel": {"hight": 1}}')
     with pytest.raises(InputError, match="/panel/hight: unknown key"):
+        Scene.load(path)
+    path.write_text('{"panel": {"tilt": null}}')
+    with pytest.raises(InputError, match=r"/panel/tilt: null is no value; leave the key out"):
         Scene.load(path)
     path.write_text('{"panel": 3}')
     with pytest.raises(InputError, match=r"scene\.json: /panel: 3 is not an object"):

@@ -83,8 +83,14 @@ def test_bad_input(tmp_path, capsys):
     (tmp_path / "half.csv").write_bytes(content[: len(content) // 2])
     (tmp_path / "bytes.csv").write_bytes(bytes(range(128, 256)))
     for arguments, message in (
-        (("-o", tmp_path / "c", "--table", tmp_path / "half.csv"), "half.csv: not a table: line "),
-        (("-o", tmp_path / "c", "--table", tmp_path / "bytes.csv"), "bytes.csv: not a table: "),
+        (
+            ("-o", tmp_path / "c", "--table", tmp_path / "half.csv"),
+            "half.csv, line 37: not a",
+        ),
+        (
+            ("-o", tmp_path / "c", "--table", tmp_path / "bytes.csv"),
+            "bytes.csv, line 1: not a",
+        ),
         ((), "--output"),
         (("-o", tmp_path / "a", "--stage", "x"), "stage: 'x' is unknown"),
         (("-o", tmp_path / "a", "--full"), "take a new folder for --full"),

@@ -94,7 +94,7 @@ def test_what_was_measured_is_not_measured_again(file, monkeypatch):
     seen = []
     entries.append({"dx": 0.2})
     run_suite([made_up_case(entries=entries)], file, progress=seen.append)
-    assert [p.doing for p in seen] == ["made_up: mode raises", "made_up: dx 0.2"]  # failures again
+    assert [p.doing for p in seen] == ["made_up: raises", "made_up: dx 0.2"]  # failures again
     assert [(p.done, p.count) for p in seen] == [(1, 3), (2, 3)]
     assert len(file.read()) == 4
     monkeypatch.setattr(runner._core, "version", "another")

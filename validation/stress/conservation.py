@@ -62,7 +62,7 @@ class Conservation:
         self._residual = (min(self._residual[0], residual), max(self._residual[1], residual))
 
     def energy_errors(self) -> dict[str, float]:
-        """Return how far the books did not close, relative to what came in.
+        """Return how far the balance did not close, relative to what came in.
 
         Returns
         -------

@@ -121,7 +121,7 @@ def _balances(frame: pd.DataFrame) -> SummaryTable:
             values = group[name].dropna()
             if values.empty:
                 continue
-            row: dict[str, object] = {"book": title, "transfer": transfer, "runs": len(values)}
+            row: dict[str, object] = {"balance": title, "transfer": transfer, "runs": len(values)}
             for label, q in (("median", 0.5), ("90 %", 0.9), ("99 %", 0.99), ("largest", 1.0)):
                 row[label] = f"{max(float(values.quantile(q)), 0.0):.2g}"
             rows.append({**row, "bound": bound})

@@ -95,7 +95,8 @@ class Method {
 
   /// Lowers each particle, ordered by id, by a height (m) and adds to its volumetric plastic
   /// strain, if its law has one. Elastic strains and velocities stay. The energy balance counts it
-  /// as added. Throws as `add_velocity`.
+  /// as added. Throws as `add_velocity`, and SimulationError where a particle would come to lie
+  /// outside the space that the method can address.
   virtual void settle(const std::vector<double>& drops,
                       const std::vector<double>& plastic_changes) = 0;
 

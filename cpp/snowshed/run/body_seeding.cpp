@@ -51,8 +51,10 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
   if (const auto told = shape_volume(body.shape, scene.dimension)) return *told;
   return naming(path, [&] {
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
-    const Vec3 size = shape->bounds().max - shape->bounds().min;
-    return measure(*shape, scene.dimension, std::max(resolution(scene.numerics), size.maxCoeff() / 64));
+    Vec3 size = shape->bounds().max - shape->bounds().min;
+    if (scene.dimension == 2) size.y() = 0;  // endless
+    return measure(*shape, scene.dimension,
+                   std::max(resolution(scene.numerics), size.maxCoeff() / 64));
   });
 }
 
@@ -103,8 +105,8 @@ std::vector<double> count_particles(const Scene& scene, const std::filesystem::p
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodySpec& body = scene.bodies[i];
     const double volume = body_volume(body, scene, body_path(i), base_dir);
-    const double count =
-        volume / std::pow(resolution(scene.numerics), scene.dimension) * scene.seeding.particles_per_voxel;
+    const double count = volume / std::pow(resolution(scene.numerics), scene.dimension) *
+                         scene.seeding.particles_per_voxel;
     if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
     if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
     for (int event = 1; event <= scene.events.count; ++event)

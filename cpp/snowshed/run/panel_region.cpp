@@ -6,7 +6,8 @@
 
 namespace snowshed {
 
-PanelRegion::PanelRegion(const Scene& scene) : dimension_(scene.dimension), dx_(resolution(scene.numerics)) {
+PanelRegion::PanelRegion(const Scene& scene)
+    : dimension_(scene.dimension), dx_(resolution(scene.numerics)) {
   if (scene.panel) frame_ = panel_frame(scene);
 }
 

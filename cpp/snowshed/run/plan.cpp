@@ -45,7 +45,7 @@ void list_features(const Scene& s, Plan& plan) {
   feature(s.domain.has_value(), "domain walls");
   feature(s.events.between == Between::reseed && s.events.count > 1, "reseeding between events");
   feature(s.mpm().sleep_speed > 0, "sleep of snow at rest");
-  feature(s.output.energy, "energy books");
+  feature(s.output.energy, "energy balance");
   feature(s.output.snapshot_interval > 0, "snapshots during events");
 }
 

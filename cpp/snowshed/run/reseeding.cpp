@@ -90,7 +90,8 @@ Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleSta
   };
   Reseeding r;
   r.after.positions = fill_stack(scene, old.positions, event);
-  const auto old_of = nearest_particles(r.after.positions, old.positions, 1.5 * resolution(scene.numerics));
+  const auto old_of =
+      nearest_particles(r.after.positions, old.positions, 1.5 * resolution(scene.numerics));
   r.after.masses = share_masses(old, old_of, snows.size());
   for (const std::size_t i : old_of) r.after.densities.push_back(initial_density(i));
   r.after.on_panel = panel.contains(r.after.positions, laid_height);

@@ -61,19 +61,19 @@ std::string text_of(const std::filesystem::path& file) {
 
 std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_limit"; }
 
-RunRecord RunRecord::read(const std::filesystem::path& file) {
+RunRecord RunRecord::read(const std::filesystem::path& file) try {
   RunRecord record;
   if (!std::filesystem::is_regular_file(file)) return record;
-  const std::string name = file.string();
-  const json j = parse_json(text_of(file), name);
-  record.wall = to_number(require(j, "wall_s", name), name + ": /wall_s", "a number");
+  const json j = parse_json(text_of(file), "text");
+  record.wall = to_number(require(j, "wall_s", "/"), "/wall_s", "a number");
   if (!j.contains("finished_events")) return record;  // of the version before
   const json& events = j["finished_events"];
-  if (!events.is_array()) throw wrong_type(name + ": /finished_events", events, "an array");
+  if (!events.is_array()) throw wrong_type("/finished_events", events, "an array");
   for (std::size_t i = 0; i < events.size(); ++i)
-    record.finished.push_back(
-        event_facts(events[i], name + ": /finished_events/" + std::to_string(i)));
+    record.finished.push_back(event_facts(events[i], "/finished_events/" + std::to_string(i)));
   return record;
+} catch (const InputError& error) {
+  throw InputError(file.string(), std::string("damaged: ") + error.what());
 }
 
 void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,

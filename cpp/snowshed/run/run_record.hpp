@@ -20,7 +20,7 @@ struct EventFacts {
   double wall = 0;                                     // s
   std::string ended;                                   // "rest" or "time_limit"
   double laid_height = 0;                              // m, see Simulation::laid_height
-  std::vector<std::pair<std::string, double>> energy;  // J, by name; empty without energy books
+  std::vector<std::pair<std::string, double>> energy;  // J, by name; empty without the energy balance
 };
 
 /// Returns what run.json calls the two ways in which events end.

@@ -245,7 +245,7 @@ template <class V>
 void describe(V& v, Output& o) {
   v.number("snapshot_interval", o.snapshot_interval, "s", allowed::time,
            "Simulated time between particle snapshots; 0: only at the end of an event");
-  v.flag("energy", o.energy, "Keep energy books");
+  v.flag("energy", o.energy, "Keep the energy balance");
   v.number("checkpoint_interval", o.checkpoint_interval, "s", allowed::time,
            "Wall time between checkpoints; 0: none");
 }

@@ -117,7 +117,7 @@ struct Events {
 
 struct Output {
   double snapshot_interval = 0.0;  // s between particle snapshots; 0: only at the end of an event
-  bool energy = false;             // energy books
+  bool energy = false;             // keep the energy balance
   double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };
 

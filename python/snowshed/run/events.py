@@ -18,7 +18,7 @@ import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.vtp import read_particles
 from snowshed.run.ageing import Ageing

@@ -7,7 +7,7 @@ outline.csv        profile of the stack after each event: event, x, z
 conversions.csv    how far reseeding moved the stack (only with between = "reseed")
 ageing.csv         what time did to the stack between events (only if it aged), and how long it
                    had: ageing.json
-energy.csv         energy books at the end of each event (only with output.energy)
+energy.csv         energy balance at the end of each event (only with output.energy)
 run.json           version, machine, size and speed of the run, how each event went, and its status
 checkpoint.bin     the state from which the run goes on
 particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series

@@ -312,7 +312,7 @@ class Output(Record):
         Simulated time between particle snapshots; 0: only at the end of an event [s]. 0 <= value
         <= 1e+09; default 0.
     energy : bool
-        Keep energy books. Default False.
+        Keep the energy balance. Default False.
     checkpoint_interval : float
         Wall time between checkpoints; 0: none [s]. 0 <= value <= 1e+09; default 60.
     """

@@ -10,7 +10,7 @@ import copy
 import json
 import os
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +22,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import JsonObject, JsonValue
 from snowshed.io.paths import PathLike
-from snowshed.io.record import Record, check_once
+from snowshed.io.record import DEEPEST, Record, check_once
 from snowshed.methods.mpm import MpmSettings
 from snowshed.methods.registry import SETTINGS_KEY, MethodName, settings_class
 from snowshed.scene.components import (
@@ -129,6 +129,7 @@ class Scene(Record):
         except (ValueError, RecursionError) as error:
             raise InputError(f"{path}: not JSON: {error}") from None
         try:
+            _refuse_null(data, "")
             scene = cls.from_data(data)
             scene.to_data()
         except InputError as error:
@@ -260,6 +261,18 @@ def _without_duplicates(pairs: list[tuple[str, JsonValue]]) -> JsonObject:
             raise ValueError(f"the key {key!r} appears twice")
         found[key] = value
     return found
+
+
+def _refuse_null(data: JsonValue, where: str) -> None:
+    """Refuse null: in a file, as for the core, a key that is not given is left out."""
+    if data is None:
+        raise InputError(f"{where or '/'}: null is no value; leave the key out")
+    if where.count("/") > 2 * DEEPEST:
+        raise InputError(f"{where[:100]}...: nested more than {DEEPEST} deep")
+    items = enumerate(data) if isinstance(data, list) else ()
+    inner: Iterable[tuple[object, JsonValue]] = data.items() if isinstance(data, dict) else items
+    for key, value in inner:
+        _refuse_null(value, f"{where}/{key}")
 
 
 def _enter(holder: Holder, key: str, where: str, created: list[tuple[Record, str]]) -> Holder:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import itertools
 import math
@@ -320,6 +321,8 @@ class Study:
 
 def _try_to_set(scene: Scene, path: str, value: object) -> None:
     try:
-        scene.set(path, value)
+        scene.set(path, None)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+    with contextlib.suppress(InputError):  # the run with this value says what is wrong with it
+        scene.set(path, value)

@@ -114,7 +114,7 @@ def test_plan_and_errors(tmp_path, capsys):
         ((), "give a MEASUREMENTS file"),
         ((tmp_path / "stacks.csv",), "give -o DIR"),
         ((tmp_path / "none.csv", "-o", tmp_path), "none.csv: No such file"),
-        ((bad, "-o", tmp_path), "bad.csv: line 2: event: 'one' is not a number"),
+        ((bad, "-o", tmp_path), "bad.csv, line 2: event: 'one' is not a number"),
         ((*options, "--stored", tmp_path / "nowhere"), "nowhere"),
         ((*options, "--stored", tmp_path, "--plan"), "--plan does nothing with --stored"),
         ((*options, "--study", tmp_path / "x", "--seeds", 3), "--seeds does nothing with --study"),

@@ -8,10 +8,11 @@ from conftest import tiny_scene
 
 from snowshed import InputError, Scene, Shape, _core, measure_stack
 from snowshed.cli.main import main
-from snowshed.io.vdb import export_folder, write_vdb
+from snowshed.io.vdb import write_vdb
 from snowshed.io.vtp import read_particles
 from snowshed.run.conversion import outline_difference
 from snowshed.run.results import read_events
+from snowshed.run.vdb_export import export_folder
 
 DX = 0.02  # of the tiny scene
 

@@ -90,7 +90,7 @@ struct BlockStats {
   bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
   std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
   double elastic_strain = 0;  // of that particle
-  double kinetic = 0, elastic = 0, plastic = 0;  // J; with energy books only
+  double kinetic = 0, elastic = 0, plastic = 0;  // J; with the energy balance only
   double stress_power = 0;  // W, of the new stresses along the motion just made
 };
 
@@ -150,8 +150,8 @@ struct KernelChoice {
   bool several_materials = false;
   bool energy = false;
 
-  /// Whether the kernels look up each particle's snow, of whatever model. With energy books they
-  /// always do: books are for checks, and not worth kernels of each model.
+  /// Whether the kernels look up each particle's material, of whatever model. With the energy
+  /// balance they always do: it serves checks and does not pay for kernels of each model.
   bool material_per_particle() const { return several_materials || energy; }
 };
 

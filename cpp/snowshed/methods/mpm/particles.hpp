@@ -32,7 +32,7 @@ struct Particles {
   AlignedVector<T> mass;                                        // kg (per metre of width in 2D)
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;       // in which each was released
-  AlignedVector<std::uint8_t> material_id;  // several snows or energy books: which snow
+  AlignedVector<std::uint8_t> material_id;  // several materials or the energy balance
 
   bool has_affine = false, has_plastic = false, has_material_id = false;
 

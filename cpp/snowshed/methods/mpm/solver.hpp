@@ -16,7 +16,7 @@ struct MpmOptions {
   double gravity = 9.81;            // m/s2, along -z
   std::vector<Snow> snows{Snow()};  // by kind; at least one, at most `max_materials`
   MpmSettings numerics;
-  bool energy = false;  // keep energy books
+  bool energy = false;  // keep the energy balance
 };
 
 inline constexpr int steps_between_sorts = 64;

@@ -101,6 +101,62 @@ TEST(Friction, StopsASlidingSlab) {
               speed * left / 2, 0.01 * speed * left / 2);
 }
 
+struct Chunk {
+  double cells, speed, tilt, friction;  // edge; m/s; degrees
+};
+
+/// A chunk of snow, at most five cells high, that slides down a ramp at some speed. On its way it
+/// must feel the friction that Coulomb says, and as much energy must go into friction. A chunk of
+/// two cells is over a node for as long as it takes to slide four cells, so half a cell of memory
+/// is felt most there.
+void expect_coulomb(const Chunk& c, double bar) {
+  SCOPED_TRACE(testing::Message() << c.cells << " cells, " << c.speed << " m/s, " << c.tilt);
+  constexpr double dx = 0.01;
+  const double a = radians(c.tilt);
+  const Vec3 normal(std::sin(a), 0, std::cos(a)), slope(std::cos(a), 0, -std::sin(a));
+  MpmOptions o = options_for({2, Precision::float32}, dx);
+  o.energy = true;
+  const auto solver =
+      make_mpm(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::slip, c.friction)});
+  ParticleBatch chunk =
+      filled_box(2, Vec3::Zero(), Vec3(c.cells, 0, std::min(c.cells, 5.0)) * dx, dx / 2);
+  for (Vec3& x : chunk.positions) x = x.x() * slope + x.z() * normal;
+  chunk.velocity = c.speed * slope;
+  solver->add(chunk);
+  run_until(*solver, 0.02);  // contact sets in
+  struct Sample {
+    double time, place, speed, taken;
+  };
+  const auto sample = [&] {
+    const ParticleState s = solver->state();
+    return Sample{solver->time(), weighted_mean(s, s.positions).dot(slope),
+                  weighted_mean(s, s.velocities).dot(slope), solver->energy().friction};
+  };
+  const Sample from = sample();
+  run_until(*solver, 0.12);
+  const Sample to = sample();
+  const double friction = c.friction * 9.81 * std::cos(a);  // m/s2
+  const double felt = 9.81 * std::sin(a) - (to.speed - from.speed) / (to.time - from.time);
+  EXPECT_NEAR(felt, friction, bar * friction);
+  const double work = total_mass(solver->state()) * friction * (to.place - from.place);
+  EXPECT_NEAR(to.taken - from.taken, work, bar * work);
+}
+
+TEST(Friction, OfFastChunksIsAsCoulombSays) {
+  for (const double speed : {5.0, 10.0, 15.0})
+    for (const double cells : {2.0, 4.0, 8.0}) {
+      expect_coulomb({cells, speed, 40, 0.3}, 0.03);
+      expect_coulomb({cells, speed, 0, 0.8}, 0.03);
+    }
+}
+
+TEST(Friction, OfFastSlabsIsAsCoulombSays) {
+  for (const double speed : {5.0, 10.0, 15.0}) {
+    expect_coulomb({30, speed, 40, 0.3}, 0.01);
+    expect_coulomb({30, speed, 0, 0.8}, 0.01);
+  }
+}
+
 // --- thin obstacles ---------------------------------------------------------------------------
 
 double thickness_seen(const Shape& shape, double dx) {

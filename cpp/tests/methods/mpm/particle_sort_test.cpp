@@ -99,8 +99,7 @@ TYPED_TEST(ParticleSorting, IsStableAndIdempotent) {
     for (int i = layout.first[b] + 1; i < layout.first[b + 1]; ++i)
       ASSERT_LT(this->particles.id[i - 1], this->particles.id[i]);
   const auto before = this->particles.id;
-  const BlockLayout<D> again =
-      sorted(this->particles, blocks_of_particles(layout), layout, 1);
+  const BlockLayout<D> again = sorted(this->particles, blocks_of_particles(layout), layout, 1);
   EXPECT_EQ(this->particles.id, before);
   EXPECT_EQ(again.particle_blocks, layout.particle_blocks);
   EXPECT_EQ(again.first, layout.first);

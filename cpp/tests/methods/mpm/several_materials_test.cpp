@@ -17,7 +17,8 @@ Snow soft_snow() {
   return snow;
 }
 
-/// Snow thrown onto a slippery slope, in two halves of kinds 0 and `upper`, with energy books.
+/// Snow thrown onto a slippery slope, in two halves of the materials 0 and `upper`, with the energy
+/// balance.
 std::unique_ptr<Method> thrown_halves(const Way& way, std::vector<Snow> snows, int upper,
                                       int threads = 1, bool energy_balance = true) {
   MpmOptions o = options_for(way);
@@ -70,7 +71,7 @@ TEST(MaterialPerParticle, ThatAreEqualMoveAsOneDoes) {
       EXPECT_EQ(first_of_two->energy().residual(), both->energy().residual());
       EXPECT_EQ(std::count(c.material_ids.begin(), c.material_ids.end(), 1),
                 std::ptrdiff_t(c.material_ids.size() / 2));
-      // Kernels of one snow, which may round differently, without books.
+      // Kernels of one snow, which may round differently, without the balance.
       EXPECT_TRUE(a.material_ids.empty());
       const double round_off = 1000 * way.epsilon();
       EXPECT_LT(relative_difference(a.positions, b.positions), round_off);
@@ -205,7 +206,7 @@ TEST(MaterialPerParticle, EnergyBooksClose) {
 }
 
 TEST(MaterialPerParticle, ElasticEnergyIsThatOfEachParticlesOwnSnow) {
-  // What add() counts from the particles must be what the kernels book.
+  // What add() counts from the particles must be what the kernels record.
   const auto solver = thrown_halves({2, Precision::float64}, {Snow(), soft_snow()}, 1);
   run_steps(*solver, 100);
   const double booked = solver->energy().elastic;

@@ -6,6 +6,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
 
 namespace snowshed {
 namespace {
@@ -262,7 +263,7 @@ std::unique_ptr<Method> thrown_snow(Way way, int threads, double size, bool ener
   return solver;
 }
 
-/// With books the kernels are others.
+/// The kernels with the energy balance are others.
 class SameBits : public SolverFiles, public testing::WithParamInterface<bool> {};
 
 TEST_P(SameBits, OnAnyNumberOfThreads) {
@@ -387,144 +388,6 @@ TEST(Method, ParticlesOnAndNextToNodesDoNoHarm) {
       for (const Vec3& v : solver->state().velocities)
         ASSERT_NEAR(v.z(), -9.81 * solver->time(), 1e-3 * 9.81 * solver->time());
     }
-}
-
-TEST(Method, AKickAddsToTheVelocitiesAndTheBooks) {
-  MpmOptions options = options_for({3, Precision::float64});
-  options.energy = true;
-  options.gravity = 0;
-  const auto solver = make_mpm(options, {});
-  solver->add(filled_box(3, Vec3::Zero(), Vec3(0.04, 0.04, 0.04), 0.005));
-  std::vector<Vec3> changes(solver->size(), Vec3(1, 0, 2));
-  solver->add_velocity(changes);
-  solver->step();
-  const ParticleState s = solver->state();
-  for (const Vec3& v : s.velocities) EXPECT_LT((v - Vec3(1, 0, 2)).norm(), 1e-12);
-  EXPECT_NEAR(solver->energy().added, 2.5 * total_mass(s), 1e-12);
-  EXPECT_NEAR(solver->energy().residual(), 0, 1e-12);
-  changes.pop_back();
-  EXPECT_THROW(solver->add_velocity(changes), InputError);
-}
-
-TEST(Method, SettlingLowersAndCompacts) {
-  MpmOptions options = options_for({3, Precision::float64});
-  options.energy = true;
-  const auto solver = make_mpm(options, {});
-  solver->add(filled_box(3, Vec3(0, 0, 1), Vec3(0.1, 0.04, 1.3), 0.01));
-  run_steps(*solver, 10);
-  const ParticleState before = solver->state();
-  std::vector<double> drops, changes;
-  for (const Vec3& x : before.positions) {
-    drops.push_back(0.5 * (x.z() - 1));
-    changes.push_back(-std::log(2.0));
-  }
-  const double residual = solver->energy().residual();
-  solver->settle(drops, changes);
-  const ParticleState after = solver->state();
-  double fallen = 0;
-  for (std::size_t i = 0; i < drops.size(); ++i) {
-    ASSERT_LT((after.positions[i] - (before.positions[i] - drops[i] * Vec3::UnitZ())).norm(), 1e-9);
-    ASSERT_NEAR(after.densities[i], 2 * before.densities[i], 1e-6);
-    ASSERT_EQ(after.velocities[i], before.velocities[i]);
-    fallen += 9.81 * before.masses[i] * drops[i];
-  }
-  const EnergyBalance energy_balance = solver->energy();
-  EXPECT_NEAR(energy_balance.added, 9.81 * total_mass(before) * 1.15 - fallen, 0.01 * fallen);
-  EXPECT_NEAR(energy_balance.residual(), residual, 1e-9 * energy_balance.added);
-  ASSERT_NO_THROW(run_steps(*solver, 10));
-  drops.back() = std::nan("");
-  EXPECT_THROW(solver->settle(drops, changes), InputError);
-  drops.pop_back();
-  EXPECT_THROW(solver->settle(drops, changes), InputError);
-}
-
-TEST(Method, ReportsItsParticles) {
-  const auto solver = make_mpm(options_for({3, Precision::float64}), {});
-  ParticleBatch batch = filled_box(3, Vec3(-0.05, 0, 0), Vec3(0.05, 0.02, 0.03), 0.01);
-  batch.velocity = Vec3(1, 2, 2);
-  batch.event = 3;
-  solver->add(batch);
-  const ParticleState s = solver->state();
-  ASSERT_EQ(s.positions.size(), batch.positions.size());
-  for (std::size_t i = 0; i < s.positions.size(); ++i) {
-    EXPECT_LT((s.positions[i] - batch.positions[i]).norm(), 1e-15);
-    EXPECT_EQ(s.velocities[i], batch.velocity);
-    EXPECT_EQ(s.ids[i], i);
-    EXPECT_EQ(s.events[i], 3);
-    EXPECT_DOUBLE_EQ(s.volume_ratios[i], 1.0);
-    EXPECT_EQ(s.pressures[i], 0.0);
-  }
-  EXPECT_DOUBLE_EQ(solver->motion(2.9).rms_speed, 3.0);
-  EXPECT_DOUBLE_EQ(solver->motion(2.9).moving_mass, total_mass(s));
-  EXPECT_EQ(solver->motion(3.1).moving_mass, 0.0);
-  solver->replace({});
-  EXPECT_EQ(solver->size(), 0u);
-  EXPECT_THROW(solver->step(), SimulationError);
-}
-
-// --- failure ----------------------------------------------------------------------------------
-
-TEST(Failure, OfABatchLeavesNothingOfTheOthers) {
-  const auto solver = make_mpm(options_for({2, Precision::float32}), {});
-  const ParticleBatch sound = filled_box(2, Vec3(0, 0, 0), Vec3(0.05, 0, 0.05), 0.005);
-  ParticleBatch far = sound, foreign = sound;
-  far.positions.back().x() = 1e9;
-  foreign.material_id = 1;
-  solver->add(sound);
-  run_steps(*solver, 5);
-  const ParticleState before = solver->state();
-  EXPECT_THROW(solver->add({sound, far}), SimulationError);
-  EXPECT_THROW(solver->replace({sound, far}), SimulationError);
-  EXPECT_THROW(solver->add({sound, foreign}), InputError);
-  std::vector<double> drops(solver->size(), 0.01);
-  drops.back() = 1e9;
-  EXPECT_THROW(solver->settle(drops, std::vector<double>(solver->size())), SimulationError);
-  expect_same_bits(solver->state(), before);
-  EXPECT_NO_THROW(run_steps(*solver, 100));
-}
-
-TEST(Failure, ToFindATimeStepLeavesTheSnowAsItWas) {
-  const auto solver = make_mpm(options_for({2, Precision::float32}), {});
-  solver->add(filled_box(2, Vec3(0, 0, 0), Vec3(0.05, 0, 0.05), 0.005));
-  std::vector<Vec3> apart(solver->size(), Vec3(1e13, 0, 0));
-  for (std::size_t i = 0; i < apart.size(); i += 2) apart[i] = -apart[i];
-  solver->add_velocity(apart);
-  const ParticleState before = solver->state();
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    EXPECT_THROW(solver->step(), SimulationError);
-    expect_same_bits(solver->state(), before);
-    EXPECT_EQ(solver->time(), 0.0);
-    EXPECT_EQ(solver->counters().rejected, 0);
-  }
-}
-
-/// Snow so soft that it cannot take the blow.
-TEST(Failure, ThatIsSeenAfterwardsEndsTheRun) {
-  MpmOptions o = options_for({2, Precision::float32});
-  o.snows[0].model = SnowModel::elastic;
-  o.snows[0].youngs_modulus = 10;
-  const auto solver =
-      make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
-  ParticleBatch lump = filled_box(2, Vec3(0, 0, 0.01), Vec3(0.05, 0, 0.06), 0.005);
-  lump.velocity.z() = -20;
-  solver->add(lump);
-  EXPECT_THROW(run_until(*solver, 0.1), SimulationError);
-  const double time = solver->time();
-  const auto refuses = [&](const auto& action) {
-    try {
-      action();
-      FAIL();
-    } catch (const SimulationError& error) {
-      EXPECT_NE(std::string(error.what()).find("the simulation has failed"), std::string::npos);
-    }
-  };
-  BinaryWriter out;
-  refuses([&] { solver->step(); });
-  refuses([&] { solver->add(lump); });
-  refuses([&] { solver->replace({lump}); });
-  refuses([&] { solver->save(out); });
-  EXPECT_EQ(solver->time(), time);
-  EXPECT_EQ(solver->state().positions.size(), solver->size());
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import click
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.cli.terminal import plain_table, wide_console
 from snowshed.io.formatting import number
 from snowshed.run.machine import cpu_name

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.methods.registry import resolution_of

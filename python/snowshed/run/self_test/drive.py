@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.io.arrays import Floats
 from snowshed.scene.scene import Scene
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.scene.components import Snow
 
 

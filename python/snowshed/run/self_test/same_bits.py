@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from snowshed import _core
+import snowshed._core as _core
 from snowshed.io.arrays import Floats
 from snowshed.io.vtp import read_particles
 from snowshed.run.self_test.drive import Drive
