@@ -16,8 +16,6 @@ class AllocationFault {
 
   /// Whether the n-th call has come.
   static bool happened();
-  /// Calls until then.
-  static std::int64_t left();
 };
 
 }  // namespace snowshed

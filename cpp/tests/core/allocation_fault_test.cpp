@@ -29,7 +29,6 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
 AllocationFault::AllocationFault(std::int64_t n) { allocations_left = n; }
 AllocationFault::~AllocationFault() { allocations_left = 0; }
 bool AllocationFault::happened() { return allocations_left < 0; }
-std::int64_t AllocationFault::left() { return allocations_left; }
 
 }  // namespace snowshed
 
