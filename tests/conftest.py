@@ -12,7 +12,7 @@ from snowshed import Scene, run_events
 from snowshed.io.vdb import available
 
 # What writes and reads OpenVDB files, where snowshed was built without it.
-collect_ignore = [] if available() else ["vdb/test_vdb_files.py"]
+collect_ignore = [] if available() else ["io/vdb/test_vdb_files.py"]
 
 
 def tiny_scene(**values: object) -> Scene:

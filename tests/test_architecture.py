@@ -90,6 +90,18 @@ def test_no_python_import_points_up_or_in_a_circle():
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_the_package_asks_its_root_for_the_compiled_core_alone():
+    inside = [path for path in tracked("python/snowshed/*.py") if path.name != "__main__.py"]
+    wrong = [
+        f"{path.relative_to(ROOT)}: {line.strip()}"
+        for path in inside
+        for line in path.read_text().splitlines()
+        if re.match(r"\s*from snowshed import (?!_core$)", line)
+        or re.match(r"\s*import snowshed(?!\._core as _core$)", line)
+    ]
+    assert wrong == []
+
+
 def test_the_root_of_the_package_is_small():
     package = ROOT / "python" / "snowshed"
     entries = {path.relative_to(package).parts[0] for path in tracked("python/snowshed")}

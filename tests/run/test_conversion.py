@@ -100,7 +100,7 @@ def test_snow_that_cannot_be_laid_leaves_the_checkpoint_of_the_event_before(tmp_
     tiny.append("bodies", Body(shape=shape, event=2))
 
     def spoil(progress):
-        if progress.event == 1 and progress.fraction == 1:
+        if progress.event == 1 and progress.done == 1:
             body.write_text("no array")
 
     with pytest.raises(InputError, match="/bodies/0/shape"):

@@ -130,7 +130,7 @@ DAMAGED = {
 @pytest.mark.parametrize("content", DAMAGED.values(), ids=DAMAGED.keys())
 def test_a_damaged_table_of_events_is_named(tmp_path, content):
     (tmp_path / "events.csv").write_bytes(content)
-    with pytest.raises(InputError, match=r"events\.csv: not a table") as caught:
+    with pytest.raises(InputError, match=r"events\.csv(, line \d+)?: not a table") as caught:
         read_events(tmp_path)
     assert "\n" not in str(caught.value)
 
@@ -138,20 +138,20 @@ def test_a_damaged_table_of_events_is_named(tmp_path, content):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"\xff\xfe\x00\x01", "can't decode"),
-        (b"event,mass\n1,2,3\n", "a row that has not"),
-        (b"event,mass\n1\n", "a row that has not"),
-        (b"mass\n1\n", "a row without the number of its event"),
-        (b"event,mass\nfirst,1\n", "a row without the number of its event"),
-        (b"event,load\n1,1\n", "its columns are not event, mass"),
-        (b"event,mass\n1,heavy\n", "no numbers in the column mass"),
-        (b"event,mass\n1,nan\n", "no numbers in the column mass"),
-        (b"event,mass\n1,1e308\n2,1e308\n", "no numbers in the column mass"),
+        (b"\xff\xfe\x00\x01", ", line 1: not a table: not UTF-8 text"),
+        (b"event,mass\n1,2,3\n", ", line 2: not a table: 3 cells in 2 columns"),
+        (b"event,mass\n1\n", ", line 2: not a table: 1 cells in 2 columns"),
+        (b"mass\n1\n", ": damaged: a row without the number of its event"),
+        (b"event,mass\nfirst,1\n", ": damaged: a row without the number of its event"),
+        (b"event,load\n1,1\n", ": damaged: its columns are not event, mass"),
+        (b"event,mass\n1,heavy\n", ": damaged: no numbers in the column mass"),
+        (b"event,mass\n1,nan\n", ": damaged: no numbers in the column mass"),
+        (b"event,mass\n1,1e308\n2,1e308\n", ": damaged: no numbers in the column mass"),
     ],
 )
 def test_a_damaged_table_is_not_continued(tmp_path, content, message):
     (tmp_path / "t.csv").write_bytes(content)
-    with pytest.raises(InputError, match=rf"t\.csv: damaged: .*{message}"):
+    with pytest.raises(InputError, match=rf"t\.csv{message}"):
         Table(tmp_path / "t.csv", ["event", "mass"]).total("mass")
 
 
@@ -195,7 +195,7 @@ def test_a_record_that_cannot_be_gone_on_with(tmp_path, tiny, content, message):
             lambda text: re.sub(r"(?m)^1,[^,]*", "1,inf", text),
             "no finite numbers in a column height_m",
         ),
-        (lambda text: text.replace(",rest", ""), "a row that has not"),
+        (lambda text: text.replace(",rest", ""), "line 2: not a table: 19 cells in 20 columns"),
         (lambda text: re.sub(r"(?m)^1,.*\n", "", text), "its events are not 1, 2"),
     ],
 )
@@ -207,7 +207,7 @@ def test_a_damaged_table_of_events_is_not_resumed(finished, tmp_path, capsys, da
     before = sorted(folder.rglob("*"))
     assert main(["run", str(folder / "scene.json"), "-o", str(folder), "--resume", "-q"]) == 2
     said = capsys.readouterr().err
-    assert said.startswith(f"error: {events}: ") and said.count("\n") == 1
+    assert said.startswith(f"error: {events}") and said.count("\n") == 1
     assert re.search(message, said)
     assert sorted(folder.rglob("*")) == before
 

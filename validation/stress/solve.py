@@ -83,6 +83,7 @@ class _Run:
         self.duration = 0.0
         self.mass_error = 0.0
         self.momentum_error = 0.0
+        self.begun = b""  # the checkpoint of the present event's start
 
     def all_events(self) -> str:
         """Run the events; return how the last one ended."""
@@ -100,6 +101,7 @@ class _Run:
         if conversion is not None:
             after = float(np.sum(conversion["masses_after"]))
             self.mass_error = max(self.mass_error, abs(after / old_mass - 1.0))
+        self.begun = _saved(self.simulation)
         self.conservation.begin(before)
         laid = self.simulation.masses()
         start, first = self.duration, self.simulation.total_steps
@@ -139,8 +141,23 @@ class _Run:
             "momentum_error": self.momentum_error if self.free else math.nan,
             **self.conservation.energy_errors(),
             "finite": _is_finite(simulation),
-            "checkpoint": _can_be_saved(simulation),
+            "checkpoint": self._leaves_a_checkpoint(),
         }
+
+    def _leaves_a_checkpoint(self) -> bool:
+        """Tell whether a sound checkpoint is left: of now, or of before where now there is none.
+
+        A simulation whose particles are no longer sound refuses to be saved, so that the checkpoint
+        from before stays.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "checkpoint.bin"
+            path.write_bytes(self.begun)
+            try:
+                self.simulation.save(str(path))
+            except _core.SimulationError:
+                return path.read_bytes() == self.begun and _is_sound(path)
+            return _is_sound(path, self.simulation)
 
 
 def _first_step(point: Point) -> float:
@@ -163,14 +180,20 @@ def _is_finite(simulation: _core.Simulation) -> bool:
     return all(bool(np.isfinite(v).all()) for v in values) and bool((density > 0).all())
 
 
-def _can_be_saved(simulation: _core.Simulation) -> bool:
-    """Tell whether a checkpoint written now is read again and holds the same finite snow."""
+def _is_sound(checkpoint: Path, simulation: Optional[_core.Simulation] = None) -> bool:
+    """Tell whether a checkpoint loads and holds finite snow, that of the simulation if given."""
+    try:
+        again = _core.Simulation.load(str(checkpoint))
+    except (OSError, _core.InputError):
+        return False
+    if simulation is not None and not np.array_equal(again.positions(), simulation.positions()):
+        return False
+    return _is_finite(again)
+
+
+def _saved(simulation: _core.Simulation) -> bytes:
+    """Return a checkpoint written now."""
     with tempfile.TemporaryDirectory() as folder:
-        path = str(Path(folder) / "checkpoint.bin")
-        try:
-            simulation.save(path)
-            again = _core.Simulation.load(path)
-        except (OSError, _core.InputError, _core.SimulationError):
-            return False
-    same = np.array_equal(again.positions(), simulation.positions())
-    return bool(same) and _is_finite(again)
+        path = Path(folder) / "checkpoint.bin"
+        simulation.save(str(path))
+        return path.read_bytes()

@@ -18,7 +18,7 @@ using Tensor = Eigen::Matrix<double, D, D>;
 
 /// Returns the state after a path of strain increments, each cut into n backward Euler steps.
 template <class T, int D>
-MaterialState<D> by_returns(const MaterialConstants& constants, MaterialState<D> start,
+MaterialState<D> by_returns(const LawConstants& constants, MaterialState<D> start,
                             const std::vector<Tensor<D>>& path, int n) {
   const CamClay<T> snow = material<T>(constants, D);
   const double bulk = double(snow.elastic.bulk), mu = double(snow.elastic.mu);
@@ -46,7 +46,7 @@ double distance(const MaterialState<D>& a, const MaterialState<D>& b, double yie
 /// Expects that the returns converge at first order to the solution of the rate equations.
 /// Richardson extrapolation gives their limit, which must agree to 1e-6.
 template <int D>
-void expect_convergence(const MaterialConstants& constants, double p0,
+void expect_convergence(const LawConstants& constants, double p0,
                         const std::vector<Tensor<D>>& path) {
   const RateEquations snow(constants, D);
   const double yield_strain = p0 / snow.bulk;
@@ -148,7 +148,7 @@ TYPED_TEST(CamClayPaths, RandomPolylines) {
 
 TEST(CamClay, LongShearEndsInTheCriticalState) {
   // In the critical state the volume no longer changes. Without cohesion, q = M p.
-  const MaterialConstants snow{1e6, 0.3, 0.7, 0.0, 0.5};
+  const LawConstants snow{1e6, 0.3, 0.7, 0.0, 0.5};
   const MaterialState<3> start{Eigen::Matrix3d::Zero(), -0.02};
   const auto end = by_returns<double, 3>(
       snow, start, {Paths<3>::isotropic(-0.01), Paths<3>::triaxial(1.0)}, 20000);

@@ -52,7 +52,7 @@ TEST(CamClayHardening, InitialStrainGivesTheWantedPressure) {
 
 /// A trial state and the state to which it returned.
 struct Return {
-  MaterialConstants snow;
+  LawConstants snow;
   int dimension;
   double p_trial, q_trial, ev_old, p, q, ev;
 };
@@ -68,7 +68,7 @@ std::ostream& operator<<(std::ostream& out, const Return& r) {
 /// associative flow: yield condition, flow rule, volume balance, and dissipation.
 template <class T>
 void expect_sound(const Return& r) {
-  MaterialConstants s = r.snow;
+  LawConstants s = r.snow;
   s.slope = std::max(s.slope, 1e-4);  // as CamClay::from
   const double eps = std::numeric_limits<T>::epsilon();
   const RateEquations snow(s, r.dimension);
@@ -117,7 +117,7 @@ double rounded(double x) {
 }
 
 template <class T>
-Return returned(const MaterialConstants& snow, int dimension, double p, double q, double ev) {
+Return returned(const LawConstants& snow, int dimension, double p, double q, double ev) {
   Return r{snow, dimension, rounded<T>(p), rounded<T>(q), rounded<T>(ev), 0, 0, 0};
   PQ<T> s{T(r.p_trial), T(r.q_trial)};
   T e = T(r.ev_old);

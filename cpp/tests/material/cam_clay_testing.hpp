@@ -9,10 +9,10 @@
 
 namespace snowshed::cam_clay_testing {
 
-inline constexpr MaterialConstants calibrated{1e6, 0.3, 0.5, 0.2, 0.1};
+inline constexpr LawConstants calibrated{1e6, 0.3, 0.5, 0.2, 0.1};
 
 template <class T>
-CamClay<T> material(const MaterialConstants& s, int dimension = 3) {
+CamClay<T> material(const LawConstants& s, int dimension = 3) {
   return CamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.slope, s.cohesion, s.hardening,
                           dimension);
 }

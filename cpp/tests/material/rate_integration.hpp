@@ -11,7 +11,7 @@
 
 namespace snowshed {
 
-struct MaterialConstants {
+struct LawConstants {
   double youngs_modulus, poissons_ratio, slope, cohesion, hardening;
 };
 
@@ -25,7 +25,7 @@ class RateEquations {
  public:
   double bulk, mu, hardening;  // K_d, mu, and K of (1.2.7); Pa
 
-  RateEquations(const MaterialConstants& s, int dimension) : snow_(s) {
+  RateEquations(const LawConstants& s, int dimension) : snow_(s) {
     const double E = s.youngs_modulus, nu = s.poissons_ratio;
     mu = E / (2 * (1 + nu));
     bulk = E * nu / ((1 + nu) * (1 - 2 * nu)) + 2 * mu / dimension;
@@ -192,7 +192,7 @@ class RateEquations {
     return x;
   }
 
-  MaterialConstants snow_;
+  LawConstants snow_;
 };
 
 }  // namespace snowshed

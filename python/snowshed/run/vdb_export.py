@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
 
+import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
@@ -82,7 +83,7 @@ def _write(file: Path, output: Path, scene: dict[str, Any], width: Optional[floa
     if "mass" not in particles:
         raise InputError(f"{file}: its particles have no mass; run the scene again")
     output.mkdir(parents=True, exist_ok=True)
-    points: dict[str, NDArray[Any]] = {
+    points: dict[str, NDArray[np.generic]] = {
         name: particles[name] for name in POINT_QUANTITIES if name in particles
     }
     return write_vdb(

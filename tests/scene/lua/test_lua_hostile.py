@@ -224,7 +224,7 @@ def test_output_is_bounded_and_harmless(tmp_path):
 
 GIVEN_UP = """
 import os, sys
-from snowshed.scene.scene.lua import child
+from snowshed.scene.lua import child
 child._give_up({"hard_seconds": 10, "wall_seconds": 10})
 try:
     os.open(os.devnull, os.O_RDONLY)

@@ -150,8 +150,8 @@ class Posterior:
 
     @property
     def effective(self) -> float:
-        """How many independent samples the draws are worth where they are worth least."""
-        return float(self.diagnostics[["ess_bulk", "ess_tail"]].min(axis=None))
+        """The smallest effective sample size, in the bulk or the tails, of any parameter."""
+        return float(self.diagnostics[["ess_bulk", "ess_tail"]].to_numpy(float).min())
 
 
 def outputs_of(measurements: Sequence[Measurement]) -> list[Output]:

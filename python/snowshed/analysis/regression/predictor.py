@@ -86,7 +86,7 @@ class Prediction:
         targets = list(dict.fromkeys(self.table["target"]))
         if target not in targets:
             raise InputError(f"target: {target!r} is unknown; allowed: {', '.join(targets)}")
-        numbers = list(self.table.select_dtypes("float"))
+        numbers = [str(name) for name in self.table.select_dtypes("float")]
         if column not in numbers:
             raise InputError(f"column: {column!r} is unknown; allowed: {', '.join(numbers)}")
         rows = self.table[self.table["target"] == target]

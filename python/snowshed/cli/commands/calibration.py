@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 import click
 
-from snowshed.cli.designed_study import (
+from snowshed.cli.commands.designed_study import (
     PATH,
     check_options,
     chosen_study,

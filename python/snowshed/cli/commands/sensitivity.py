@@ -8,7 +8,12 @@ from typing import Any, Optional
 
 import click
 
-from snowshed.cli.designed_study import check_options, chosen_study, computed, design_options
+from snowshed.cli.commands.designed_study import (
+    check_options,
+    chosen_study,
+    computed,
+    design_options,
+)
 
 
 @click.command()

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +54,7 @@ def write_vdb(
     dx: float,
     particles_per_voxel: float,
     width: Optional[float] = None,
-    attributes: Optional[Mapping[str, NDArray[Any]]] = None,
+    attributes: Optional[Mapping[str, NDArray[np.generic]]] = None,
 ) -> WrittenVdb:
     """Write particles as the level set ``surface``, the fog volume ``density`` and points.
 
@@ -123,7 +123,7 @@ def write_vdb(
     )
 
 
-def _plain(array: NDArray[Any]) -> NDArray[Any]:
+def _plain(array: NDArray[np.generic]) -> NDArray[np.generic]:
     """Return the array in a type that point data has."""
     whole = np.issubdtype(array.dtype, np.integer)
     return array.astype(np.int32 if whole else np.float32)

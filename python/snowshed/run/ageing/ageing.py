@@ -18,6 +18,7 @@ import numpy as np
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats
+from snowshed.io.json_file import JsonObject
 from snowshed.methods.registry import resolution_of
 from snowshed.run.ageing.columns import SnowColumns
 from snowshed.snow.relations.relation import choose
@@ -87,9 +88,9 @@ class Ageing:
             raise InputError(f"strength age: {self.strength_age} hours; must be positive")
 
     @property
-    def data(self) -> dict[str, Any]:
+    def data(self) -> JsonObject:
         """The same in the form of JSON."""
-        data: dict[str, Any] = json.loads(json.dumps(asdict(self)))
+        data: JsonObject = json.loads(json.dumps(asdict(self)))
         return data
 
     def hours(self, event: int) -> float:
