@@ -64,8 +64,7 @@ def test_every_optional_library_is_asked_for_with_the_extra_that_brings_it():
     brought = {
         extra: {MODULES_OF[name] for name in names} for extra, names in required()[1].items()
     }
-    # What `verify` brings the validation cases ask for, which are not in the package.
-    assert {extra for _, extra in asked} == brought.keys() - {"verify"}
+    assert {extra for _, extra in asked} == brought.keys()
     for module, extra in asked:
         assert module.partition(".")[0] in brought[extra]
 

@@ -10,12 +10,13 @@ from pathlib import Path
 
 import pytest
 from made_up import MEGABYTES, made_up_case
-from snowshed._core import InputError
+from paths import ROOT
 from validation import runner, suite
 from validation.folder import SuiteFolder
 from validation.measurement_file import MeasurementFile
 from validation.runner import Estimate, run_suite, tasks_of
 
+from snowshed._core import InputError
 from snowshed.analysis.verification.measurements import Measured, Measurement, settings_of, to_table
 
 FAILURES = {
@@ -116,7 +117,7 @@ def test_an_interrupt_ends_the_measurement_and_keeps_the_others(tmp_path):
         "from pathlib import Path; from made_up import made_up_case; import signal, sys\n"
         # Where the tests run in the background, interrupts are ignored.
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "from snowshed.analysis.verification.measurements import MeasurementFile\n"
+        "from validation.measurement_file import MeasurementFile\n"
         "from validation.runner import run_suite\n"
         "entries = [{'dx': 0.1}, {'mode': 'takes long'}]\n"
         "run_suite([made_up_case(entries=entries)], MeasurementFile(Path(sys.argv[1])),"
@@ -125,7 +126,7 @@ def test_an_interrupt_ends_the_measurement_and_keeps_the_others(tmp_path):
     path = tmp_path / "m.jsonl"
     suite_run = subprocess.Popen(
         [sys.executable, "-c", code, path],
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parent)},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), str(ROOT)])},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

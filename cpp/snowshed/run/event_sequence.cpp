@@ -54,8 +54,11 @@ bool EventSequence::run(EventObserver& observer, double report_interval) {
   const double every = sim_->scene().output.snapshot_interval;
   if (every > 0) sim_->write_snapshots(folder_.snapshots(), every);
   while (!is_done()) {
-    const bool stopped = observer.stop_requested();
-    if (!stopped) begin_event(observer);
+    bool stopped = observer.stop_requested();
+    if (!stopped) {
+      begin_event(observer);  // seeding may take long
+      stopped = observer.stop_requested();
+    }
     const RunEnd end = stopped ? RunEnd::paused : run_event(observer, report_interval);
     if (end == RunEnd::paused) return checkpoint("interrupted"), false;
     end_event(observer, end);

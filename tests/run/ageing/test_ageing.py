@@ -109,7 +109,9 @@ def test_a_stack_ages_between_its_events(aged, finished):
     assert row["density_kg_m3"] > row["density_before_kg_m3"]
     assert row["intact"] > row["intact_before"]
     measures = ["height_m", "length_m", "mass_kg"]
-    assert table.loc[0, measures].tolist() == pytest.approx(still.loc[0, measures].tolist())
+    # The other run keeps the energy balance, with kernels that round differently.
+    expected = still.loc[0, measures].tolist()
+    assert table.loc[0, measures].tolist() == pytest.approx(expected, rel=1e-5)
     assert table.mass_kg[1] == pytest.approx(still.mass_kg[1], rel=1e-3)
     assert table.height_m[1] != still.height_m[1]
 
