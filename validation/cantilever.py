@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,8 @@ class Cantilever:
     @cached_property
     def frequency(self) -> float:
         """By Timoshenko's theory, Hz."""
-        brentq = require("scipy.optimize", "verify", "a vibrating beam").brentq
+        from scipy.optimize import brentq
+
         slender = self.euler_frequency
         return float(brentq(self._misfit, 0.3 * slender, 1.001 * slender, xtol=1e-12 * slender))
 
@@ -77,7 +77,8 @@ class Cantilever:
         tuple
             w, which is 1 at the free end, and psi, 1/m.
         """
-        expm = require("scipy.linalg", "verify", "a vibrating beam").expm
+        from scipy.linalg import expm
+
         rates = self._rates(self.frequency)
         end = expm(rates * self.length)
         # M(L) = 0 fixes the ratio of M and Q at the clamp.
@@ -107,6 +108,7 @@ class Cantilever:
 
     def _misfit(self, frequency: float) -> float:
         """Return the determinant that vanishes where M(L) = Q(L) = 0 has a solution."""
-        expm = require("scipy.linalg", "verify", "a vibrating beam").expm
+        from scipy.linalg import expm
+
         end = expm(self._rates(frequency) * self.length)[2:, 2:]
         return float(np.linalg.det(end))

@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 
 #: Softening snow is followed until its strength has fallen to this part; stress and strength then
 #: vanish together, and their ratio would be lost in rounding.
@@ -156,7 +155,8 @@ class RateEquations:
 
         if overshoot(end) <= 0:
             return end
-        brentq = require("scipy.optimize", "verify", "the yield point").brentq
+        from scipy.optimize import brentq
+
         return float(brentq(overshoot, 0.0, end, xtol=1e-16, rtol=1e-15))
 
     def _plastic(self, start: Floats, rate: Floats, begin: float, times: Floats) -> Floats:
@@ -167,7 +167,9 @@ class RateEquations:
             return float(state[-1] - SPENT * start[-1])
 
         strength_left.terminal = True  # type: ignore[attr-defined]
-        solution = require("scipy.integrate", "verify", "the rate equations").solve_ivp(
+        from scipy.integrate import solve_ivp
+
+        solution = solve_ivp(
             rates,
             (begin, times[-1]),
             start,

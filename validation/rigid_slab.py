@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 
 
 @dataclass(frozen=True)
@@ -134,7 +133,8 @@ class RigidSlab:
 
     def _leave(self) -> _Leaving:
         """Slide until the push's centre has reached the edge, then tip over it."""
-        solve_ivp = require("scipy.integrate", "verify", "a slab's way over an edge").solve_ivp
+        from scipy.integrate import solve_ivp
+
         half = self.thickness / 2
         way = self.way - self.friction * half
         speed = math.sqrt(2 * self.acceleration * way)

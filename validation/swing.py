@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ class Swing:
         >>> round(swing.frequency, 6), round(swing.decay, 6)
         (1.1, 0.1)
         """
-        curve_fit = require("scipy.optimize", "verify", "the fit of a vibration").curve_fit
+        from scipy.optimize import curve_fit
 
         def swing(t: Floats, height: float, decay: float, turns: float, phase: float) -> Floats:
             return np.asarray(height * np.exp(-decay * t) * np.sin(2 * np.pi * turns * t + phase))

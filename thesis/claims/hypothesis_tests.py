@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from snowshed.io.extras import require
 from snowshed.io.formatting import NOTHING, number, percent
 
 CONFIRMED, CONTRADICTED, UNDECIDED = "confirmed", "contradicted", "undecided"
@@ -63,7 +62,8 @@ def widening(freedom: float) -> float:
     """
     if freedom <= 0:
         return math.nan
-    stats = require("scipy.stats", "regression", "judging claims")
+    from scipy import stats
+
     return float(stats.t.ppf(stats.norm.cdf(SIGMAS), freedom)) / SIGMAS
 
 

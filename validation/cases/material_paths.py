@@ -12,7 +12,6 @@ import numpy as np
 from snowshed import _core
 from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 from snowshed.run.self_test.return_mapping import calibrated
 from validation.case import Case, Outcome, Quantity
 from validation.driving import relative
@@ -189,7 +188,9 @@ def critical_state(consolidation: float) -> tuple[float, float]:
     def _plastic(p: float) -> float:
         return float(start[-1] + (p - consolidation * strength) / bulk)
 
-    p = require("scipy.optimize", "verify", "the critical state").brentq(off_centre, 0.0, strength)
+    from scipy.optimize import brentq
+
+    p = brentq(off_centre, 0.0, strength)
     height = (p + snow.cohesion * snow.strength(_plastic(p))) / math.sqrt(1 + 2 * snow.cohesion)
     return p, snow.critical_state_slope * height
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
 from snowshed.scene.components import Body, Condition, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
@@ -71,7 +70,8 @@ class ElasticColumn:
 
     def compression(self, depth: Floats) -> Floats:
         """Return x at depths below the top, m before settling."""
-        lambertw = require("scipy.special", "verify", "the settled column").lambertw
+        from scipy.special import lambertw
+
         return np.asarray(lambertw(DENSITY * GRAVITY * depth / self.modulus).real)
 
     def pressure(self, depth: Floats) -> Floats:
