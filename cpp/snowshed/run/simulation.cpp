@@ -19,6 +19,7 @@ namespace snowshed {
 
 Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir)
     : scene_(resolve(scene)),
+      scene_text_(write_scene(scene_)),
       snows_(assemble_snows(scene_)),
       base_dir_(base_dir),
       cost_(estimate_cost(scene_, count_particles(scene_, base_dir))),

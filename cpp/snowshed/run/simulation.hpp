@@ -121,6 +121,8 @@ class Simulation {
   RunReport report(double rms_speed) const;
 
   Scene scene_;
+  // As checkpoints hold it, written ahead: lack of memory amid JSON would end the process.
+  std::string scene_text_;
   std::vector<Snow> snows_;  // by material_id
   std::filesystem::path base_dir_;
   CostEstimate cost_;

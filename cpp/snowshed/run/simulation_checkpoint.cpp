@@ -11,7 +11,7 @@ namespace snowshed {
 
 void Simulation::save(const std::filesystem::path& checkpoint) const {
   BinaryWriter out;
-  out.add_text("scene", write_scene(scene_));
+  out.add_text("scene", scene_text_);
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
   out.add("event", std::vector<std::int64_t>{event_, running_});
   const RestDetector::State r = rest_.state();
