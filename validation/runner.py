@@ -19,7 +19,7 @@ from snowshed.run.machine import cpu_name
 from snowshed.run.progress import Progress, Reporter
 from validation.case import Case, Outcome
 from validation.measurement_file import MeasurementFile
-from validation.worker import Answer, Worker
+from validation.measuring import Answer, measured, measurers
 
 LONGEST = 60  # characters of what a progress bar says is being measured
 
@@ -74,7 +74,7 @@ def run_suite(
     held = {one.key: one for one in file.read() if one.version == _core.version and not one.failure}
     due = [task for task in tasks if task.key not in held]
     estimate = Estimate(due, durations or {})
-    with Worker() as worker:
+    with measurers() as pool:
         for done, task in enumerate(due):
             if progress is not None:
                 fraction, left_s = estimate.after(done)
@@ -84,7 +84,8 @@ def run_suite(
                     fraction, before + done, len(tasks), "measured", doing, left_s=left_s
                 )
                 progress(told)
-            held[task.key] = _measurement(task, worker.measure(task.case.measure, task.settings))
+            answer = measured(pool, task.case.measure, task.settings)
+            held[task.key] = _measurement(task, answer)
             file.append(held[task.key])
     return [held[task.key] for task in tasks]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from snowshed.run.pool import Pool
+from snowshed.run.pool import Isolation, Pool
 
 
 def work(offset, task, report):
@@ -104,3 +104,56 @@ def test_processes_that_cannot_begin_say_so(monkeypatch):
         pool.submit(1)
         (ended,) = ends(pool, 1)
     assert ended.never_began and ended.death == "ended with code 1"
+
+
+REMEMBERED = []
+
+
+def remember(task, report):
+    """Return what this process has seen so far; or crash, or hang with a process of its own."""
+    if task == "crash":
+        os.write(2, b"early\nout of snow\n")
+        os.abort()
+    if task == "wait":
+        report(0.5)
+        time.sleep(600)
+    REMEMBERED.append(task)
+    return list(REMEMBERED), os.environ.get("SNOW"), os.getppid()
+
+
+@pytest.fixture
+def forks(monkeypatch):
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+    with Pool(1, remember, Isolation(forked=True, environment={"SNOW": "dry"})) as made:
+        yield made
+
+
+def test_forked_tasks_see_nothing_of_each_other_and_share_one_parent(forks):
+    forks.submit(1)
+    (first,) = ends(forks, 1)
+    forks.submit("crash")
+    (crash,) = ends(forks, 1)
+    forks.submit(2)
+    (second,) = ends(forks, 1)
+    assert first.result == ([1], "dry", forks.process_ids[0])
+    assert (crash.death, crash.last_words) == ("was killed by signal 6 (Aborted)", "out of snow")
+    assert second.result == ([2], "dry", forks.process_ids[0])
+
+
+def test_a_fork_ends_when_it_is_asked_to_stop(forks):
+    forks.submit("wait")
+    while not forks.fractions[0][1]:
+        forks.collect(0.1)
+    (ended,) = forks.stop()
+    assert ended.death == "was killed by signal 15 (Terminated)"
+
+
+@pytest.mark.parametrize("forked", [False, True])
+def test_a_task_that_takes_too_long_is_killed_and_the_next_goes_on(monkeypatch, forked):
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+    with Pool(1, remember, Isolation(forked=forked, limit_s=5.0)) as pool:
+        pool.submit("wait")
+        (ended,) = ends(pool, 1)
+        assert ended.hung and ended.death == "took more than 5 s"
+        pool.submit(1)
+        assert ends(pool, 1)[0].result[0] == [1]

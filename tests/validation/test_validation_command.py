@@ -87,14 +87,14 @@ def test_bad_input(cases, tmp_path, capsys):
 
 
 def test_an_interrupted_suite_goes_on(cases, tmp_path, capsys, monkeypatch):
-    measure, count = runner.Worker.measure, iter(range(9))
+    measured, count = runner.measured, iter(range(9))
 
-    def interrupted(self, *request):
+    def interrupted(*request):
         if next(count) == 2:
             raise KeyboardInterrupt
-        return measure(self, *request)
+        return measured(*request)
 
-    monkeypatch.setattr(runner.Worker, "measure", interrupted)
+    monkeypatch.setattr(runner, "measured", interrupted)
     assert verify(tmp_path / "my out", "--case", "made_up") == 130
     message = capsys.readouterr().err.strip().splitlines()[-1]
     _, _, resume = message.partition("go on with: python -m validation ")

@@ -1,4 +1,4 @@
-"""The suite: every trial of the design through the worker, judged, in one table."""
+"""The suite: every trial of the design computed and judged, in one table."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any, Optional
 import pandas as pd
 
 from snowshed.run.progress import Progress, Reporter
+from validation.stress.computing import Run, record, stress_pool
 from validation.stress.design import Trial, trials
 from validation.stress.judge import judge
-from validation.stress.worker import worker
 
 
 def run(full: bool, seed: int = 1, progress: Optional[Reporter] = None) -> pd.DataFrame:
@@ -45,10 +45,10 @@ def run_trials(plan: Sequence[Trial], progress: Optional[Reporter] = None) -> pd
     """Make the given runs; the table is that of `run`."""
     rows: list[dict[str, Any]] = []
     failed = 0
-    with worker() as process:
+    with stress_pool() as pool:
         for trial in plan:
-            record = {**trial.point, **process.solve(trial.point, trial.steps)}
-            outcome, reason = judge(record)
+            found = {**trial.point, **record(pool, Run(trial.point, trial.steps))}
+            outcome, reason = judge(found)
             failed += outcome == "failed"
             rows.append(
                 {
@@ -56,7 +56,7 @@ def run_trials(plan: Sequence[Trial], progress: Optional[Reporter] = None) -> pd
                     "varied": trial.varied,
                     "outcome": outcome,
                     "reason": reason,
-                    **record,
+                    **found,
                 }
             )
             if progress is not None:

@@ -1,4 +1,4 @@
-"""Local processes that compute tasks: the one pool behind studies and regressions.
+"""Local processes that compute tasks: studies, regressions, measurements and stress runs.
 
 The processes are started by a plain command instead of by `multiprocessing`, so that scripts need
 no main guard, and each has a socket of its own: if one dies, nobody else notices.
@@ -11,17 +11,19 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from typing import Generic, Optional, TypeVar, cast
 
-from snowshed.run.pool_messages import Done, Fraction, Raised, Ready
+from snowshed.run.pool_messages import Died, Done, Fraction, Raised, Ready
 
 STOP_S = 60.0  # s a process has to write its checkpoint
 END_S = 5.0  # s a process has to end once its socket is closed
+LAST_WORDS = 4096  # bytes of a process's errors of which the last line is told
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -34,6 +36,30 @@ def available_cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+@dataclass(frozen=True)
+class Isolation:
+    """Keeps the tasks of a `Pool` apart from each other, and ends those that hang.
+
+    Attributes
+    ----------
+    forked
+        Whether each task has a fork of its process, which never computes itself: a task then sees
+        no memory of another, and its process's peak memory is its own.
+    limit_s
+        Wall time of a task in s, once its process is ready. A task that takes longer is killed with
+        its process.
+    environment
+        Variables of the environment that are set for the processes.
+    """
+
+    forked: bool = False
+    limit_s: float = float("inf")
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+
+SHARED = Isolation()
 
 
 @dataclass(frozen=True)
@@ -50,6 +76,10 @@ class Ended(Generic[Task, Result]):
         What its computation raised; None otherwise.
     death
         How its process ended, in words; empty otherwise.
+    last_words
+        The last line that a process that ended so wrote to stderr; may be empty.
+    hung
+        Whether that process was killed because the task took too long.
     never_began
         Whether that process ended before it was ready, so that no other would begin either.
     """
@@ -58,6 +88,8 @@ class Ended(Generic[Task, Result]):
     result: Optional[Result] = None
     error: Optional[Exception] = None
     death: str = ""
+    last_words: str = ""
+    hung: bool = False
     never_began: bool = False
 
 
@@ -74,6 +106,8 @@ class Pool(Generic[Task, Result]):
         Tasks at once.
     compute
         A function of a module, or a `functools.partial` of one; it is sent to each process once.
+    isolation
+        How far tasks are kept apart; by default they share their process with those before.
 
     Examples
     --------
@@ -84,9 +118,12 @@ class Pool(Generic[Task, Result]):
     ['snow']
     """
 
-    def __init__(self, processes: int, compute: Compute[Task, Result]) -> None:
+    def __init__(
+        self, processes: int, compute: Compute[Task, Result], isolation: Isolation = SHARED
+    ) -> None:
         self.capacity = processes
         self._compute = compute
+        self._isolation = isolation
         self._processes: list[_Process[Task, Result]] = []
 
     def __enter__(self) -> Pool[Task, Result]:
@@ -110,7 +147,7 @@ class Pool(Generic[Task, Result]):
         while True:
             idle = next((process for process in self._processes if process.task is None), None)
             if idle is None:
-                idle = _Process(self._compute)
+                idle = _Process(self._compute, self._isolation)
                 self._processes.append(idle)
             if idle.start(task):
                 return
@@ -143,10 +180,13 @@ class Pool(Generic[Task, Result]):
             self._discard(self._processes[-1])
 
     def _receive(self, timeout: float) -> list[Ended[Task, Result]]:
-        """Take a message of each process that has one within `timeout`."""
-        ready = wait([process.connection for process in self._busy()], timeout)
-        messages = (process.receive() for process in self._busy() if process.connection in ready)
+        """Take a message of each process that has one within `timeout`; end those that hang."""
+        busy = self._busy()
+        left = min((process.left_s for process in busy), default=timeout)
+        ready = wait([process.connection for process in busy], min(timeout, max(0.0, left)))
+        messages = (process.receive() for process in busy if process.connection in ready)
         ended = [message for message in messages if message]
+        ended += [process.give_up() for process in self._busy() if process.left_s <= 0.0]
         for process in [process for process in self._processes if process.dead]:
             self._discard(process)
         return ended
@@ -162,24 +202,33 @@ class Pool(Generic[Task, Result]):
 class _Process(Generic[Task, Result]):
     """One process, and what it is doing."""
 
-    def __init__(self, compute: Compute[Task, Result]) -> None:
+    def __init__(self, compute: Compute[Task, Result], isolation: Isolation) -> None:
+        self._limit_s = isolation.limit_s
+        self._errors = tempfile.TemporaryFile("a+b")  # noqa: SIM115 - `end` closes it
         ours, theirs = socket.socketpair()
         with theirs:
             # In a session of its own a Ctrl-C does not reach it: who made the pool stops it once,
             # in order. The current folder is not to be searched for modules.
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "snowshed.run.pool_process", str(theirs.fileno())],
+                [sys.executable, "-m", "snowshed.run.pool_process", str(theirs.fileno())]
+                + ["forked"] * isolation.forked,
                 pass_fds=[theirs.fileno()],
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
+                stderr=self._errors,
                 cwd="/",
-                env={**os.environ, "PYTHONPATH": os.pathsep.join(_absolute(sys.path))},
+                env={
+                    **os.environ,
+                    **isolation.environment,
+                    "PYTHONPATH": os.pathsep.join(_absolute(sys.path)),
+                },
             )
         self.connection = Connection(ours.detach())
         self.task: Optional[Task] = None
         self.done = 0.0
         self.dead = False
+        self._began = time.monotonic()
         self._ready = False
         with suppress(OSError):  # that it has ended shows when it is given a task
             self.connection.send(compute)
@@ -188,6 +237,11 @@ class _Process(Generic[Task, Result]):
     def id(self) -> int:
         return self._process.pid
 
+    @property
+    def left_s(self) -> float:
+        """The time that is left to its task, s; a process that only starts has no limit."""
+        return float("inf") if not self._ready else self._began + self._limit_s - time.monotonic()
+
     def start(self, task: Task) -> bool:
         """Hand over a task; return False if the process died while it was idle."""
         try:
@@ -195,7 +249,7 @@ class _Process(Generic[Task, Result]):
         except OSError:
             if self._ready:
                 return False
-        self.task, self.done = task, 0.0
+        self.task, self.done, self._began = task, 0.0, time.monotonic()
         return True
 
     def receive(self) -> Optional[Ended[Task, Result]]:
@@ -207,35 +261,68 @@ class _Process(Generic[Task, Result]):
             return self._death(self.task)
         if isinstance(message, Fraction):
             self.done = message.done
-        self._ready = self._ready or isinstance(message, Ready)
-        if not isinstance(message, (Done, Raised)):
+        if isinstance(message, Ready):
+            self._ready, self._began = True, time.monotonic()
+        if not isinstance(message, (Done, Raised, Died)):
             return None
         task, self.task = self.task, None
+        if isinstance(message, Died):
+            return Ended(task, death=_ending(message.code), last_words=self._last_words())
         if isinstance(message, Raised):
             return Ended(task, error=message.error)
         return Ended(task, cast(Result, message.result))
 
     def interrupt(self) -> None:
         """Ask the task to stop."""
-        with suppress(ProcessLookupError):
-            self._process.send_signal(signal.SIGTERM)
+        self._signal(signal.SIGTERM)
+
+    def give_up(self) -> Ended[Task, Result]:
+        """Kill the process, whose task takes too long."""
+        assert self.task is not None
+        task, self.task, self.dead = self.task, None, True
+        self._signal(signal.SIGKILL)
+        return Ended(task, death=f"took more than {self._limit_s:g} s", hung=True)
 
     def end(self) -> None:
         """End the process, which its closed socket has told to end."""
+        self._wait()
+        self._errors.close()
+
+    def _wait(self) -> int:
+        """Close the socket, kill a process that goes on nevertheless, and return its code."""
         self.connection.close()
         try:
-            self._process.wait(END_S)
+            return self._process.wait(END_S)
         except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+            self._signal(signal.SIGKILL)
+            return self._process.wait()
 
     def _death(self, task: Task) -> Ended[Task, Result]:
         self.dead, self.task = True, None
-        self.end()
-        code = self._process.returncode
-        if code < 0:
-            return Ended(task, death=f"was killed by signal {-code} ({signal.strsignal(-code)})")
-        return Ended(task, death=f"ended with code {code}", never_began=not self._ready)
+        code = self._wait()
+        never_began = code >= 0 and not self._ready
+        return Ended(
+            task, death=_ending(code), last_words=self._last_words(), never_began=never_began
+        )
+
+    def _signal(self, number: signal.Signals) -> None:
+        """Send a signal to the process and its fork."""
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, number)
+
+    def _last_words(self) -> str:
+        """Return the last line that the process wrote to stderr since it was asked before."""
+        size = self._errors.seek(0, os.SEEK_END)
+        self._errors.seek(max(0, size - LAST_WORDS))
+        lines = self._errors.read().decode(errors="replace").strip().splitlines()
+        self._errors.truncate(0)
+        return lines[-1].strip() if lines else ""
+
+
+def _ending(code: int) -> str:
+    if code < 0:
+        return f"was killed by signal {-code} ({signal.strsignal(-code)})"
+    return f"ended with code {code}"
 
 
 def _absolute(paths: Iterable[str]) -> list[str]:

@@ -1,4 +1,4 @@
-"""What a process of a pool says to who made it."""
+"""Messages of a pool's process to the pool that started it."""
 
 from __future__ import annotations
 
@@ -19,13 +19,20 @@ class Fraction:
 
 @dataclass(frozen=True)
 class Done:
-    """What the task gave."""
+    """The task's result."""
 
     result: object
 
 
 @dataclass(frozen=True)
 class Raised:
-    """What the task raised."""
+    """The exception that the task raised."""
 
     error: Exception
+
+
+@dataclass(frozen=True)
+class Died:
+    """The fork that computed the task has ended with a code, negative for a signal's number."""
+
+    code: int
