@@ -84,6 +84,8 @@ void bind_event_sequence(py::module_& m) {
           },
           "scene_json"_a, "base_dir"_a, "folder"_a)
       .def("run", &run_sequence, "observer"_a, "report_interval_s"_a)
+      .def("__enter__", [](EventSequence& self) -> EventSequence& { return self; })
+      .def("__exit__", [](EventSequence& self, const py::args&) { self.close(); })
       .def("record_failure", &EventSequence::record_failure, "error"_a)
       .def("count_from", &EventSequence::count_from, "steps"_a, "wall_s"_a)
       .def(

@@ -3,9 +3,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
+#include <cinttypes>
+#include <cstdint>
 #include <cstdio>
+#include <random>
 #include <system_error>
 #include <utility>
 
@@ -20,19 +22,31 @@ constexpr std::size_t max_write = std::size_t{1} << 30;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-/// Returns a name in the same folder, unique among the threads and processes that may write the
-/// same file at once.
+constexpr std::string_view temporary_prefix = ".partial-";
+constexpr std::size_t temporary_digits = 16;
+
+/// Returns a name in the same folder that nobody can guess: a link planted there would lead astray.
 std::filesystem::path temporary_name(const std::filesystem::path& path) {
-  static std::atomic<unsigned> counter{0};
-  std::filesystem::path name = path;
-  name += "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".partial";
-  return name;
+  std::random_device random;
+  const std::uint64_t number = std::uint64_t{random()} << 32 | random();
+  char digits[temporary_digits + 1];
+  std::snprintf(digits, sizeof digits, "%016" PRIx64, number);
+  std::string name(temporary_prefix);
+  return path.parent_path() / (name + digits + "-" + path.filename().string());
 }
 
 bool is_device_or_pipe(const std::filesystem::path& path) {
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   return std::filesystem::is_other(status);
+}
+
+/// Returns where a link leads, so that the link stays and the file that it names is replaced.
+std::filesystem::path target_of(std::filesystem::path path) {
+  std::error_code failed;
+  if (!std::filesystem::is_symlink(path, failed)) return path;
+  auto target = std::filesystem::weakly_canonical(path, failed);
+  return failed ? path : target;
 }
 
 int retry_open(const std::filesystem::path& path, int flags) {
@@ -55,7 +69,7 @@ void sync_folder(const std::filesystem::path& path) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(target_of(std::move(path))) {
   int flags = O_WRONLY;
   if (!is_device_or_pipe(path_)) {
     temporary_ = temporary_name(path_);
@@ -122,6 +136,25 @@ void AtomicFile::fail(const char* action) {
   const int error = errno;  // `discard` may overwrite it
   discard();
   throw FileError(path_.string() + ": " + action + ": " + reason(error));
+}
+
+bool is_leftover(const std::filesystem::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  const std::size_t end = temporary_prefix.size() + temporary_digits;
+  std::error_code ignored;
+  return entry.symlink_status(ignored).type() == std::filesystem::file_type::regular &&
+         name.compare(0, temporary_prefix.size(), temporary_prefix) == 0 &&
+         name.find_first_not_of("0123456789abcdef", temporary_prefix.size()) == end &&
+         name[end] == '-';
+}
+
+void remove_leftovers(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::vector<std::filesystem::path> leftovers;
+  for (std::filesystem::directory_iterator at(folder, failed), end; !failed && at != end;
+       at.increment(failed))
+    if (is_leftover(*at)) leftovers.push_back(at->path());
+  for (const auto& path : leftovers) std::filesystem::remove(path, failed);
 }
 
 void write_atomic(const std::filesystem::path& path, std::string_view content) {

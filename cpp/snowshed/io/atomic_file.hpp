@@ -15,7 +15,8 @@ namespace snowshed {
 /// removed and an older file at `path` stays as it was. All errors are FileError with the path and
 /// the reason.
 ///
-/// A device or a pipe cannot be replaced by renaming; it is written directly.
+/// A device or a pipe cannot be replaced by renaming; it is written directly. Of a link, the file
+/// that it names is replaced.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -42,6 +43,14 @@ class AtomicFile {
   int descriptor_ = -1;
   std::vector<char> buffer_;
 };
+
+/// Returns whether a folder's entry is the temporary file of a process that was killed, or of one
+/// that is still writing.
+bool is_leftover(const std::filesystem::directory_entry&);
+
+/// Removes such files from a folder; only who has locked the folder may. What cannot be removed
+/// stays.
+void remove_leftovers(const std::filesystem::path& folder);
 
 /// Writes the whole content of a file atomically.
 void write_atomic(const std::filesystem::path& path, std::string_view content);

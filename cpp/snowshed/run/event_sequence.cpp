@@ -23,7 +23,7 @@ EventSequence EventSequence::resume(const Scene& scene, const fs::path& base_dir
                                     const fs::path& folder) {
   ResultsFolder results = ResultsFolder::reopen(folder, scene);
   RunRecord record = RunRecord::read(results.record());
-  auto sim = fs::exists(results.checkpoint()) ? Simulation::load(results.checkpoint())
+  auto sim = fs::exists(results.checkpoint()) ? results.load_checkpoint(scene)
                                               : std::make_unique<Simulation>(scene, base_dir);
   record.keep_through(sim->event() - int(sim->event_running()));
   return {std::move(sim), std::move(results), std::move(record)};

@@ -54,6 +54,9 @@ class EventSequence {
   /// Steps and wall time (s) of the events that are done, where run.json does not tell.
   void count_from(std::int64_t steps, double wall) { steps_before_ = steps, wall_before_ = wall; }
 
+  /// Lets another run go on in the folder; this one must not run any more.
+  void close() { folder_.unlock(); }
+
   Simulation& simulation() { return *sim_; }
   const RunRecord& record() const { return record_; }
   RunRecord& record() { return record_; }

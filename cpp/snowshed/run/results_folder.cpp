@@ -1,5 +1,6 @@
 #include "snowshed/run/results_folder.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -47,26 +48,46 @@ void ResultsFolder::require_empty(const fs::path& folder) {
   const bool exists = with_file_errors([&] { return fs::exists(folder); });
   if (!exists) return;
   if (!fs::is_directory(folder)) throw InputError(folder.string(), "is not a folder");
-  if (!with_file_errors([&] { return fs::is_empty(folder); }))
+  const bool empty = with_file_errors([&] {
+    const auto entries = fs::directory_iterator(folder);
+    return std::all_of(begin(entries), end(entries), is_leftover);
+  });
+  if (!empty)
     throw InputError(folder.string(), "not empty; choose a new folder, or go on with --resume");
 }
 
 ResultsFolder ResultsFolder::create(fs::path folder, const Scene& scene) {
   require_empty(folder);
   make_folder(folder);
-  write_atomic(folder / "scene.json", write_scene(scene));
-  return ResultsFolder(std::move(folder));
+  ResultsFolder made(std::move(folder));
+  require_empty(made.folder_);  // another run may have been faster
+  write_atomic(made.folder_ / "scene.json", write_scene(scene));
+  return made;
 }
 
 ResultsFolder ResultsFolder::reopen(fs::path folder, const Scene& scene) {
   const fs::path file = folder / "scene.json";
   if (!with_file_errors([&] { return fs::is_regular_file(file); }))
-    throw InputError(folder.string(), "nothing to resume; it holds no scene.json");
+    throw InputError(folder.string(),
+                     "nothing to resume; it holds no scene.json (start without --resume)");
   const std::string paths = differences(load_scene(file), scene);
   if (!paths.empty())
     throw InputError(folder.string(), "made by another scene, which differs in " + paths +
                                           "; resume with the scene.json in it");
   return ResultsFolder(std::move(folder));
+}
+
+ResultsFolder::ResultsFolder(fs::path folder) : folder_(std::move(folder)), lock_(folder_) {
+  for (const char* inside : {"", "particles", "snapshots"}) remove_leftovers(folder_ / inside);
+}
+
+std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const Scene& scene) const {
+  auto sim = Simulation::load(checkpoint());
+  const std::string paths = differences(sim->scene(), scene);
+  if (!paths.empty())
+    throw InputError(checkpoint().string(),
+                     "made by another scene, which differs from scene.json in " + paths);
+  return sim;
 }
 
 void ResultsFolder::write_particles(const Simulation& sim) const {

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
+#include "snowshed/io/folder_lock.hpp"
 #include "snowshed/run/simulation.hpp"
 
 namespace snowshed {
 
 /// Holds scene.json, run.json (`RunRecord`), checkpoint.bin, particles/event_NNN.vtp,
-/// particles.pvd and snapshots/.
+/// particles.pvd and snapshots/. It is locked: no other run writes into it meanwhile. What a killed
+/// run left half-written is removed when it is opened.
 class ResultsFolder {
  public:
   /// Makes the folder for a scene. Throws InputError where it holds anything.
@@ -17,20 +20,27 @@ class ResultsFolder {
   /// Opens the folder of an earlier run of the same scene. Throws InputError where it is not one.
   static ResultsFolder reopen(std::filesystem::path folder, const Scene& scene);
 
-  /// Throws InputError unless `folder` is new or empty.
+  /// Throws InputError unless `folder` is new or empty; what a killed run left does not count.
   static void require_empty(const std::filesystem::path& folder);
 
   std::filesystem::path checkpoint() const { return folder_ / "checkpoint.bin"; }
   std::filesystem::path record() const { return folder_ / "run.json"; }
   std::filesystem::path snapshots() const { return folder_ / "snapshots"; }
 
+  /// Reads the checkpoint. Throws InputError where it is damaged, or of another scene.
+  std::unique_ptr<Simulation> load_checkpoint(const Scene&) const;
+
+  /// Lets another run go on in the folder.
+  void unlock() { lock_.release(); }
+
   /// Writes the particles after an event, and adds them to the series of all events.
   void write_particles(const Simulation&) const;
 
  private:
-  explicit ResultsFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit ResultsFolder(std::filesystem::path folder);
 
   std::filesystem::path folder_;
+  FolderLock lock_;
 };
 
 }  // namespace snowshed

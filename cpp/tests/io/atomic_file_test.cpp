@@ -52,9 +52,7 @@ TEST_F(AtomicFileTest, KeepsTheOrderOfSmallAndLargePieces) {
 }
 
 TEST_F(AtomicFileTest, LeavesNothingWithoutCommit) {
-  {
-    AtomicFile(path("a")).write("lost");
-  }
+  { AtomicFile(path("a")).write("lost"); }
   EXPECT_EQ(number_of_files(), 0u);
 }
 
@@ -102,6 +100,26 @@ TEST_F(AtomicFileTest, DoesNotReplaceAFolder) {
   EXPECT_THROW(write_atomic(path("folder"), "x"), FileError);
   EXPECT_TRUE(std::filesystem::is_directory(path("folder")));
   EXPECT_EQ(number_of_files(), 1u);
+}
+
+TEST_F(AtomicFileTest, OfALinkTheFileIsReplacedThatItNames) {
+  std::filesystem::create_directories(path("elsewhere"));
+  write_atomic(path("elsewhere") / "a", "older");
+  std::filesystem::create_symlink("elsewhere/a", path("link"));
+  write_atomic(path("link"), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link")));
+  EXPECT_EQ(content(path("elsewhere") / "a"), "new");
+}
+
+TEST_F(AtomicFileTest, RemovesOnlyWhatAKilledProcessLeft) {
+  const char* left = ".partial-0123456789abcdef-a";
+  for (const char* name : {left, ".partial-0123456789abcdef", ".partial-mine", "a.partial", "a"})
+    write_atomic(path(name), "x");
+  std::filesystem::create_symlink("a", path(".partial-fedcba9876543210-a"));
+  remove_leftovers(path("."));
+  EXPECT_FALSE(std::filesystem::exists(path(left)));
+  EXPECT_EQ(number_of_files(), 5u);
+  EXPECT_NO_THROW(remove_leftovers(path("missing")));
 }
 
 TEST_F(AtomicFileTest, WritesDevicesDirectly) {

@@ -108,6 +108,26 @@ TEST_F(EventSequenceTest, AFailureBetweenEventsLeavesTheCheckpointOfTheLast) {
   EXPECT_TRUE(content(path("a") / "checkpoint.bin") == before);
 }
 
+TEST_F(EventSequenceTest, TwoRunsDoNotShareAFolder) {
+  EventSequence first = EventSequence::create(two_events(), ".", path("a"));
+  EXPECT_THROW(EventSequence::resume(two_events(), ".", path("a")), InputError);
+  first.close();
+  EXPECT_NO_THROW(EventSequence::resume(two_events(), ".", path("a")));
+}
+
+TEST_F(EventSequenceTest, RefusesTheCheckpointOfAnotherScene) {
+  Witness quiet;
+  Scene steeper = two_events();
+  steeper.panel->tilt += 5;
+  EventSequence::create(two_events(), ".", path("a")).run(quiet, never);
+  EventSequence::create(steeper, ".", path("b")).run(quiet, never);
+  std::filesystem::copy_file(path("b") / "checkpoint.bin", path("a") / "checkpoint.bin",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(message_of<InputError>([&] { EventSequence::resume(two_events(), ".", path("a")); }),
+            (path("a") / "checkpoint.bin").string() +
+                ": made by another scene, which differs from scene.json in /panel/tilt");
+}
+
 TEST_F(EventSequenceTest, ResumesOnlyItsOwnScene) {
   Witness quiet;
   Scene scene = two_events();

@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Union
 
+from snowshed._core import InputError
+
+#: Errors of file systems that flush nothing.
+CANNOT_FLUSH = (errno.EINVAL, errno.ENOTSUP, errno.EROFS)
+
 
 @contextmanager
 def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """Yield a path to write to, in the same folder; it takes the place of `path` on success.
+
+    Of a link, the file that it names is replaced.
+
+    Raises
+    ------
+    InputError
+        If there is something at `path` that is no file, such as a folder or a device.
 
     Examples
     --------
@@ -23,10 +37,22 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     'whole'
     """
     path = Path(path)
-    beside = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path}: not a file; what is written would destroy it")
+    path = Path(os.path.realpath(path))
+    # Nobody can guess the name, so nobody can plant a link there; the core removes what a killed
+    # process leaves in a results folder by this name.
+    beside = path.with_name(f".partial-{secrets.token_hex(8)}-{path.name}")
     try:
+        os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield beside
+        _flush(beside)
         beside.replace(path)
+        _flush(path.parent)
+    except OSError as error:
+        if error.filename in (None, str(beside)):  # the user knows the file by its own name
+            error.filename = str(path)
+        raise
     finally:
         beside.unlink(missing_ok=True)
 
@@ -35,3 +61,15 @@ def write_text(path: Union[str, os.PathLike[str]], text: str) -> None:
     """Write a whole UTF-8 text file."""
     with replacing(path) as beside:
         beside.write_text(text, encoding="utf-8")
+
+
+def _flush(path: Path) -> None:
+    """Make a file or a folder survive a power cut, where the file system can."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in CANNOT_FLUSH:
+            raise
+    finally:
+        os.close(descriptor)

@@ -27,7 +27,7 @@ from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_inter
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
-from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
+from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 
 if TYPE_CHECKING:
@@ -94,10 +94,13 @@ def run_events(
     data: dict[str, Any] = ready.data
     if ageing is not None and data["events"]["between"] != "carry":
         raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
-    open_run = _resume if resume else _create
-    sequence, results = open_run(ready, out_dir, None if ageing is None else ageing.data)
-    sequence.describe_machine(machine_facts())
-    with deferred_interrupts() as interrupt:
+    results = RunFolder(out_dir)
+    open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
+    sequence = open_folder(ready.json, ready.base_dir, os.fspath(out_dir))
+    with sequence, deferred_interrupts() as interrupt:
+        prepare = _continue_tables if resume else _begin_tables
+        prepare(sequence, results, None if ageing is None else ageing.data)
+        sequence.describe_machine(machine_facts())
         recorder = _Recorder(sequence.simulation, results, ageing, interrupt, progress)
         recorder.fill_in(sequence.finished_events)
         _run(sequence, recorder)
@@ -106,28 +109,22 @@ def run_events(
     return read_events(results.folder)
 
 
-def _create(
-    scene: ResolvedScene, folder: PathLike, ageing: Optional[dict[str, Any]]
-) -> tuple[_core.EventSequence, RunFolder]:
-    sequence = _core.EventSequence.create(scene.json, scene.base_dir, os.fspath(folder))
-    results = RunFolder(folder)
+def _begin_tables(
+    sequence: _core.EventSequence, results: RunFolder, ageing: Optional[dict[str, Any]]
+) -> None:
     if ageing is not None:
         results.write_ageing(ageing)
-    return sequence, results
 
 
-def _resume(
-    scene: ResolvedScene, folder: PathLike, ageing: Optional[dict[str, Any]]
-) -> tuple[_core.EventSequence, RunFolder]:
-    results = RunFolder(folder)
-    sequence = _core.EventSequence.resume(scene.json, scene.base_dir, os.fspath(folder))
+def _continue_tables(
+    sequence: _core.EventSequence, results: RunFolder, ageing: Optional[dict[str, Any]]
+) -> None:
     results.check(ageing)
     simulation = sequence.simulation
     results.keep_through(simulation.event, running=simulation.event_running)
     events = results.events
     if events.rows and not sequence.finished_events:  # of the version before
         sequence.count_from(int(events.total("steps")), events.total("wall_s"))
-    return sequence, results
 
 
 def _run(sequence: _core.EventSequence, recorder: _Recorder) -> None:

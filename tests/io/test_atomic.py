@@ -1,0 +1,40 @@
+"""Files that appear whole or not at all, and what is never destroyed."""
+
+import errno
+import os
+
+import pytest
+
+from snowshed import InputError
+from snowshed.io.atomic import replacing, write_text
+
+
+def test_what_is_no_file_is_refused_and_stays(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "folder").mkdir()
+    for name in ("pipe", "folder"):
+        with pytest.raises(InputError, match=f"{name}: not a file"):
+            write_text(tmp_path / name, "x")
+    assert (tmp_path / "pipe").is_fifo()
+    with pytest.raises(InputError, match="/dev/null: not a file"):
+        write_text("/dev/null", "x")
+
+
+def test_a_link_stays_and_its_file_is_replaced(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "a").write_text("older")
+    (tmp_path / "link").symlink_to("elsewhere/a")
+    write_text(tmp_path / "link", "new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "elsewhere" / "a").read_text() == "new"
+
+
+def test_a_failure_leaves_the_older_file_alone_and_names_it(tmp_path):
+    file = tmp_path / "a.txt"
+    file.write_text("older")
+    with pytest.raises(OSError, match=r"a\.txt") as raised, replacing(file) as beside:
+        beside.write_text("half")
+        raise OSError(errno.ENOSPC, "No space left on device", str(beside))
+    assert raised.value.filename == str(file)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+    assert file.read_text() == "older"
