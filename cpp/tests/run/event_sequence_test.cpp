@@ -90,6 +90,7 @@ TEST_F(EventSequenceTest, AFailureIsRecordedAndCanBeResumedFrom) {
   EXPECT_THROW(sequence.run(failing, 0), SimulationError);
   sequence.record_failure("no further");
   EXPECT_NE(content(path("a") / "run.json").find("\"error\": \"no further\""), std::string::npos);
+  sequence.close();
   EventSequence resumed = EventSequence::resume(two_events(), ".", path("a"));
   EXPECT_GT(resumed.simulation().event_time(), 0);
   EXPECT_TRUE(resumed.run(second, never));
