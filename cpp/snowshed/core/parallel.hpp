@@ -129,4 +129,22 @@ void parallel_for_each(std::ptrdiff_t n, int threads, F f) {
 #endif
 }
 
+/// f(begin, end) for pieces of at most `piece` iterations each, which do not depend on the number of
+/// threads. f must not throw. Allocates nothing.
+template <class F>
+void parallel_pieces(std::ptrdiff_t n, int threads, std::ptrdiff_t piece, F f) {
+  const std::ptrdiff_t pieces = (n + piece - 1) / piece;
+  const auto run = [&](std::ptrdiff_t p) { f(p * piece, std::min(n, (p + 1) * piece)); };
+#ifdef SNOWSHED_STD_THREADS
+  run_in_turn(pieces, threads, run);
+#else
+  if (threads == 1 || pieces <= 1) {
+    for (std::ptrdiff_t p = 0; p < pieces; ++p) run(p);
+    return;
+  }
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (std::ptrdiff_t p = 0; p < pieces; ++p) run(p);
+#endif
+}
+
 }  // namespace snowshed

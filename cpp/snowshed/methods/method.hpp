@@ -24,21 +24,13 @@
 
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/energy_balance.hpp"
+#include "snowshed/methods/particle_batch.hpp"
 #include "snowshed/particles/field_view.hpp"
 
 namespace snowshed {
 
 class BinaryWriter;
 class BinaryReader;
-
-/// Particles to add: equal masses, one velocity, one kind of snow.
-struct ParticleBatch {
-  std::vector<Vec3> positions;   // m
-  Vec3 velocity = Vec3::Zero();  // m/s
-  double mass = 0;               // kg each (per metre of width in 2D)
-  int event = 1;
-  int material_id = 0;
-};
 
 /// A copy of the particles for the outside, in double, ordered by id.
 struct ParticleState {
@@ -112,6 +104,10 @@ class Method {
   /// now resumes to the same bits. A checkpoint taken elsewhere is sound, too, but resumes to other
   /// last bits. A method is at a safe point again after a bounded number of steps.
   virtual bool at_safe_point() const = 0;
+
+  /// Whether the snow has come to rest by a criterion of the method's own. Methods without one
+  /// leave that to those who run them.
+  virtual bool stopped() const { return false; }
 
   virtual double time() const = 0;       ///< s
   virtual double time_step() const = 0;  ///< s, of the last step

@@ -11,6 +11,7 @@ const std::vector<Quantity>& quantities() {
       {"mass", "kg", "Mass; in 2D per metre of width"},
       {"density", "kg/m3", "Current density"},
       {"volume_ratio", "1", "Current over initial volume"},
+      {"thickness", "m", "Thickness of the snow, normal to the ground"},
       {"pressure", "Pa", "Kirchhoff pressure, positive in compression"},
       {"volumetric_plastic_strain", "1",
        "Volumetric plastic strain, logarithmic, negative in compaction"},

@@ -76,7 +76,7 @@ void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
 void Simulation::add_snow(ParticleBatch batch) {
   batch.event = std::max(event_, 1);
   solver_->add(batch);
-  event_mass_ += batch.mass * double(batch.positions.size());
+  event_mass_ += batch.total_mass();
   laid_height_ += panel_.height_of(batch.positions);
 }
 

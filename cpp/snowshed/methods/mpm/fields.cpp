@@ -1,20 +1,13 @@
 // The fields of a solver's particles: those it stores as views, the others computed.
 #include <array>
 #include <cmath>
-#include <optional>
 
-#include "snowshed/core/errors.hpp"
-#include "snowshed/core/parallel.hpp"
 #include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
-#include "snowshed/particles/quantities.hpp"
+#include "snowshed/particles/field_sources.hpp"
 
 namespace snowshed {
 namespace {
-
-FieldInfo field_of(const Quantity& q, FieldType type, bool stored) {
-  return {q.name, q.unit, q.meaning, q.components, type, stored};
-}
 
 /// One component of a vector or tensor, such as velocity_x.
 FieldInfo component_of(const Quantity& q, const std::string& axes, FieldType type) {
@@ -33,41 +26,6 @@ std::string symmetric_axes(int k) {
     for (int j = i; j < D; ++j)
       if (Sym<double, D>::index(i, j) == k) return {axis_names<D>()[i], axis_names<D>()[j]};
   return {};
-}
-
-template <class T>
-FieldView stored_view(const FieldInfo& info, const AlignedVector<T>& array) {
-  return {info, array.size(), sizeof(T), share(array)};
-}
-
-/// A view of values computed for it: `info.components` of each particle.
-template <class T>
-FieldView computed_view(const FieldInfo& info, std::vector<T> values) {
-  const auto owner = std::make_shared<const std::vector<T>>(std::move(values));
-  return {info, owner->size() / std::size_t(info.components),
-          std::ptrdiff_t(sizeof(T)) * info.components,
-          std::shared_ptr<const void>(owner, owner->data())};
-}
-
-/// The values that f(particle) returns: numbers, vectors or matrices (by rows).
-template <class F>
-std::vector<double> values_of_each(std::size_t count, int threads, F f) {
-  using Value = decltype(f(std::size_t()));
-  if constexpr (std::is_arithmetic_v<Value>) {
-    std::vector<double> values(count);
-    parallel_for_each(std::ptrdiff_t(count), threads,
-                      [&](std::ptrdiff_t i) { values[i] = f(std::size_t(i)); });
-    return values;
-  } else {
-    constexpr int rows = Value::RowsAtCompileTime, columns = Value::ColsAtCompileTime;
-    std::vector<double> values(count * rows * columns);
-    parallel_for_each(std::ptrdiff_t(count), threads, [&](std::ptrdiff_t i) {
-      const Value value = f(std::size_t(i));
-      for (int r = 0; r < rows; ++r)
-        for (int c = 0; c < columns; ++c) values[(i * rows + r) * columns + c] = value(r, c);
-    });
-    return values;
-  }
 }
 
 }  // namespace
@@ -179,21 +137,12 @@ void MpmSolver<T, D>::visit_fields(Visit visit) const {
 
 template <class T, int D>
 std::vector<FieldInfo> MpmSolver<T, D>::fields() const {
-  std::vector<FieldInfo> all;
-  visit_fields([&all](const FieldInfo& info, const auto&) { all.push_back(info); });
-  return all;
+  return listed_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 template <class T, int D>
 FieldView MpmSolver<T, D>::field(const std::string& name) const {
-  std::optional<FieldView> found;
-  std::string names;
-  visit_fields([&](const FieldInfo& info, const auto& view) {
-    if (info.name == name) found = view();
-    names += (names.empty() ? "" : ", ") + info.name;
-  });
-  if (!found) throw InputError("field", "no \"" + name + "\"; there are " + names);
-  return *found;
+  return found_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
 template class MpmSolver<float, 2>;

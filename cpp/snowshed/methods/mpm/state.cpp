@@ -16,15 +16,6 @@ namespace {
 /// vibration of a slab a few cells thick.
 constexpr double friction_memory_steps = 40;
 
-void check_batch(const ParticleBatch& batch, std::size_t materials) {
-  if (batch.material_id < 0 || std::size_t(batch.material_id) >= materials)
-    throw InputError("material_id", std::to_string(batch.material_id) + " is none of the " +
-                                        std::to_string(materials) + " snows");
-  if (!(batch.mass > 0) || !std::isfinite(batch.mass))
-    throw InputError("mass", "of a particle must be positive");
-  if (!batch.velocity.allFinite()) throw InputError("velocity", "not finite");
-}
-
 }  // namespace
 
 template <class T, int D>
@@ -70,7 +61,7 @@ void MpmState<T, D>::append(const MpmModel<T, D>& model, const ParticleBatch& ba
     blocks.push_back(put(model, i, section<D>(batch.positions[k])));
     for (int d = 0; d < D; ++d) particles.velocity[d][i] = T(velocity[d]);
     if (particles.has_plastic) particles.plastic[i] = plastic;
-    particles.mass[i] = T(batch.mass);
+    particles.mass[i] = T(batch.mass_of(k));
     particles.id[i] = progress.next_id++;
     particles.event[i] = std::uint16_t(batch.event);
     if (particles.has_material_id) particles.material_id[i] = std::uint8_t(batch.material_id);

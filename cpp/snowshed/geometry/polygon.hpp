@@ -1,0 +1,37 @@
+// Polygons on the map.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace snowshed {
+
+using MapPoint = std::array<double, 2>;  // m, east and north
+using Ring = std::vector<MapPoint>;      // without a repeated last point
+
+/// An area within an outline and outside of its holes.
+struct Polygon {
+  Ring outline;
+  std::vector<Ring> holes;
+};
+
+/// Whether a point lies within a ring (even-odd rule).
+bool contains(const Ring& ring, const MapPoint& point);
+
+/// Whether a point lies within the outline and in none of the holes.
+bool contains(const Polygon& polygon, const MapPoint& point);
+
+/// Twice the area that a ring encloses, positive where it runs counterclockwise, m2.
+double twice_signed_area(const Ring& ring);
+
+/// The ring with every edge moved outward by a distance (> 0, m) and the corners mitred; where a
+/// mitre would reach farther than four distances it is cut off.
+Ring widened(const Ring& ring, double distance);
+
+/// The same toward the left of the ring's direction where `distance` < 0, the right where > 0.
+Ring moved_aside(const Ring& ring, double distance);
+
+/// Whether two edges of a ring cross or touch, other than neighbours at their common corner.
+bool crosses_itself(const Ring& ring);
+
+}  // namespace snowshed

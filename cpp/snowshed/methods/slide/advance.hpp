@@ -1,0 +1,22 @@
+// Moves the particles of a slide by what acts on them.
+#pragma once
+
+#include "snowshed/methods/slide/state.hpp"
+
+namespace snowshed {
+
+/// New velocities and positions, brought back onto the ground. Particles that leave the terrain
+/// are marked in `work.removed`. Updates the kinetic energy and whether the slide has stopped.
+void advance(const SlideModel&, SlideState&, SlideWork&);
+
+/// Takes the marked particles and their bonds out of the state, and counts what they carry.
+void remove_marked(SlideState&, SlideWork&);
+
+/// Splits particles that have become too heavy.
+void split_heavy(const SlideModel&, SlideState&, SlideWork&);
+
+/// Stores the particles in another order, such as that of their cells. The workspace does not
+/// follow.
+void sort_by_cell(SlideState&, const std::vector<std::uint32_t>& order);
+
+}  // namespace snowshed

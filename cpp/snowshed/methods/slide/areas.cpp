@@ -1,0 +1,70 @@
+#include "snowshed/methods/slide/areas.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snowshed {
+namespace {
+
+/// Whether most corners are passed counterclockwise as seen from the first one.
+bool mostly_counterclockwise(const Ring& ring) {
+  std::vector<double> angles;
+  for (std::size_t i = 1; i < ring.size(); ++i)
+    angles.push_back(std::atan2(ring[i][1] - ring[0][1], ring[i][0] - ring[0][0]));
+  std::size_t growing = 0;
+  for (std::size_t i = 1; i < angles.size(); ++i) growing += angles[i] >= angles[i - 1];
+  return 2 * growing >= angles.size() - 1;
+}
+
+double radius_of(Reach reach) { return reach == Reach::edge ? 1e-3 : std::sqrt(2.0); }  // cells
+
+/// The range of nodes along one axis that a ring can contain.
+struct NodeRange {
+  int begin, end;
+};
+NodeRange nodes_within(const Ring& ring, int axis, int nodes) {
+  double low = ring[0][axis], high = low;
+  for (const MapPoint& p : ring) {
+    low = std::min(low, p[axis]);
+    high = std::max(high, p[axis]);
+  }
+  const double last = nodes;
+  return {int(std::clamp(std::floor(low), 0.0, last)),
+          int(std::clamp(std::ceil(high) + 1, 0.0, last))};
+}
+
+/// In units of cells.
+Ring scaled(const Ring& ring, double cell) {
+  Ring result;
+  for (const MapPoint& p : ring) result.push_back({p[0] / cell, p[1] / cell});
+  return result;
+}
+
+}  // namespace
+
+Ring widened_as_avaframe(const Ring& outline, double radius) {
+  return moved_aside(outline, mostly_counterclockwise(outline) ? radius / 2 : -radius / 2);
+}
+
+std::vector<double> thickness_at_nodes(const std::vector<SlideArea>& areas, const Terrain& terrain,
+                                       Reach reach) {
+  std::vector<double> thickness(std::size_t(terrain.columns()) * std::size_t(terrain.rows()), 0.0);
+  for (const SlideArea& area : areas) {
+    const Ring ring =
+        widened_as_avaframe(scaled(area.polygon.outline, terrain.cell()), radius_of(reach));
+    std::vector<Ring> holes;
+    for (const Ring& hole : area.polygon.holes) holes.push_back(scaled(hole, terrain.cell()));
+    const Polygon polygon{ring, std::move(holes)};
+    const NodeRange columns = nodes_within(ring, 0, terrain.columns());
+    const NodeRange rows = nodes_within(ring, 1, terrain.rows());
+    for (int row = rows.begin; row < rows.end; ++row)
+      for (int column = columns.begin; column < columns.end; ++column) {
+        if (!contains(polygon, {double(column), double(row)})) continue;
+        double& h = thickness[terrain.index(column, row)];
+        h = h > 0 ? (h + area.thickness) / 2 : area.thickness;
+      }
+  }
+  return thickness;
+}
+
+}  // namespace snowshed

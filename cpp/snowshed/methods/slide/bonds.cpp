@@ -1,0 +1,177 @@
+#include "snowshed/methods/slide/bonds.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+
+#include "snowshed/particles/point_grid.hpp"
+
+namespace snowshed {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+constexpr double longest_ratio = 1.1;
+
+class MapPoints {
+ public:
+  MapPoints(const SlideParticles& particles, std::size_t begin, double reach)
+      : points_(points_of(particles, begin)), grid_(points_, reach), reach_(reach) {}
+
+  /// Calls visit(triangle, longest side) for the Delaunay triangles with no side beyond the reach,
+  /// each once. A triangle belongs to the triangulation where no other point lies within its
+  /// circumscribed circle.
+  template <class Visit>
+  void for_each_triangle(Visit visit) const {
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t a = 0; a < points_.size(); ++a) {
+      near.clear();
+      grid_.for_each_near(points_[a], [&](std::uint32_t b, const Vec3& p) {
+        if (b > a && (p - points_[a]).norm() <= reach_) near.push_back(b);
+      });
+      std::sort(near.begin(), near.end());
+      for (std::size_t i = 0; i < near.size(); ++i)
+        for (std::size_t j = i + 1; j < near.size(); ++j) {
+          const Triangle t{a, near[i], near[j]};
+          const double longest = longest_side(t);
+          if (longest <= reach_ && is_delaunay(t)) visit(t, longest);
+        }
+    }
+  }
+
+ private:
+  static std::vector<Vec3> points_of(const SlideParticles& particles, std::size_t begin) {
+    std::vector<Vec3> points;
+    for (std::size_t i = begin; i < particles.size(); ++i)
+      points.push_back({particles.x[i], 0.0, particles.y[i]});
+    return points;
+  }
+
+  double longest_side(const Triangle& t) const {
+    return std::max({(points_[t[0]] - points_[t[1]]).norm(), (points_[t[1]] - points_[t[2]]).norm(),
+                     (points_[t[2]] - points_[t[0]]).norm()});
+  }
+
+  bool is_delaunay(const Triangle& t) const {
+    const Vec3& o = points_[t[0]];
+    const double bx = points_[t[1]].x() - o.x(), by = points_[t[1]].z() - o.z();
+    const double cx = points_[t[2]].x() - o.x(), cy = points_[t[2]].z() - o.z();
+    const double d = 2 * (bx * cy - by * cx), b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
+    if (std::abs(d) < 1e-6 * (b2 + c2)) return false;  // hardly an area
+    const Vec3 centre{o.x() + (cy * b2 - by * c2) / d, 0.0, o.z() + (bx * c2 - cx * b2) / d};
+    const double radius = (1 - 1e-9) * (centre - o).norm();
+    // The circle of a triangle with sides within the reach and not too flat is within it, too.
+    bool empty = true;
+    grid_.for_each_near(centre, [&](std::uint32_t i, const Vec3& p) {
+      if (i != t[0] && i != t[1] && i != t[2] && (p - centre).norm() < radius) empty = false;
+    });
+    return empty;
+  }
+
+  std::vector<Vec3> points_;
+  PointGrid grid_;
+  double reach_;
+};
+
+/// Whether the straight line between two points crosses a ring.
+bool crosses(const Ring& ring, const MapPoint& a, const MapPoint& b) {
+  const auto side = [](const MapPoint& o, const MapPoint& p, const MapPoint& q) {
+    return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
+  };
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const MapPoint& c = ring[i];
+    const MapPoint& d = ring[(i + 1) % ring.size()];
+    if (std::max(c[0], d[0]) < std::min(a[0], b[0]) || std::min(c[0], d[0]) > std::max(a[0], b[0]))
+      continue;
+    if ((side(a, b, c) > 0) != (side(a, b, d) > 0) && (side(c, d, a) > 0) != (side(c, d, b) > 0))
+      return true;
+  }
+  return false;
+}
+
+bool crosses_outline(const std::vector<SlideArea>& areas, const MapPoint& a, const MapPoint& b) {
+  for (const SlideArea& area : areas) {
+    if (crosses(area.polygon.outline, a, b)) return true;
+    for (const Ring& hole : area.polygon.holes)
+      if (crosses(hole, a, b)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double spacing,
+                    const std::vector<SlideArea>* areas) {
+  Bonds bonds;
+  if (particles.size() < begin + 3) return bonds;
+  const MapPoints points(particles, begin, longest_ratio * spacing * (1 + 1e-6));
+  std::vector<std::pair<Triangle, double>> triangles;
+  points.for_each_triangle([&](const Triangle& t, double longest) { triangles.push_back({t, longest}); });
+  double shortest = spacing;
+  for (const auto& [t, longest] : triangles) shortest = std::min(shortest, longest);
+
+  std::unordered_set<std::uint64_t> known;
+  const auto connect = [&](std::uint32_t a, std::uint32_t b) {
+    if (!known.insert(std::uint64_t(a) << 32 | b).second) return;
+    const std::size_t i = begin + a, j = begin + b;
+    if (areas && crosses_outline(*areas, {particles.x[i], particles.y[i]},
+                                 {particles.x[j], particles.y[j]}))
+      return;
+    const Vec3 along{particles.x[j] - particles.x[i], particles.y[j] - particles.y[i],
+                     particles.z[j] - particles.z[i]};
+    bonds.add(std::uint32_t(i), std::uint32_t(j), along.norm());
+  };
+  for (const auto& [t, longest] : triangles) {
+    if (longest > longest_ratio * shortest) continue;
+    connect(t[0], t[1]);
+    connect(t[0], t[2]);
+    connect(t[1], t[2]);
+  }
+  return bonds;
+}
+
+void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place) {
+  std::size_t kept = 0;
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    const std::uint32_t first = new_place[bonds.first[b]], second = new_place[bonds.second[b]];
+    if (first == gone || second == gone) continue;
+    bonds.first[kept] = first;
+    bonds.second[kept] = second;
+    bonds.rest_length[kept++] = bonds.rest_length[b];
+  }
+  bonds.first.resize(kept);
+  bonds.second.resize(kept);
+  bonds.rest_length.resize(kept);
+}
+
+void remove_bonds(Bonds& bonds, const std::vector<char>& marked) {
+  std::size_t kept = 0;
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    if (marked[b]) continue;
+    bonds.first[kept] = bonds.first[b];
+    bonds.second[kept] = bonds.second[b];
+    bonds.rest_length[kept++] = bonds.rest_length[b];
+  }
+  bonds.first.resize(kept);
+  bonds.second.resize(kept);
+  bonds.rest_length.resize(kept);
+}
+
+void BondLists::update(const Bonds& bonds, std::size_t particles) {
+  begin_.assign(particles + 1, 0);
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    ++begin_[bonds.first[b] + 1];
+    ++begin_[bonds.second[b] + 1];
+  }
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  entry_.resize(2 * bonds.size());
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    entry_[begin_[bonds.first[b]]++] = std::uint32_t(2 * b);
+    entry_[begin_[bonds.second[b]]++] = std::uint32_t(2 * b + 1);
+  }
+  for (std::size_t i = begin_.size() - 1; i > 0; --i) begin_[i] = begin_[i - 1];
+  begin_[0] = 0;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,63 @@
+// Bonds between particles: elastic until they are strained too much, then gone for good.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/methods/slide/areas.hpp"
+#include "snowshed/methods/slide/particles.hpp"
+#include "snowshed/methods/slide/settings.hpp"
+
+namespace snowshed {
+
+/// The bonds that hold, each between two particles (by where they are stored).
+struct Bonds {
+  std::vector<std::uint32_t> first, second;
+  std::vector<double> rest_length;  // m
+
+  std::size_t size() const { return first.size(); }
+  void add(std::uint32_t a, std::uint32_t b, double length) {
+    first.push_back(a);
+    second.push_back(b);
+    rest_length.push_back(length);
+  }
+};
+
+/// Returns bonds along the edges of the Delaunay triangulation of the particles from `begin` on, as
+/// seen from above. Only triangles count whose longest side is at most 1.1 times the shortest of
+/// all the longest sides. With `areas`, bonds that cross the outline of one of them are left out.
+Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double spacing,
+                    const std::vector<SlideArea>* areas);
+
+/// Removes the bonds of particles that are gone and renumbers the rest: `new_place[i]` is where
+/// particle i is stored now, `gone` where it is not.
+inline constexpr std::uint32_t gone = 0xffffffff;
+void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place);
+
+/// Removes the bonds that are marked.
+void remove_bonds(Bonds& bonds, const std::vector<char>& marked);
+
+/// For each particle its bonds, as sums over them need it.
+class BondLists {
+ public:
+  void reserve(std::size_t particles, std::size_t bonds) {
+    begin_.reserve(particles + 1);
+    entry_.reserve(2 * bonds);
+  }
+  void update(const Bonds& bonds, std::size_t particles);
+
+  /// The bonds of particle i are entries [begin(i), begin(i + 1)).
+  std::uint32_t begin(std::size_t i) const { return begin_[i]; }
+  std::uint32_t bond(std::size_t entry) const { return entry_[entry] >> 1; }
+  /// Whether the particle is the second of the bond.
+  bool is_second(std::size_t entry) const { return entry_[entry] & 1; }
+
+  std::size_t bytes() const {
+    return (begin_.capacity() + entry_.capacity()) * sizeof(std::uint32_t);
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_, entry_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,58 @@
+// Which particles lie in which cell of the terrain.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/methods/slide/particles.hpp"
+#include "snowshed/methods/slide/terrain.hpp"
+
+namespace snowshed {
+
+/// The particles in the order of their cells, row by row, within the smallest rectangle of cells
+/// that holds them all and a margin of one cell. Within a cell they keep the order of storage.
+class CellLists {
+ public:
+  /// `places` are those of the particles, all inside.
+  void update(const SlideParticles& particles, const std::vector<GridPlace>& places, int threads);
+
+  /// Makes room for so many particles anywhere on the terrain.
+  void reserve(std::size_t particles, const Terrain& terrain);
+
+  /// The rectangle of cells, its margin included.
+  int first_column() const { return first_column_; }
+  int first_row() const { return first_row_; }
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+
+  /// The first entry of a cell, counted from the rectangle's corner; those of the cells after it
+  /// follow, up to the end of the row and beyond.
+  std::uint32_t begin(int column, int row) const {
+    return begin_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)];
+  }
+
+  std::size_t size() const { return order_.size(); }
+  /// Where the particle of an entry is stored.
+  std::uint32_t particle(std::size_t entry) const { return order_[entry]; }
+  const std::vector<std::uint32_t>& order() const { return order_; }
+
+  // Copies in the order of the entries, for loops over neighbours.
+  const double* x() const { return x_.data(); }
+  const double* y() const { return y_.data(); }
+  const double* mass() const { return mass_.data(); }
+
+  std::size_t bytes() const {
+    return (begin_.capacity() + order_.capacity()) * sizeof(std::uint32_t) +
+           (x_.capacity() + y_.capacity() + mass_.capacity()) * sizeof(double);
+  }
+
+ private:
+  void find_rectangle(const std::vector<GridPlace>& places);
+
+  int first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
+  std::vector<std::uint32_t> begin_, order_;
+  AlignedVector<double> x_, y_, mass_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,18 @@
+// What acts on the particles of a slide during a step.
+#pragma once
+
+#include "snowshed/methods/slide/state.hpp"
+
+namespace snowshed {
+
+/// The mixing of velocities, gravity, friction, resistance and entrainment: one particle at a time.
+/// Changes velocities, and masses where snow is entrained.
+void apply_ground(const SlideModel&, SlideState&, SlideWork&);
+
+/// The gradient of the snow's own pressure, by smoothed particle hydrodynamics.
+void add_pressure(const SlideModel&, const SlideState&, SlideWork&);
+
+/// The forces of the bonds. Breaks those that are strained too much.
+void add_bonds(const SlideModel&, SlideState&, SlideWork&);
+
+}  // namespace snowshed

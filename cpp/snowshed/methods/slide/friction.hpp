@@ -1,0 +1,25 @@
+// Friction between sliding snow and the ground.
+#pragma once
+
+#include "snowshed/methods/slide/settings.hpp"
+
+namespace snowshed {
+
+/// Shear stress at the base: a part that does not depend on the speed and one that grows with its
+/// square. Voellmy (1955): tau = mu sigma + rho g |u|^2 / xi; Coulomb: tau = mu sigma.
+struct BasalFriction {
+  double friction = 0;  // mu
+  double drag = 0;      // rho g / xi, kg/m3; 0 without turbulence
+
+  static BasalFriction from(const SlideSettings& s, double gravity) {
+    return {s.friction,
+            s.friction_law == SlideFriction::voellmy ? s.density * gravity / s.turbulence : 0.0};
+  }
+
+  /// Of the given normal stress (Pa) at a speed (m/s), Pa.
+  double stress(double normal, double speed) const {
+    return friction * normal + drag * speed * speed;
+  }
+};
+
+}  // namespace snowshed

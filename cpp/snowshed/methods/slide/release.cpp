@@ -1,0 +1,236 @@
+#include "snowshed/methods/slide/release.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "snowshed/core/errors.hpp"
+
+namespace snowshed {
+namespace {
+
+const double row_distance = std::sqrt(3.0) / 2;  // of a triangular lattice of side 1
+
+/// The side of a triangular lattice with so many points per area.
+double lattice_side(double area, double points) { return std::sqrt(area / points / row_distance); }
+
+[[noreturn]] void refuse_area(std::size_t index, const std::string& name, const std::string& why) {
+  throw InputError("/terrain/release/" + std::to_string(index),
+                   (name.empty() ? "" : "\"" + name + "\" ") + why);
+}
+
+void place_on_ground(const Terrain& terrain, double x, double y, double mass, ParticleBatch& batch) {
+  const GridPlace place = terrain.place(x, y);
+  batch.positions.push_back({x, y, terrain.height(place)});
+  batch.masses.push_back(mass);
+}
+
+// --- as AvaFrame does it ------------------------------------------------------------------------
+
+/// The points of the lattice from the origin that lie in the square around a node.
+template <class Visit>
+void for_lattice_points_near(int column, int row, double cell, double side, Visit visit) {
+  const double height = side * row_distance;
+  const double west = (column - 0.5) * cell, south = (row - 0.5) * cell;
+  const double east = (column + 0.5) * cell, north = (row + 0.5) * cell;
+  // Rounded toward zero first: there are no points west or south of the origin.
+  const auto first = [](double edge, double step) {
+    const int i = int(edge / step);
+    return i * step < edge ? i + 1 : i;
+  };
+  const int first_i = first(west, side);
+  for (int j = first(south, height); j * height < north; ++j)
+    for (double i = first_i - std::fmod(0.5 * j, 2.0); i * side < east; i += 1)
+      if (i * side >= west && j * height >= south) visit(i * side, j * height);
+}
+
+/// The share of the areas' sloping ground that it covers on the map.
+double projected_share(const Terrain& terrain, const std::vector<double>& thickness) {
+  double sloping = 0, projected = 0;
+  for (std::size_t i = 0; i < thickness.size(); ++i)
+    if (thickness[i] > 0) {
+      sloping += terrain.nodes()[i].area;
+      projected += terrain.cell() * terrain.cell();
+    }
+  return projected / sloping;
+}
+
+std::vector<ParticleBatch> seed_as_avaframe(const SlideSettings& s, const Terrain& terrain,
+                                            const std::vector<SlideArea>& areas) {
+  const double cell = terrain.cell();
+  const std::vector<double> thickness = thickness_at_nodes(areas, terrain, Reach::one_cell);
+  const double share = projected_share(terrain, thickness);
+  std::vector<Ring> outlines;
+  for (const SlideArea& area : areas)
+    outlines.push_back(widened_as_avaframe(area.polygon.outline, 1e-3));
+
+  ParticleBatch batch;
+  for (int row = 0; row < terrain.rows(); ++row)
+    for (int column = 0; column < terrain.columns(); ++column) {
+      const double h = thickness[terrain.index(column, row)];
+      if (h == 0) continue;
+      const double wanted =
+          h * (cell * cell / share) * s.density / mass_per_particle(s, cell);
+      const double points = std::floor(wanted);
+      if (points < 1)
+        refuse_area(0, areas[0].name,
+                    "is too thin: " + std::to_string(h) + " m make no particle of " +
+                        std::to_string(mass_per_particle(s, cell)) +
+                        " kg; allowed in compatible mode: at least " +
+                        std::to_string(h / wanted) + " m");
+      const double mass = terrain.node(column, row).area * h * s.density / points;
+      for_lattice_points_near(column, row, cell, lattice_side(cell * cell, points),
+                              [&](double x, double y) {
+                                const bool kept = std::any_of(
+                                    outlines.begin(), outlines.end(),
+                                    [&](const Ring& ring) { return contains(ring, {x, y}); });
+                                if (kept) place_on_ground(terrain, x, y, mass, batch);
+                              });
+    }
+  if (batch.positions.empty()) refuse_area(0, areas[0].name, "holds no particle");
+  return {batch};
+}
+
+// --- improved -----------------------------------------------------------------------------------
+
+struct Bounds {
+  double low[2], high[2];
+};
+
+Bounds bounds_of(const Ring& ring) {
+  Bounds b{{ring[0][0], ring[0][1]}, {ring[0][0], ring[0][1]}};
+  for (const MapPoint& p : ring)
+    for (const int axis : {0, 1}) {
+      b.low[axis] = std::min(b.low[axis], p[axis]);
+      b.high[axis] = std::max(b.high[axis], p[axis]);
+    }
+  return b;
+}
+
+double map_area(const Polygon& polygon) {
+  double area = std::abs(twice_signed_area(polygon.outline));
+  for (const Ring& hole : polygon.holes) area -= std::abs(twice_signed_area(hole));
+  return area / 2;
+}
+
+MapPoint centroid(const Ring& ring) {
+  double x = 0, y = 0, sum = 0;
+  const MapPoint& o = ring[0];
+  for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+    const MapPoint &a = ring[i], &b = ring[i + 1];
+    const double w = (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+    x += w * (a[0] + b[0] - 2 * o[0]) / 3;
+    y += w * (a[1] + b[1] - 2 * o[1]) / 3;
+    sum += w;
+  }
+  return {o[0] + x / sum, o[1] + y / sum};
+}
+
+/// What the ground is like under an area, from points half a cell apart.
+struct Ground {
+  double stretch = 0;        // sloping over projected area, mean
+  double east = 1, north = 0;  // unit vector of the mean fall line
+  std::size_t points = 0;
+};
+
+Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
+  Ground g;
+  double fall[2] = {0, 0};
+  const Bounds b = bounds_of(polygon.outline);
+  const double step = terrain.cell() / 2;
+  for (double y = b.low[1] + step / 2; y < b.high[1]; y += step)
+    for (double x = b.low[0] + step / 2; x < b.high[0]; x += step) {
+      const GridPlace p = terrain.place(x, y);
+      if (!p.inside() || !contains(polygon, {x, y})) continue;
+      const Vec3 n = terrain.normal(p);
+      g.stretch += 1 / n.z();
+      fall[0] += n.x();
+      fall[1] += n.y();
+      ++g.points;
+    }
+  if (g.points == 0) return g;
+  g.stretch /= double(g.points);
+  const double length = std::hypot(fall[0], fall[1]);
+  if (length > 1e-6 * double(g.points)) {
+    g.east = fall[0] / length;
+    g.north = fall[1] / length;
+  }
+  return g;
+}
+
+/// Calls visit(x, y) for the points of a lattice within a ring's bounds, row by row; it begins at
+/// `origin` and its rows run along the fall line.
+template <class Visit>
+void for_lattice_points(const Ring& ring, const MapPoint& origin, const Ground& along, double side,
+                        Visit visit) {
+  double reach = 0;
+  for (const MapPoint& p : ring)
+    reach = std::max(reach, std::hypot(p[0] - origin[0], p[1] - origin[1]));
+  const double height = side * row_distance;
+  const int rows = int(std::ceil(reach / height)), columns = int(std::ceil(reach / side)) + 1;
+  for (int j = -rows; j <= rows; ++j)
+    for (int i = -columns; i <= columns; ++i) {
+      const double u = (i + (j % 2 != 0 ? 0.5 : 0.0)) * side, v = j * height;
+      visit(origin[0] + u * along.east - v * along.north,
+            origin[1] + u * along.north + v * along.east);
+    }
+}
+
+ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const SlideArea& area,
+                        std::size_t index) {
+  const double cell = terrain.cell();
+  const Ground ground = ground_under(terrain, area.polygon);
+  const double mass = area.thickness * ground.stretch * map_area(area.polygon) * s.density;
+  const double cell_mass = area.thickness * ground.stretch * cell * cell * s.density;
+  const double points = std::max(1.0, std::floor(cell_mass / mass_per_particle(s, cell)));
+  ParticleBatch batch;
+  double seeded = 0;
+  for_lattice_points(area.polygon.outline, centroid(area.polygon.outline), ground,
+                     lattice_side(cell * cell, points), [&](double x, double y) {
+                       const GridPlace p = terrain.place(x, y);
+                       if (!p.inside() || !contains(area.polygon, {x, y})) return;
+                       const double share = 1 / terrain.normal(p).z();
+                       place_on_ground(terrain, x, y, share, batch);
+                       seeded += share;
+                     });
+  if (batch.positions.empty())
+    refuse_area(index, area.name, "holds no particle: it is smaller than the room of one");
+  for (double& share : batch.masses) share *= mass / seeded;
+  return batch;
+}
+
+}  // namespace
+
+double mass_per_particle(const SlideSettings& s, double cell) {
+  return s.density * cell * cell * s.layer_thickness;
+}
+
+double lattice_spacing(const ParticleBatch& batch) {
+  const std::size_t n = batch.positions.size();
+  const std::size_t samples = std::min<std::size_t>(n, 64);
+  std::vector<double> nearest;
+  for (std::size_t s = 0; s < samples; ++s) {
+    const std::size_t i = s * n / samples;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < n; ++j)
+      if (j != i)
+        least = std::min(least, (batch.positions[j] - batch.positions[i]).head<2>().squaredNorm());
+    nearest.push_back(std::sqrt(least));
+  }
+  if (n < 2) return 0;
+  std::nth_element(nearest.begin(), nearest.begin() + std::ptrdiff_t(samples / 2), nearest.end());
+  return nearest[samples / 2];
+}
+
+std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,
+                                        const std::vector<SlideArea>& areas) {
+  if (areas.empty()) throw InputError("/terrain/release", "names no area");
+  if (settings.mode == SlideMode::compatible) return seed_as_avaframe(settings, terrain, areas);
+  std::vector<ParticleBatch> batches;
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    batches.push_back(seed_area(settings, terrain, areas[i], i));
+  return batches;
+}
+
+}  // namespace snowshed

@@ -1,0 +1,184 @@
+#include "snowshed/methods/slide/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/methods/slide/advance.hpp"
+#include "snowshed/methods/slide/forces.hpp"
+#include "snowshed/methods/slide/solver_impl.hpp"
+#include "snowshed/particles/id_order.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Between two times that particles are stored anew in the order of their cells.
+constexpr int steps_between_sorts = 32;
+
+void check_on_terrain(const Terrain& terrain, const std::vector<SlideArea>& areas,
+                      const std::string& kind) {
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const std::string where = "/terrain/" + kind + "/" + std::to_string(i);
+    for (const MapPoint& p : areas[i].polygon.outline) {
+      const GridPlace place = terrain.place(p[0], p[1]);
+      if (!place.inside()) throw InputError(where, "reaches beyond the terrain");
+      if (kind == "release" && std::isnan(terrain.height(place)))
+        throw InputError(where, "the terrain has a hole there");
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<SlideMethod> make_slide(SlideOptions options) {
+  return std::make_unique<SlideSolver>(std::move(options));
+}
+
+SlideSolver::SlideSolver(SlideOptions o)
+    : model_(o.settings, o.gravity, o.terrain, std::move(o.areas)), state_(model_) {
+  check_on_terrain(model_.terrain, model_.areas.release, "release");
+  state_.counters.smallest_dt = model_.settings.time_step;
+}
+
+void SlideSolver::require_sound() const {
+  if (broken_) throw SimulationError("the slide has failed; load a checkpoint to go on");
+}
+
+/// Appends a batch and bonds its particles with each other.
+void SlideSolver::append(SlideState& state, const ParticleBatch& batch) const {
+  check_batch(batch, 1);
+  SlideParticles& p = state.particles;
+  const std::size_t old = p.size();
+  const double fresh = mass_per_particle(model_.settings, model_.terrain.cell());
+  p.resize(old + batch.positions.size());
+  for (std::size_t k = 0; k < batch.positions.size(); ++k) {
+    const Vec3& x = batch.positions[k];
+    const GridPlace place = model_.terrain.place(x.x(), x.y());
+    if (!place.inside() || std::isnan(model_.terrain.height(place)))
+      throw SimulationError("a particle at (" + std::to_string(x.x()) + ", " +
+                            std::to_string(x.y()) + ") m lies outside of the terrain");
+    const std::size_t i = old + k;
+    p.x[i] = x.x();
+    p.y[i] = x.y();
+    p.z[i] = model_.terrain.height(place);
+    p.ux[i] = batch.velocity.x();
+    p.uy[i] = batch.velocity.y();
+    p.uz[i] = batch.velocity.z();
+    p.mass[i] = batch.mass_of(k);
+    p.fresh_mass[i] = model_.compatible() ? fresh : p.mass[i];
+    p.id[i] = state.next_id++;
+    p.event[i] = std::uint16_t(batch.event);
+    state.balance.released += p.mass[i];
+  }
+  if (!model_.settings.bonds) return;
+  // Compatible mode has bonds across gaps of the release.
+  const Bonds bonds = bonds_between(p, old, lattice_spacing(batch),
+                                    model_.compatible() ? nullptr : &model_.areas.release);
+  for (std::size_t b = 0; b < bonds.size(); ++b)
+    state.bonds.add(bonds.first[b], bonds.second[b], bonds.rest_length[b]);
+  state.bonds_made += std::int64_t(bonds.size());
+}
+
+/// Takes over a state whose workspace must follow.
+void SlideSolver::accept(SlideState next) {
+  SlideWork work;
+  refresh(model_, next, work);
+  work.fields.raise(next.peaks, model_.terrain);
+  state_ = std::move(next);
+  work_ = std::move(work);
+  order_known_ = false;
+}
+
+void SlideSolver::add(const std::vector<ParticleBatch>& batches) {
+  require_sound();
+  SlideState next = state_;
+  for (const ParticleBatch& batch : batches) append(next, batch);
+  next.stopped = false;
+  next.peak_kinetic = 0;
+  accept(std::move(next));
+}
+
+void SlideSolver::replace(const std::vector<ParticleBatch>& batches) {
+  require_sound();
+  SlideState next(model_);
+  next.time = state_.time;
+  next.counters = state_.counters;
+  next.next_id = state_.next_id;
+  next.peaks = state_.peaks;
+  next.erodible = state_.erodible;
+  for (const ParticleBatch& batch : batches) append(next, batch);
+  accept(std::move(next));
+}
+
+void SlideSolver::add_velocity(const std::vector<Vec3>& changes) {
+  require_sound();
+  SlideState next = state_;
+  if (changes.size() != size())
+    throw InputError("velocity_changes", std::to_string(changes.size()) + " given for " +
+                                             std::to_string(size()) + " particles");
+  const std::vector<std::uint32_t>& at = order_by_id();
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    if (!changes[k].allFinite()) throw InputError("velocity_changes", "not finite");
+    const Vec3& n = work_.normals[at[k]];
+    const Vec3 along = changes[k] - changes[k].dot(n) * n;  // snow stays on the ground
+    next.particles.ux[at[k]] += along.x();
+    next.particles.uy[at[k]] += along.y();
+    next.particles.uz[at[k]] += along.z();
+  }
+  next.stopped = false;
+  accept(std::move(next));
+}
+
+void SlideSolver::settle(const std::vector<double>&, const std::vector<double>&) {
+  throw InputError("settling", "snow of a slide does not settle between events");
+}
+
+/// In the order of their cells particles find their neighbours faster. All or nothing.
+void SlideSolver::sort_now_and_then() {
+  if (state_.counters.steps % steps_between_sorts != 0) return;
+  if (std::is_sorted(work_.cells.order().begin(), work_.cells.order().end())) return;
+  SlideState next = state_;
+  sort_by_cell(next, work_.cells.order());
+  SlideWork work;
+  refresh(model_, next, work);
+  state_ = std::move(next);
+  work_ = std::move(work);
+  ++state_.counters.sorts;
+}
+
+void SlideSolver::step() {
+  require_sound();
+  if (size() == 0) throw SimulationError("there is no snow on the terrain");
+  sort_now_and_then();
+  work_.make_room(model_, state_);
+  // Nothing from here on allocates.
+  apply_ground(model_, state_, work_);
+  add_pressure(model_, state_, work_);
+  add_bonds(model_, state_, work_);
+  advance(model_, state_, work_);
+  remove_marked(state_, work_);
+  split_heavy(model_, state_, work_);
+  refresh_fields(model_, state_, work_);
+  work_.fields.raise(state_.peaks, model_.terrain);
+  state_.dt = model_.settings.time_step;
+  ++state_.counters.steps;
+  state_.time = double(state_.counters.steps) * state_.dt;
+  state_.counters.particle_updates += std::int64_t(size());
+  order_known_ = false;
+  if (size() == 0) state_.stopped = true;
+  if (!std::isfinite(state_.kinetic_energy)) {
+    broken_ = true;
+    throw SimulationError("a particle is not finite after " + std::to_string(state_.time) + " s");
+  }
+}
+
+const std::vector<std::uint32_t>& SlideSolver::order_by_id() const {
+  if (!order_known_) {
+    order_ = snowshed::order_by_id(state_.particles.id.data(), size());
+    order_known_ = true;
+  }
+  return order_;
+}
+
+}  // namespace snowshed

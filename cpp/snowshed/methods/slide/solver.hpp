@@ -1,0 +1,39 @@
+// The snow slide: depth-averaged particles with cohesive bonds on terrain (AvaFrame's
+// com5SnowSlide; Tonnel et al. 2023, doi:10.5194/gmd-16-7013-2023, for its solver com1DFA).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "snowshed/geometry/height_field.hpp"
+#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/slide/areas.hpp"
+#include "snowshed/methods/slide/settings.hpp"
+#include "snowshed/methods/slide/state.hpp"
+
+namespace snowshed {
+
+struct SlideOptions {
+  SlideSettings settings;
+  double gravity = 9.81;  // m/s2, along -z
+  HeightField terrain;    // on the computing grid
+  SlideAreas areas;       // from the terrain's south-west node
+};
+
+/// A slide as a method, and what only a slide has.
+class SlideMethod : public Method {
+ public:
+  /// The particles of the release areas; see `seed_release`.
+  virtual std::vector<ParticleBatch> seed() const = 0;
+  virtual const Terrain& terrain() const = 0;
+  virtual const PeakFields& peaks() const = 0;
+  virtual const GridFields& flow() const = 0;
+  virtual const Bonds& bonds() const = 0;
+  virtual std::int64_t bonds_made() const = 0;
+  virtual const MassBalance& mass_balance() const = 0;
+};
+
+/// Throws InputError where an area does not lie on known terrain.
+std::unique_ptr<SlideMethod> make_slide(SlideOptions);
+
+}  // namespace snowshed

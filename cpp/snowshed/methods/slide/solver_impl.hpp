@@ -1,0 +1,66 @@
+// The slide's solver: what it holds, and how its parts go together.
+#pragma once
+
+#include "snowshed/methods/slide/release.hpp"
+#include "snowshed/methods/slide/solver.hpp"
+
+namespace snowshed {
+
+class SlideSolver final : public SlideMethod {
+ public:
+  explicit SlideSolver(SlideOptions);
+
+  using Method::add;
+  void add(const std::vector<ParticleBatch>&) override;
+  void replace(const std::vector<ParticleBatch>&) override;
+  void add_velocity(const std::vector<Vec3>&) override;
+  void settle(const std::vector<double>& drops, const std::vector<double>& plastic) override;
+
+  void step() override;
+  bool at_safe_point() const override { return true; }
+  bool stopped() const override { return state_.stopped; }
+  double time() const override { return state_.time; }
+  double time_step() const override { return state_.dt; }
+  const StepCounters& counters() const override { return state_.counters; }
+
+  std::vector<FieldInfo> fields() const override;
+  FieldView field(const std::string&) const override;
+  const std::vector<std::uint32_t>& order_by_id() const override;
+
+  std::size_t size() const override { return state_.particles.size(); }
+  ParticleState state() const override;
+  MotionSummary motion(double speed) const override;
+  EnergyBalance energy() const override { return {}; }
+  std::size_t bytes() const override;
+
+  void save(BinaryWriter&) const override;
+  void load(const BinaryReader&) override;
+
+  std::vector<ParticleBatch> seed() const override {
+    return seed_release(model_.settings, model_.terrain, model_.areas.release);
+  }
+  const Terrain& terrain() const override { return model_.terrain; }
+  const PeakFields& peaks() const override { return state_.peaks; }
+  const GridFields& flow() const override { return work_.fields; }
+  const Bonds& bonds() const override { return state_.bonds; }
+  std::int64_t bonds_made() const override { return state_.bonds_made; }
+  const MassBalance& mass_balance() const override { return state_.balance; }
+
+ private:
+  void append(SlideState&, const ParticleBatch&) const;
+  void accept(SlideState);
+  void sort_now_and_then();
+  void require_sound() const;
+  double speed(std::size_t i) const;
+  template <class Visit>
+  void visit_fields(Visit) const;
+
+  SlideModel model_;
+  SlideState state_;
+  SlideWork work_;
+  bool broken_ = false;  // a step has ended in a state that is not sound
+  mutable std::vector<std::uint32_t> order_;
+  mutable bool order_known_ = false;
+};
+
+}  // namespace snowshed

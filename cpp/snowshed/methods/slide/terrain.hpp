@@ -1,0 +1,107 @@
+// The ground that snow slides on, with what interpolation needs at each node.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "snowshed/core/vec.hpp"
+#include "snowshed/geometry/height_field.hpp"
+
+namespace snowshed {
+
+/// Slopes at the first row and column of the grid. AvaFrame 2.1 takes these nodes as level.
+enum class BorderSlope { one_sided, level_in_the_south_west };
+
+/// Elevations, slopes and areas at the nodes of a grid. Positions are given from its south-west
+/// node. Vectors and scalars are bilinear between the nodes of a cell.
+class Terrain {
+ public:
+  struct Node {
+    double height;              // m; NaN where nothing is known
+    double slope_x, slope_y;    // the normal is (slope_x, slope_y, 1), not normalised
+    double area;                // m2, of the ground within half a cell of the node
+  };
+
+  explicit Terrain(const HeightField& field, BorderSlope border = BorderSlope::one_sided);
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  double cell() const { return cell_; }
+  double west() const { return west_; }
+  double south() const { return south_; }
+  std::size_t index(int column, int row) const {
+    return std::size_t(row) * std::size_t(columns_) + std::size_t(column);
+  }
+  const Node& node(int column, int row) const { return nodes_[index(column, row)]; }
+  const Node* nodes() const { return nodes_.data(); }
+
+  /// The place of a point; outside where its nearest node is unknown or the grid ends.
+  GridPlace place(double x, double y) const {
+    return place_in(x * per_cell_, y * per_cell_, columns_, rows_);
+  }
+
+  /// Whether the south-west node of a cell is known.
+  bool known(const GridPlace& p) const { return !std::isnan(node(p.column, p.row).height); }
+
+  double height(const GridPlace& p) const {
+    const Node* a = &nodes_[index(p.column, p.row)];
+    const Node* b = a + columns_;
+    const double w0 = (1 - p.east) * (1 - p.north), w1 = p.east * (1 - p.north),
+                 w2 = (1 - p.east) * p.north, w3 = p.east * p.north;
+    return w0 * a[0].height + w1 * a[1].height + w2 * b[0].height + w3 * b[1].height;
+  }
+
+  /// The upward unit normal.
+  Vec3 normal(const GridPlace& p) const {
+    const Node* a = &nodes_[index(p.column, p.row)];
+    const Node* b = a + columns_;
+    const double w0 = (1 - p.east) * (1 - p.north), w1 = p.east * (1 - p.north),
+                 w2 = (1 - p.east) * p.north, w3 = p.east * p.north;
+    return upward(w0 * a[0].slope_x + w1 * a[1].slope_x + w2 * b[0].slope_x + w3 * b[1].slope_x,
+                  w0 * a[0].slope_y + w1 * a[1].slope_y + w2 * b[0].slope_y + w3 * b[1].slope_y);
+  }
+
+  /// The upward unit normal in the middle of a cell.
+  Vec3 cell_normal(const GridPlace& p) const {
+    const Node* a = &nodes_[index(p.column, p.row)];
+    const Node* b = a + columns_;
+    return upward(0.25 * (a[0].slope_x + a[1].slope_x + b[0].slope_x + b[1].slope_x),
+                  0.25 * (a[0].slope_y + a[1].slope_y + b[0].slope_y + b[1].slope_y));
+  }
+
+  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
+
+ private:
+  static Vec3 upward(double slope_x, double slope_y) {
+    const double z = 1 / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+    return {slope_x * z, slope_y * z, z};
+  }
+
+  int columns_, rows_;
+  double cell_, per_cell_, west_, south_;
+  std::vector<Node> nodes_;
+};
+
+/// A point brought onto the ground along the normals of the cells it comes through, up to five
+/// times, as AvaFrame and SamosAT do it. `on_ground.inside()` is false where it left the grid.
+struct Reprojection {
+  double x, y;
+  GridPlace on_ground;
+};
+inline Reprojection reproject(const Terrain& terrain, double x, double y, double z) {
+  GridPlace place = terrain.place(x, y);
+  const int first_column = place.column, first_row = place.row;
+  for (int i = 0; i < 5 && place.inside(); ++i) {
+    const Vec3 n = terrain.cell_normal(place);
+    const double distance = (terrain.height(place) - z) * n.z();
+    x += distance * n.x();
+    y += distance * n.y();
+    z += distance * n.z();
+    place = terrain.place(x, y);
+    if (place.column == first_column && place.row == first_row) break;
+  }
+  return {x, y, place};
+}
+
+}  // namespace snowshed
