@@ -19,6 +19,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -105,9 +106,9 @@ class Method {
   /// last bits. A method is at a safe point again after a bounded number of steps.
   virtual bool at_safe_point() const = 0;
 
-  /// Whether the snow has come to rest by a criterion of the method's own. Methods without one
-  /// leave that to those who run them.
-  virtual bool stopped() const { return false; }
+  /// Whether the snow has come to rest, where the method has a criterion of its own; without one it
+  /// leaves that to those who run it.
+  virtual std::optional<bool> at_rest() const { return std::nullopt; }
 
   virtual double time() const = 0;       ///< s
   virtual double time_step() const = 0;  ///< s, of the last step

@@ -93,6 +93,13 @@ SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
   return snow;
 }
 
+SeededSnow seed_release(const SlideMethod& slide) {
+  SeededSnow snow;
+  snow.batches = slide.seed();
+  for (const ParticleBatch& batch : snow.batches) snow.mass += batch.total_mass();
+  return snow;
+}
+
 double slab_mass(const Scene& scene, int event) {
   double mass = 0;
   for (const BodySpec& layer : assemble_slab(scene, event))

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/scene/scene.hpp"
 
@@ -21,6 +21,9 @@ struct SeededSnow {
 /// InputError naming the layer or body that cannot be seeded.
 SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
                       const PanelRegion& panel, int event, double lift);
+
+/// Seeds the release areas of a slide.
+SeededSnow seed_release(const SlideMethod& slide);
 
 /// Returns the mass of the slab laid at the start of an event, kg.
 double slab_mass(const Scene& scene, int event);

@@ -5,7 +5,6 @@
 
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
-#include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/enum_names.hpp"
@@ -20,20 +19,37 @@ constexpr double measured_particles = 50000;
 /// factor over an event of the laboratory scene (2D 1.3, 3D 1.4).
 constexpr double broken_snow = 1.35;
 
-void list_features(const Scene& s, Plan& plan) {
+void list_feature(Plan& plan, bool used, const std::string& name) {
+  (used ? plan.used : plan.left_out).push_back(name);
+}
+
+void list_features_of(const SlideSettings& slide, const Scene& s, Plan& plan) {
   const auto feature = [&plan](bool used, const std::string& name) {
-    (used ? plan.used : plan.left_out).push_back(name);
+    list_feature(plan, used, name);
+  };
+  feature(slide.bonds, "cohesive bonds");
+  feature(slide.friction_law == SlideFriction::voellmy, "turbulent friction (Voellmy)");
+  feature(slide.artificial_viscosity > 0, "artificial viscosity");
+  feature(!s.terrain->entrainment.empty(), "entrainment and splitting");
+  feature(!s.terrain->resistance.empty(), "resistance areas");
+  feature(slide.cell > 0, "resampled terrain");
+  feature(s.output.snapshot_interval > 0, "snapshots during the slide");
+}
+
+void list_features_of(const MpmSettings& mpm, const Scene& s, Plan& plan) {
+  const auto feature = [&plan](bool used, const std::string& name) {
+    list_feature(plan, used, name);
   };
   feature(s.dimension == 3, "third dimension");
-  feature(s.mpm().precision == Precision::float64, "double precision");
+  feature(mpm.precision == Precision::float64, "double precision");
   const std::vector<Snow> snows = assemble_snows(s);
   const bool yields = std::any_of(snows.begin(), snows.end(), [](const Snow& snow) {
     return snow.model == SnowModel::cam_clay;
   });
   feature(yields, "plasticity and hardening (Cam-Clay)");
   feature(snows.size() > 1, "several snows");
-  feature(s.mpm().transfer == Transfer::apic, "APIC affine velocities");
-  feature(s.mpm().basis == Basis::cubic, "cubic B-splines");
+  feature(mpm.transfer == Transfer::apic, "APIC affine velocities");
+  feature(mpm.basis == Basis::cubic, "cubic B-splines");
   bool conditions[3] = {s.domain.has_value(), false, false}, moving = false;
   for (const ObstacleSpec& o : assemble_obstacles(s)) {
     conditions[int(o.condition)] = true;
@@ -44,7 +60,7 @@ void list_features(const Scene& s, Plan& plan) {
   feature(moving, "moving obstacles");
   feature(s.domain.has_value(), "domain walls");
   feature(s.events.between == Between::reseed && s.events.count > 1, "reseeding between events");
-  feature(s.mpm().sleep_speed > 0, "sleep of snow at rest");
+  feature(mpm.sleep_speed > 0, "sleep of snow at rest");
   feature(s.output.energy, "energy balance");
   feature(s.output.snapshot_interval > 0, "snapshots during events");
 }
@@ -53,7 +69,7 @@ void list_features(const Scene& s, Plan& plan) {
 double measured_speed(Scene scene, const std::filesystem::path& base_dir,
                       const CostEstimate& cost) {
   const double n = cost.particles.empty() ? 0.0 : cost.particles.front();
-  if (n > measured_particles)
+  if (n > measured_particles && scene.uses<MpmSettings>())
     scene.mpm().dx *= std::pow(n / measured_particles, 1.0 / scene.dimension);
   scene.seeding.pattern = SeedPattern::jittered;  // seeds fast
   Simulation sim(scene, base_dir);
@@ -72,7 +88,7 @@ double expected_work(const Scene& scene, const std::filesystem::path& base_dir) 
 Plan plan(const Scene& given, const std::filesystem::path& base_dir) {
   const Scene scene = resolve(given);
   Plan p;
-  list_features(scene, p);
+  std::visit([&](const auto& own) { list_features_of(own, scene, p); }, scene.numerics);
   const Simulation sim(scene, base_dir);
   p.cost = sim.cost();
   p.threads = sim.threads();

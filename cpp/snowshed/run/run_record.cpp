@@ -83,7 +83,8 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
   j["threads"] = sim.threads();
-  j["scalar"] = name_of(sim.scene().mpm().precision);
+  const Scene& scene = sim.scene();
+  j["scalar"] = name_of(scene.uses<MpmSettings>() ? scene.mpm().precision : Precision::float64);
   j["dimension"] = sim.scene().dimension;
   j["events"] = sim.event() - int(sim.event_running());
   j["particles"] = method.size();

@@ -8,8 +8,9 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/timer.hpp"
-#include "snowshed/methods/mpm/solver.hpp"
+#include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/run/body_seeding.hpp"
+#include "snowshed/run/slide_cost.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
@@ -22,29 +23,31 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
       scene_text_(write_scene(scene_)),
       snows_(assemble_snows(scene_)),
       base_dir_(base_dir),
-      cost_(estimate_cost(scene_, count_particles(scene_, base_dir))),
       panel_(scene_),
       rest_(scene.events.rest_speed, scene.events.rest_time) {
-  check_memory(cost_.bytes);
-  obstacles_ = build_obstacles(scene_, base_dir_);
-  listed_obstacles_ = listed_obstacles(scene_, obstacles_);
+  if (scene_.uses<MpmSettings>()) {  // told by the scene: before anything is built
+    cost_ = estimate_cost(scene_, count_particles(scene_, base_dir));
+    check_memory(cost_.bytes);
+  }
+  surroundings_ = build_surroundings(scene_, base_dir_);
+  listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
   solver_ = empty_method();
+  if (scene_.uses<SlideSettings>()) {
+    const auto& slide = static_cast<const SlideMethod&>(*solver_);
+    cost_ = estimate_slide_cost(scene_, slide.terrain(), surroundings_.areas.release.front(),
+                                slide.count_seeds());
+    check_memory(cost_.bytes);
+  }
 }
 
 Simulation::~Simulation() = default;
 
 /// The scene's method with its obstacles, before any snow.
 std::unique_ptr<Method> Simulation::empty_method() const {
-  MpmOptions o;
-  o.dimension = scene_.dimension;
-  o.gravity = scene_.gravity;
-  o.snows = snows_;
-  o.numerics = scene_.mpm();
-  o.energy = scene_.output.energy;
-  return make_mpm(o, obstacles_);
+  return build_method(scene_, snows_, surroundings_);
 }
 
-int Simulation::threads() const { return threads_to_use(scene_.mpm().threads); }
+int Simulation::threads() const { return threads_to_use(wanted_threads(scene_.numerics)); }
 
 std::optional<Reseeding> Simulation::begin_event() {
   if (running_) throw SimulationError("the present event has not ended yet");
@@ -52,7 +55,9 @@ std::optional<Reseeding> Simulation::begin_event() {
   if (event_ > 0 && scene_.events.between == Between::reseed)
     reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_);
   const double lift = lift_of_next_slab(reseeding);
-  SeededSnow snow = seed_event(scene_, base_dir_, panel_, event_ + 1, lift);
+  SeededSnow snow = scene_.uses<SlideSettings>()
+                        ? seed_release(static_cast<const SlideMethod&>(*solver_))
+                        : seed_event(scene_, base_dir_, panel_, event_ + 1, lift);
   change_snow(reseeding, std::move(snow.batches));
   event_mass_ = snow.mass;
   laid_height_ += snow.height_on_panel;
@@ -119,12 +124,9 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
   while (true) {
     if (pausing && solver_->at_safe_point()) return RunEnd::paused;
     if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
-    if (rest_.due(solver_->time())) {
-      const bool rests = is_at_rest();
-      if (rests || event_time() >= scene_.events.max_time) {
-        running_ = false;
-        return rests ? RunEnd::rest : RunEnd::time_limit;
-      }
+    if (const auto end = event_end()) {
+      running_ = false;
+      return *end;
     }
     solver_->step();
     if (!pausing && clock.seconds() >= interval) {
@@ -135,6 +137,15 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
       pausing = !observer(r);
     }
   }
+}
+
+/// How the event has ended now, if it has.
+std::optional<RunEnd> Simulation::event_end() {
+  const std::optional<bool> own = solver_->at_rest();
+  if (!own && !rest_.due(solver_->time())) return std::nullopt;
+  if (own ? *own : is_at_rest()) return RunEnd::rest;
+  if (event_time() >= scene_.events.max_time) return RunEnd::time_limit;
+  return std::nullopt;
 }
 
 bool Simulation::is_at_rest() {

@@ -15,6 +15,7 @@
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/run/reseeding.hpp"
 #include "snowshed/run/rest_detector.hpp"
+#include "snowshed/scene/build_method.hpp"
 #include "snowshed/scene/scene.hpp"
 
 namespace snowshed {
@@ -116,6 +117,7 @@ class Simulation {
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
   void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
   bool is_at_rest();
+  std::optional<RunEnd> event_end();
   std::unique_ptr<Method> empty_method() const;
   void read_back(const std::filesystem::path& checkpoint) const;
   RunReport report(double rms_speed) const;
@@ -127,7 +129,8 @@ class Simulation {
   std::filesystem::path base_dir_;
   CostEstimate cost_;
   PanelRegion panel_;
-  std::vector<Obstacle> obstacles_, listed_obstacles_;  // all, and those of the scene's list
+  Surroundings surroundings_;
+  std::vector<Obstacle> listed_obstacles_;  // those of the scene's list
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   RestDetector rest_;

@@ -68,6 +68,17 @@ class Checker : public PathVisitor<Checker> {
       check(at(key), value.y(), range, unit);
   }
 
+  void outline(const char* key, Ring& ring, const char*) {
+    constexpr std::size_t most = 100000;
+    if (ring.size() < 3 || ring.size() > most)
+      throw InputError(at(key), std::to_string(ring.size()) + " corners; allowed: 3 to " +
+                                    std::to_string(most));
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      for (const int axis : {0, 1})
+        check(at(key) + "/" + std::to_string(i) + "/" + std::to_string(axis), ring[i][axis],
+              allowed::map_coordinate, "m");
+  }
+
   template <class T>
   void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {
     check_count(at(key), items.size(), count);

@@ -12,11 +12,14 @@
 //   direction(key, member, doc)              the same, any length but zero
 //   axis(key, member, doc)                   a direction in 3D; absent in 2D, where it is +y
 //   spin(key, member, unit, range, doc)      a vector in 3D; in 2D a number, about +y
+//   outline(key, member, doc)                corners of an area on the map, [[x, y], ...]
 //   object(key, member, need, doc)   optional(key, member, doc)   list(key, member, count, doc)
 //   variants(key, member, doc), variant(name, doc)..., end_variants()
 //                                            fields after variant(name) belong to that kind only
 //   method(key, settings_key, member, doc, settings_doc)
 //                                            the name of a method, and the settings of that method
+//   method_ahead(key, member)                before parts that only some methods take
+//   shows(taken)                             whether to go on to a part that the method takes or not
 //   alias(key, other)                        before a field: another key that is read for it
 //   accuracy({key...})                       before fields: those that trade accuracy for time
 #pragma once
@@ -30,6 +33,7 @@ namespace snowshed {
 // Limits far beyond any structure or snow; they keep arithmetic on untrusted input finite.
 namespace allowed {
 inline constexpr Range coordinate = between(-1e6, 1e6);         // m
+inline constexpr Range map_coordinate = between(-1e8, 1e8);     // m
 inline constexpr Range size = positive.up_to(1e6);              // m
 inline constexpr Range size_or_zero = non_negative.up_to(1e6);  // m
 inline constexpr Range pressure = positive.up_to(1e12);         // Pa
@@ -194,6 +198,36 @@ void describe(V& v, Ground& g) {
 }
 
 template <class V>
+void describe(V& v, HoleSpec& h) {
+  v.outline("outline", h.outline, "Corners, in the terrain's coordinates, m");
+}
+
+template <class V>
+void describe(V& v, AreaSpec& a) {
+  v.text("name", a.name, "Name in messages and results");
+  v.outline("outline", a.outline, "Corners, in the terrain's coordinates, m");
+  v.list("holes", a.holes, between(0, 1000), "Parts within the outline that do not belong to it");
+  v.number("thickness", a.thickness, "m", positive.up_to(100.0).required(),
+           "Thickness of the snow, normal to the ground");
+}
+
+template <class V>
+void describe(V& v, ResistanceSpec& r) {
+  v.text("name", r.name, "Name in messages and results");
+  v.outline("outline", r.outline, "Corners, in the terrain's coordinates, m");
+  v.list("holes", r.holes, between(0, 1000), "Parts within the outline that do not belong to it");
+}
+
+template <class V>
+void describe(V& v, TerrainSpec& t) {
+  v.file("file", t.file, "Elevations, m: an ESRI ASCII grid; relative to the scene file");
+  v.text("crs", t.crs, "Coordinate system of the raster and the areas, handed on to the results");
+  v.list("release", t.release, between(1, 10000).required(), "Where snow is released");
+  v.list("entrainment", t.entrainment, between(0, 10000), "Where the slide takes up snow");
+  v.list("resistance", t.resistance, between(0, 10000), "Where forest or the like holds it back");
+}
+
+template <class V>
 void describe(V& v, Domain& d) {
   v.vector("min", d.min, "m", allowed::coordinate.required(), "Lowest corner");
   v.vector("max", d.max, "m", allowed::coordinate.required(), "Highest corner");
@@ -231,6 +265,47 @@ void describe(V& v, MpmSettings& n) {
 }
 
 template <class V>
+void describe(V& v, SlideSettings& s) {
+  v.accuracy({"cell", "time_step", "layer_thickness"});
+  v.choice("mode", s.mode,
+           "Without the known faults of com5SnowSlide, or step by step as AvaFrame 2.1 does it");
+  v.number("cell", s.cell, "m", allowed::size_or_zero,
+           "Cells of the computing grid; 0: those of the terrain's raster");
+  v.number("time_step", s.time_step, "s", positive.up_to(1.0), "Length of a step");
+  v.number("density", s.density, "kg/m3", positive.up_to(1000.0), "Density of the sliding snow");
+  v.number("layer_thickness", s.layer_thickness, "m", positive.up_to(100.0),
+           "Snow of this thickness over a whole cell makes one particle");
+  v.choice("friction_law", s.friction_law, "Friction with the ground");
+  v.number("friction", s.friction, "", allowed::coefficient, "Coulomb coefficient mu");
+  v.number("turbulence", s.turbulence, "m/s2", positive.up_to(1e6), "Voellmy's xi");
+  v.flag("explicit_friction", s.explicit_friction,
+         "Friction from the speed before the step; in the compatible mode only");
+  v.number("resistance", s.resistance, "", non_negative.up_to(1e9),
+           "Coefficient within the areas of resistance");
+  v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
+           "How strongly particles are drawn to the velocity of the snow around");
+  v.flag("bonds", s.bonds, "Cohesive bonds; without them a plain depth-averaged avalanche");
+  v.number("max_strain", s.max_strain, "", positive.up_to(10.0), "Strain at which a bond breaks");
+  v.number("bond_modulus", s.bond_modulus, "Pa", non_negative.up_to(1e12),
+           "Stiffness of the bonds (cohesive surface tension)");
+  v.number("min_bond_length", s.min_bond_length, "m", allowed::size_or_zero,
+           "Length below which a bond exerts no force");
+  v.number("entrained_density", s.entrained_density, "kg/m3", positive.up_to(1000.0),
+           "Density of the snow that is taken up");
+  v.number("erosion_energy", s.erosion_energy, "J/kg", non_negative.up_to(1e12),
+           "Friction work that takes up a kilogram of snow; 0: all that the slide sweeps over");
+  v.number("entrainment_shear", s.entrainment_shear, "Pa", non_negative.up_to(1e12),
+           "Shear strength of the snow that is taken up");
+  v.number("entrainment_work", s.entrainment_work, "J/kg", non_negative.up_to(1e12),
+           "Work that breaks up the snow that is taken up");
+  v.number("split_ratio", s.split_ratio, "", Range{1.0, 1e6, true, false, Need::optional},
+           "Mass over that of a fresh particle beyond which a particle splits");
+  v.number("stop_ratio", s.stop_ratio, "", fraction,
+           "The slide stops at this share of its largest kinetic energy");
+  v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
+}
+
+template <class V>
 void describe(V& v, Events& e) {
   v.integer("count", e.count, between(1, 1000), "Number of slide-off events");
   v.choice("between", e.between,
@@ -257,15 +332,19 @@ void describe(V& v, Scene& s) {
   v.integer("dimension", s.dimension, between(2, 3), "2: the plane (x, z); 3: space");
   v.text("title", s.title, "What this scene is");
   v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");
-  v.object("snow", s.snow, Need::optional, "The material");
+  v.method_ahead("method", s.numerics);
+  const TakenParts& takes = info_of(s.numerics).takes;
+  if (v.shows(takes.snow)) v.object("snow", s.snow, Need::optional, "The material");
   v.optional("panel", s.panel,
              "The panel; its centre is the origin of x, which points down the slide direction");
   v.optional("slab", s.slab, "The slab laid on the panel, centred, at the start of every event");
   v.optional("ground", s.ground, "An inclined plane through the origin");
+  v.optional("terrain", s.terrain, "Ground from a raster of elevations, and where snow lies on it");
   v.list("obstacles", s.obstacles, between(0, 10000), "Further solids that snow collides with");
   v.list("bodies", s.bodies, between(0, 10000), "Further bodies of snow");
   v.optional("domain", s.domain, "A box with sticky sides; unbounded without it");
-  v.object("seeding", s.seeding, Need::optional, "How snow is filled with particles");
+  if (v.shows(takes.seeding))
+    v.object("seeding", s.seeding, Need::optional, "How snow is filled with particles");
   v.method("method", "numerics", s.numerics, "The numerical method", "The method's settings");
   v.object("events", s.events, Need::optional, "How many events, and when one ends");
   v.object("output", s.output, Need::optional, "What is written during a run");

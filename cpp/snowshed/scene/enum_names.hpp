@@ -38,6 +38,18 @@ struct EnumNames<Basis> {
 };
 
 template <>
+struct EnumNames<SlideMode> {
+  static constexpr Named<SlideMode> list[] = {{SlideMode::improved, "improved"},
+                                              {SlideMode::compatible, "compatible"}};
+};
+
+template <>
+struct EnumNames<SlideFriction> {
+  static constexpr Named<SlideFriction> list[] = {{SlideFriction::voellmy, "voellmy"},
+                                                  {SlideFriction::coulomb, "coulomb"}};
+};
+
+template <>
 struct EnumNames<Condition> {
   static constexpr Named<Condition> list[] = {
       {Condition::sticky, "sticky"}, {Condition::slip, "slip"}, {Condition::separate, "separate"}};

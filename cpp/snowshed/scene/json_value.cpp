@@ -56,4 +56,18 @@ Vec3 to_vector(const json& value, const std::string& path, int dimension) {
   return {entry(0), entry(1), entry(2)};
 }
 
+Ring to_ring(const json& value, const std::string& path) {
+  if (!value.is_array()) throw wrong_type(path, value, "an array of corners [x, y]");
+  Ring ring;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const std::string corner = path + "/" + std::to_string(i);
+    if (!value[i].is_array() || value[i].size() != 2)
+      throw wrong_type(corner, value[i], "a corner [x, y]");
+    ring.push_back({to_number(value[i][0], corner + "/0", "a number"),
+                    to_number(value[i][1], corner + "/1", "a number")});
+  }
+  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();  // closed explicitly
+  return ring;
+}
+
 }  // namespace snowshed

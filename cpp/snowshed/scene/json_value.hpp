@@ -10,6 +10,7 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/vec.hpp"
+#include "snowshed/geometry/polygon.hpp"
 #include "snowshed/scene/enum_names.hpp"
 #include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/range.hpp"
@@ -29,6 +30,9 @@ std::string to_text(const nlohmann::json& value, const std::string& path);
 /// "an array of 2 numbers (x, z)" in 2D.
 std::string vector_text(int dimension);
 Vec3 to_vector(const nlohmann::json& value, const std::string& path, int dimension);
+
+/// The corners of an outline: an array of [x, y].
+Ring to_ring(const nlohmann::json& value, const std::string& path);
 
 /// Also takes whole numbers written as 5.0, which are integers in JSON Schema.
 template <class Int>

@@ -39,6 +39,7 @@ class Locator : public PathVisitor<Locator> {
     compare(at(key), value);
   }
   void direction(const char* key, Vec3& value, const char*) { compare(at(key), value); }
+  void outline(const char* key, Ring& ring, const char*) { compare(at(key), ring); }
   void axis(const char* key, Vec3& value, const char*) { compare(at(key), value); }
 
   template <class T>

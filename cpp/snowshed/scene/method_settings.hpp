@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "snowshed/methods/mpm/settings.hpp"
+#include "snowshed/methods/slide/settings.hpp"
 
 namespace snowshed {
 
 /// The settings of the method that a scene has chosen; the first is the default.
-using MethodSettings = std::variant<MpmSettings>;
+using MethodSettings = std::variant<MpmSettings, SlideSettings>;
 
 /// The parts of a scene that a method can use.
 struct TakenParts {
@@ -23,6 +24,9 @@ struct TakenParts {
   bool obstacles = false;
   bool bodies = false;
   bool domain = false;
+  bool terrain = false;
+  bool snow = false;
+  bool seeding = false;
 };
 
 struct MethodInfo {
@@ -37,7 +41,15 @@ inline constexpr MethodInfo method_info{};
 
 template <>
 inline constexpr MethodInfo method_info<MpmSettings>{
-    "mpm", "The material point method", {true, true, true, true, true, true}};
+    "mpm",
+    "The material point method",
+    {true, true, true, true, true, true, false, true, true}};
+
+template <>
+inline constexpr MethodInfo method_info<SlideSettings>{
+    "slide",
+    "The snow slide: depth-averaged particles with cohesive bonds on terrain",
+    {false, false, false, false, false, false, true, false, false}};
 
 /// The method that has been chosen.
 inline const MethodInfo& info_of(const MethodSettings& settings) {
@@ -67,9 +79,15 @@ inline std::vector<std::string> method_names() {
   return names;
 }
 
-/// The size of the smallest thing the method resolves: its cell or particle, m.
+/// The size of the smallest thing the method resolves: its cell or particle, m; 0 where a file that
+/// the scene names decides it.
 inline double resolution(const MethodSettings& settings) {
   return std::visit([](const auto& own) { return own.resolution(); }, settings);
+}
+
+/// The threads that the method shall use; 0: all.
+inline int wanted_threads(const MethodSettings& settings) {
+  return std::visit([](const auto& own) { return own.threads; }, settings);
 }
 
 }  // namespace snowshed

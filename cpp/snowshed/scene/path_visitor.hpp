@@ -41,6 +41,9 @@ class PathVisitor {
       visit(pointer(at(key), std::to_string(i)), items[i]);
   }
 
+  void method_ahead(const char*, MethodSettings&) {}
+  bool shows(bool taken) const { return taken; }
+
   void method(const char*, const char* settings_key, MethodSettings& settings, const char*,
               const char*) {
     std::visit([&](auto& own) { visit(at(settings_key), own); }, settings);

@@ -101,6 +101,13 @@ class Reader : public Checker {
     }
   }
 
+  void outline(const char* key, Ring& ring, const char* doc) {
+    if (const json* given = take(key, Need::required, "an array of corners [x, y]")) {
+      ring = to_ring(*given, at(key));
+      Checker::outline(key, ring, doc);
+    }
+  }
+
   template <class T>
   void object(const char* key, T& value, Need need, const char*) {
     if (const json* given = take(key, need, "an object")) read(*given, at(key), dimension_, value);
@@ -122,10 +129,15 @@ class Reader : public Checker {
       read((*given)[i], at(key) + "/" + std::to_string(i), dimension_, items[i]);
   }
 
+  void method_ahead(const char* key, MethodSettings& settings) {
+    const auto given = object_.find(key);
+    if (given != object_.end())
+      settings = all_methods()[to_place(*given, at(key), method_names())];
+  }
+
   void method(const char* key, const char* settings_key, MethodSettings& settings, const char*,
               const char* settings_doc) {
-    if (const json* given = take(key))
-      settings = all_methods()[to_place(*given, at(key), method_names())];
+    take(key);  // read ahead
     std::visit([&](auto& own) { object(settings_key, own, Need::optional, settings_doc); },
                settings);
   }

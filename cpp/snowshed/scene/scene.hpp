@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "snowshed/core/vec.hpp"
+#include "snowshed/geometry/polygon.hpp"
 #include "snowshed/geometry/rigid_motion.hpp"
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/contact_law.hpp"
@@ -96,6 +97,34 @@ struct Ground {
   double friction = 0.3;
 };
 
+/// A part of an area that does not belong to it.
+struct HoleSpec {
+  Ring outline;  // m, in the terrain's coordinates
+};
+
+/// An area on the map.
+struct AreaSpec {
+  std::string name;
+  Ring outline;  // m, in the terrain's coordinates
+  std::vector<HoleSpec> holes;
+  double thickness = 0.0;  // m of snow, normal to the ground
+};
+
+/// An area that holds snow back.
+struct ResistanceSpec {
+  std::string name;
+  Ring outline;
+  std::vector<HoleSpec> holes;
+};
+
+/// Ground from a raster of elevations, and what lies on it.
+struct TerrainSpec {
+  std::string file;  // ESRI ASCII grid
+  std::string crs;   // of the raster and the areas, in words; handed on to the results
+  std::vector<AreaSpec> release, entrainment;
+  std::vector<ResistanceSpec> resistance;
+};
+
 struct Seeding {
   double particles_per_voxel = 0.0;  // 0: 6 in 2D, 8 in 3D
   SeedPattern pattern = SeedPattern::poisson;
@@ -134,6 +163,7 @@ struct Scene {
   std::optional<Panel> panel;
   std::optional<Slab> slab;
   std::optional<Ground> ground;
+  std::optional<TerrainSpec> terrain;
   std::vector<ObstacleSpec> obstacles;
   std::vector<BodySpec> bodies;
   std::optional<Domain> domain;  // its sides are sticky walls; none: unbounded
@@ -145,6 +175,12 @@ struct Scene {
   /// The settings of the material point method, which the scene must have chosen.
   MpmSettings& mpm() { return std::get<MpmSettings>(numerics); }
   const MpmSettings& mpm() const { return std::get<MpmSettings>(numerics); }
+
+  /// Whether it has chosen the method with such settings.
+  template <class Settings>
+  bool uses() const {
+    return std::holds_alternative<Settings>(numerics);
+  }
 };
 
 }  // namespace snowshed

@@ -84,6 +84,15 @@ class SchemaWriter {
     add(key, schema, std::string(doc) + "; in 2D a single number, about +y");
   }
 
+  void outline(const char* key, Ring&, const char* doc) {
+    const json corner = {{"type", "array"},
+                         {"items", limited("number", allowed::map_coordinate)},
+                         {"minItems", 2},
+                         {"maxItems", 2}};
+    add(key, {{"type", "array"}, {"items", corner}, {"minItems", 3}, {"x-unit", "m"}}, doc,
+        Need::required);
+  }
+
   template <class T>
   void object(const char* key, T&, Need need, const char* doc) {
     add(key, schema_of<T>(), doc, need);
@@ -106,6 +115,9 @@ class SchemaWriter {
          {"maxItems", static_cast<int>(count.max)}},
         doc, count.need);
   }
+
+  void method_ahead(const char*, MethodSettings&) {}
+  bool shows(bool) const { return true; }  // every part is described
 
   void method(const char* key, const char* settings_key, MethodSettings&, const char* doc,
               const char* settings_doc) {

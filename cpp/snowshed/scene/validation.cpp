@@ -30,6 +30,8 @@ class SceneRules {
     if (scene_.events.rest_time > scene_.events.max_time)
       fail(scene_.events.rest_time, show(scene_.events.rest_time) + " s is longer than an event (" +
                                         path_and_value(scene_.events.max_time) + " s)");
+    if (scene_.terrain) check_terrain(*scene_.terrain);
+    if (scene_.uses<SlideSettings>()) return check_slide();
     if (!scene_.slab && scene_.bodies.empty())
       fail(scene_, "nothing holds snow: give " + path_of(scene_, scene_.slab) + " or " +
                        path_of(scene_, scene_.bodies));
@@ -165,6 +167,36 @@ class SceneRules {
     check_event(body.event);
   }
 
+  void check_slide() const {
+    const SlideSettings& s = std::get<SlideSettings>(scene_.numerics);
+    if (!scene_.terrain) fail(scene_, "a slide needs a " + path_of(scene_, scene_.terrain));
+    if (!in_3d())
+      fail(scene_.dimension, "a slide moves over ground in space; allowed: 3");
+    if (scene_.events.count != 1)
+      fail(scene_.events.count, show(scene_.events.count) + " events; a slide has 1");
+    if (scene_.output.energy)
+      fail(scene_.output.energy, "a slide keeps no energy balance yet; allowed: false");
+    if (s.explicit_friction && s.mode != SlideMode::compatible)
+      fail(s.explicit_friction, "only in the mode \"compatible\"");
+  }
+
+  void check_terrain(const TerrainSpec& terrain) const {
+    for (const AreaSpec& area : terrain.release) check_area(area);
+    for (const AreaSpec& area : terrain.entrainment) check_area(area);
+    for (const ResistanceSpec& area : terrain.resistance) check_area(area);
+  }
+
+  template <class Area>
+  void check_area(const Area& area) const {
+    check_ring(area.outline);
+    for (const HoleSpec& hole : area.holes) check_ring(hole.outline);
+  }
+
+  void check_ring(const Ring& ring) const {
+    if (twice_signed_area(ring) == 0.0) fail(ring, "encloses no area");
+    if (crosses_itself(ring)) fail(ring, "crosses or touches itself");
+  }
+
   template <class T>
   void check_in_domain(const T& member, const ShapeSpec& shape) const {
     const auto bounds = shape_bounds(shape);
@@ -219,6 +251,7 @@ void check_parts(const Scene& scene, const MethodInfo& method) {
   check(scene.obstacles, !scene.obstacles.empty(), method.takes.obstacles);
   check(scene.bodies, !scene.bodies.empty(), method.takes.bodies);
   check(scene.domain, scene.domain.has_value(), method.takes.domain);
+  check(scene.terrain, scene.terrain.has_value(), method.takes.terrain);
 }
 
 void check_rules(const Scene& scene) { SceneRules(scene).check(); }

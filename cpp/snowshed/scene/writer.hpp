@@ -48,6 +48,11 @@ class Writer {
       json_[key] = v.y();
   }
 
+  void outline(const char* key, Ring& ring, const char*) {
+    auto& corners = json_[key] = nlohmann::ordered_json::array();
+    for (const MapPoint& p : ring) corners.push_back({p[0], p[1]});
+  }
+
   template <class T>
   void object(const char* key, T& value, Need, const char*) {
     json_[key] = write(value, dimension_);
@@ -61,6 +66,9 @@ class Writer {
     auto& array = json_[key] = nlohmann::ordered_json::array();
     for (auto& item : items) array.push_back(write(item, dimension_));
   }
+
+  void method_ahead(const char*, MethodSettings&) {}
+  bool shows(bool taken) const { return taken; }
 
   /// The default method is left out: its scenes, and their hashes, stay as they were before there
   /// was a choice.

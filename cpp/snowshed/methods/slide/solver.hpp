@@ -25,6 +25,8 @@ class SlideMethod : public Method {
  public:
   /// The particles of the release areas; see `seed_release`.
   virtual std::vector<ParticleBatch> seed() const = 0;
+  /// How many they are.
+  virtual std::size_t count_seeds() const = 0;
   virtual const Terrain& terrain() const = 0;
   virtual const PeakFields& peaks() const = 0;
   virtual const GridFields& flow() const = 0;

@@ -18,7 +18,7 @@ class SlideSolver final : public SlideMethod {
 
   void step() override;
   bool at_safe_point() const override { return true; }
-  bool stopped() const override { return state_.stopped; }
+  std::optional<bool> at_rest() const override { return state_.stopped; }
   double time() const override { return state_.time; }
   double time_step() const override { return state_.dt; }
   const StepCounters& counters() const override { return state_.counters; }
@@ -38,6 +38,11 @@ class SlideSolver final : public SlideMethod {
 
   std::vector<ParticleBatch> seed() const override {
     return seed_release(model_.settings, model_.terrain, model_.areas.release);
+  }
+  std::size_t count_seeds() const override {
+    std::size_t count = 0;
+    for (const ParticleBatch& batch : seed()) count += batch.positions.size();
+    return count;
   }
   const Terrain& terrain() const override { return model_.terrain; }
   const PeakFields& peaks() const override { return state_.peaks; }

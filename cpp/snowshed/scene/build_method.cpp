@@ -1,0 +1,47 @@
+#include "snowshed/scene/build_method.hpp"
+
+#include "snowshed/methods/mpm/solver.hpp"
+#include "snowshed/methods/slide/solver.hpp"
+#include "snowshed/scene/build_obstacles.hpp"
+#include "snowshed/scene/build_terrain.hpp"
+
+namespace snowshed {
+namespace {
+
+std::unique_ptr<Method> build(const MpmSettings& settings, const Scene& scene,
+                              const std::vector<Snow>& snows, const Surroundings& surroundings) {
+  MpmOptions o;
+  o.dimension = scene.dimension;
+  o.gravity = scene.gravity;
+  o.snows = snows;
+  o.numerics = settings;
+  o.energy = scene.output.energy;
+  return make_mpm(o, surroundings.obstacles);
+}
+
+std::unique_ptr<Method> build(const SlideSettings& settings, const Scene& scene,
+                              const std::vector<Snow>&, const Surroundings& surroundings) {
+  return make_slide({settings, scene.gravity, surroundings.terrain, surroundings.areas});
+}
+
+}  // namespace
+
+Surroundings build_surroundings(const Scene& scene, const std::filesystem::path& base_dir) {
+  Surroundings s;
+  s.obstacles = build_obstacles(scene, base_dir);
+  if (scene.terrain && scene.uses<SlideSettings>()) {
+    s.terrain =
+        build_height_field(*scene.terrain, std::get<SlideSettings>(scene.numerics), base_dir);
+    s.areas = build_areas(*scene.terrain, s.terrain);
+  }
+  return s;
+}
+
+std::unique_ptr<Method> build_method(const Scene& scene, const std::vector<Snow>& snows,
+                                     const Surroundings& surroundings) {
+  return std::visit(
+      [&](const auto& settings) { return build(settings, scene, snows, surroundings); },
+      scene.numerics);
+}
+
+}  // namespace snowshed

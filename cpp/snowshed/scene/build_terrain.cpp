@@ -1,0 +1,57 @@
+#include "snowshed/scene/build_terrain.hpp"
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/readers/ascii_grid.hpp"
+
+namespace snowshed {
+namespace {
+
+Ring moved(const Ring& ring, const HeightField& field) {
+  Ring local;
+  for (const MapPoint& p : ring) local.push_back({p[0] - field.west, p[1] - field.south});
+  return local;
+}
+
+template <class Spec>
+SlideArea area_of(const Spec& spec, const HeightField& field) {
+  SlideArea area;
+  area.name = spec.name;
+  area.polygon.outline = moved(spec.outline, field);
+  for (const HoleSpec& hole : spec.holes) area.polygon.holes.push_back(moved(hole.outline, field));
+  return area;
+}
+
+std::vector<SlideArea> areas_of(const std::vector<AreaSpec>& specs, const HeightField& field) {
+  std::vector<SlideArea> areas;
+  for (const AreaSpec& spec : specs) {
+    areas.push_back(area_of(spec, field));
+    areas.back().thickness = spec.thickness;
+  }
+  return areas;
+}
+
+}  // namespace
+
+HeightField build_height_field(const TerrainSpec& terrain, const SlideSettings& settings,
+                               const std::filesystem::path& base_dir) {
+  HeightField field = read_ascii_grid(base_dir / terrain.file);
+  if (settings.mode == SlideMode::compatible)
+    for (double& height : field.heights) height = double(float(height));
+  const double cell = settings.cell > 0 ? settings.cell : field.cell;
+  try {
+    return resampled(field, cell);
+  } catch (const InputError& error) {
+    throw InputError("/numerics/cell", error.what());
+  }
+}
+
+SlideAreas build_areas(const TerrainSpec& terrain, const HeightField& field) {
+  SlideAreas areas;
+  areas.release = areas_of(terrain.release, field);
+  areas.entrainment = areas_of(terrain.entrainment, field);
+  for (const ResistanceSpec& spec : terrain.resistance)
+    areas.resistance.push_back(area_of(spec, field));
+  return areas;
+}
+
+}  // namespace snowshed
