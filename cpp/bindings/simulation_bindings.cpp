@@ -5,6 +5,8 @@
 #include "field_arrays.hpp"
 #include "simulation_handle.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/readers/ascii_grid.hpp"
+#include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/particles/quantities.hpp"
 #include "snowshed/run/run_record.hpp"
 #include "snowshed/run/simulation.hpp"
@@ -78,6 +80,65 @@ py::dict energy(const Simulation& sim) {
   py::dict d;
   for (const auto& [name, joules] : named_energies(sim.solver().energy())) d[name.c_str()] = joules;
   return d;
+}
+
+/// Values at the nodes of a grid, row by row from the south.
+py::array_t<double> map_of(const std::vector<double>& values, int rows, int columns) {
+  py::array_t<double> map({py::ssize_t(rows), py::ssize_t(columns)});
+  std::copy(values.begin(), values.end(), map.mutable_data());
+  return map;
+}
+
+py::dict slide_maps(const Simulation& sim) {
+  const SlideMethod& slide = sim.slide();
+  const Terrain& t = slide.terrain();
+  const auto map = [&](const std::vector<double>& values) {
+    return map_of(values, t.rows(), t.columns());
+  };
+  std::vector<double> heights;
+  for (int i = 0; i < t.rows() * t.columns(); ++i) heights.push_back(t.nodes()[i].height);
+  py::dict d;
+  d["terrain"] = map(heights);
+  d["peak_thickness"] = map(slide.peaks().thickness);
+  d["peak_speed"] = map(slide.peaks().speed);
+  d["thickness"] = map(slide.flow().thickness_everywhere(t));
+  d["speed"] = map(slide.flow().speed_everywhere(t));
+  d["west"] = t.west();
+  d["south"] = t.south();
+  d["cell"] = t.cell();
+  return d;
+}
+
+py::dict slide_facts(const Simulation& sim) {
+  const SlideMethod& slide = sim.slide();
+  const MassBalance& m = slide.mass_balance();
+  py::dict d;
+  d["bonds_made"] = slide.bonds_made();
+  d["bonds"] = slide.bonds().size();
+  d["released_kg"] = m.released;
+  d["entrained_kg"] = m.entrained;
+  d["left_terrain_kg"] = m.left;
+  d["left_terrain"] = m.particles_left;
+  return d;
+}
+
+/// The bonds that hold: ids of their particles (n, 2), and rest lengths (n).
+py::tuple slide_bonds(const Simulation& sim) {
+  const SlideMethod& slide = sim.slide();
+  const Bonds& bonds = slide.bonds();
+  const FieldView ids = slide.field("id");
+  py::array_t<std::int64_t> pairs({py::ssize_t(bonds.size()), py::ssize_t(2)});
+  auto out = pairs.mutable_unchecked<2>();
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    out(py::ssize_t(b), 0) = *ids.at<std::uint32_t>(bonds.first[b]);
+    out(py::ssize_t(b), 1) = *ids.at<std::uint32_t>(bonds.second[b]);
+  }
+  return py::make_tuple(pairs, column<double>(bonds.rest_length));
+}
+
+py::tuple ascii_grid(const std::string& path) {
+  const HeightField f = read_ascii_grid(path);
+  return py::make_tuple(map_of(f.heights, f.rows, f.columns), f.west, f.south, f.cell);
 }
 
 py::object frame(const Simulation& sim) {
@@ -287,6 +348,9 @@ void bind_facts(SimulationClass& c) {
   using namespace py::literals;
   c.reads("energy", &energy);
   c.reads("panel_frame", &frame);
+  c.reads("slide_maps", &slide_maps);
+  c.reads("slide_facts", &slide_facts);
+  c.reads("slide_bonds", &slide_bonds);
   c.reads("obstacle_distance", &obstacle_distance, "points"_a);
   c.property("event", [](const Simulation& s) { return s.event(); });
   c.property("event_count", [](const Simulation& s) { return s.scene().events.count; });
@@ -315,6 +379,8 @@ void bind_facts(SimulationClass& c) {
 void bind_simulation(py::module_& m) {
   using namespace py::literals;
   m.def("quantities", &quantity_list, "(name, unit, meaning) of what particles may have.");
+  m.def("read_ascii_grid", &ascii_grid, "path"_a,
+        "(heights, west, south, cell) of an ESRI ASCII grid, the southernmost row first.");
   SimulationClass c(m);
   (*c).def(
       py::init([](const std::string& json, const std::string& base_dir) {

@@ -1,4 +1,4 @@
-"""snowshed: snow that slides off solar panels, simulated with the material point method.
+"""snowshed: snow that slides off solar panels and down slopes, simulated.
 
 A scene is set value by value and run event after event; the stack below the panel is measured.
 
@@ -23,6 +23,7 @@ from snowshed._core import version as __version__
 from snowshed.analysis.dimension_ratio import dimension_ratio
 from snowshed.io.renamed import renamed as _renamed
 from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.slide import SlideSettings
 from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.progress import Progress
@@ -30,6 +31,7 @@ from snowshed.run.results import read_events
 from snowshed.run.results_reader import Results
 from snowshed.run.simulation import Simulation
 from snowshed.scene.components import (
+    Area,
     Body,
     Domain,
     Events,
@@ -42,12 +44,14 @@ from snowshed.scene.components import (
     Seeding,
     Slab,
     Snow,
+    Terrain,
 )
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.shape import Shape
 from snowshed.snow.stack.measure import Extent, StackMeasure, level, measure_stack
 
 __all__ = [
+    "Area",
     "Body",
     "Domain",
     "Events",
@@ -70,8 +74,10 @@ __all__ = [
     "Simulation",
     "SimulationError",
     "Slab",
+    "SlideSettings",
     "Snow",
     "StackMeasure",
+    "Terrain",
     "__version__",
     "dimension_ratio",
     "level",

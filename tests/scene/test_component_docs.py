@@ -7,7 +7,8 @@ from component_docs import attributes_section
 
 from snowshed import Scene
 from snowshed.io.field_type import alternatives_of
-from snowshed.scene.schema import properties, resolve, scene_schema
+from snowshed.methods.registry import METHODS
+from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
 
 
 def mirrored(record, node, found):
@@ -21,7 +22,18 @@ def mirrored(record, node, found):
     return found
 
 
-NODES = mirrored(Scene, scene_schema(), {})
+def all_nodes():
+    """Return the records of every method's scenes; those of the whole scene by the whole schema."""
+    found = {}
+    for method, settings in METHODS.items():
+        schema = schema_of_method(method)
+        mirrored(Scene, schema, found)
+        found[settings] = resolve(schema, schema["properties"]["numerics"])
+    found[Scene] = scene_schema()
+    return found
+
+
+NODES = all_nodes()
 
 
 @pytest.mark.parametrize("record", NODES, ids=lambda record: record.__name__)

@@ -33,9 +33,8 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
   solver_ = empty_method();
   if (scene_.uses<SlideSettings>()) {
-    const auto& slide = static_cast<const SlideMethod&>(*solver_);
-    cost_ = estimate_slide_cost(scene_, slide.terrain(), surroundings_.areas.release.front(),
-                                slide.count_seeds());
+    cost_ = estimate_slide_cost(scene_, slide().terrain(), surroundings_.areas.release.front(),
+                                slide().count_seeds());
     check_memory(cost_.bytes);
   }
 }
@@ -47,6 +46,12 @@ std::unique_ptr<Method> Simulation::empty_method() const {
   return build_method(scene_, snows_, surroundings_);
 }
 
+const SlideMethod& Simulation::slide() const {
+  if (!scene_.uses<SlideSettings>())
+    throw InputError("/method", "is not \"slide\", and has no maps");
+  return static_cast<const SlideMethod&>(*solver_);
+}
+
 int Simulation::threads() const { return threads_to_use(wanted_threads(scene_.numerics)); }
 
 std::optional<Reseeding> Simulation::begin_event() {
@@ -56,7 +61,7 @@ std::optional<Reseeding> Simulation::begin_event() {
     reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_);
   const double lift = lift_of_next_slab(reseeding);
   SeededSnow snow = scene_.uses<SlideSettings>()
-                        ? seed_release(static_cast<const SlideMethod&>(*solver_))
+                        ? seed_release(slide())
                         : seed_event(scene_, base_dir_, panel_, event_ + 1, lift);
   change_snow(reseeding, std::move(snow.batches));
   event_mass_ = snow.mass;

@@ -20,6 +20,7 @@
 
 namespace snowshed {
 
+class SlideMethod;
 class SnapshotSeries;
 
 /// How `Simulation::run` came back.
@@ -85,6 +86,8 @@ class Simulation {
   const std::vector<Snow>& snows() const { return snows_; }  ///< by ParticleState::material_ids
   const CostEstimate& cost() const { return cost_; }
   const Method& solver() const { return *solver_; }
+  /// The solver as a slide; throws InputError where the scene's method is another.
+  const SlideMethod& slide() const;
   int event() const { return event_; }
   bool event_running() const { return running_; }
   double event_time() const { return solver_->time() - event_start_; }

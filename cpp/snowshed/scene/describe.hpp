@@ -19,7 +19,8 @@
 //   method(key, settings_key, member, doc, settings_doc)
 //                                            the name of a method, and the settings of that method
 //   method_ahead(key, member)                before parts that only some methods take
-//   shows(taken)                             whether to go on to a part that the method takes or not
+//   shows(member, part)                      whether to go on to a part: does the method take it?
+//   taken_by(part)                           before a part that may be left out: which methods take it
 //   alias(key, other)                        before a field: another key that is read for it
 //   accuracy({key...})                       before fields: those that trade accuracy for time
 #pragma once
@@ -333,17 +334,23 @@ void describe(V& v, Scene& s) {
   v.text("title", s.title, "What this scene is");
   v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");
   v.method_ahead("method", s.numerics);
-  const TakenParts& takes = info_of(s.numerics).takes;
-  if (v.shows(takes.snow)) v.object("snow", s.snow, Need::optional, "The material");
+  if (v.shows(s.numerics, &TakenParts::snow)) v.object("snow", s.snow, Need::optional, "The material");
+  v.taken_by(&TakenParts::panel);
   v.optional("panel", s.panel,
              "The panel; its centre is the origin of x, which points down the slide direction");
+  v.taken_by(&TakenParts::slab);
   v.optional("slab", s.slab, "The slab laid on the panel, centred, at the start of every event");
+  v.taken_by(&TakenParts::ground);
   v.optional("ground", s.ground, "An inclined plane through the origin");
+  v.taken_by(&TakenParts::terrain);
   v.optional("terrain", s.terrain, "Ground from a raster of elevations, and where snow lies on it");
+  v.taken_by(&TakenParts::obstacles);
   v.list("obstacles", s.obstacles, between(0, 10000), "Further solids that snow collides with");
+  v.taken_by(&TakenParts::bodies);
   v.list("bodies", s.bodies, between(0, 10000), "Further bodies of snow");
+  v.taken_by(&TakenParts::domain);
   v.optional("domain", s.domain, "A box with sticky sides; unbounded without it");
-  if (v.shows(takes.seeding))
+  if (v.shows(s.numerics, &TakenParts::seeding))
     v.object("seeding", s.seeding, Need::optional, "How snow is filled with particles");
   v.method("method", "numerics", s.numerics, "The numerical method", "The method's settings");
   v.object("events", s.events, Need::optional, "How many events, and when one ends");

@@ -42,7 +42,10 @@ class PathVisitor {
   }
 
   void method_ahead(const char*, MethodSettings&) {}
-  bool shows(bool taken) const { return taken; }
+  bool shows(const MethodSettings& settings, bool TakenParts::*part) const {
+    return info_of(settings).takes.*part;
+  }
+  void taken_by(bool TakenParts::*) {}
 
   void method(const char*, const char* settings_key, MethodSettings& settings, const char*,
               const char*) {

@@ -117,7 +117,18 @@ class SchemaWriter {
   }
 
   void method_ahead(const char*, MethodSettings&) {}
-  bool shows(bool) const { return true; }  // every part is described
+  /// Every part is described.
+  bool shows(const MethodSettings&, bool TakenParts::*part) {
+    taken_by(part);
+    return true;
+  }
+  void taken_by(bool TakenParts::*part) {
+    methods_ = json::array();
+    for_each_method([&](const auto& settings) {
+      const MethodInfo& info = info_of(settings);
+      if (info.takes.*part) methods_.push_back(info.name);
+    });
+  }
 
   void method(const char* key, const char* settings_key, MethodSettings&, const char* doc,
               const char* settings_doc) {
@@ -182,6 +193,8 @@ class SchemaWriter {
     if (need == Need::required_in_3d) doc += " (required in 3D)";
     json property = {{"description", doc}};
     property.update(schema);
+    if (!methods_.empty()) property["x-methods"] = std::move(methods_);
+    methods_ = json::array();
     if (accuracy_.count(key)) property["x-accuracy"] = true;
     if (aliases_.count(key)) property["x-aliases"] = aliases_[key];
     properties_[key] = std::move(property);
@@ -230,6 +243,7 @@ class SchemaWriter {
   json properties_ = json::object();
   json required_ = json::array();
   json variants_ = json::array();
+  json methods_ = json::array();  // that take the next part; empty where all do
   std::set<std::string> accuracy_;                           // keys that trade accuracy for time
   std::map<std::string, std::vector<std::string>> aliases_;  // by the key that they stand for
   std::string variant_key_, variant_doc_, variant_name_, variant_what_;

@@ -68,7 +68,10 @@ class Writer {
   }
 
   void method_ahead(const char*, MethodSettings&) {}
-  bool shows(bool taken) const { return taken; }
+  bool shows(const MethodSettings& settings, bool TakenParts::*part) const {
+    return info_of(settings).takes.*part;
+  }
+  void taken_by(bool TakenParts::*) {}
 
   /// The default method is left out: its scenes, and their hashes, stay as they were before there
   /// was a choice.

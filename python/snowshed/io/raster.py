@@ -10,14 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from snowshed._core import InputError
+from snowshed._core import InputError, read_ascii_grid
 from snowshed.io.arrays import Floats
+from snowshed.io.atomic import replacing
 from snowshed.io.extras import require
 from snowshed.io.paths import PathLike
 
 GEOTIFF = (".tif", ".tiff")
-CORNERS = ("xllcorner", "yllcorner", "xllcenter", "yllcenter")
-HEADER = ("ncols", "nrows", *CORNERS, "cellsize", "nodata_value")
 LARGEST = 100_000_000  # cells of a raster that is read, 800 MB of heights
 
 
@@ -108,70 +107,31 @@ def read_raster(path: PathLike) -> Raster:
 
 
 def _read_ascii(path: Path) -> Raster:
-    try:
-        lines = path.read_text(encoding="ascii").splitlines()
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: not an ESRI ASCII grid: not plain text") from None
-    header: dict[str, float] = {}
-    for line in lines:
-        words = line.split()
-        if not words or words[0].lower() not in HEADER:
-            break
-        header[words[0].lower()] = _header_value(words, f"{path}, line {len(header) + 1}")
-    _check_header(header, path)
-    columns, rows = int(header["ncols"]), int(header["nrows"])
-    values = [_heights(line, f"{path}, line {number}")
-              for number, line in enumerate(lines[len(header):], len(header) + 1)]  # fmt: skip
-    heights = np.concatenate(values) if values else np.zeros(0)
-    if heights.size != rows * columns:
-        raise InputError(
-            f"{path}: {heights.size} heights; {columns} columns and {rows} rows need "
-            f"{rows * columns}"
-        )
-    heights = heights.reshape(rows, columns)[::-1]
-    _check_finite(heights, path)
-    if "nodata_value" in header:
-        heights = np.where(heights == header["nodata_value"], np.nan, heights)
-    cell = header["cellsize"]
-    east, north = (
-        header[f"{axis}llcenter"] if f"{axis}llcenter" in header
-        else header[f"{axis}llcorner"] + 0.5 * cell
-        for axis in "xy"
-    )  # fmt: skip
-    return Raster(heights, east, north, cell, str(path))
+    heights, west, south, cell = read_ascii_grid(str(path))
+    return Raster(heights, west, south, cell, str(path))
 
 
-def _header_value(words: list[str], where: str) -> float:
-    try:
-        (value,) = words[1:]
-        return float(value)
-    except ValueError:
-        raise InputError(f"{where}: {' '.join(words)!r} is not a key and a number") from None
+def write_ascii_grid(path: PathLike, raster: Raster) -> None:
+    """Write a raster as an ESRI ASCII grid, whole or not at all; NaN becomes -9999.
 
-
-def _check_header(header: dict[str, float], path: Path) -> None:
-    def need(*names: str) -> None:
-        if not any(name in header for name in names):
-            raise InputError(f"{path}: not an ESRI ASCII grid: no {' or '.join(names)} at its top")
-
-    for names in (("ncols",), ("nrows",), ("xllcorner", "xllcenter"), ("yllcorner", "yllcenter"),
-                  ("cellsize",)):  # fmt: skip
-        need(*names)
-    for name in ("ncols", "nrows"):
-        if not header[name].is_integer() or header[name] < 2:
-            raise InputError(f"{path}: {name} {header[name]:g}; give a whole number of 2 or more")
-    if not (math.isfinite(header["cellsize"]) and header["cellsize"] > 0.0):
-        raise InputError(f"{path}: cellsize {header['cellsize']:g}; give a length above 0 m")
-    for name in CORNERS:
-        if not math.isfinite(header.get(name, 0.0)):
-            raise InputError(f"{path}: {name} {header[name]:g}; give a map coordinate, m")
-
-
-def _heights(line: str, where: str) -> Floats:
-    try:
-        return np.array(line.split(), dtype=np.float64)
-    except ValueError:
-        raise InputError(f"{where}: not a row of heights") from None
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> flat = Raster(np.zeros((2, 3)), 100.0, 200.0, 5.0)
+    >>> with TemporaryDirectory() as folder:
+    ...     write_ascii_grid(Path(folder) / "flat.asc", flat)
+    ...     read_raster(Path(folder) / "flat.asc").cell
+    5.0
+    """
+    rows, columns = raster.heights.shape
+    header = (
+        f"ncols {columns}\nnrows {rows}\nxllcenter {raster.east:.10g}\n"
+        f"yllcenter {raster.north:.10g}\ncellsize {raster.cell:.10g}\nnodata_value -9999\n"
+    )
+    known = np.where(np.isnan(raster.heights), -9999.0, raster.heights)
+    with replacing(path) as beside, open(beside, "w", encoding="ascii") as file:
+        file.write(header)
+        np.savetxt(file, known[::-1], fmt="%.9g")
 
 
 def _check_band(source: Any, path: Path) -> None:

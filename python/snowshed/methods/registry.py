@@ -14,12 +14,13 @@ from snowshed.io.json_file import JsonValue
 from snowshed.io.messages import suggestion
 from snowshed.methods.mpm import MpmSettings
 from snowshed.methods.settings import MethodSettings
+from snowshed.methods.slide import SlideSettings
 
-MethodName = Literal["mpm"]
+MethodName = Literal["mpm", "slide"]
 DEFAULT: MethodName = "mpm"
 
 #: The class of the settings of every method, by its name in a scene.
-METHODS: Mapping[str, type[MethodSettings]] = {"mpm": MpmSettings}
+METHODS: Mapping[str, type[MethodSettings]] = {"mpm": MpmSettings, "slide": SlideSettings}
 
 #: Where in a scene the name of the method and its settings stand.
 NAME_KEY = "method"

@@ -13,40 +13,50 @@ from typing import TYPE_CHECKING
 
 from snowshed.io.renamed import renamed
 from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.slide import SlideSettings
 from snowshed.scene.components import (
+    Area,
     Body,
     Domain,
     Events,
     Ground,
+    Hole,
     Layer,
     Motion,
     Obstacle,
     Output,
     Panel,
+    ResistanceArea,
     Seeding,
     Slab,
     Snow,
+    Terrain,
 )
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.shape import Shape
 
 __all__ = [
+    "Area",
     "Body",
     "Domain",
     "Events",
     "Ground",
+    "Hole",
     "Layer",
     "Motion",
     "MpmSettings",
     "Obstacle",
     "Output",
     "Panel",
+    "ResistanceArea",
     "ResolvedScene",
     "Scene",
     "Seeding",
     "Shape",
     "Slab",
+    "SlideSettings",
     "Snow",
+    "Terrain",
 ]
 
 if not TYPE_CHECKING:

@@ -7,10 +7,12 @@ Every field defaults to None, "not given": the core's default holds. Vectors are
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import List, Literal, Optional, Union
 
 from snowshed._core import snow_preset
+from snowshed.io.paths import PathLike
 from snowshed.io.record import Alias, Record
 from snowshed.scene.shape import Shape, Vector
 
@@ -18,6 +20,9 @@ SnowModel = Literal["cam_clay", "elastic"]
 Condition = Literal["sticky", "slip", "separate"]
 Pattern = Literal["regular", "jittered", "poisson"]
 Between = Literal["carry", "reseed"]
+
+#: Corners (x, y) of an area on the map, m.
+Outline = Sequence[Sequence[float]]
 
 
 @dataclass
@@ -161,6 +166,85 @@ class Ground(Record):
     tilt: Optional[float] = None
     condition: Optional[Condition] = None
     friction: Optional[float] = None
+
+
+@dataclass
+class Hole(Record):
+    """A part of an area that does not belong to it.
+
+    Attributes
+    ----------
+    outline : sequence of float
+        Corners, in the terrain's coordinates, m [m]. Required.
+    """
+
+    outline: Optional[Outline] = None
+
+
+@dataclass
+class Area(Record):
+    """An area on the map with snow on it.
+
+    Attributes
+    ----------
+    name : str
+        Name in messages and results.
+    outline : sequence of float
+        Corners, in the terrain's coordinates, m [m]. Required.
+    holes : list of Hole
+        Parts within the outline that do not belong to it.
+    thickness : float
+        Thickness of the snow, normal to the ground [m]. 0 < value <= 100; required.
+    """
+
+    name: Optional[str] = None
+    outline: Optional[Outline] = None
+    holes: Optional[List[Hole]] = None
+    thickness: Optional[float] = None
+
+
+@dataclass
+class ResistanceArea(Record):
+    """An area on the map that holds snow back.
+
+    Attributes
+    ----------
+    name : str
+        Name in messages and results.
+    outline : sequence of float
+        Corners, in the terrain's coordinates, m [m]. Required.
+    holes : list of Hole
+        Parts within the outline that do not belong to it.
+    """
+
+    name: Optional[str] = None
+    outline: Optional[Outline] = None
+    holes: Optional[List[Hole]] = None
+
+
+@dataclass
+class Terrain(Record):
+    """Ground from a raster of elevations, and where snow lies on it.
+
+    Attributes
+    ----------
+    file : str or path
+        Elevations, m: an ESRI ASCII grid; relative to the scene file. Required.
+    crs : str
+        Coordinate system of the raster and the areas, handed on to the results.
+    release : list of Area
+        Where snow is released. Required.
+    entrainment : list of Area
+        Where the slide takes up snow.
+    resistance : list of ResistanceArea
+        Where forest or the like holds it back.
+    """
+
+    file: Optional[PathLike] = None
+    crs: Optional[str] = None
+    release: Optional[List[Area]] = None
+    entrainment: Optional[List[Area]] = None
+    resistance: Optional[List[ResistanceArea]] = None
 
 
 @dataclass

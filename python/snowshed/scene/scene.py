@@ -24,7 +24,8 @@ from snowshed.io.json_file import JsonObject, JsonValue
 from snowshed.io.paths import PathLike
 from snowshed.io.record import DEEPEST, Record, check_once
 from snowshed.methods.mpm import MpmSettings
-from snowshed.methods.registry import SETTINGS_KEY, MethodName, settings_class
+from snowshed.methods.registry import NAME_KEY, SETTINGS_KEY, MethodName, settings_class
+from snowshed.methods.slide import SlideSettings
 from snowshed.scene.components import (
     Body,
     Domain,
@@ -36,6 +37,7 @@ from snowshed.scene.components import (
     Seeding,
     Slab,
     Snow,
+    Terrain,
 )
 
 __all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
@@ -65,6 +67,8 @@ class Scene(Record):
         The slab laid on the panel, centred, at the start of every event.
     ground : Ground
         An inclined plane through the origin.
+    terrain : Terrain
+        Ground from a raster of elevations, and where snow lies on it.
     obstacles : list of Obstacle
         Further solids that snow collides with.
     bodies : list of Body
@@ -73,7 +77,7 @@ class Scene(Record):
         A box with sticky sides; unbounded without it.
     seeding : Seeding
         How snow is filled with particles.
-    method : {"mpm"}
+    method : {"mpm", "slide"}
         The numerical method. Default "mpm".
     numerics : MpmSettings
         The method's settings.
@@ -99,12 +103,13 @@ class Scene(Record):
     panel: Optional[Panel] = None
     slab: Optional[Slab] = None
     ground: Optional[Ground] = None
+    terrain: Optional[Terrain] = None
     obstacles: Optional[List[Obstacle]] = None
     bodies: Optional[List[Body]] = None
     domain: Optional[Domain] = None
     seeding: Optional[Seeding] = None
     method: Optional[MethodName] = None
-    numerics: Optional[MpmSettings] = None
+    numerics: Optional[Union[MpmSettings, SlideSettings]] = None
     events: Optional[Events] = None
     output: Optional[Output] = None
 
@@ -130,12 +135,46 @@ class Scene(Record):
             raise InputError(f"{path}: not JSON: {error}") from None
         try:
             _refuse_null(data, "")
+            if isinstance(data, dict) and "snowshed" not in data:
+                raise InputError("/snowshed: missing: the version 1 is required")
             scene = cls.from_data(data)
             scene.to_data()
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
         scene._base_dir = os.fspath(Path(path).parent)
         return scene
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, object], path: str = "") -> Scene:
+        """Build a scene from its JSON data; the method decides which settings it takes.
+
+        Raises
+        ------
+        InputError
+            At a key that a scene does not have, or a value that its field does not take.
+        """
+        if isinstance(data, Mapping) and NAME_KEY in data:
+            data = {NAME_KEY: data[NAME_KEY], **data}
+        return super().from_data(data, path)
+
+    def assign(self, key: str, value: object, path: str = "") -> None:
+        """Set one field by its JSON key; settings become those of the scene's method.
+
+        Raises
+        ------
+        InputError
+            If a scene has no such key, or its field does not take the value.
+        """
+        if key == SETTINGS_KEY and isinstance(value, Mapping):
+            value = settings_class(self.method).from_data(value, f"{path}/{key}")
+        if key == NAME_KEY and isinstance(value, str) and self.numerics is not None:
+            kind = settings_class(value)
+            if not isinstance(self.numerics, kind):
+                raise InputError(
+                    f"{path}/{key}: {value!r} takes {kind.__name__}, and the scene has "
+                    f"{type(self.numerics).__name__}; set {SETTINGS_KEY} to None first"
+                )
+        super().assign(key, value, path)
 
     @classmethod
     def preset(cls, name: str) -> Scene:

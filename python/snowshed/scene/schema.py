@@ -10,6 +10,7 @@ from typing import Optional, cast
 
 from snowshed._core import scene_schema as schema_text
 from snowshed.io.json_file import JsonObject, JsonValue
+from snowshed.methods.registry import DEFAULT, METHODS, SETTINGS_KEY
 
 Node = Mapping[str, JsonValue]
 
@@ -51,16 +52,34 @@ def scene_schema() -> JsonObject:
 
 
 @functools.cache
-def scene_parameters() -> tuple[Parameter, ...]:
-    """Return the parameters of a scene in the order of the schema.
+def scene_parameters(method: str = DEFAULT) -> tuple[Parameter, ...]:
+    """Return the parameters of a scene with a method, in the order of the schema.
 
     Examples
     --------
     >>> [p.kind for p in scene_parameters() if p.path == "snow.density"]
     ['number']
     """
-    schema = scene_schema()
+    schema = schema_of_method(method)
     return tuple(_parameters(schema, schema, ""))
+
+
+@functools.cache
+def schema_of_method(method: str) -> JsonObject:
+    """Return the schema with the settings of one method, and only the parts that it takes.
+
+    It is shared, so leave it as it is.
+    """
+    schema = scene_schema()
+    parts = {
+        name: part
+        for name, part in _object(schema["properties"]).items()
+        if method in _list(_object(part).get("x-methods", [method]))
+    }
+    settings = _object(parts[SETTINGS_KEY])
+    own = [one for one in _list(settings["anyOf"]) if _object(one).get("title") == method]
+    parts[SETTINGS_KEY] = {**settings, "anyOf": own}
+    return {**schema, "properties": parts}
 
 
 def current_path(path: str) -> str:
@@ -120,7 +139,9 @@ def resolve(schema: Node, node: Node) -> JsonObject:
 
 @functools.cache
 def _path_of_alias() -> dict[str, str]:
-    return {alias: p.path for p in scene_parameters() for alias in p.aliases}
+    return {
+        alias: p.path for method in METHODS for p in scene_parameters(method) for alias in p.aliases
+    }
 
 
 def _object(value: JsonValue) -> JsonObject:

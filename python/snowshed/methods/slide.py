@@ -1,0 +1,95 @@
+"""Settings of the snow slide."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal, Optional
+
+from snowshed.methods.settings import MethodSettings
+
+SlideMode = Literal["improved", "compatible"]
+SlideFriction = Literal["voellmy", "coulomb"]
+
+
+@dataclass
+class SlideSettings(MethodSettings):
+    """Particles, friction and bonds of the snow slide; the defaults are AvaFrame's com5SnowSlide.
+
+    Attributes
+    ----------
+    mode : {"improved", "compatible"}
+        Without the known faults of com5SnowSlide, or step by step as AvaFrame 2.1 does it. Default
+        "improved".
+    cell : float
+        Cells of the computing grid; 0: those of the terrain's raster [m]. 0 <= value <= 1e+06;
+        default 0.
+    time_step : float
+        Length of a step [s]. 0 < value <= 1; default 0.01.
+    density : float
+        Density of the sliding snow [kg/m3]. 0 < value <= 1000; default 300.
+    layer_thickness : float
+        Snow of this thickness over a whole cell makes one particle [m]. 0 < value <= 100; default
+        0.25.
+    friction_law : {"voellmy", "coulomb"}
+        Friction with the ground. Default "voellmy".
+    friction : float
+        Coulomb coefficient mu. 0 <= value <= 100; default 0.325.
+    turbulence : float
+        Voellmy's xi [m/s2]. 0 < value <= 1e+06; default 58.
+    explicit_friction : bool
+        Friction from the speed before the step; in the compatible mode only. Default False.
+    resistance : float
+        Coefficient within the areas of resistance. 0 <= value <= 1e+09; default 30000.
+    artificial_viscosity : float
+        How strongly particles are drawn to the velocity of the snow around. 0 <= value <= 1e+06;
+        default 100.
+    bonds : bool
+        Cohesive bonds; without them a plain depth-averaged avalanche. Default True.
+    max_strain : float
+        Strain at which a bond breaks. 0 < value <= 10; default 0.2.
+    bond_modulus : float
+        Stiffness of the bonds (cohesive surface tension) [Pa]. 0 <= value <= 1e+12; default 50000.
+    min_bond_length : float
+        Length below which a bond exerts no force [m]. 0 <= value <= 1e+06; default 0.001.
+    entrained_density : float
+        Density of the snow that is taken up [kg/m3]. 0 < value <= 1000; default 100.
+    erosion_energy : float
+        Friction work that takes up a kilogram of snow; 0: all that the slide sweeps over [J/kg]. 0
+        <= value <= 1e+12; default 5000.
+    entrainment_shear : float
+        Shear strength of the snow that is taken up [Pa]. 0 <= value <= 1e+12; default 0.
+    entrainment_work : float
+        Work that breaks up the snow that is taken up [J/kg]. 0 <= value <= 1e+12; default 0.
+    split_ratio : float
+        Mass over that of a fresh particle beyond which a particle splits. 1 < value <= 1e+06;
+        default 1.5.
+    stop_ratio : float
+        The slide stops at this share of its largest kinetic energy. 0 <= value <= 1; default 0.01.
+    threads : int
+        Threads; 0: all. 0 <= value <= 4096; default 0.
+    """
+
+    mode: Optional[SlideMode] = None
+    cell: Optional[float] = None
+    time_step: Optional[float] = None
+    density: Optional[float] = None
+    layer_thickness: Optional[float] = None
+    friction_law: Optional[SlideFriction] = None
+    friction: Optional[float] = None
+    turbulence: Optional[float] = None
+    explicit_friction: Optional[bool] = None
+    resistance: Optional[float] = None
+    artificial_viscosity: Optional[float] = None
+    bonds: Optional[bool] = None
+    max_strain: Optional[float] = None
+    bond_modulus: Optional[float] = None
+    min_bond_length: Optional[float] = None
+    entrained_density: Optional[float] = None
+    erosion_energy: Optional[float] = None
+    entrainment_shear: Optional[float] = None
+    entrainment_work: Optional[float] = None
+    split_ratio: Optional[float] = None
+    stop_ratio: Optional[float] = None
+    threads: Optional[int] = None
+
+    RESOLUTION: ClassVar[str] = "cell"
