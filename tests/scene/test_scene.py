@@ -116,7 +116,7 @@ def test_the_method_decides_what_the_settings_are(tiny):
     ):
         tiny.set("method", "mps")
     with pytest.raises(
-        InputError, match="^/method: 'slide' takes SlideSettings, and the scene has"
+        InputError, match=r"^/method: 'slide' takes SlideSettings, and the scene has"
     ):
         tiny.set("method", "slide")
     assert isinstance(Scene(method="slide").set("numerics.friction", 0.3).numerics, SlideSettings)

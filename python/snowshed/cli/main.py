@@ -1,8 +1,8 @@
 """The command line: which commands there are, and how they end.
 
-One event loop: ``snowshed panel|run|lua``; scenes and forecasts: ``scene|plan|schema``; many runs:
-``study``; a winter: ``season``; questions about them: ``compare|sensitivity|calibrate``; the data
-set of panels: ``geometry|regress|predict``.
+One event loop: ``snowshed panel|run|lua``; a slide on terrain: ``slide``; scenes and forecasts:
+``scene|plan|schema``; many runs: ``study``; a winter: ``season``; questions about them:
+``compare|sensitivity|calibrate``; the data set of panels: ``geometry|regress|predict``.
 
 Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted. Errors are one
 line on stderr.
@@ -63,6 +63,7 @@ class Deferred(click.Command):
 DEFERRED = (
     ("panel", "run", "Run slide-offs from a panel described by options."),
     ("run", "run", "Run a scene file."),
+    ("slide", "slide", "Run a small snow slide on terrain."),
     ("plan", "scene", "Say what running a scene file would use and cost, without running it."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
     ("schema", "scene", "Print the JSON Schema of a scene."),

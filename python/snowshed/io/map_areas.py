@@ -1,4 +1,7 @@
-"""Areas on a map from files of polygons: shapefile, GeoPackage, GeoJSON (extra snowshed[terrain])."""
+"""Areas on a map from files of polygons: shapefile, GeoPackage, GeoJSON.
+
+They need the extra snowshed[terrain].
+"""
 
 from __future__ import annotations
 

@@ -34,6 +34,8 @@ class Raster:
         Size of a cell, m.
     name
         For messages.
+    crs
+        Coordinate system in words, such as "EPSG:31287"; empty where it is not known.
     """
 
     heights: Floats
@@ -41,6 +43,7 @@ class Raster:
     north: float
     cell: float
     name: str = "raster"
+    crs: str = ""
 
     def height_at(self, east: Floats, north: Floats) -> Floats:
         """Return heights at map coordinates, m, interpolated between cell middles (bilinear).
@@ -129,7 +132,7 @@ def write_ascii_grid(path: PathLike, raster: Raster) -> None:
         f"yllcenter {raster.north:.10g}\ncellsize {raster.cell:.10g}\nnodata_value -9999\n"
     )
     known = np.where(np.isnan(raster.heights), -9999.0, raster.heights)
-    with replacing(path) as beside, open(beside, "w", encoding="ascii") as file:
+    with replacing(path) as beside, beside.open("w", encoding="ascii") as file:
         file.write(header)
         np.savetxt(file, known[::-1], fmt="%.9g")
 
@@ -177,4 +180,5 @@ def _read_geotiff(path: Path) -> Raster:
         raise InputError(f"{path}: not on square cells with north up; resample it first")
     cell = float(transform.a)
     north = transform.f - (len(heights) - 0.5) * cell
-    return Raster(heights[::-1], transform.c + 0.5 * cell, north, cell, str(path))
+    place = "" if crs is None else crs.to_string()
+    return Raster(heights[::-1], transform.c + 0.5 * cell, north, cell, str(path), place)

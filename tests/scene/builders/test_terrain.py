@@ -38,16 +38,16 @@ def test_an_ascii_grid_is_read_from_the_south(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("nrows 2\n", "", "no nrows at its top"),
-        ("ncols 3", "ncols three", "line 1: 'ncols three' is not a key and a number"),
-        ("cellsize 10", "cellsize 0", "cellsize 0; give a length above 0 m"),
-        ("4 5", "4 five", "line 8: not a row of heights"),
-        ("4 5 ", "4 ", "5 heights; 3 columns and 2 rows need 6"),
-        ("ncols 3", "ncols 2.5", "ncols 2.5; give a whole number"),
-        ("ncols 3", "ncols nan", "ncols nan; give a whole number"),
-        ("nrows 2", "nrows 1e999", "nrows inf; give a whole number"),
-        ("xllcorner 1000", "xllcorner nan", "xllcorner nan; give a map coordinate"),
-        ("4 5", "4 inf", "a height that is not finite, 1 cells from the west and 0 from the south"),
+        ("nrows 2\n", "", "the header has no nrows"),
+        ("ncols 3", "ncols three", "'three' is not a valid number"),
+        ("cellsize 10", "cellsize 0", "cellsize must be above 0"),
+        ("4 5", "4 five", "'five' is not a valid number"),
+        ("4 5 ", "4 ", "5 values; the header tells of 6"),
+        ("ncols 3", "ncols 2.5", "ncols must be a whole number"),
+        ("ncols 3", "ncols nan", "'nan' is not a valid number"),
+        ("nrows 2", "nrows 1e999", "'1e999' is not a valid number"),
+        ("xllcorner 1000", "xllcorner nan", "'nan' is not a valid number"),
+        ("4 5", "4 inf", "'inf' is not a valid number"),
     ],
 )
 def test_bad_ascii_grids_are_named(tmp_path, old, new, message):

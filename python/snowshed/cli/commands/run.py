@@ -67,7 +67,15 @@ def panel(
 @run_options
 def run(scene: Path, folder: Path, resume: bool, quiet: bool) -> None:
     """Run a scene file."""
-    run_scene(ResolvedScene.load(scene), folder, resume, quiet)
+    from snowshed.methods.registry import NAME_KEY
+
+    ready = ResolvedScene.load(scene)
+    if ready.data.get(NAME_KEY) == "slide":
+        from snowshed.cli.commands.slide import run_slide_scene
+
+        run_slide_scene(ready, folder, resume, quiet)
+    else:
+        run_scene(ready, folder, resume, quiet)
 
 
 def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:

@@ -1,0 +1,340 @@
+"""Runs of a snow slide: the results folder with its maps, and what they come to.
+
+Beside what every run writes (``snowshed.run.results``), the folder holds
+
+================== ==========================================================================
+peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s) and pressure
+                   (ppr, kPa), as ESRI ASCII grids
+flow/              thickness (FT) and speed (FV) at the end
+slide.json         the figures of `SlideSummary`
+slide.png          the map: terrain, peak speed, outline of the release
+================== ==========================================================================
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+
+import snowshed._core as _core
+from snowshed.io.arrays import Floats
+from snowshed.io.atomic import write_text
+from snowshed.io.raster import Raster, write_ascii_grid
+from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
+from snowshed.run.machine import machine_facts
+from snowshed.run.progress import Progress, Reporter
+from snowshed.scene.components import Outline
+from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+REPORT_INTERVAL = 0.5  # s of wall time
+
+
+@dataclass(frozen=True)
+class SlideMaps:
+    """Maps of a slide at the nodes of its grid, the southernmost row first.
+
+    Attributes
+    ----------
+    terrain
+        Elevations, m.
+    peak_thickness, thickness
+        Of the snow, normal to the ground, m: the largest over time, and now.
+    peak_speed, speed
+        m/s.
+    west, south
+        Map coordinates of the south-west node, m.
+    cell
+        Distance of the nodes, m.
+    density
+        Of the snow, kg/m3.
+    """
+
+    terrain: Floats
+    peak_thickness: Floats
+    thickness: Floats
+    peak_speed: Floats
+    speed: Floats
+    west: float
+    south: float
+    cell: float
+    density: float
+
+    @property
+    def peak_pressure(self) -> Floats:
+        """Largest pressure over time, density times the square of the speed, kPa."""
+        pressure: Floats = 1e-3 * self.density * self.peak_speed**2
+        return pressure
+
+    def raster(self, values: Floats) -> Raster:
+        """Return one of the maps with its place."""
+        return Raster(values, self.west, self.south, self.cell)
+
+
+@dataclass(frozen=True)
+class SlideSummary:
+    """What a slide came to.
+
+    Attributes
+    ----------
+    ended
+        "rest" or "time_limit".
+    duration_s
+        Of the slide.
+    particles
+        At the end.
+    released_kg, entrained_kg, left_terrain_kg
+        Mass that was released, taken up, and carried off the terrain.
+    bonds_made, bonds_broken
+        Bonds between particles, and how many of them broke or left the terrain.
+    peak_speed_m_s, peak_thickness_m, peak_pressure_kpa
+        Largest values anywhere.
+    reached_m2
+        Area on the map that snow reached, of cells around nodes.
+    run_out_m
+        Farthest way on the map from the middle of the release to where snow lies at the end.
+    drop_m
+        Height between the highest node of the release and the lowest where snow lies.
+    """
+
+    ended: str
+    duration_s: float
+    particles: int
+    released_kg: float
+    entrained_kg: float
+    left_terrain_kg: float
+    bonds_made: int
+    bonds_broken: int
+    peak_speed_m_s: float
+    peak_thickness_m: float
+    peak_pressure_kpa: float
+    reached_m2: float
+    run_out_m: float
+    drop_m: float
+
+
+def slide_maps(simulation: _core.Simulation) -> SlideMaps:
+    """Return the maps of a slide as they are now.
+
+    Raises
+    ------
+    InputError
+        If the scene's method is another.
+    """
+    density = json.loads(simulation.scene)["numerics"]["density"]
+    return SlideMaps(**simulation.slide_maps(), density=density)
+
+
+def run_slide(
+    scene: SceneLike,
+    out_dir: PathLike,
+    *,
+    resume: bool = False,
+    progress: Optional[Reporter] = None,
+    pictures: bool = True,
+) -> SlideSummary:
+    """Run a slide into a results folder, and return its figures.
+
+    Parameters
+    ----------
+    scene
+        What to simulate; its method is "slide".
+    out_dir
+        The results folder; new or empty, unless resuming.
+    resume
+        Go on from the checkpoint in `out_dir`.
+    progress
+        Called with a `Progress` about twice a second.
+    pictures
+        Whether to draw ``slide.png``.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, the folder is not empty, or there is nothing to resume.
+    SimulationError
+        If the simulation cannot go on.
+    Interrupted
+        After Ctrl-C; a checkpoint holds the state to resume from.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed.scene.builders import example_slide
+    >>> with TemporaryDirectory() as folder:
+    ...     scene = example_slide(folder).set("events.max_time", 0.5)
+    ...     summary = run_slide(scene, folder + "/out", pictures=False)
+    >>> summary.ended
+    'time_limit'
+    """
+    ready = resolve_scene(scene)
+    open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
+    sequence = open_folder(ready.json, ready.base_dir, os.fspath(out_dir))
+    with sequence, deferred_interrupts() as interrupt:
+        sequence.describe_machine(machine_facts())
+        recorder = _Recorder(interrupt, progress)
+        try:
+            finished = sequence.run(recorder, REPORT_INTERVAL)
+        except (_core.SimulationError, _core.InputError) as error:
+            sequence.record_failure(str(error))
+            raise
+        if not finished:
+            raise Interrupted(Path(out_dir))
+        (facts,) = sequence.finished_events
+        maps = slide_maps(sequence.simulation)
+        summary = _summary(sequence.simulation, facts, maps)
+        _write(Path(out_dir), maps, summary)
+        if pictures:
+            from snowshed.plot.figure_style import save
+            from snowshed.plot.slide_figure import slide_figure
+
+            outlines = _release_outlines(sequence.simulation)
+            save(slide_figure(maps, outlines), Path(out_dir) / "slide.png")
+    return summary
+
+
+def particles_at(scene: SceneLike, steps: Sequence[int]) -> dict[int, pd.DataFrame]:
+    """Return the particles after some numbers of steps, whether the slide rests by then or not.
+
+    Parameters
+    ----------
+    scene
+        A scene whose method is "slide".
+    steps
+        Numbers of steps, 0 for the release.
+
+    Returns
+    -------
+    dict of pandas.DataFrame
+        By the number of steps: ID, x, y, z [m], ux, uy, uz [m/s], m [kg], h [m]; x and y from the
+        south-west node of the terrain.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed.scene.builders import example_slide
+    >>> with TemporaryDirectory() as folder:
+    ...     found = particles_at(example_slide(folder), [0, 2])
+    >>> list(found)
+    [0, 2]
+    """
+    ready = resolve_scene(scene)
+    simulation = _core.Simulation(ready.json, ready.base_dir)
+    simulation.begin_event()
+    found: dict[int, pd.DataFrame] = {}
+    done = 0
+    for wanted in sorted(set(steps)):
+        simulation.step(wanted - done)
+        done = wanted
+        found[wanted] = _particle_table(simulation)
+    return found
+
+
+def _particle_table(simulation: _core.Simulation) -> pd.DataFrame:
+    import pandas as pd
+
+    position, velocity = simulation.positions(), simulation.velocities()
+    return pd.DataFrame(
+        {
+            "ID": simulation.field_by_id("id"),
+            **{axis: position[:, k] for k, axis in enumerate("xyz")},
+            **{f"u{axis}": velocity[:, k] for k, axis in enumerate("xyz")},
+            "m": simulation.masses(),
+            "h": simulation.field_by_id("thickness"),
+        }
+    )
+
+
+class _Recorder:
+    """Passes on how far the run has come."""
+
+    def __init__(self, interrupt: InterruptRequest, report: Optional[Reporter]) -> None:
+        self.interrupt = interrupt
+        self.report = report
+
+    def between_events(self) -> None:
+        """Do nothing: a slide has one event."""
+
+    def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
+        """Report the beginning."""
+        self._tell(0.0, 0.0, 0.0)
+
+    def progress(self, report: dict[str, Any]) -> None:
+        """Pass on how far the slide has come."""
+        self._tell(report["time_s"], report["progress"], report["updates_per_s"])
+
+    def event_ended(self, facts: dict[str, Any]) -> None:
+        """Report the end."""
+        self._tell(facts["sim_time_s"], 1.0, 0.0)
+
+    def stop_requested(self) -> bool:
+        """Return whether to stop at the next safe point."""
+        return self.interrupt.requested
+
+    def _tell(self, time_s: float, fraction: float, updates_per_s: float) -> None:
+        if self.report is not None:
+            self.report(
+                Progress(
+                    fraction,
+                    int(fraction == 1.0),
+                    1,
+                    "slides",
+                    f"{time_s:.2f} s of the slide",
+                    event=1,
+                    time=time_s,
+                    updates_per_s=updates_per_s,
+                )
+            )
+
+
+def _release_outlines(simulation: _core.Simulation) -> list[Outline]:
+    return [area["outline"] for area in json.loads(simulation.scene)["terrain"]["release"]]
+
+
+def _summary(simulation: _core.Simulation, facts: dict[str, Any], maps: SlideMaps) -> SlideSummary:
+    slide = simulation.slide_facts()
+    corners = np.concatenate(_release_outlines(simulation))
+    middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+    rows, columns = np.nonzero(maps.thickness > 0.0)
+    x, y = maps.west + columns * maps.cell, maps.south + rows * maps.cell
+    way = np.hypot(x - middle[0], y - middle[1])
+    reached = maps.peak_thickness > 0.0
+    lies = maps.terrain[rows, columns]
+    return SlideSummary(
+        ended=facts["ended"],
+        duration_s=facts["sim_time_s"],
+        particles=simulation.particle_count,
+        released_kg=slide["released_kg"],
+        entrained_kg=slide["entrained_kg"],
+        left_terrain_kg=slide["left_terrain_kg"],
+        bonds_made=slide["bonds_made"],
+        bonds_broken=slide["bonds_made"] - slide["bonds"],
+        peak_speed_m_s=float(maps.peak_speed.max()),
+        peak_thickness_m=float(maps.peak_thickness.max()),
+        peak_pressure_kpa=float(maps.peak_pressure.max()),
+        reached_m2=float(reached.sum()) * maps.cell**2,
+        run_out_m=float(way.max(initial=0.0)),
+        drop_m=float(maps.terrain[reached].max() - lies.min()) if lies.size else 0.0,
+    )
+
+
+def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
+    for name, values in (
+        ("peaks/pft", maps.peak_thickness),
+        ("peaks/pfv", maps.peak_speed),
+        ("peaks/ppr", maps.peak_pressure),
+        ("flow/FT", maps.thickness),
+        ("flow/FV", maps.speed),
+    ):
+        file = folder / f"{name}.asc"
+        file.parent.mkdir(exist_ok=True)
+        write_ascii_grid(file, maps.raster(values))
+    write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")
