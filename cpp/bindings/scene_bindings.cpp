@@ -27,7 +27,8 @@ py::dict plan_dict(const std::string& text, const std::string& base_dir) {
   d["updates_per_s"] = p.updates_per_s;
   d["threads"] = p.threads;
   d["kernels"] = p.kernels;
-  d["scalar"] = scene.uses<MpmSettings>() && scene.mpm().precision == Precision::float32 ? "float" : "double";
+  d["scalar"] =
+      scene.uses<MpmSettings>() && scene.mpm().precision == Precision::float32 ? "float" : "double";
   return d;
 }
 

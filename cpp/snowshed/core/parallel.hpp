@@ -129,8 +129,8 @@ void parallel_for_each(std::ptrdiff_t n, int threads, F f) {
 #endif
 }
 
-/// f(begin, end) for pieces of at most `piece` iterations each, which do not depend on the number of
-/// threads. f must not throw. Allocates nothing.
+/// f(begin, end) for pieces of at most `piece` iterations each, which do not depend on the number
+/// of threads. f must not throw. Allocates nothing.
 template <class F>
 void parallel_pieces(std::ptrdiff_t n, int threads, std::ptrdiff_t piece, F f) {
   const std::ptrdiff_t pieces = (n + piece - 1) / piece;

@@ -69,8 +69,7 @@ HeightField resampled(const HeightField& field, double cell) {
   fine.heights.resize(std::size_t(fine.columns) * std::size_t(fine.rows));
   for (int row = 0; row < fine.rows; ++row)
     for (int column = 0; column < fine.columns; ++column) {
-      const GridPlace p =
-          place_on(field, column * cell / field.cell, row * cell / field.cell);
+      const GridPlace p = place_on(field, column * cell / field.cell, row * cell / field.cell);
       const double z = bicubic(field, p);
       fine.heights[fine.index(column, row)] = std::isnan(z) ? bilinear(field, p) : z;
     }

@@ -19,7 +19,7 @@ struct HeightField {
     return std::size_t(row) * std::size_t(columns) + std::size_t(column);
   }
   double height(int column, int row) const { return heights[index(column, row)]; }
-  double width() const { return (columns - 1) * cell; }   // m, from the first node to the last
+  double width() const { return (columns - 1) * cell; }  // m, from the first node to the last
   double length() const { return (rows - 1) * cell; }
 };
 

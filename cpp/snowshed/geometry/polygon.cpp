@@ -11,9 +11,7 @@ double cross(const MapPoint& o, const MapPoint& a, const MapPoint& b) {
   return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
 }
 
-double length(const MapPoint& a, const MapPoint& b) {
-  return std::hypot(b[0] - a[0], b[1] - a[1]);
-}
+double length(const MapPoint& a, const MapPoint& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }
 
 /// The right-hand side of an edge, `distance` long.
 MapPoint aside(const MapPoint& from, const MapPoint& to, double distance) {
@@ -39,8 +37,7 @@ void add_corner(const MapPoint& before, const MapPoint& v, const MapPoint& after
   const double turn = d1[0] * d2[1] - d1[1] * d2[0];
   if (std::abs(turn) < 1e-30) return moved.push_back(end);  // straight on
   // Where the two moved edges meet.
-  const double along =
-      ((begin[0] - end[0]) * d2[1] - (begin[1] - end[1]) * d2[0]) / turn;
+  const double along = ((begin[0] - end[0]) * d2[1] - (begin[1] - end[1]) * d2[0]) / turn;
   const MapPoint meet{end[0] + along * d1[0], end[1] + along * d1[1]};
   const double reach = length(v, meet), width = std::abs(distance);
   const bool inner = (turn > 0) == (distance < 0);

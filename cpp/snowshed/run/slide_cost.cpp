@@ -51,8 +51,7 @@ CostEstimate estimate_slide_cost(const Scene& scene, const Terrain& terrain,
   cost.slides = true;
   // The snow spreads meanwhile, and its last parts creep.
   constexpr double longer_than_block = 1.5;
-  cost.slide_time =
-      block_travel_time(terrain, s, release, scene.gravity, scene.events.max_time);
+  cost.slide_time = block_travel_time(terrain, s, release, scene.gravity, scene.events.max_time);
   cost.event_time = std::min(longer_than_block * cost.slide_time, scene.events.max_time);
   cost.steps = std::ceil(cost.event_time / cost.time_step);
   cost.updates = cost.steps * double(particles);

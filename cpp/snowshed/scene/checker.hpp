@@ -71,8 +71,8 @@ class Checker : public PathVisitor<Checker> {
   void outline(const char* key, Ring& ring, const char*) {
     constexpr std::size_t most = 100000;
     if (ring.size() < 3 || ring.size() > most)
-      throw InputError(at(key), std::to_string(ring.size()) + " corners; allowed: 3 to " +
-                                    std::to_string(most));
+      throw InputError(
+          at(key), std::to_string(ring.size()) + " corners; allowed: 3 to " + std::to_string(most));
     for (std::size_t i = 0; i < ring.size(); ++i)
       for (const int axis : {0, 1})
         check(at(key) + "/" + std::to_string(i) + "/" + std::to_string(axis), ring[i][axis],

@@ -20,8 +20,8 @@
 //                                            the name of a method, and the settings of that method
 //   method_ahead(key, member)                before parts that only some methods take
 //   shows(member, part)                      whether to go on to a part: does the method take it?
-//   taken_by(part)                           before a part that may be left out: which methods take it
-//   alias(key, other)                        before a field: another key that is read for it
+//   taken_by(part)                           before a part that may be left out: which methods take
+//   it alias(key, other)                        before a field: another key that is read for it
 //   accuracy({key...})                       before fields: those that trade accuracy for time
 #pragma once
 
@@ -334,7 +334,8 @@ void describe(V& v, Scene& s) {
   v.text("title", s.title, "What this scene is");
   v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");
   v.method_ahead("method", s.numerics);
-  if (v.shows(s.numerics, &TakenParts::snow)) v.object("snow", s.snow, Need::optional, "The material");
+  if (v.shows(s.numerics, &TakenParts::snow))
+    v.object("snow", s.snow, Need::optional, "The material");
   v.taken_by(&TakenParts::panel);
   v.optional("panel", s.panel,
              "The panel; its centre is the origin of x, which points down the slide direction");

@@ -41,9 +41,7 @@ inline constexpr MethodInfo method_info{};
 
 template <>
 inline constexpr MethodInfo method_info<MpmSettings>{
-    "mpm",
-    "The material point method",
-    {true, true, true, true, true, true, false, true, true}};
+    "mpm", "The material point method", {true, true, true, true, true, true, false, true, true}};
 
 template <>
 inline constexpr MethodInfo method_info<SlideSettings>{

@@ -42,7 +42,7 @@ class PathVisitor {
   }
 
   void method_ahead(const char*, MethodSettings&) {}
-  bool shows(const MethodSettings& settings, bool TakenParts::*part) const {
+  bool shows(const MethodSettings& settings, bool TakenParts::* part) const {
     return info_of(settings).takes.*part;
   }
   void taken_by(bool TakenParts::*) {}

@@ -131,8 +131,7 @@ class Reader : public Checker {
 
   void method_ahead(const char* key, MethodSettings& settings) {
     const auto given = object_.find(key);
-    if (given != object_.end())
-      settings = all_methods()[to_place(*given, at(key), method_names())];
+    if (given != object_.end()) settings = all_methods()[to_place(*given, at(key), method_names())];
   }
 
   void method(const char* key, const char* settings_key, MethodSettings& settings, const char*,

@@ -71,7 +71,8 @@ Scene with_absolute_files(const std::filesystem::path& folder, Scene scene) {
   const auto absolute = std::filesystem::absolute(folder.empty() ? "." : folder);
   for (auto& obstacle : scene.obstacles) with_absolute_files(absolute, obstacle.shape);
   for (auto& body : scene.bodies) with_absolute_files(absolute, body.shape);
-  if (scene.terrain) scene.terrain->file = (absolute / scene.terrain->file).lexically_normal().string();
+  if (scene.terrain)
+    scene.terrain->file = (absolute / scene.terrain->file).lexically_normal().string();
   return scene;
 }
 

@@ -118,11 +118,11 @@ class SchemaWriter {
 
   void method_ahead(const char*, MethodSettings&) {}
   /// Every part is described.
-  bool shows(const MethodSettings&, bool TakenParts::*part) {
+  bool shows(const MethodSettings&, bool TakenParts::* part) {
     taken_by(part);
     return true;
   }
-  void taken_by(bool TakenParts::*part) {
+  void taken_by(bool TakenParts::* part) {
     methods_ = json::array();
     for_each_method([&](const auto& settings) {
       const MethodInfo& info = info_of(settings);
@@ -243,8 +243,8 @@ class SchemaWriter {
   json properties_ = json::object();
   json required_ = json::array();
   json variants_ = json::array();
-  json methods_ = json::array();  // that take the next part; empty where all do
-  std::set<std::string> accuracy_;                           // keys that trade accuracy for time
+  json methods_ = json::array();    // that take the next part; empty where all do
+  std::set<std::string> accuracy_;  // keys that trade accuracy for time
   std::map<std::string, std::vector<std::string>> aliases_;  // by the key that they stand for
   std::string variant_key_, variant_doc_, variant_name_, variant_what_;
 };

@@ -170,8 +170,7 @@ class SceneRules {
   void check_slide() const {
     const SlideSettings& s = std::get<SlideSettings>(scene_.numerics);
     if (!scene_.terrain) fail(scene_, "a slide needs a " + path_of(scene_, scene_.terrain));
-    if (!in_3d())
-      fail(scene_.dimension, "a slide moves over ground in space; allowed: 3");
+    if (!in_3d()) fail(scene_.dimension, "a slide moves over ground in space; allowed: 3");
     if (scene_.events.count != 1)
       fail(scene_.events.count, show(scene_.events.count) + " events; a slide has 1");
     if (scene_.output.energy)

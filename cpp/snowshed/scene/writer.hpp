@@ -68,7 +68,7 @@ class Writer {
   }
 
   void method_ahead(const char*, MethodSettings&) {}
-  bool shows(const MethodSettings& settings, bool TakenParts::*part) const {
+  bool shows(const MethodSettings& settings, bool TakenParts::* part) const {
     return info_of(settings).takes.*part;
   }
   void taken_by(bool TakenParts::*) {}

@@ -70,6 +70,17 @@ class Randomizer {
   void method(const char*, const char*, MethodSettings& settings, const char*, const char*) {
     std::visit([&](auto& own) { fill(own); }, settings);
   }
+  void method_ahead(const char*, MethodSettings& settings) {
+    if (dimension_ == 3 && chance(0.3)) settings = SlideSettings();
+  }
+  bool shows(const MethodSettings& settings, bool TakenParts::* part) {
+    return info_of(settings).takes.*part;
+  }
+  void taken_by(bool TakenParts::*) {}
+  void outline(const char*, Ring& ring, const char*) {
+    const double x = draw(between(0, 1e3)), y = draw(between(0, 1e3));
+    ring = {{x, y}, {x + 30, y}, {x + 30, y + 20.5}, {x, y + 20}};
+  }
   void alias(const char*, const char*) {}
   void accuracy(std::initializer_list<const char*>) {}
 
@@ -94,6 +105,19 @@ class Randomizer {
   std::string type_;
 };
 
+/// Makes a scene one of a slide, which has terrain and no more than its method takes.
+inline void mend_slide(Randomizer& randomizer, Scene& scene) {
+  scene.panel.reset();
+  scene.slab.reset();
+  scene.ground.reset();
+  scene.obstacles.clear();
+  scene.bodies.clear();
+  if (!scene.terrain) describe(randomizer, scene.terrain.emplace());
+  scene.events.count = 1;
+  scene.output.energy = false;
+  std::get<SlideSettings>(scene.numerics).explicit_friction = false;
+}
+
 /// Its fields are independent of each other, so what the rules between them demand is mended.
 inline Scene random_scene(std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -105,6 +129,11 @@ inline Scene random_scene(std::uint64_t seed) {
   scene.domain.reset();
   scene.seeding.allow_sparse = true;
   scene.events.rest_time = std::min(scene.events.rest_time, scene.events.max_time);
+  if (scene.uses<SlideSettings>()) {
+    mend_slide(randomizer, scene);
+    return scene;
+  }
+  scene.terrain.reset();
   if (!scene.panel) scene.slab.reset();
   if (scene.panel && scene.ground) scene.ground->tilt = std::min(scene.ground->tilt, 0.0);
   if (scene.slab) {

@@ -45,6 +45,23 @@ inline auto tied(const Ground& s) {
   auto& [a, b, c] = s;
   return std::tie(a, b, c);
 }
+inline auto tied(const HoleSpec& s) { return std::tie(s.outline); }
+inline auto tied(const AreaSpec& s) {
+  auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
+}
+inline auto tied(const ResistanceSpec& s) {
+  auto& [a, b, c] = s;
+  return std::tie(a, b, c);
+}
+inline auto tied(const TerrainSpec& s) {
+  auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto tied(const SlideSettings& s) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w);
+}
 inline auto tied(const Seeding& s) {
   auto& [a, b, c, d] = s;
   return std::tie(a, b, c, d);
@@ -66,8 +83,8 @@ inline auto tied(const Domain& s) {
   return std::tie(a, b);
 }
 inline auto tied(const Scene& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
 }
 
 // Found by argument-dependent lookup from std::tuple, std::optional and std::vector.

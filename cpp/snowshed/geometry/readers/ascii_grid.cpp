@@ -79,7 +79,8 @@ HeightField read_ascii_grid(const std::filesystem::path& file) {
   field.rows = count_of(header, "nrows", scanner);
   if (!header.has("cellsize")) scanner.fail("the header has no cellsize");
   field.cell = header.at("cellsize");
-  if (!(field.cell > 0 && field.cell <= 1e5)) scanner.fail("cellsize must be above 0 and at most 1e5 m");
+  if (!(field.cell > 0 && field.cell <= 1e5))
+    scanner.fail("cellsize must be above 0 and at most 1e5 m");
   field.west = first_node(header, "x", field.cell, scanner);
   field.south = first_node(header, "y", field.cell, scanner);
   const double nodata = header.has("nodata_value") ? header.at("nodata_value") : -9999;

@@ -107,7 +107,8 @@ Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double s
   if (particles.size() < begin + 3) return bonds;
   const MapPoints points(particles, begin, longest_ratio * spacing * (1 + 1e-6));
   std::vector<std::pair<Triangle, double>> triangles;
-  points.for_each_triangle([&](const Triangle& t, double longest) { triangles.push_back({t, longest}); });
+  points.for_each_triangle(
+      [&](const Triangle& t, double longest) { triangles.push_back({t, longest}); });
   double shortest = spacing;
   for (const auto& [t, longest] : triangles) shortest = std::min(shortest, longest);
 
@@ -115,8 +116,8 @@ Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double s
   const auto connect = [&](std::uint32_t a, std::uint32_t b) {
     if (!known.insert(std::uint64_t(a) << 32 | b).second) return;
     const std::size_t i = begin + a, j = begin + b;
-    if (areas && crosses_outline(*areas, {particles.x[i], particles.y[i]},
-                                 {particles.x[j], particles.y[j]}))
+    if (areas &&
+        crosses_outline(*areas, {particles.x[i], particles.y[i]}, {particles.x[j], particles.y[j]}))
       return;
     const Vec3 along{particles.x[j] - particles.x[i], particles.y[j] - particles.y[i],
                      particles.z[j] - particles.z[i]};

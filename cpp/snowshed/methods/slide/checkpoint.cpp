@@ -22,10 +22,9 @@ void SlideSolver::save(BinaryWriter& out) const {
   out.add("clock", std::vector<double>{state_.time, state_.dt, state_.kinetic_energy,
                                        state_.peak_kinetic, b.released, b.entrained, b.left});
   const StepCounters& c = state_.counters;
-  out.add("counters", std::vector<std::int64_t>{c.steps, c.sorts, c.particle_updates,
-                                                state_.bonds_made, b.particles_left,
-                                                std::int64_t(state_.stopped),
-                                                std::int64_t(state_.next_id)});
+  out.add("counters", std::vector<std::int64_t>{
+                          c.steps, c.sorts, c.particle_updates, state_.bonds_made, b.particles_left,
+                          std::int64_t(state_.stopped), std::int64_t(state_.next_id)});
 }
 
 namespace {

@@ -87,7 +87,9 @@ std::size_t SlideSolver::bytes() const {
                       work_.bond_lists.bytes();
   state_.particles.for_each_array(
       [&total](const char*, const auto& array) { total += array.capacity() * sizeof(array[0]); });
-  const auto count = [&total](const auto& vector) { total += vector.capacity() * sizeof(vector[0]); };
+  const auto count = [&total](const auto& vector) {
+    total += vector.capacity() * sizeof(vector[0]);
+  };
   count(state_.bonds.first);
   count(state_.bonds.second);
   count(state_.bonds.rest_length);

@@ -30,8 +30,7 @@ Vec3 mixed(const SlideModel& model, const Vec3& u, const Vec3& around, const Vec
   const SlideSettings& s = model.settings;
   const Vec3 v = around - around.dot(normal) * normal;
   const double side = 2 * std::sqrt(mass * thickness / s.density);
-  const double f =
-      s.artificial_viscosity * 0.5 * s.density * (v - u).norm() * side * dt / mass;
+  const double f = s.artificial_viscosity * 0.5 * s.density * (v - u).norm() * side * dt / mass;
   return (u + f * v) / (1 + f);
 }
 
@@ -63,8 +62,7 @@ double entrain(const SlideModel& model, double erodible, double stress, double a
   const double energy = worked * s.entrainment_shear + taken * s.entrainment_work;
   u *= mass / (mass + taken);
   mass += taken;
-  if (energy > 0)
-    u *= std::max(0.0, 1 - energy / (0.5 * mass * (speed * speed + least_speed)));
+  if (energy > 0) u *= std::max(0.0, 1 - energy / (0.5 * mass * (speed * speed + least_speed)));
   return taken;
 }
 

@@ -20,7 +20,8 @@ double lattice_side(double area, double points) { return std::sqrt(area / points
                    (name.empty() ? "" : "\"" + name + "\" ") + why);
 }
 
-void place_on_ground(const Terrain& terrain, double x, double y, double mass, ParticleBatch& batch) {
+void place_on_ground(const Terrain& terrain, double x, double y, double mass,
+                     ParticleBatch& batch) {
   const GridPlace place = terrain.place(x, y);
   batch.positions.push_back({x, y, terrain.height(place)});
   batch.masses.push_back(mass);
@@ -70,23 +71,21 @@ std::vector<ParticleBatch> seed_as_avaframe(const SlideSettings& s, const Terrai
     for (int column = 0; column < terrain.columns(); ++column) {
       const double h = thickness[terrain.index(column, row)];
       if (h == 0) continue;
-      const double wanted =
-          h * (cell * cell / share) * s.density / mass_per_particle(s, cell);
+      const double wanted = h * (cell * cell / share) * s.density / mass_per_particle(s, cell);
       const double points = std::floor(wanted);
       if (points < 1)
         refuse_area(0, areas[0].name,
                     "is too thin: " + std::to_string(h) + " m make no particle of " +
                         std::to_string(mass_per_particle(s, cell)) +
-                        " kg; allowed in compatible mode: at least " +
-                        std::to_string(h / wanted) + " m");
+                        " kg; allowed in compatible mode: at least " + std::to_string(h / wanted) +
+                        " m");
       const double mass = terrain.node(column, row).area * h * s.density / points;
-      for_lattice_points_near(column, row, cell, lattice_side(cell * cell, points),
-                              [&](double x, double y) {
-                                const bool kept = std::any_of(
-                                    outlines.begin(), outlines.end(),
-                                    [&](const Ring& ring) { return contains(ring, {x, y}); });
-                                if (kept) place_on_ground(terrain, x, y, mass, batch);
-                              });
+      for_lattice_points_near(
+          column, row, cell, lattice_side(cell * cell, points), [&](double x, double y) {
+            const bool kept = std::any_of(outlines.begin(), outlines.end(),
+                                          [&](const Ring& ring) { return contains(ring, {x, y}); });
+            if (kept) place_on_ground(terrain, x, y, mass, batch);
+          });
     }
   if (batch.positions.empty()) refuse_area(0, areas[0].name, "holds no particle");
   return {batch};
@@ -129,7 +128,7 @@ MapPoint centroid(const Ring& ring) {
 
 /// What the ground is like under an area, from points half a cell apart.
 struct Ground {
-  double stretch = 0;        // sloping over projected area, mean
+  double stretch = 0;          // sloping over projected area, mean
   double east = 1, north = 0;  // unit vector of the mean fall line
   std::size_t points = 0;
 };

@@ -22,8 +22,8 @@ double lattice_spacing(const ParticleBatch& batch);
 /// Improved mode: the lattice of each area begins at its centre and follows its mean slope, so
 /// that the result does not depend on how the grid lies; a layer thinner than a particle's has
 /// one particle a cell; the mass is exactly that of the thickness over the sloping area. Compatible
-/// mode: one lattice from the grid's origin, so many particles a cell as the mean slope of all areas
-/// asks for, each with its share of its cell's mass, all in one batch.
+/// mode: one lattice from the grid's origin, so many particles a cell as the mean slope of all
+/// areas asks for, each with its share of its cell's mass, all in one batch.
 ///
 /// Throws InputError where an area holds no particle, or, in compatible mode, is too thin for one.
 std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,

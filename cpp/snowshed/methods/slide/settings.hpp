@@ -19,22 +19,22 @@ struct SlideSettings {
   double layer_thickness = 0.25;  // m, of snow over a whole cell that makes one particle
 
   SlideFriction friction_law = SlideFriction::voellmy;
-  double friction = 0.325;          // Coulomb coefficient mu
-  double turbulence = 58;           // m/s2, Voellmy's xi
-  bool explicit_friction = false;   // compatible mode only
-  double resistance = 30000;        // coefficient within the resistance areas
+  double friction = 0.325;         // Coulomb coefficient mu
+  double turbulence = 58;          // m/s2, Voellmy's xi
+  bool explicit_friction = false;  // compatible mode only
+  double resistance = 30000;       // coefficient within the resistance areas
   double artificial_viscosity = 100;
 
   bool bonds = true;
-  double max_strain = 0.2;         // of a bond, in tension or compression
-  double bond_modulus = 50000;     // Pa
-  double min_bond_length = 1e-3;   // m, below which a bond exerts no force
+  double max_strain = 0.2;        // of a bond, in tension or compression
+  double bond_modulus = 50000;    // Pa
+  double min_bond_length = 1e-3;  // m, below which a bond exerts no force
 
-  double entrained_density = 100;    // kg/m3
-  double erosion_energy = 5000;      // J/kg; 0: all that the snow sweeps over
-  double entrainment_shear = 0;      // N/m2, resistance of the entrained snow against shear
-  double entrainment_work = 0;       // J/kg, to break it up
-  double split_ratio = 1.5;          // times the mass of a fresh particle, beyond which it splits
+  double entrained_density = 100;  // kg/m3
+  double erosion_energy = 5000;    // J/kg; 0: all that the snow sweeps over
+  double entrainment_shear = 0;    // N/m2, resistance of the entrained snow against shear
+  double entrainment_work = 0;     // J/kg, to break it up
+  double split_ratio = 1.5;        // times the mass of a fresh particle, beyond which it splits
 
   double stop_ratio = 0.01;  // kinetic energy over its peak at which the slide has stopped
   int threads = 0;           // 0: all

@@ -58,11 +58,11 @@ struct SlideState {
 
 /// What acts on a particle during a step.
 struct SlideLoad {
-  Vec3 acceleration;   // m/s2, by gravity
-  Vec3 force;          // N, by the pressure of the snow around and by bonds
-  double yield;        // m/s2, deceleration by friction that does not depend on the speed
-  double drag;         // 1/m, deceleration over the square of the speed
-  double speed;        // m/s, at the beginning of the step
+  Vec3 acceleration;  // m/s2, by gravity
+  Vec3 force;         // N, by the pressure of the snow around and by bonds
+  double yield;       // m/s2, deceleration by friction that does not depend on the speed
+  double drag;        // 1/m, deceleration over the square of the speed
+  double speed;       // m/s, at the beginning of the step
 };
 
 /// A particle where it would be at the end of the step without forces.
@@ -80,9 +80,9 @@ struct SlideWork {
   std::vector<SlideLoad> loads;
   AlignedVector<PredictedPoint> predicted;
   std::vector<Vec3> bond_forces;
-  std::vector<double> entrained;   // kg, by each particle in this step; empty where there is none
-  std::vector<char> removed;       // particles that left the terrain
-  std::vector<char> broken;        // bonds
+  std::vector<double> entrained;  // kg, by each particle in this step; empty where there is none
+  std::vector<char> removed;      // particles that left the terrain
+  std::vector<char> broken;       // bonds
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
 

@@ -43,7 +43,8 @@ Terrain::Terrain(const HeightField& f, BorderSlope border)
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
       Slope s = node_slope(f, column, row);
-      const bool level = border == BorderSlope::level_in_the_south_west && (row == 0 || column == 0);
+      const bool level =
+          border == BorderSlope::level_in_the_south_west && (row == 0 || column == 0);
       if (level || std::isnan(s.x) || std::isnan(s.y)) s = {0, 0};
       const double area = cell_ * cell_ * std::sqrt(1 + s.x * s.x + s.y * s.y);
       nodes_[index(column, row)] = {f.height(column, row), s.x, s.y, area};

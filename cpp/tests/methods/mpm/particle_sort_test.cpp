@@ -11,16 +11,16 @@
 namespace snowshed {
 namespace {
 
-constexpr double dx = 0.01;
+constexpr double cell_size = 0.01;
 constexpr Basis basis = Basis::quadratic;
 
 TEST(Placement, FindsBlockAndCell) {
-  const auto p = Placement<2>::of(VecD<2>(0.125, -0.005), dx, basis);
+  const auto p = Placement<2>::of(VecD<2>(0.125, -0.005), cell_size, basis);
   EXPECT_EQ(p.block, (BlockCoord<2>{1, -1}));
   EXPECT_NEAR(p.cell[0], 12 - 8, 1e-12);  // 12.5 cells, less the offset 0.5
   EXPECT_NEAR(p.cell[1], -1 + 8, 1e-12);
-  EXPECT_THROW((Placement<2>::of(VecD<2>(1e9, 0), dx, basis)), SimulationError);
-  EXPECT_THROW((Placement<2>::of(VecD<2>(std::nan(""), 0), dx, basis)), SimulationError);
+  EXPECT_THROW((Placement<2>::of(VecD<2>(1e9, 0), cell_size, basis)), SimulationError);
+  EXPECT_THROW((Placement<2>::of(VecD<2>(std::nan(""), 0), cell_size, basis)), SimulationError);
 }
 
 /// Sorts particles; returns their layout.
@@ -52,14 +52,15 @@ class ParticleSorting : public testing::Test {
     particles.has_plastic = true;
     particles.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-      const auto at = Placement<D>::of(section<D>(random_vector(random, D, reach)), dx, basis);
+      const auto at =
+          Placement<D>::of(section<D>(random_vector(random, D, reach)), cell_size, basis);
       // Up to a cell outside their block, as after some steps.
       for (int d = 0; d < D; ++d) particles.cell[d][i] = T(at.cell[d] + 2 * random.uniform() - 1);
       blocks.push_back(block_key<D>(at.block));
       particles.id[i] = std::uint32_t(i);
       particles.mass[i] = T(i);
       particles.plastic[i] = T(-double(i));
-      where[std::uint32_t(i)] = position_of(particles, i, blocks[i], dx, basis);
+      where[std::uint32_t(i)] = position_of(particles, i, blocks[i], cell_size, basis);
     }
   }
 };
@@ -86,8 +87,9 @@ TYPED_TEST(ParticleSorting, PutsEveryParticleIntoItsBlock) {
       EXPECT_GE(p.cell[d][i], T(0));
       EXPECT_LT(p.cell[d][i], T(block_edge<D>));
     }
-    const double rounding = 16 * std::numeric_limits<T>::epsilon() * dx;
-    EXPECT_LT((position_of(p, i, in[i], dx, basis) - this->where[id]).norm(), rounding + 1e-15);
+    const double rounding = 16 * std::numeric_limits<T>::epsilon() * cell_size;
+    EXPECT_LT((position_of(p, i, in[i], cell_size, basis) - this->where[id]).norm(),
+              rounding + 1e-15);
   }
 }
 

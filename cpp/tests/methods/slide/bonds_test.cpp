@@ -1,0 +1,110 @@
+#include "snowshed/methods/slide/bonds.hpp"
+
+#include <gtest/gtest.h>
+
+#include "methods/slide/slide_testing.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Points of a triangular lattice of side 1, `columns` in each of `rows`.
+SlideParticles lattice(int columns, int rows, double fall = 0) {
+  SlideParticles p;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const std::size_t n = p.size();
+      p.resize(n + 1);
+      p.x[n] = i + (j % 2) * 0.5;
+      p.y[n] = j * std::sqrt(3.0) / 2;
+      p.z[n] = -fall * p.x[n];
+    }
+  return p;
+}
+
+TEST(SlideBonds, a_lattice_is_bonded_along_its_edges) {
+  const int columns = 7, rows = 5;
+  const Bonds bonds = bonds_between(lattice(columns, rows), 0, 1.0, nullptr);
+  // Along the rows, and two upward from each point but at the ends of the rows.
+  EXPECT_EQ(bonds.size(), std::size_t(rows * (columns - 1) + (rows - 1) * (2 * columns - 1)));
+  for (const double length : bonds.rest_length) EXPECT_NEAR(length, 1, 1e-12);
+}
+
+TEST(SlideBonds, rest_length_is_the_distance_in_space) {
+  const Bonds bonds = bonds_between(lattice(3, 2, 1.0), 0, 1.0, nullptr);
+  double longest = 0;
+  for (const double length : bonds.rest_length) longest = std::max(longest, length);
+  EXPECT_NEAR(longest, std::sqrt(2.0), 1e-12);
+}
+
+TEST(SlideBonds, gaps_of_the_area_are_not_bridged) {
+  const SlideParticles p = lattice(7, 5);
+  SlideArea slotted = rectangle(-1, -1, 8, 8);
+  slotted.polygon.holes = {{{2.7, -0.5}, {2.8, -0.5}, {2.8, 7}, {2.7, 7}}};  // a narrow slot
+  const std::vector<SlideArea> areas{slotted};
+  const Bonds bonds = bonds_between(p, 0, 1.0, &areas);
+  EXPECT_LT(bonds.size(), bonds_between(p, 0, 1.0, nullptr).size());
+  for (std::size_t b = 0; b < bonds.size(); ++b)
+    EXPECT_EQ(p.x[bonds.first[b]] < 2.75, p.x[bonds.second[b]] < 2.75);
+}
+
+TEST(SlideBonds, of_particles_that_are_gone_are_gone) {
+  Bonds bonds;
+  bonds.add(0, 1, 1.0);
+  bonds.add(1, 2, 2.0);
+  bonds.add(0, 2, 3.0);
+  renumber(bonds, {0, gone, 1});
+  ASSERT_EQ(bonds.size(), 1u);
+  EXPECT_EQ(bonds.second[0], 1u);
+  EXPECT_EQ(bonds.rest_length[0], 3.0);
+}
+
+/// Four particles in two triangles on level ground, without friction or pressure, pulled apart.
+struct Strip {
+  explicit Strip(double speed, double modulus = 50000) {
+    SlideOptions o = slide_on(terrain_of(40, 40, 2, [](double, double) { return 0.0; }),
+                              rectangle(10, 10, 60, 60));
+    o.gravity = 0;
+    o.settings.friction = 0;
+    o.settings.friction_law = SlideFriction::coulomb;
+    o.settings.artificial_viscosity = 0;
+    o.settings.time_step = 1e-4;
+    o.settings.bond_modulus = modulus;
+    slide = make_slide(o);
+    const double h = std::sqrt(3.0) / 2;
+    ParticleBatch all;
+    all.mass = 300;
+    all.positions = {{30, 30, 0}, {31, 30, 0}, {30.5, 30 + h, 0}, {31.5, 30 + h, 0}};
+    slide->add(all);
+    slide->add_velocity({{-speed, 0, 0}, {speed, 0, 0}, {-speed, 0, 0}, {speed, 0, 0}});
+  }
+  std::unique_ptr<SlideMethod> slide;
+};
+
+TEST(SlideBonds, a_strip_breaks_at_the_failure_strain) {
+  Strip strip(1.0, 1.0);  // bonds too soft to slow it down
+  ASSERT_EQ(strip.slide->bonds().size(), 5u);
+  // The bonds along the pull lengthen by 2 v t: they are strained by 0.2 after 0.1 s.
+  while (strip.slide->bonds().size() == 5u && strip.slide->time() < 0.2) strip.slide->step();
+  EXPECT_NEAR(strip.slide->time(), 0.1, 0.002);
+}
+
+TEST(SlideBonds, a_strained_bond_pulls_with_its_modulus_times_contact_area_times_strain) {
+  Strip strip(0.1);
+  step(*strip.slide, 1);
+  const ParticleState before = strip.slide->state();
+  step(*strip.slide, 1);
+  const ParticleState after = strip.slide->state();
+  const FieldView thickness = strip.slide->field("thickness");
+  const auto at = [&](std::size_t i) {
+    return *thickness.at<double>(strip.slide->order_by_id()[i]);
+  };
+  // Force on the lower left particle, along the pull: of the bond to the lower right one, and of
+  // the bond to the tip above, whose length does not change yet.
+  const double length = (before.positions[1] - before.positions[0]).norm() + 1e-4 * 0.2;
+  const double expected = (length - 1) * 0.5 * (at(0) + at(1)) * (length / std::sqrt(3.0)) * 50000;
+  const double measured = 300 * (after.velocities[0].x() - before.velocities[0].x()) / 1e-4;
+  EXPECT_NEAR(measured / expected, 1, 0.02);
+}
+
+}  // namespace
+}  // namespace snowshed

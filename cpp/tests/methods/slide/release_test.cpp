@@ -1,0 +1,71 @@
+#include "snowshed/methods/slide/release.hpp"
+
+#include <gtest/gtest.h>
+
+#include "methods/slide/slide_testing.hpp"
+#include "snowshed/core/errors.hpp"
+
+namespace snowshed {
+namespace {
+
+double mass_of(const std::vector<ParticleBatch>& batches) {
+  double mass = 0;
+  for (const ParticleBatch& batch : batches) mass += batch.total_mass();
+  return mass;
+}
+
+std::size_t count(const std::vector<ParticleBatch>& batches) {
+  std::size_t n = 0;
+  for (const ParticleBatch& batch : batches) n += batch.positions.size();
+  return n;
+}
+
+std::vector<ParticleBatch> seeded(SlideSettings settings, const SlideArea& area,
+                                  double degrees = 35) {
+  const bool compatible = settings.mode == SlideMode::compatible;
+  const Terrain terrain(inclined(degrees),
+                        compatible ? BorderSlope::level_in_the_south_west : BorderSlope::one_sided);
+  return seed_release(settings, terrain, {area});
+}
+
+TEST(SlideRelease, mass_is_that_of_the_thickness_over_the_sloping_area) {
+  const double sloping = 30.0 * 24.0 / std::cos(radians(35));
+  for (const double thickness : {0.01, 0.2, 0.5, 3.0}) {
+    const auto batches = seeded({}, rectangle(20.3, 18.3, 50.3, 42.3, thickness));
+    EXPECT_NEAR(mass_of(batches) / (sloping * thickness * 300), 1, 1e-12) << thickness;
+  }
+}
+
+TEST(SlideRelease, compatible_mass_is_that_of_whole_particles_and_thin_layers_are_refused) {
+  SlideSettings s;
+  s.mode = SlideMode::compatible;
+  const double exact = 30.0 * 24.0 / std::cos(radians(35)) * 0.5 * 300;
+  EXPECT_NEAR(mass_of(seeded(s, rectangle(20.3, 18.3, 50.3, 42.3))) / exact, 1, 0.1);
+  EXPECT_THROW(seeded(s, rectangle(20.3, 18.3, 50.3, 42.3, 0.15)), InputError);
+}
+
+TEST(SlideRelease, particles_lie_on_the_ground_within_the_area) {
+  const SlideArea area = rectangle(20.3, 18.3, 50.3, 42.3);
+  for (const ParticleBatch& batch : seeded({}, area))
+    for (const Vec3& x : batch.positions) {
+      EXPECT_TRUE(contains(area.polygon, {x.x(), x.y()}));
+      EXPECT_NEAR(x.z(), 200 - std::tan(radians(35)) * x.x(), 1e-9);
+    }
+}
+
+TEST(SlideRelease, finer_layers_make_more_particles) {
+  SlideSettings fine;
+  fine.layer_thickness = 0.05;
+  const SlideArea area = rectangle(20, 18, 50, 42);
+  EXPECT_NEAR(double(count(seeded(fine, area))) / double(count(seeded({}, area))), 6, 0.3);
+}
+
+TEST(SlideRelease, an_area_that_is_smaller_than_a_particle_is_refused) {
+  // Its centre has a particle; of a ring's, which lies in the hole, there is none.
+  SlideArea ring = rectangle(20, 20, 20.2, 20.2);
+  ring.polygon.holes = {{{20.01, 20.01}, {20.19, 20.01}, {20.19, 20.19}, {20.01, 20.19}}};
+  EXPECT_THROW(seeded({}, ring), InputError);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,70 @@
+// Slopes and slides for the tests.
+#pragma once
+
+#include <cmath>
+#include <memory>
+
+#include "snowshed/core/angles.hpp"
+#include "snowshed/methods/slide/solver.hpp"
+
+namespace snowshed {
+
+template <class F>
+HeightField terrain_of(int columns, int rows, double cell, F height) {
+  HeightField f;
+  f.columns = columns;
+  f.rows = rows;
+  f.cell = cell;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) f.heights.push_back(height(i * cell, j * cell));
+  return f;
+}
+
+/// A plane that falls toward the east.
+inline HeightField inclined(double degrees, int columns = 60, int rows = 30, double cell = 2) {
+  const double slope = std::tan(radians(degrees));
+  return terrain_of(columns, rows, cell, [=](double x, double) { return 200 - slope * x; });
+}
+
+inline SlideArea rectangle(double west, double south, double east, double north,
+                           double thickness = 0.5) {
+  return {"area", {{{west, south}, {east, south}, {east, north}, {west, north}}, {}}, thickness};
+}
+
+inline SlideOptions slide_on(HeightField terrain, SlideArea release) {
+  SlideOptions o;
+  o.terrain = std::move(terrain);
+  o.areas.release = {std::move(release)};
+  o.settings.threads = 1;
+  return o;
+}
+
+inline std::unique_ptr<SlideMethod> released(const SlideOptions& options) {
+  auto slide = make_slide(options);
+  slide->add(slide->seed());
+  return slide;
+}
+
+inline void step(Method& method, int steps) {
+  for (int i = 0; i < steps; ++i) method.step();
+}
+
+inline double total_mass(const Method& method) {
+  double mass = 0;
+  for (const double m : method.state().masses) mass += m;
+  return mass;
+}
+
+/// The mean velocity of the snow, weighted by mass.
+inline Vec3 mean_velocity(const Method& method) {
+  const ParticleState s = method.state();
+  Vec3 momentum = Vec3::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < s.masses.size(); ++i) {
+    momentum += s.masses[i] * s.velocities[i];
+    mass += s.masses[i];
+  }
+  return momentum / mass;
+}
+
+}  // namespace snowshed

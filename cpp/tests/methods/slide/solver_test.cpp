@@ -1,0 +1,175 @@
+#include "snowshed/methods/slide/solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "methods/slide/slide_testing.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double gravity = 9.81;
+
+SlideOptions slab(double degrees, double friction, SlideFriction law = SlideFriction::coulomb) {
+  SlideOptions o = slide_on(inclined(degrees, 120, 40), rectangle(20.3, 18.3, 60.3, 58.3));
+  o.settings.friction_law = law;
+  o.settings.friction = friction;
+  return o;
+}
+
+TEST(Slide, a_block_with_coulomb_friction_accelerates_as_newton_says) {
+  for (const double friction : {0.0, 0.2, 0.5}) {
+    const auto slide = released(slab(35, friction));
+    step(*slide, 200);
+    const double acceleration =
+        gravity * (std::sin(radians(35)) - friction * std::cos(radians(35)));
+    EXPECT_NEAR(mean_velocity(*slide).norm() / (acceleration * 2.0), 1, 0.005) << friction;
+  }
+}
+
+TEST(Slide, a_block_with_voellmy_friction_follows_its_ordinary_differential_equation) {
+  SlideOptions fine = slab(35, 0.325, SlideFriction::voellmy);
+  fine.settings.layer_thickness = 0.06;  // so many particles that the thickness is even
+  fine.settings.bonds = false;           // or the thin rim would hold the middle back
+  const auto slide = released(fine);
+  step(*slide, 300);
+  // du/dt = a - b u^2, u = sqrt(a / b) tanh(sqrt(a b) t), in the middle, where h stays 0.5 m.
+  const double a = gravity * (std::sin(radians(35)) - 0.325 * std::cos(radians(35)));
+  const double b = gravity / (58 * 0.5);
+  const double expected = std::sqrt(a / b) * std::tanh(std::sqrt(a * b) * 3.0);
+  const ParticleState s = slide->state();
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : s.positions) middle += x / double(s.positions.size());
+  double nearest = 1e9, speed = 0;
+  for (std::size_t i = 0; i < s.positions.size(); ++i)
+    if ((s.positions[i] - middle).norm() < nearest) {
+      nearest = (s.positions[i] - middle).norm();
+      speed = s.velocities[i].norm();
+    }
+  EXPECT_NEAR(speed / expected, 1, 0.005);
+}
+
+TEST(Slide, snow_below_the_angle_of_friction_stays_exactly_where_it_is) {
+  SlideOptions o = slab(20, 0.6);
+  o.settings.artificial_viscosity = 0;
+  const auto slide = released(o);
+  const ParticleState before = slide->state();
+  step(*slide, 50);
+  const ParticleState after = slide->state();
+  std::size_t still = 0;
+  for (std::size_t i = 0; i < before.positions.size(); ++i)
+    still += before.positions[i] == after.positions[i] && after.velocities[i].isZero(0.0);
+  // The rim slumps under its own pressure; the rest is held.
+  EXPECT_GT(double(still) / double(before.positions.size()), 0.7);
+}
+
+TEST(Slide, pressure_moves_no_centre_of_mass) {
+  SlideOptions o = slide_on(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
+                            rectangle(40.3, 42.3, 70.3, 72.3));
+  o.settings.friction = 0;
+  o.settings.friction_law = SlideFriction::coulomb;
+  o.settings.bonds = false;
+  o.settings.artificial_viscosity = 0;
+  const auto slide = released(o);
+  step(*slide, 100);
+  EXPECT_GT(slide->motion(0).rms_speed, 0.2);  // it spreads
+  EXPECT_LT(mean_velocity(*slide).norm(), 1e-9 * slide->motion(0).rms_speed);
+}
+
+TEST(Slide, mass_is_kept_and_what_leaves_the_terrain_is_counted) {
+  SlideOptions o = slide_on(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3));
+  const auto slide = released(o);
+  const double released_mass = total_mass(*slide);
+  while (!*slide->at_rest() && slide->time() < 60) slide->step();
+  const MassBalance& m = slide->mass_balance();
+  EXPECT_GT(m.particles_left, 0);
+  EXPECT_NEAR((total_mass(*slide) + m.left) / released_mass, 1, 1e-12);
+  EXPECT_NEAR(m.released / released_mass, 1, 1e-12);
+}
+
+TEST(Slide, entrained_mass_is_what_the_particles_gain) {
+  SlideOptions o = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
+  o.areas.entrainment = {rectangle(60, 6, 120, 52, 0.3)};
+  const auto slide = released(o);
+  const double released_mass = total_mass(*slide);
+  step(*slide, 1500);
+  const MassBalance& m = slide->mass_balance();
+  EXPECT_GT(m.entrained, 0.01 * released_mass);
+  EXPECT_NEAR((total_mass(*slide) + m.left - m.entrained) / released_mass, 1, 1e-12);
+}
+
+TEST(Slide, forest_holds_snow_back) {
+  SlideOptions open = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
+  SlideOptions forest = open;
+  forest.settings.resistance = 0.5;
+  forest.areas.resistance = {rectangle(60, 6, 120, 52)};
+  const auto a = released(open), b = released(forest);
+  step(*a, 1000);
+  step(*b, 1000);
+  EXPECT_LT(mean_velocity(*b).norm(), 0.9 * mean_velocity(*a).norm());
+}
+
+bool are_equal(const Method& a, const Method& b) {
+  const ParticleState s = a.state(), t = b.state();
+  return s.positions == t.positions && s.velocities == t.velocities && s.masses == t.masses &&
+         s.ids == t.ids;
+}
+
+TEST(Slide, the_number_of_threads_changes_no_bit) {
+  SlideOptions o = slide_on(inclined(38, 100, 60), rectangle(20.3, 18.3, 80.3, 98.3));
+  o.settings.layer_thickness = 0.1;
+  const auto one = released(o);
+  o.settings.threads = 3;
+  const auto three = released(o);
+  step(*one, 60);
+  step(*three, 60);
+  EXPECT_TRUE(are_equal(*one, *three));
+}
+
+class SlideCheckpoint : public TemporaryFolder {};
+
+TEST_F(SlideCheckpoint, resumes_to_the_same_bits) {
+  const SlideOptions o = slide_on(inclined(38, 100, 40), rectangle(20.3, 18.3, 50.3, 58.3));
+  const auto slide = released(o);
+  step(*slide, 45);  // between two sorts
+  BinaryWriter out;
+  slide->save(out);
+  out.save(path("c.bin"), [](const std::filesystem::path&) {});
+  const auto resumed = make_slide(o);
+  resumed->load(BinaryReader::load(path("c.bin")));
+  step(*slide, 60);
+  step(*resumed, 60);
+  EXPECT_TRUE(are_equal(*slide, *resumed));
+  EXPECT_EQ(slide->peaks().speed, resumed->peaks().speed);
+  EXPECT_EQ(slide->bonds().rest_length, resumed->bonds().rest_length);
+}
+
+TEST(Slide, extreme_ground_gives_no_number_that_is_none) {
+  const auto cliff = [](double x, double) { return x < 60 ? 300.0 : 200.0; };
+  const auto pit = [](double x, double y) {
+    return std::hypot(x - 60, y - 40) < 8 ? 0.0 : 100 - 0.7 * x;
+  };
+  const auto gully = [](double x, double y) {
+    return 200 - 0.7 * x - (std::abs(y - 40) < 1 ? 6 : 0);
+  };
+  const auto flat = [](double, double) { return 10.0; };
+  for (const auto& f : {terrain_of(90, 40, 2, cliff), terrain_of(90, 40, 2, pit),
+                        terrain_of(90, 40, 2, gully), terrain_of(90, 40, 2, flat)})
+    for (const double thickness : {0.001, 0.5, 10.0}) {
+      const auto slide = released(slide_on(f, rectangle(30.3, 24.3, 50.3, 52.3, thickness)));
+      for (int i = 0; i < 300 && slide->size() > 0; ++i) slide->step();
+      for (const Vec3& x : slide->state().positions) ASSERT_TRUE(x.allFinite());
+    }
+}
+
+TEST(Slide, areas_that_reach_beyond_the_terrain_are_refused) {
+  EXPECT_THROW(make_slide(slide_on(inclined(35), rectangle(20, 20, 500, 40))), InputError);
+  HeightField holed = inclined(35);
+  holed.heights[holed.index(10, 10)] = std::nan("");
+  EXPECT_THROW(make_slide(slide_on(holed, rectangle(20, 20, 40, 40))), InputError);
+}
+
+}  // namespace
+}  // namespace snowshed
