@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-
 from snowshed.analysis.regression.rows import StackRows, read_rows
 from snowshed.run.pool import available_cores
 from snowshed.run.progress import Progress, Reporter

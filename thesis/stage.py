@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Optional, Protocol
 
 from snowshed._core import InputError
-
 from snowshed.run.progress import Progress
 from snowshed.study import Study, forecast
 from snowshed.study.session import Resources, resume
