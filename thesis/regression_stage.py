@@ -17,7 +17,7 @@ from thesis.studies import PANELS
 KINDS = ("linear", "rbf")
 TARGET = "ratio"
 NAME = "regression"
-#: For the forecast: rows for which the cost of a fold is known, and its inner folds.
+#: For the estimate of costs: rows for which the cost of a fold is known, and its inner folds.
 KNOWN_ROWS, KNOWN_INNER = 610, 5
 
 

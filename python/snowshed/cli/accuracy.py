@@ -245,7 +245,7 @@ def _distance(value: Value, mine: Value) -> float:
 
 def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name: str) -> list[str]:
     """Return the rest of the first sentence, which tells the setting `name`, and what follows."""
-    from snowshed.analysis.verification.wording import settings
+    from snowshed.analysis.verification.setting_labels import settings
 
     scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != name}
     height, length = (percent(error, 2) for error in stack.errors)

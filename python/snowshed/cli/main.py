@@ -1,6 +1,6 @@
 """The command line: which commands there are, and how they end.
 
-One event loop: ``snowshed panel|run|lua``; a slide on terrain: ``slide``; scenes and forecasts:
+One event loop: ``snowshed panel|run|lua``; a slide on terrain: ``slide``; scenes and their cost:
 ``scene|plan|schema``; many runs: ``study``; a winter: ``season``; questions about them:
 ``compare|sensitivity|calibrate``; the data set of panels: ``geometry|regress|predict``.
 

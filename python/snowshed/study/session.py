@@ -19,7 +19,7 @@ from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.pool import available_cores
 from snowshed.run.progress import Progress, Reporter
 from snowshed.scene.scene import PathLike
-from snowshed.study import forecast
+from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.local import LocalWorkers
 from snowshed.study.locks import is_held
@@ -136,9 +136,9 @@ def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> t
         As for `Study.compute`.
     """
     workers, at_once = Resources(jobs).workers(len(scenes))
-    works = [forecast.work(scene) for scene in scenes]
+    works = [cost_estimate.work(scene) for scene in scenes]
     threads = workers.threads(len(scenes))
-    return forecast.expected(scenes, works, at_once, threads), at_once
+    return cost_estimate.expected(scenes, works, at_once, threads), at_once
 
 
 def _compute(
@@ -205,7 +205,7 @@ class _Session:
         self.interrupt = interrupt
         self.counts = Counter(run.status for run in runs)
         pending = [run for run in runs if run.status == "pending"]
-        self.work = {run.hash: forecast.work(run.scene) for run in pending}
+        self.work = {run.hash: cost_estimate.work(run.scene) for run in pending}
         # The longest first, so that none is left to run alone at the end.
         self.waiting = deque(sorted(pending, key=lambda run: -self.work[run.hash]))
         self.running: dict[str, StoredRun] = {}
@@ -327,7 +327,7 @@ class _Narrator:
         works = [session.work[run.hash] for run in session.waiting]
         threads = session.workers.threads(len(works))
         self._work = sum(works) or 1.0
-        self._expected = forecast.expected(scenes, works, at_once, threads)
+        self._expected = cost_estimate.expected(scenes, works, at_once, threads)
 
     def __call__(self) -> None:
         session = self._session

@@ -1,4 +1,4 @@
-"""What a study will cost, before it starts: the core's forecast, and speeds measured here."""
+"""The expected cost of a study: the core's estimate of its work, and speeds measured here."""
 
 from __future__ import annotations
 
