@@ -16,7 +16,7 @@ from snowshed.io.input_file import read_input
 from snowshed.io.messages import shortened
 from snowshed.io.record import check_once
 from snowshed.io.toml import toml_lines, toml_value
-from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
@@ -103,7 +103,7 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 # [[part]]
 # axes.panel.tilt = [50, 60]
 """
-_OTHER_SETTINGS = ", ".join(name for name in ACCURACY if name != MpmSettings.RESOLUTION)
+_OTHER_SETTINGS = ", ".join(name for name, path in ACCURACY.items() if path != resolution_path({}))
 
 #: A commented study file to begin with.
 TEMPLATE = _TEMPLATE.replace(
