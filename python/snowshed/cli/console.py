@@ -1,4 +1,4 @@
-"""What the commands that run and look at scenes print."""
+"""The output of the commands that run and describe scenes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How commands end that neither are done nor were given bad input."""
+"""Exit codes of commands that fail for other reasons than bad input."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How tables, figures and messages name the parameters of a scene: symbols, names and units."""
+"""Symbols, names and units of parameters, for tables, figures and messages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SHOWN_UNITS: Mapping[str, str] = {"degrees": "°", "kg/m3": "kg/m³", "m/s2": "m
 
 @dataclass(frozen=True)
 class Label:
-    """How a parameter is written.
+    """The name, symbol and unit of a parameter.
 
     Attributes
     ----------

@@ -50,7 +50,7 @@ class DaskWorkers:
 
     @property
     def cores(self) -> int:
-        """How many runs the workers that are there now compute at once."""
+        """Number of runs that the present workers compute at once."""
         return max(1, sum(int(count) for count in self._client.nthreads().values()))
 
     @property

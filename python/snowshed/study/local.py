@@ -29,7 +29,7 @@ class LocalWorkers:
 
     @property
     def capacity(self) -> int:
-        """How many tasks it takes at once."""
+        """Number of tasks that it takes at once."""
         return self.pool.capacity
 
     def threads(self, unfinished: int) -> int:
@@ -38,7 +38,7 @@ class LocalWorkers:
 
     @property
     def fractions(self) -> dict[str, float]:
-        """How much of the work of each submitted run is done."""
+        """Fraction of the work of each submitted run that is done."""
         return {task.hash: done for task, done in self.pool.fractions}
 
     def submit(self, task: Task) -> None:

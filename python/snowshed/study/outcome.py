@@ -1,4 +1,4 @@
-"""What is handed to a worker, and what comes back."""
+"""The task that a worker is given, and the outcome that it returns."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a run.
+    """The outcome of a run.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Who computes: a process that claims runs, and whose lock says that it is alive."""
+"""The owner of runs: a process that claims them and holds a lock as long as it lives."""
 
 from __future__ import annotations
 

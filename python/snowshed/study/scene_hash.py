@@ -1,4 +1,4 @@
-"""What makes two runs the same run: the content hash of their scene.
+"""The identity of a run: the content hash of its scene.
 
 The hash covers everything that decides a result: the complete scene as the core normalises it, with
 the contents of the meshes and grids it names instead of their paths, and the version of snowshed.

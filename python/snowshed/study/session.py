@@ -36,7 +36,7 @@ DEATHS = 3  # workers that may die of a run before it counts as failed
 
 @dataclass(frozen=True)
 class Resources:
-    """What a study may use; see `Study.run` for the fields."""
+    """The resources that a study may use; see `Study.run` for the fields."""
 
     jobs: Optional[int] = None
     threads: Optional[int] = None

@@ -113,7 +113,7 @@ TEMPLATE = _TEMPLATE.replace(
 
 @dataclass(frozen=True)
 class Content:
-    """What a study file holds; see `Study` for the fields."""
+    """The contents of a study file; see `Study` for the fields."""
 
     scene: Scene
     parts: Sequence[Part]
@@ -367,7 +367,7 @@ def _flatten(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def _is_range(table: Mapping[str, Any]) -> bool:
-    """Whether a table is a range, and no parameters that are called like its keys."""
+    """Return whether a table is a range, and not parameters that are called like its keys."""
     nested = any(isinstance(value, (dict, list)) for value in table.values())
     return not nested and bool(table.keys() & set(RANGE_KEYS))
 

@@ -1,4 +1,4 @@
-"""How far simulated stacks are from measured ones, and the ranking of the parameter sets (4.2)."""
+"""Errors of simulated stacks against measured ones, and the ranking of parameter sets (4.2)."""
 
 from __future__ import annotations
 

@@ -144,7 +144,7 @@ class Posterior:
 
     @property
     def converged(self) -> bool:
-        """Whether the draws are enough for the quantiles of 95 %, and the chains agree."""
+        """True if the draws suffice for the quantiles of 95 % and the chains agree."""
         enough = self.effective >= ENOUGH
         return bool(enough and (self.diagnostics["r_hat"] <= LARGEST_R_HAT).all())
 

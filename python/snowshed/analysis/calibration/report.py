@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What measurements say of the snow.
+    """The result of a calibration.
 
     Attributes
     ----------

@@ -102,7 +102,7 @@ class Process:
 
 @dataclass(frozen=True)
 class Surrogate:
-    """What runs would measure at any parameters within the box of those that were run.
+    """Predictions of stacks for any parameters within the box of those that were run.
 
     Attributes
     ----------

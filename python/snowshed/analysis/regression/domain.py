@@ -1,4 +1,4 @@
-"""Where a model may be asked: inside the data it was made from."""
+"""The domain of a model: the inputs inside the data from which it was made."""
 
 from __future__ import annotations
 
@@ -106,12 +106,12 @@ class Domain:
 
     @cached_property
     def _known(self) -> int:
-        """How many panels have any event."""
+        """Number of panels with any event."""
         return len(np.unique(self.inputs[:, 1:], axis=0))
 
 
 def _in_hull(points: Floats, place: Floats) -> bool:
-    """Whether a place is a weighted mean of points: weights, none negative, that sum to one."""
+    """Return whether a place is a weighted mean of points, with weights from 0 that sum to 1."""
     equal = np.vstack([points.T, np.ones(len(points))])
     _, miss = optimize.nnls(equal, np.append(place, 1.0))
     return bool(miss <= TOLERANCE)

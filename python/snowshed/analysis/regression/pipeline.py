@@ -33,7 +33,7 @@ MODEL = "model.npz"
 
 @dataclass(frozen=True)
 class TargetReport:
-    """What came out for one target.
+    """The results for one target.
 
     Attributes
     ----------

@@ -57,7 +57,7 @@ class Prediction:
 
     @property
     def extrapolated(self) -> bool:
-        """Whether a panel lies outside the data."""
+        """True if a panel lies outside the data."""
         return bool(self.objections)
 
     def array(self, target: str, column: str = "value") -> Floats:

@@ -1,4 +1,4 @@
-"""What a model is asked: panels and their events, given as numbers, arrays or a table."""
+"""Questions to a model: panels and their events, given as numbers, arrays or a table."""
 
 from __future__ import annotations
 

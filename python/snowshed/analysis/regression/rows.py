@@ -86,12 +86,12 @@ class StackRows:
 
     @property
     def panel_count(self) -> int:
-        """How many panels there are."""
+        """Number of panels."""
         return int(self.panels.max()) + 1
 
     @property
     def digest(self) -> str:
-        """What tells these rows from any others."""
+        """Hash of the inputs and the stacks."""
         content = hashlib.sha256(np.ascontiguousarray(self.inputs).tobytes())
         for name in TARGETS:
             content.update(np.ascontiguousarray(self.stacks[name]).tobytes())

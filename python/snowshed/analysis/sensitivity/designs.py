@@ -17,7 +17,7 @@ from snowshed.study.factors import Factor, Part, axis
 
 @dataclass(frozen=True)
 class Size:
-    """How large a study of one method is.
+    """The size of a study of one method.
 
     Attributes
     ----------

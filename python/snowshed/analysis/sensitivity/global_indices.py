@@ -213,7 +213,7 @@ def _check_blocks(
 
 
 def _is_trajectory(changes: Booleans) -> bool:
-    """Whether every step changes one input, and every input is changed once."""
+    """Return whether every step changes one input, and every input is changed once."""
     return bool((changes.sum(axis=0) == 1).all() and (changes.sum(axis=1) == 1).all())
 
 
@@ -243,7 +243,7 @@ def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
 
 
 def _is_saltelli(changes: Booleans) -> bool:
-    """Whether A is followed by A with each input of B in turn, and by B.
+    """Return whether A is followed by A with each input of B in turn, and by B.
 
     From A to the first of them the first input changes, from one to the next two neighbours, and
     from the last one to B all but the last.

@@ -1,4 +1,4 @@
-"""How far stacks differ that differ in nothing but the placement of their particles."""
+"""The noise of stacks: their deviation if only the placement of the particles differs."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class StoredRuns:
 
     @property
     def incomplete(self) -> int:
-        """How many runs lack the stack of some event."""
+        """Number of runs that lack the stack of some event."""
         measured = self.rows["hash"].value_counts().reindex(self.points["hash"], fill_value=0)
         return int((measured < len(self.events)).sum())
 

@@ -1,4 +1,4 @@
-"""What ``snowshed calibrate`` shows: the best parameter sets, and the ranges of the parameters."""
+"""The output of ``snowshed calibrate``: the best parameter sets, and ranges of the parameters."""
 
 from __future__ import annotations
 

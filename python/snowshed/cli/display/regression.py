@@ -1,4 +1,4 @@
-"""What ``snowshed regress`` and ``snowshed predict`` show."""
+"""The output of ``snowshed regress`` and ``snowshed predict``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the command ``snowshed season`` shows."""
+"""The output of ``snowshed season``."""
 
 from __future__ import annotations
 

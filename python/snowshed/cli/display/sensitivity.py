@@ -1,4 +1,4 @@
-"""What ``snowshed sensitivity`` shows: one line per parameter, one column per event."""
+"""The output of ``snowshed sensitivity``: a line per parameter, a column per event."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the commands of studies show: how long they will take, and their status."""
+"""The output of the commands of studies: expected times, and status."""
 
 from __future__ import annotations
 

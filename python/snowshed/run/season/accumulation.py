@@ -17,7 +17,7 @@ from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 @dataclass(frozen=True)
 class Day:
-    """What a row of the season file did to the snow on the panel.
+    """The snow on the panel at one row of the season file.
 
     Attributes
     ----------

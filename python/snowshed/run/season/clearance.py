@@ -1,4 +1,4 @@
-"""How far the stack below a panel is from its lower edge, and when it gets there."""
+"""The clearance between a panel's lower edge and the stack, and the event that closes it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from snowshed.snow.stack.measure import level
 
 @dataclass(frozen=True)
 class Clearance:
-    """What is left between a panel's lower edge and the stack, m, normal to the ground.
+    """The clearance between a panel's lower edge and the stack, m, normal to the ground.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SeasonResult:
-    """What a season came to.
+    """The results of a season.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a reader of a season's table has to know."""
+"""Notes on the limits of a season's results."""
 
 from __future__ import annotations
 

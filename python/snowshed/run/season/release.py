@@ -1,4 +1,4 @@
-"""When snow on a panel lets go."""
+"""The criterion for the release of snow from a panel."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Balance:
-    """What pulls at the snow on a panel, and what holds it, Pa (per area of the panel)."""
+    """The driving and the resisting stress of the snow on a panel, Pa."""
 
     driving: float
     resisting: float
 
     @property
     def releases(self) -> bool:
-        """Whether the snow lets go."""
+        """True if the snow is released."""
         return self.driving > self.resisting
 
 

@@ -37,7 +37,7 @@ SEASON_COLUMNS = (
 
 
 class SeasonFolder:
-    """Where the files of a season are."""
+    """The paths of a season's files."""
 
     def __init__(self, folder: PathLike) -> None:
         self.folder = Path(folder)

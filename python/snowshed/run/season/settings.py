@@ -1,4 +1,4 @@
-"""What decides, besides the weather, about accumulation and release."""
+"""The settings of accumulation, release and ageing in a season."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw
 
 @dataclass(frozen=True)
 class SeasonSettings:
-    """How snow gathers on the panel, lets go, and settles.
+    """The settings of accumulation, release and ageing.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class SeasonSettings:
 
     @property
     def ages(self) -> bool:
-        """Whether time does anything to the stack."""
+        """True if the stack settles or sinters."""
         return bool(self.settling or self.sintering)
 
     @property

@@ -1,4 +1,4 @@
-"""How far the stack has settled since the last slide-off, at any time before the next.
+"""An estimate of how far the stack has settled since the last slide-off.
 
 The simulated stack ages just before the next event (`snowshed.run.ageing`). Until then the snow
 below its crest is taken as a column of its mean density, which settles under its own weight. The

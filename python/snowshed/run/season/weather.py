@@ -55,7 +55,7 @@ class Weather:
 
 @dataclass(frozen=True)
 class _Column:
-    """What a column may hold."""
+    """The unit and the range of a column."""
 
     low: float
     high: float

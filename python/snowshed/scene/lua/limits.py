@@ -1,4 +1,4 @@
-"""What a script may use before it is stopped."""
+"""Limits of the resources that scripts may use."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Limits:
-    """What the scripts of one scene may use together.
+    """The resources that the scripts of one scene may use together.
 
     Scripts that go wrong run into one of the first three, and the error names the line. The times
     after them end the process, for single operations that do not return. What counts is processor

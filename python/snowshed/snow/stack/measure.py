@@ -32,7 +32,7 @@ from snowshed.snow.stack.trimming import inliers
 
 @dataclass(frozen=True)
 class Extent:
-    """Where snow lies, in metres; x from the panel's centre, z from the ground. NaN: no snow."""
+    """The extent of snow in metres; x from the panel's centre, z from the ground. NaN: no snow."""
 
     height: float = 0.0
     length: float = 0.0
