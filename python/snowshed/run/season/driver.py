@@ -1,4 +1,4 @@
-"""A whole season: from a season file to a table, a figure and the event that buries the panel."""
+"""A whole season: from a season file to a table, a figure, and the event that buries the panel."""
 
 from __future__ import annotations
 
@@ -40,13 +40,15 @@ class SeasonResult:
     releases, simulated
         Number of releases, and of those that were simulated.
     burial_event
-        First event after which the snow below the panel's lower edge reaches it; None: none.
+        First event after which the snow below the panel's lower edge reaches it; None if there is
+        none.
     crest_event
-        First event after which the stack is as high as the lower edge, wherever; None: none.
+        First event after which the stack is anywhere as high as the lower edge; None if there is
+        none.
     staying_event
-        First event after which snow stayed on the panel; None: none.
+        First event after which snow stayed on the panel; None if there is none.
     notes
-        What a reader of the table has to know.
+        Notes on the limits of the results.
     """
 
     table: pd.DataFrame
@@ -68,7 +70,7 @@ def run_season(
     progress: Optional[Reporter] = None,
     pictures: bool = True,
 ) -> SeasonResult:
-    """Let the snow of a season gather on a panel, let go, and pile up below it.
+    """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
 
     Parameters
     ----------
@@ -77,13 +79,13 @@ def run_season(
     scene
         A scene, its JSON data, or the path of a scene file. Its panel, ground, obstacles, snow and
         method hold; `season_scene` replaces its slab and its events. The panel's friction is that
-        of snow that slides.
+        of sliding snow.
     out_dir
         The results folder (``snowshed.run.season.results``); new or empty, unless resuming.
     settings
         Release, density and settling; None: the defaults.
     resume
-        Go on with an interrupted season in `out_dir`.
+        Whether to go on with an interrupted season in `out_dir`.
     progress
         Called about twice a second while a slide-off runs.
     pictures

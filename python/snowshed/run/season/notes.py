@@ -11,12 +11,12 @@ from snowshed.run.season.settings import SeasonSettings
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Part of a slab that may stay on the panel; beyond it the core lays the next slab on top.
+#: Part of a slab that may stay on the panel; if more stays, the core lays the next slab on top.
 STAYING = 0.02
 
 
 def first_staying(events: pd.DataFrame) -> Optional[int]:
-    """Return the first event after which much of what it brought still lies on the panel."""
+    """Return the first event that leaves more than `STAYING` of its snow on the panel."""
     total = events["mass_kg"] + events["on_panel_kg"]
     brought = total.diff().fillna(total)
     stayed = events["event"][events["on_panel_kg"] > STAYING * brought]
@@ -30,7 +30,7 @@ def notes(
     events: pd.DataFrame,
     staying: Optional[int],
 ) -> list[str]:
-    """Return what limits the trust in a season, a sentence each.
+    """Return notes on the limits of the results, a sentence each.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def notes(
     days
         From `accumulate`.
     settings
-        What the season was run with.
+        The settings of the season.
     events
         The table of the slide-offs, as in events.csv.
     staying

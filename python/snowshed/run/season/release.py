@@ -22,11 +22,11 @@ class Balance:
 def balance(
     load: float, tilt: float, friction: float, adhesion: float, gravity: float = 9.81
 ) -> Balance:
-    """Weigh the downslope part of the snow's weight against friction and adhesion.
+    """Return the downslope part of the snow's weight, and the friction and adhesion against it.
 
-    tau = m g sin(Phi) against mu m g cos(Phi) + a (Mohr-Coulomb). Without adhesion the load does
-    not matter: the snow lets go where tan(Phi) > mu. With it, snow gathers until
-    m = a / (g (sin(Phi) - mu cos(Phi))).
+    The snow is released if m g sin(Phi) > mu m g cos(Phi) + a (Mohr-Coulomb). Without adhesion the
+    load does not matter: snow is released if tan(Phi) > mu. With adhesion, snow accumulates until m
+    = a / (g (sin(Phi) - mu cos(Phi))).
 
     Parameters
     ----------
