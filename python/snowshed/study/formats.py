@@ -39,7 +39,7 @@ def export(
     file
         The file to write; it appears whole or not at all.
     form
-        "csv", "parquet" or "netcdf"; None: what the file's name ends with says (.csv, .parquet,
+        "csv", "parquet" or "netcdf"; None: chosen by the ending of the file's name (.csv, .parquet,
         .nc).
 
     Raises
@@ -56,8 +56,9 @@ def export(
 def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     """Return a study's table as an xarray Dataset with the dimensions run and event.
 
-    What differs from event to event has both dimensions, all else (hash, parameters, settings) is
-    a coordinate along run. Events that a run has not reached hold NaN, 0 steps and empty texts.
+    Columns that differ from event to event have both dimensions. All others (hash, parameters,
+    settings) are coordinates along run. Events that a run has not reached hold NaN, 0 steps and
+    empty texts.
 
     Raises
     ------

@@ -51,7 +51,7 @@ class Resources:
                 raise InputError(f"{name}: not with a scheduler, whose workers decide that")
 
     def workers(self, runs: int) -> tuple[Workers, int]:
-        """Return workers for so many runs, and how many runs they compute at once."""
+        """Return workers for a number of runs, and how many runs they compute at once."""
         if self.scheduler is not None:
             from snowshed.study.cluster import DaskWorkers
 
@@ -74,12 +74,12 @@ def compute_runs(
     retry_failed: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
-    """Enter a study's runs into the store in a folder and compute what is missing.
+    """Enter a study's runs into the store in a folder, and compute the missing ones.
 
     Parameters
     ----------
     study, axes, runs
-        Its name, the paths of what varies in it, and its runs.
+        Name of the study, paths of the parameters that vary, and runs.
     folder, jobs, threads, scheduler, retry_failed, progress
         As for `Study.compute`.
     """
@@ -99,12 +99,12 @@ def resume(
     retry_failed: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
-    """Compute what is missing of a study, or of all studies, in a store.
+    """Compute the missing runs of a study, or of all studies, in a store.
 
     Parameters
     ----------
     folder
-        Where the store is.
+        Folder of the store.
     study
         Name of the study; None: all.
     jobs, threads, scheduler, retry_failed, progress
@@ -124,7 +124,7 @@ def resume(
 
 
 def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> tuple[float, int]:
-    """Return how long runs are expected to take on this machine, s, and how many run at once.
+    """Return the expected time of runs on this machine, s, and the number of runs at once.
 
     Measures the machine's speed for a fraction of a second.
 
@@ -177,7 +177,7 @@ def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
 
 
 def _tidy(store: Store) -> None:
-    """Remove what killed processes have left behind and nobody needs to go on."""
+    """Remove files of killed processes that no run needs to go on."""
     for path in store.running.iterdir():
         leftover = path.suffix == ".lock" or store.state(path.name)[0] != "pending"
         if leftover and not is_held(path):
@@ -189,7 +189,7 @@ def _remove(folder: Path) -> None:
 
 
 class _Session:
-    """The runs of some studies, from what is missing to what is stored."""
+    """The computation of the missing runs of some studies."""
 
     def __init__(
         self,
@@ -214,7 +214,7 @@ class _Session:
         self.deaths: Counter[str] = Counter()
 
     def run(self, tell: Optional[Callable[[], None]]) -> None:
-        """Compute until nothing is left."""
+        """Compute until no run is missing."""
         try:
             self._compute(tell)
         except StudyError:
@@ -254,7 +254,7 @@ class _Session:
         return len(self.running) < self.workers.capacity
 
     def _look_elsewhere(self) -> None:
-        """Take over what other processes have left undone, and count what they have done."""
+        """Take over runs of dead processes, and count the runs that others have done."""
         if not self.elsewhere or time.monotonic() < self.looked + ELSEWHERE_S:
             return
         self.looked = time.monotonic()
@@ -271,7 +271,7 @@ class _Session:
         self.elsewhere = still
 
     def _wait(self) -> list[tuple[StoredRun, Outcome]]:
-        """Wait a moment for runs to end; return those that did."""
+        """Wait a moment for runs to end; return those that have ended."""
         if self.running:
             ended = self.workers.collect(POLL_S)
             return [(self.running.pop(outcome.hash), outcome) for outcome in ended]
@@ -289,7 +289,7 @@ class _Session:
             self.waiting.appendleft(run)
 
     def _after_death(self, outcome: Outcome) -> Outcome:
-        """Return the outcome of a run whose worker died: not every death is the run's fault."""
+        """Return the outcome of a run whose worker died; a run fails only after several deaths."""
         self.deaths[outcome.hash] += 1
         if self.deaths[outcome.hash] < DEATHS:
             return outcome
@@ -307,7 +307,7 @@ class _Session:
         del self.work[hash_]
 
     def _stop(self) -> None:
-        """Stop all workers, at checkpoints, and store what has ended meanwhile."""
+        """Stop all workers at checkpoints, and store the runs that have ended."""
         for outcome in self.workers.stop():
             if outcome.status in ("done", "failed"):
                 self._store(outcome)
@@ -317,7 +317,7 @@ class _Session:
 
 
 class _Narrator:
-    """Tells how far a session has come."""
+    """Reports the progress of a session."""
 
     def __init__(self, session: _Session, report: Reporter, at_once: int) -> None:
         self._session = session

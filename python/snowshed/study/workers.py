@@ -16,7 +16,7 @@ class Workers(Protocol):
         """Number of tasks that it takes at once."""
 
     def threads(self, unfinished: int) -> int:
-        """Return how many threads a run may use when so many are not yet done."""
+        """Return the number of threads of a run while `unfinished` runs are left."""
 
     def submit(self, task: Task) -> None:
         """Start computing a task; no more than `capacity` at once."""
@@ -29,7 +29,7 @@ class Workers(Protocol):
         """Fraction of the work of each submitted run that is done, as far as it is known."""
 
     def stop(self) -> Sequence[Outcome]:
-        """Ask all tasks to stop where they can go on later; return what ended meanwhile."""
+        """Ask all tasks to stop at checkpoints; return the tasks that ended meanwhile."""
 
     def close(self) -> None:
         """End all work at once."""

@@ -1,4 +1,4 @@
-"""Figures of chapter 4, and of the posterior beside it."""
+"""Figures of chapter 4 and of the posterior."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def fit_figure(
     best
         Number of the best parameter set.
     posterior
-        Its quantities are drawn.
+        The posterior whose quantities are drawn.
     predictions
         From `predicted_bands`.
     """
@@ -187,7 +187,7 @@ def _draw_fit(axes: Axes, of_best: pd.DataFrame, bands: pd.DataFrame) -> None:
 
 
 def predicted_bands(posterior: Posterior, *, seed: int = 1) -> pd.DataFrame:
-    """Return what single runs of the snow that the posterior allows would measure.
+    """Return predictions of single runs of the snow that the posterior allows.
 
     Returns
     -------
@@ -217,7 +217,7 @@ def posterior_figure(posterior: Posterior, best: pd.Series[float]) -> Figure:
     Parameters
     ----------
     posterior
-        Its samples.
+        The posterior whose samples are drawn.
     best
         The parameters of the grid's best set, marked for comparison.
 

@@ -14,7 +14,7 @@ from snowshed.io.arrays import Floats
 if TYPE_CHECKING:
     import pandas as pd
 
-#: What the thesis ranks by; head and tail are scored where they were measured, and not ranked by.
+#: Quantities by which the thesis ranks; head and tail are only scored.
 RANKED = ("height", "length")
 
 

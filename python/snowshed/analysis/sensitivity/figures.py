@@ -59,7 +59,7 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
 
 
 def _draw_indices(axes: Axes, rows: pd.DataFrame, number: int, events: int, colour: Any) -> None:
-    """Draw the bars of one event, the `number`-th of `events`; hollow where noise may make them."""
+    """Draw the bars of one event, the `number`-th of `events`; hollow if noise could cause them."""
     width = BARS / events
     places = _places(len(rows), events, number)
     for place, (_, row) in zip(places, rows.iterrows()):
@@ -113,7 +113,7 @@ def fixation_figure(table: pd.DataFrame, group: str) -> Figure:
 
 
 def _draw_lines(axes: Axes, lines: pd.DataFrame, events: Sequence[int]) -> None:
-    """Draw one line with its envelope per event, and beside its end the noise."""
+    """Draw a line with its envelope for each event, and the noise beside its end."""
     for event, colour in zip(events, _shades(len(events))):
         rows = lines[lines["event"] == event].sort_values("value")
         x = rows["value"].to_numpy(float) / label(str(rows["parameter"].iloc[0])).scale

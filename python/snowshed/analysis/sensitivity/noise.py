@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
     """Return the deviation between seedings, event by event.
 
-    It is pooled over all points with several seedings: few seedings of many points give a firm
-    estimate, where few seedings of one point do not.
+    The deviation is pooled over all points with several seedings. Few seedings of many points give
+    a reliable estimate; few seedings of one point do not.
 
     Returns
     -------
