@@ -9,16 +9,16 @@ import click
 
 
 class Deferred(click.Command):
-    """A command, or group of commands, that is imported when it is used; all others start quickly.
+    """A command, or group of commands, that is imported when it is used, so that others start fast.
 
     Parameters
     ----------
     name
-        As of the command it stands for, and of the function that makes it.
+        Name of the command, and of its function in the module.
     module
         The module that defines it.
     short_help
-        What the list of commands says of it, which does not import it.
+        Its line in the list of commands, for which it is not imported.
     """
 
     def __init__(self, name: str, module: str, short_help: str) -> None:

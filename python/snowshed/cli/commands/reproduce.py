@@ -9,7 +9,7 @@ import click
 
 from snowshed.cli.deferred import Deferred
 
-#: Where the source lies, of a package that is used in place.
+#: Folder of the source, if the package is used in place.
 SOURCE = Path(__file__).parents[4]
 PACKAGE = "thesis"
 

@@ -21,7 +21,7 @@ PATH = click.Path(path_type=Path)
 
 
 def run_options(command: Command, *, required: bool = True) -> Command:
-    """Add the options of commands that run a scene; `required`: that they cannot do without."""
+    """Add the options of commands that run a scene; `required` says whether -o must be given."""
     for option in (
         click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
         click.option("--resume", is_flag=True, help="Go on from the checkpoint in the folder."),

@@ -23,7 +23,7 @@ OPEN = {
 
 
 def print_calibration(found: Calibration) -> None:
-    """Print ranking and ranges, and what to beware of."""
+    """Print the ranking, the ranges, and notes on their limits."""
     console = wide_console()
     console.print(_ranking(found))
     console.print(_ranges(found))
@@ -70,7 +70,7 @@ def _interval(row: Any, level: str) -> str:
 
 
 def warnings(found: Calibration) -> list[str]:
-    """Return what limits the trust in a calibration."""
+    """Return notes on the limits of a calibration."""
     said = []
     if found.stacks.pending:
         said.append(
