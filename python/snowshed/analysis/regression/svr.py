@@ -27,7 +27,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
     Parameters
     ----------
     kernel
-        "rbf", exp(-gamma |x - x'|^2), or "linear", x . x'.
+        "rbf", ``exp(-gamma |x - x'|^2)``, or "linear", ``x . x'``.
     C
         Bound of the multipliers, positive: how much an error beyond the tube costs.
     epsilon
