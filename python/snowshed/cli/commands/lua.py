@@ -10,7 +10,8 @@ from typing import Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.commands.run import PATH, run_options, run_scene
+from snowshed.cli.commands.run import PATH, run_options
+from snowshed.cli.run_scene import run_scene
 from snowshed.run.results import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
