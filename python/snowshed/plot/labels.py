@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.scene.schema import scene_parameters
+from snowshed.scene.schema import parameter_units
 
 #: Units of the schema, as they are shown.
 SHOWN_UNITS: Mapping[str, str] = {"degrees": "°", "kg/m3": "kg/m³", "m/s2": "m/s²"}
@@ -105,7 +105,7 @@ def label(path: str) -> Label:
     'events.rest_speed, m/s'
     """
     known = LABELS.get(path, Label(path))
-    unit = known.unit or _units().get(path, "")
+    unit = known.unit or parameter_units().get(path, "")
     return Label(known.name, known.symbol or known.name, SHOWN_UNITS.get(unit, unit), known.scale)
 
 
@@ -122,8 +122,3 @@ def settings(values: Mapping[str, float]) -> str:
         for path, value in values.items()
         if np.isfinite(value)
     )
-
-
-@functools.cache
-def _units() -> Mapping[str, str]:
-    return {parameter.path: parameter.unit for parameter in scene_parameters()}

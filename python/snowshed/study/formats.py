@@ -11,7 +11,7 @@ from snowshed.io.atomic import replacing
 from snowshed.io.extras import require
 from snowshed.io.units import unit_of_column
 from snowshed.scene.scene import PathLike
-from snowshed.scene.schema import scene_parameters
+from snowshed.scene.schema import parameter_units
 from snowshed.study.store import MEASURED_TYPES
 from snowshed.study.table import read_table
 
@@ -124,7 +124,7 @@ def _filled(columns: Any) -> Any:
 
 def _units() -> dict[str, str]:
     """Return the units of parameters, from the core's schema, and of measures, from their names."""
-    units = {parameter.path: parameter.unit for parameter in scene_parameters() if parameter.unit}
+    units = dict(parameter_units())
     for name in (*MEASURED_TYPES, "wall_s", "run_wall_s", "peak_memory_mb"):
         if unit := unit_of_column(name):
             units[name] = unit
