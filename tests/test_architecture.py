@@ -108,6 +108,25 @@ def test_the_root_of_the_package_is_small():
     assert len(entries) <= MOST_ENTRIES, sorted(entries)
 
 
+def folders():
+    """Return the folders of the project in which there is source, from its root."""
+    inside = {path.relative_to(ROOT).parent for path in tracked("*.py", "*.?pp", "*.lua", "*.sh")}
+    return {folder for path in inside for folder in (path, *path.parents)} - {Path()}
+
+
+def test_the_page_lists_every_folder():
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    drawing = text[text.index("```text") : text.index("## Arrows point down")]
+    drawn, above = set(), []
+    for indent, name in re.findall(r"^( *)([\w/]+)/", drawing, re.MULTILINE):
+        above[len(indent) // 2 :] = [name]
+        drawn.update({Path(*above), *Path(*above).parents})
+    repeating = {"tests", "lua_compat"}  # what stands in other folders
+    missing = {one for one in folders() - drawn if not repeating & set(one.parts[:-1])}
+    assert missing == set()
+    assert {one for one in drawn if not (ROOT / one).is_dir()} == set()
+
+
 def test_no_source_file_is_long():
     patterns = [f"*.{ending}" for ending in ("py", "hpp", "cpp", "lua", "sh", "cmake")]
     lengths = {path: len(path.read_text().splitlines()) for path in tracked(*patterns)}

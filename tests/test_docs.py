@@ -11,8 +11,8 @@ from thesis.command import thesis
 from validation.command import validate
 
 from snowshed import Scene
-from snowshed.cli.commands.reproduce import FromSource
-from snowshed.cli.main import Deferred, cli
+from snowshed.cli.deferred import Deferred
+from snowshed.cli.main import cli
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 #: Programs that the documentation starts, and the command behind each.
@@ -21,6 +21,14 @@ PROGRAMS = {
     ".venv/bin/snowshed": cli,
     "python -m validation": validate,
     "python -m thesis": thesis,
+}
+#: Pages that list all options of a command.
+PAGE_OF = {
+    "sensitivity": "sensitivity.md",
+    "calibrate": "calibration.md",
+    "geometry": "regression.md",
+    "regress": "regression.md",
+    "predict": "regression.md",
 }
 # So that an example takes a second.
 SHORTER = {
@@ -54,7 +62,7 @@ def command_of(program, words):
     command, rest = PROGRAMS[program], list(words)
     while isinstance(command, click.Group) and rest:
         command = command.commands[rest.pop(0)]
-        while isinstance(command, (Deferred, FromSource)):
+        while isinstance(command, Deferred):
             command = command.load()
     return command, rest
 
@@ -73,6 +81,14 @@ def test_documented_commands_and_their_options_exist(program, words):
 def test_every_command_is_in_the_user_guide(name):
     guide = (ROOT / "docs" / "user-guide.md").read_text(encoding="utf-8")
     assert re.search(rf"(snowshed |`){name}\b", guide)
+
+
+@pytest.mark.parametrize(("name", "page"), list(PAGE_OF.items()))
+def test_every_option_is_on_the_page_of_its_command(name, page):
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    command, _ = command_of("snowshed", [name])
+    options = [one.opts[-1] for one in command.params if one.param_type_name == "option"]
+    assert [option for option in options if not re.search(rf"`{option}[ `]", text)] == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from snowshed._core import InputError
-
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import read_object
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from snowshed.plot.labels import label
+
 
 @dataclass(frozen=True)
 class Printed:
@@ -12,68 +14,67 @@ class Printed:
 
     Attributes
     ----------
-    name, unit
-        As they are shown.
     path
         Of the parameter in a scene.
     text
         The values as the thesis prints them; what it does not print says so.
-    scale
-        By how much values in SI units are divided to be shown.
+    name
+        As it is shown, where that differs from its `label`.
     zero
         What stands for zero, if it means something else.
     """
 
-    name: str
     path: str
     text: str
-    unit: str = ""
-    scale: float = 1.0
+    name: str = ""
     zero: str = "0"
+
+    @property
+    def title(self) -> str:
+        """The parameter's name, as it is shown."""
+        return self.name or label(self.path).title
 
 
 NOT_PRINTED = "not printed"
-_PANEL_CONDITION = Printed("panel, boundary condition", "panel.condition", "SLIP")
-_GROUND_CONDITION = Printed("ground, boundary condition", "ground.condition", "STICKY")
-_FRICTION = Printed("panel, friction", "panel.friction", NOT_PRINTED)
-_DENSITY = Printed("density", "snow.density", "210", "kg/m³")
-_POISSON = Printed("Poisson's ratio", "snow.poissons_ratio", "0.3")
-_GRID = Printed("grid size dx", "numerics.dx", "0.01", "m")
-_GROUND = Printed("ground tilt Ψ", "ground.tilt", "0", "°")
-_SEED = Printed("seedings (their seeds)", "seeding.seed", NOT_PRINTED)
-_BETWEEN = Printed("stack between events", "events.between", "RESEED")
+_PANEL_CONDITION = Printed("panel.condition", "SLIP")
+_GROUND_CONDITION = Printed("ground.condition", "STICKY")
+_FRICTION = Printed("panel.friction", NOT_PRINTED)
+_DENSITY = Printed("snow.density", "210")
+_POISSON = Printed("snow.poissons_ratio", "0.3")
+_GRID = Printed("numerics.dx", "0.01")
+_GROUND = Printed("ground.tilt", "0")
+_SEED = Printed("seeding.seed", NOT_PRINTED, "seedings (their seeds)")
+_BETWEEN = Printed("events.between", "RESEED")
 _CALIBRATED_SNOW = ("0.5", "7", "0.2", "0.1", "1")  # Table 4.3.1
 
 
 def _end(frames: str) -> Printed:
-    return Printed("end of an event: rest, or after", "events.max_time", f"{frames} frames", "s")
+    return Printed("events.max_time", f"{frames} frames", "end of an event: rest, or after")
 
 
 def _snow(slope: str, pressure: str, cohesion: str, hardening: str, modulus: str) -> list[Printed]:
     return [
-        Printed("internal friction M", "snow.critical_state_slope", slope),
-        Printed(
-            "preconsolidation pressure p₀", "snow.preconsolidation_pressure", pressure, "kPa", 1e3
-        ),
-        Printed("cohesion factor β", "snow.cohesion", cohesion),
-        Printed("hardening factor ξ", "snow.hardening_factor", hardening),
-        Printed("Young's modulus E", "snow.youngs_modulus", modulus, "MPa", 1e6),
+        Printed("snow.critical_state_slope", slope),
+        Printed("snow.preconsolidation_pressure", pressure),
+        Printed("snow.cohesion", cohesion),
+        Printed("snow.hardening_factor", hardening),
+        Printed("snow.youngs_modulus", modulus),
     ]
 
 
 def _scene(height: str, tilt: str, frames: str, events: str, width: str = "0.213") -> list[Printed]:
     """Return what the tables of the small panel have in common."""
     return [
-        Printed("dimension", "dimension", "3D"),
-        Printed("panel height", "panel.height", height, "m"),
-        Printed("panel length", "panel.length", "0.245", "m"),
-        Printed("panel width", "panel.width", width, "m"),
-        Printed("panel tilt Φ", "panel.tilt", tilt, "°"),
+        Printed("dimension", "3D"),
+        Printed("panel.height", height),
+        Printed("panel.length", "0.245"),
+        Printed("panel.width", width),
+        Printed("panel.tilt", tilt),
         _GROUND,
-        Printed("slab thickness", "slab.thickness", "0.02", "m"),
-        Printed("slab length", "slab.length", "0.245", "m", zero="as the panel"),
-        Printed("slab width", "slab.width", "0.142", "m"),
-        Printed("events", "events.count", events),
+        Printed("slab.thickness", "0.02"),
+        Printed("slab.length", "0.245", zero="as the panel"),
+        Printed("slab.width", "0.142"),
+        Printed("events.count", events),
         _end(frames),
         _BETWEEN,
         _DENSITY,
@@ -103,11 +104,11 @@ CALIBRATION: Sequence[Printed] = [
 ]
 #: Table 5.1.1: what does not vary.
 PANELS_SCENE: Sequence[Printed] = [
-    Printed("dimension", "dimension", "2D"),
+    Printed("dimension", "2D"),
     _GROUND,
-    Printed("slab thickness", "slab.thickness", "0.05", "m"),
-    Printed("slab length", "slab.length", "as the panel", zero="as the panel"),
-    Printed("events", "events.count", "5"),
+    Printed("slab.thickness", "0.05"),
+    Printed("slab.length", "as the panel", zero="as the panel"),
+    Printed("events.count", "5"),
     _end("100"),
     _DENSITY,
     _POISSON,
@@ -125,12 +126,12 @@ PANELS: Mapping[str, str] = {
 PANEL_ROWS = "610 (385 at 40°, 225 steeper)"
 #: Settings of the panels, by the columns of their rows.
 PANEL_SETTINGS: Sequence[Printed] = (
-    Printed("friction of the panel", "panel.friction", NOT_PRINTED),
+    _FRICTION,
     replace(_BETWEEN, text="reseed"),
-    Printed("grid size, m", "dx", "0.01"),
-    Printed("particles per voxel", "particles_per_voxel", "at least 4"),
+    Printed("dx", "0.01", "grid size dx, m"),
+    Printed("particles_per_voxel", "at least 4", "particles per voxel"),
     replace(_SEED, path="seed"),
-    Printed("version of snowshed", "version", ""),
+    Printed("version", "", "version of snowshed"),
 )
 #: Table 4.2.1: RMSE over the 48 triplets against the measured stacks, m.
 RMSE_STATISTICS: Mapping[str, Mapping[str, float]] = {

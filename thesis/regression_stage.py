@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-
 from snowshed.analysis.regression.rows import StackRows, read_rows
 from snowshed.run.pool import available_cores
 from snowshed.run.progress import Progress, Reporter
@@ -18,7 +17,7 @@ from thesis.studies import PANELS
 KINDS = ("linear", "rbf")
 TARGET = "ratio"
 NAME = "regression"
-#: For the forecast: rows for which the cost of a fold is known, and its inner folds.
+#: For the estimate of costs: rows for which the cost of a fold is known, and its inner folds.
 KNOWN_ROWS, KNOWN_INNER = 610, 5
 
 

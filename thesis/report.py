@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
 
-from snowshed._core import InputError
-
 from snowshed import _core
+from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.plot.html_page import Grid, template
 from snowshed.run.machine import cpu_name

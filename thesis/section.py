@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed.io.arrays import Floats
-from snowshed.io.formatting import NOTHING, number
+from snowshed.io.formatting import NOTHING
 from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.labels import label
 from snowshed.study.table import value_at
 from thesis.claims.hypothesis_tests import Judged, widening
 from thesis.printed import Printed
@@ -72,23 +73,24 @@ def settings_grid(printed: Sequence[Printed], scenes: Sequence[str]) -> Grid:
 
     Examples
     --------
-    >>> row = Printed("cohesion", "snow.cohesion", "0.1, 0.2")
+    >>> row = Printed("snow.cohesion", "0.1, 0.2")
     >>> settings_grid([row], ['{"snow": {"cohesion": 0.1}}']).rows
-    [['cohesion', '0.1, 0.2', '0.1', '']]
+    [['cohesion factor β', '0.1, 0.2', '0.1', '']]
     """
     data = [json.loads(scene) for scene in scenes]
     rows = []
     for row in printed:
         values = {value_at(scene, row.path) for scene in data} - {None}
         ours = ", ".join(_text(value, row) for value in sorted(values)) or NOTHING
-        rows.append([row.name, row.text, ours + ("D" if row.path == "dimension" else ""), row.unit])
+        ours += "D" if row.path == "dimension" else ""
+        rows.append([row.title, row.text, ours, label(row.path).unit])
     return Grid(["parameter", "thesis", "here", "unit"], rows, "llll")
 
 
 def _text(value: Any, row: Printed) -> str:
     if isinstance(value, str):
         return value.upper()
-    return number(value / row.scale, 4) if value else row.zero
+    return label(row.path).value(value) if value else row.zero
 
 
 def widenings(table: pd.DataFrame, noise: pd.DataFrame) -> Floats:

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Optional, Protocol
 
 from snowshed._core import InputError
-
 from snowshed.run.progress import Progress
-from snowshed.study import Study, forecast
+from snowshed.study import Study, cost_estimate
 from snowshed.study.session import Resources, resume
 from snowshed.study.store import Store, StoredRun
 
@@ -94,7 +93,9 @@ class StudyStage:
             threads = workers.threads(len(pending))
         finally:
             workers.close()
-        return forecast.expected(pending, [forecast.work(one) for one in pending], at_once, threads)
+        return cost_estimate.expected(
+            pending, [cost_estimate.work(one) for one in pending], at_once, threads
+        )
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
         """Compute what is left; raises StudyInterrupted after Ctrl-C."""

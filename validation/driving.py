@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 
 from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.record import Record
@@ -82,14 +83,18 @@ class Drive(drive.Drive):
 
     def step(self, count: int = 1) -> None:
         """Take steps."""
-        started = time.perf_counter()
-        super().step(count)
-        self.wall_s += time.perf_counter() - started
+        with self._timed():
+            super().step(count)
 
     def damp(self, exponent: float) -> None:
         """Let the velocities of all particles fall by the factor ``exp(-exponent)``."""
+        with self._timed():
+            super().damp(exponent)
+
+    @contextmanager
+    def _timed(self) -> Iterator[None]:
         started = time.perf_counter()
-        super().damp(exponent)
+        yield
         self.wall_s += time.perf_counter() - started
 
     def outcome(self, measured: Sequence[Measured]) -> Outcome:

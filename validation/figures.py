@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from snowshed.analysis.verification import wording
+from snowshed.analysis.verification import setting_labels
 from snowshed.analysis.verification.measurements import Settings, Value
 from snowshed.analysis.verification.solutions import Solution, key_of
 from snowshed.io import formatting
@@ -108,7 +108,7 @@ class Look:
         """Return the entries of a legend: every value that is drawn."""
         kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
         return [
-            _entry(keyword, shape, wording.setting(name, value))
+            _entry(keyword, shape, setting_labels.setting(name, value))
             for keyword, looks in kinds
             for name, shapes in looks.items()
             for value, shape in shapes.items()
@@ -237,7 +237,7 @@ def _draw_work_precision(
     lines: list[KeyLine] = []
     for problem, found in _with_fronts(problems):
         if names:
-            lines.append(KeyLine("", wording.settings(problem, names), ""))
+            lines.append(KeyLine("", setting_labels.settings(problem, names), ""))
         lines += _draw_front(axes, quantity, found, letters)
     return lines
 
@@ -272,7 +272,7 @@ def _draw_front(
         _name_point(axes, letter, times[i], errors[i])
         error = quantity.error_in_words(errors[i])
         cost = f"{formatting.duration(times[i])}, {error}"
-        lines.append(KeyLine(letter, cost, wording.settings(found[i].settings, names)))
+        lines.append(KeyLine(letter, cost, setting_labels.settings(found[i].settings, names)))
     return lines
 
 

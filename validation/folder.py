@@ -15,9 +15,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed._core import InputError
-
 from snowshed import _core
+from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import check_values, read_object
 from snowshed.run.results import check_empty

@@ -23,13 +23,19 @@ from snowshed.analysis.verification.measurements import Measured, Settings, Valu
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.atomic import write_text
 from snowshed.run.conversion import outline_difference
+from snowshed.run.results import measured_columns
 from snowshed.scene.scene import Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
+from snowshed.snow.stack.quantities import MEASURES
 from validation.case import Outcome
 from validation.driving import absolute, apply_settings
 
-#: What is measured of a stack; body: of its largest connected body.
-MEASURES = ("height", "length", "body_height", "body_length")
+#: Columns of events.csv that are compared, by the names they have here.
+COMPARED: Mapping[str, str] = {
+    f"{measure.prefix}{quantity}": measure.column(quantity)
+    for measure in (MEASURES["stack"], MEASURES["body"])
+    for quantity in ("height", "length")
+}
 
 #: Settings of the events, and where they lie in a scene.
 EVENTS: Mapping[str, str] = {"events": "events.count", "between": "events.between"}
@@ -72,7 +78,7 @@ class Conversion:
     particles_after: int
 
     def change(self, name: str) -> float:
-        """Return by how much one of `MEASURES` grew, m."""
+        """Return by how much one of `COMPARED` grew, m."""
         return measure_of(self.after, name) - measure_of(self.before, name)
 
     @property
@@ -121,14 +127,13 @@ class LabRun:
     particles: int = 0
 
     def series(self, name: str) -> list[float]:
-        """Return one of `MEASURES` after each event, m."""
+        """Return one of `COMPARED` after each event, m."""
         return [measure_of(stack, name) for stack in self.stacks]
 
 
 def measure_of(stack: StackMeasure, name: str) -> float:
-    """Return one of `MEASURES` of a stack, m."""
-    extent = stack.body if name.startswith("body_") else stack
-    return float(getattr(extent, name.removeprefix("body_")))
+    """Return one of `COMPARED` of a stack, m."""
+    return float(measured_columns(stack)[COMPARED[name]])
 
 
 def lab_scene(settings: Settings) -> Scene:
@@ -257,7 +262,7 @@ class Recorded:
     dx
         Size of the grid cells, m.
     runs
-        For each of `MEASURES`, (seedings, events) in m.
+        For each of `COMPARED`, (seedings, events) in m.
     """
 
     dx: float
@@ -278,7 +283,7 @@ def noise(name: str, runs: Sequence[LabRun], settings: Settings) -> Measured:
     Parameters
     ----------
     name
-        One of `MEASURES`.
+        One of `COMPARED`.
     runs
         With the settings, each with a seed of its own.
     settings
@@ -315,7 +320,7 @@ def recorded(dimension: int, dx: Optional[float] = None) -> Recorded:
     if not chosen:
         known = sorted({run["dx"] for run in runs})
         raise LookupError(f"no stacks recorded in {dimension}D at dx {dx}; there are {known}")
-    series = {name: np.array([run[name] for run in chosen]) for name in MEASURES}
+    series = {name: np.array([run[name] for run in chosen]) for name in COMPARED}
     return Recorded(float(wanted), series)
 
 
@@ -361,7 +366,7 @@ def _recording(settings: Settings) -> dict[str, Any]:
         "particles": run.particles,
         "steps": run.steps,
         "ended": sorted(set(run.ended)),
-        **{name: [round(value, 5) for value in run.series(name)] for name in MEASURES},
+        **{name: [round(value, 5) for value in run.series(name)] for name in COMPARED},
     }
 
 

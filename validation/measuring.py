@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import SimulationError
-
 from snowshed.analysis.verification.measurements import Settings
 from snowshed.run.machine import peak_memory_mb
 from snowshed.run.pool import Isolation, Pool

@@ -19,7 +19,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed.analysis.verification import wording
+from snowshed.analysis.verification import setting_labels
 from snowshed.analysis.verification.measurements import Measurement, to_table
 from snowshed.analysis.verification.solutions import rows_of, solutions
 from snowshed.io import formatting
@@ -110,12 +110,12 @@ def problems(suite: Suite, bars: Sequence[Bar]) -> list[str]:
     titles = {case.name: case.title for case in suite.cases}
     lines = [
         f"{titles[bar.case]}, {bar.quantity.title}: demanded {sections.demanded(bar)}, "
-        f"worst {sections.found(bar)}, {wording.settings(bar.settings)}"
+        f"worst {sections.found(bar)}, {setting_labels.settings(bar.settings)}"
         for bar in bars
         if bar.holds is False
     ]
     lines += [
-        f"{titles[one.case]}, {wording.settings(one.settings)}: {one.failure}"
+        f"{titles[one.case]}, {setting_labels.settings(one.settings)}: {one.failure}"
         for one in suite.measurements
         if one.failure
     ]

@@ -19,7 +19,7 @@ from snowshed.io.arrays import Floats
 
 @dataclass(frozen=True)
 class Landing:
-    """Where, when and how a slab comes down.
+    """The place, time and motion with which a slab comes down.
 
     Attributes
     ----------

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Optional
 
 from snowshed import _core
-from snowshed.analysis.verification import wording
+from snowshed.analysis.verification import setting_labels
 from snowshed.analysis.verification.measurements import Measured, Measurement, Settings, key_of
 from snowshed.run.machine import cpu_name
 from snowshed.run.progress import Progress, Reporter
@@ -79,7 +79,7 @@ def run_suite(
             if progress is not None:
                 fraction, left_s = estimate.after(done)
                 before = len(tasks) - len(due)
-                doing = f"{task.case.name}: {wording.settings(task.settings)}"[:LONGEST]
+                doing = f"{task.case.name}: {setting_labels.settings(task.settings)}"[:LONGEST]
                 told = Progress(
                     fraction, before + done, len(tasks), "measured", doing, left_s=left_s
                 )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from snowshed.analysis.verification import wording
+from snowshed.analysis.verification import setting_labels
 from snowshed.analysis.verification.measurements import Measurement, Settings
 from snowshed.analysis.verification.solutions import Solution, key_of, rows_of, solutions
 from snowshed.io import formatting
@@ -92,7 +92,7 @@ def section(case: Case, measurements: Sequence[Measurement], table: pd.DataFrame
         case=case,
         paragraphs=_paragraphs(case.description),
         remarks=_paragraphs(case.remarks),
-        common=wording.settings(shared),
+        common=setting_labels.settings(shared),
         results=results_grid(case, measurements),
         orders=orders_grid(case, series),
         extremes=extremes_grid(case, found),
@@ -133,7 +133,8 @@ def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Grid
     rows = [
         [
             titles[name],
-            wording.settings(one.settings, varying([other.settings for other in listed])) or "all",
+            setting_labels.settings(one.settings, varying([other.settings for other in listed]))
+            or "all",
             settings_in[name].replace("_", " "),
             f"{formatting.number(one.sizes[0])} … {formatting.number(one.sizes[-1])}",
             ", ".join(_order(slope) for slope in one.pairwise),
@@ -158,7 +159,7 @@ def extremes_grid(case: Case, found: Mapping[str, Sequence[Solution]]) -> Grid:
         ends = [
             (
                 quantity.error_in_words(abs(one.error)),
-                wording.settings(one.settings, names),
+                setting_labels.settings(one.settings, names),
             )
             for one in (listed[0], listed[-1])
         ]
@@ -177,10 +178,10 @@ def bars_grid(bars: Sequence[Bar], cases: Sequence[Case]) -> Grid:
             {True: "holds", False: "does not hold", None: "not measured"}[bar.holds],
             titles[bar.case],
             bar.quantity.title,
-            wording.settings(bar.meant) or "all settings",
+            setting_labels.settings(bar.meant) or "all settings",
             demanded(bar),
             found(bar),
-            wording.settings(bar.settings),
+            setting_labels.settings(bar.settings),
         ]
         for bar in sorted(bars, key=lambda one: rank[one.holds])
     ]
@@ -313,7 +314,7 @@ def _cheapest_rows(
             [
                 "" if rows else case.title,
                 titles[group[0].quantity],
-                wording.settings(group[0].problem, problems),
+                setting_labels.settings(group[0].problem, problems),
                 *(SAME if text == left else text for left, text in zip(["", *texts], texts)),
             ]
         )
@@ -323,18 +324,18 @@ def _cheapest_rows(
 def _cheapest_cell(one: Cheapest, ways: Sequence[str]) -> str:
     if not one.reached:
         return f"not reached; best {formatting.percent(one.error)}"
-    with_what = wording.settings(one.solution.settings, ways)
+    with_what = setting_labels.settings(one.solution.settings, ways)
     return f"{formatting.duration(one.solution.wall_s)}: {with_what}".rstrip(": ")
 
 
 def _cell(settings: Settings, name: str) -> str:
     value: Optional[Any] = settings.get(name)
     if value is None:
-        return wording.unset(name)
+        return setting_labels.unset(name)
     if isinstance(value, bool):
         return "yes" if value else "no"
     if name == "dimension":
-        return wording.setting(name, value)
+        return setting_labels.setting(name, value)
     return value.replace("_", " ") if isinstance(value, str) else formatting.number(value, 4)
 
 

@@ -7,7 +7,6 @@ import pkgutil
 from collections.abc import Sequence
 
 from snowshed._core import InputError
-
 from validation import cases
 from validation.case import Case
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from snowshed._core import InputError
 
+from snowshed._core import InputError
 from snowshed.io.record import UnknownFieldError
 from snowshed.methods.mpm import MpmSettings
 from snowshed.scene import Domain, Motion, Obstacle, Panel, Scene, Seeding, Shape

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from snowshed._core import CamClay
 
 from snowshed import Snow
+from snowshed._core import CamClay
 
 SNOW = Snow.preset("calibrated")
 P0 = SNOW.preconsolidation_pressure

@@ -1,5 +1,6 @@
 """The Attributes section of a component's docstring, as the schema has it."""
 
+import re
 import textwrap
 
 from snowshed.scene.schema import properties, resolve
@@ -21,7 +22,7 @@ def attributes_section(record, schema, node):
         meaning = _in_shapes(schema, node, key) if "oneOf" in node else child["description"]
         unit = f" [{child['x-unit']}]" if child.get("x-unit") else ""
         notes = "" if "oneOf" in node else _notes(child, key in node.get("required", ()))
-        text = f"{meaning}{unit}.{notes}"
+        text = re.sub(r"\|.+?\|", r"``\g<0>``", f"{meaning}{unit}.{notes}")  # no substitution
         indented = {"initial_indent": "    ", "subsequent_indent": "    "}
         lines += [f"{field} : {_type(record, key, child)}", *textwrap.wrap(text, 95, **indented)]
     return textwrap.indent("\n".join(lines), "    ")

@@ -9,7 +9,7 @@ import study_helpers
 from study_helpers import outcome, tiny_study
 
 from snowshed import InputError, _core
-from snowshed.study import Study, StudyError, StudyInterrupted, forecast, resume, session
+from snowshed.study import Study, StudyError, StudyInterrupted, cost_estimate, resume, session
 from snowshed.study.outcome import Outcome
 from snowshed.study.owner import ownership
 from snowshed.study.store import Store
@@ -43,7 +43,7 @@ def test_studies_that_share_a_store_share_runs(scripted, tmp_path):
 def test_the_longest_runs_come_first(scripted, tmp_path):
     scene = STUDY.scene
     Study.product(scene, {"events.count": [1, 3, 2]}).run(tmp_path / "store")
-    works = [forecast.work(task.scene) for task in scripted.tasks]
+    works = [cost_estimate.work(task.scene) for task in scripted.tasks]
     assert works == sorted(works, reverse=True) and len(set(works)) == 3
 
 
@@ -278,43 +278,47 @@ def test_the_last_runs_of_many_get_the_cores_that_fall_free():
 
 
 def test_expected_durations():
-    assert forecast.duration([4.0], 2) == 4.0
-    assert forecast.duration([1.0] * 6, 3) == 2.0
-    assert forecast.duration([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
+    assert cost_estimate.duration([4.0], 2) == 4.0
+    assert cost_estimate.duration([1.0] * 6, 3) == 2.0
+    assert cost_estimate.duration([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
 
 
 def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):
     """Nine runs of one unit, and one of 21 that is half as fast: two of three speeds are its."""
-    monkeypatch.setattr(forecast, "speed", lambda scene, threads: 1.0 if scene == "big" else 2.0)
+    monkeypatch.setattr(
+        cost_estimate, "speed", lambda scene, threads: 1.0 if scene == "big" else 2.0
+    )
     scenes, works = ["small"] * 9 + ["big"], [1.0] * 9 + [21.0]
-    assert forecast.expected(scenes, works, 1, 1) == pytest.approx(30 * (0.5 + 1 + 1) / 3)
-    assert forecast.expected(["small"], [0.0], 1, 1) == 0.0
+    assert cost_estimate.expected(scenes, works, 1, 1) == pytest.approx(30 * (0.5 + 1 + 1) / 3)
+    assert cost_estimate.expected(["small"], [0.0], 1, 1) == 0.0
 
 
 def test_a_machine_that_is_held_up_for_a_moment_is_not_slow(monkeypatch):
     speeds = iter([2.0, 1.0, 2.0] + [2.0] * 24)
-    monkeypatch.setattr(forecast, "speed", lambda scene, threads: next(speeds))
+    monkeypatch.setattr(cost_estimate, "speed", lambda scene, threads: next(speeds))
     scenes, works = ["a", "b", "c"], [3600.0] * 3
-    assert forecast.expected(scenes, works, 1, 1) == 3 * 1800.0
+    assert cost_estimate.expected(scenes, works, 1, 1) == 3 * 1800.0
 
 
 def test_speeds_before_a_short_study_are_measured_once(monkeypatch):
     measured = []
-    monkeypatch.setattr(forecast, "speed", lambda scene, _: measured.append(scene) or 1e9)
-    forecast.expected(["a", "b", "c"], [1.0] * 3, 1, 1)
+    monkeypatch.setattr(cost_estimate, "speed", lambda scene, _: measured.append(scene) or 1e9)
+    cost_estimate.expected(["a", "b", "c"], [1.0] * 3, 1, 1)
     assert sorted(measured) == ["a", "b", "c"]
 
 
-def test_the_forecast_of_work_is_that_of_plan():
+def test_the_estimate_of_work_is_that_of_plan():
     scene = STUDY.runs()[0].scene
     plan = _core.plan(scene)
-    assert forecast.work(scene) == pytest.approx(plan["expected_wall_s"] * plan["updates_per_s"])
-    assert forecast.work(scene.replace('"dx": 0.02', '"dx": 1e-8')) == 0.0
+    assert cost_estimate.work(scene) == pytest.approx(
+        plan["expected_wall_s"] * plan["updates_per_s"]
+    )
+    assert cost_estimate.work(scene.replace('"dx": 0.02', '"dx": 1e-8')) == 0.0
 
 
-def test_forecasting_many_runs_takes_little():
+def test_estimating_many_runs_takes_little():
     scenes = [run.scene for run in STUDY.runs()] * 10
     start = time.process_time()
     for scene in scenes:
-        forecast.work(scene)
+        cost_estimate.work(scene)
     assert time.process_time() - start < 0.05 * len(scenes)

@@ -6,7 +6,6 @@ import re
 import pandas as pd
 import pytest
 from reproduce_helpers import TINY, TINY_WITH_PANELS, fill, geometry_table
-from snowshed._core import InputError
 from thesis import studies
 from thesis.folder import ReproductionFolder
 from thesis.reproduction import Reproduction, compute
@@ -15,6 +14,7 @@ from thesis.size import FULL, QUICK
 from thesis.stage import State, StudyStage, choose
 
 from snowshed import Scene
+from snowshed._core import InputError
 from snowshed.study import Study
 
 NAMES = ["lab", "s-index", "fixation", "calibration", "geometry", "regression"]

@@ -5,7 +5,7 @@ import pytest
 from validation.cases import between_events
 from validation.cases.between_events import CASE
 from validation.lab_stack import (
-    MEASURES,
+    COMPARED,
     Conversion,
     lab_scene,
     measure_of,
@@ -43,7 +43,7 @@ def test_carrying_over_converts_nothing():
 
 
 def test_the_largest_change_of_all_conversions_is_shown_in_cells(reseeded, runs):
-    for name in MEASURES:
+    for name in COMPARED:
         changes = [one.change(name) / 0.02 for run in runs for one in run.conversions]
         found = reseeded[f"conversion_{name}"]
         assert abs(found.error) == max(abs(change) for change in changes)
@@ -53,7 +53,7 @@ def test_the_largest_change_of_all_conversions_is_shown_in_cells(reseeded, runs)
 def test_a_conversion_measures_the_stack_as_it_was_left(runs):
     for run in runs:
         (conversion,) = run.conversions
-        for name in MEASURES:
+        for name in COMPARED:
             assert measure_of(conversion.before, name) == run.series(name)[0]
 
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from snowshed._core import CamClay
 from validation import granular_column
 from validation.cases import collapse
 from validation.cases.collapse import CASE
 
 from snowshed import InputError
+from snowshed._core import CamClay
 
 
 @pytest.mark.parametrize(

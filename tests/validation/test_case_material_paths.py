@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from snowshed._core import CamClay
 from validation.cases import material_paths
 from validation.cases.material_paths import CASES, Path
 from validation.rate_equations import RateEquations, evenly
+
+from snowshed._core import CamClay
 
 CONSTANTS, STRENGTH = material_paths.calibrated()
 

@@ -23,7 +23,7 @@ def test_recorded_runs_say_what_made_them(runs):
     for run in runs:
         assert {"dimension", "dx", "seed", "version", "date", "particles", "steps"} <= set(run)
         assert run["ended"] == ["rest"]
-        for name in lab_stack.MEASURES:
+        for name in lab_stack.COMPARED:
             assert len(run[name]) == 5
             assert 0.01 < min(run[name]) <= max(run[name]) < 2.0
     keys = [(run["dimension"], run["dx"], run["seed"]) for run in runs]
@@ -68,7 +68,7 @@ def test_recording_reproduces_what_was_recorded(tmp_path):
     record(path, [(2, 0.02, 1)], events=1)
     (run,) = json.loads(path.read_text(encoding="utf-8"))["runs"]
     there = recorded(2, 0.02)
-    for name in lab_stack.MEASURES:
+    for name in lab_stack.COMPARED:
         assert run[name][0] == pytest.approx(there.mean(name, 1), abs=4 * there.spread(name, 1))
 
 
@@ -126,7 +126,7 @@ def test_measure_gives_the_error_of_a_single_run_and_the_spread():
 
 def test_one_seeding_has_no_spread():
     names = {one.quantity for one in CASE.measure(QUICK).measured}
-    assert names == {*lab_stack.MEASURES, "height_noise", "length_noise"}
+    assert names == {*lab_stack.COMPARED, "height_noise", "length_noise"}
 
 
 def test_without_sleep_a_stack_is_like_the_recorded_ones():

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 from made_up import MEGABYTES, made_up_case
 from paths import ROOT
-from snowshed._core import InputError
 from validation import runner, suite
 from validation.folder import SuiteFolder
 from validation.measurement_file import MeasurementFile
 from validation.runner import Estimate, run_suite, tasks_of
 
+from snowshed._core import InputError
 from snowshed.analysis.verification.measurements import Measured, Measurement, settings_of, to_table
 
 FAILURES = {

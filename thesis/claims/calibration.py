@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from snowshed.io.formatting import percent
-from snowshed.plot.labels import setting
+from snowshed.plot.labels import settings
 from snowshed.scene.thesis_tables import CALIBRATED
 from thesis.claims.hypothesis_tests import (
     CONFIRMED,
@@ -49,7 +49,7 @@ def is_ranked_well(data: Recovery) -> Finding:
     if here.empty:
         raise LookupError("the calibrated snow among the parameter sets")
     rank, count = int(here["rank"].iloc[0]), len(data.ranked)
-    best = setting({path: data.ranked[path].iloc[0] for path in CALIBRATED})
+    best = settings({path: data.ranked[path].iloc[0] for path in CALIBRATED})
     verdict = CONTRADICTED
     if rank == 1:
         verdict = CONFIRMED

@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from snowshed.io.formatting import percent
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 from thesis.claims.hypothesis_tests import (
     Claim,
     Estimate,
@@ -59,7 +59,7 @@ def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
     findings = []
     for event, rows in _by_event(_of(table, "length"), parameter):
         low, high = (Estimate(row["mean_m"], row["noise_m"]) for _, row in rows.iloc[:2].iterrows())
-        what = f"length, second minus lowest {word(parameter).symbol}, event {event:g}"
+        what = f"length, second minus lowest {label(parameter).symbol}, event {event:g}"
         findings.append(negative(high - low, what, "m"))
     return all_of(findings)
 
@@ -81,7 +81,7 @@ def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
     rival = max(found, key=lambda one: abs(found[one].value))
     strongest = Estimate(abs(found[rival].value), found[rival].noise)
     lead = (last - first) - strongest
-    words = f"{target}, growth by the events minus change by {word(rival).symbol}, the strongest"
+    words = f"{target}, growth by the events minus change by {label(rival).symbol}, the strongest"
     return positive(lead, words, "m")
 
 
@@ -106,7 +106,7 @@ def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
     for parameter in YIELD:
         rows = _last(_of(table, "height"), parameter)
         low, high = (_deviation(row) for row in (rows.iloc[0], rows.iloc[-1]))
-        what = f"scatter at the highest {word(parameter).symbol} minus at the lowest"
+        what = f"scatter at the highest {label(parameter).symbol} minus at the lowest"
         findings.append(positive(high - low, what, "m"))
     return all_of(findings)
 
@@ -120,7 +120,7 @@ def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
             mean_of([_deviation(row) for _, row in rows.iterrows()])
             for rows in (by_event[0], by_event[-1])
         )
-        what = f"mean scatter at values of {word(parameter).symbol}, last event minus first"
+        what = f"mean scatter at values of {label(parameter).symbol}, last event minus first"
         findings.append(positive(last - first, what, "m"))
     return all_of(findings)
 
@@ -148,7 +148,7 @@ def _by_event(rows: pd.DataFrame, parameter: str) -> list[tuple[Any, pd.DataFram
     """Return the rows of a parameter by event, each sorted by its values."""
     rows = rows[rows["parameter"] == parameter]
     if rows["value"].nunique() < 2:
-        raise LookupError(f"two values of {word(parameter).symbol}")
+        raise LookupError(f"two values of {label(parameter).symbol}")
     return list(rows.sort_values("value").groupby("event"))
 
 
@@ -182,7 +182,7 @@ def _deviation(row: pd.Series[float]) -> Estimate:
 
 
 def _change(parameter: str, target: str) -> str:
-    return f"{target}, highest minus lowest {word(parameter).symbol}"
+    return f"{target}, highest minus lowest {label(parameter).symbol}"
 
 
 RAISE = "mean over the others higher at the highest value than at the lowest, last event"
@@ -190,7 +190,7 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
     *(
         Claim(
             "3.4.1",
-            f"{word(one).symbol} raises the stack.",
+            f"{label(one).symbol} raises the stack.",
             RAISE,
             partial(raises, parameter=one, target="height"),
         )
@@ -199,7 +199,7 @@ FIXATION: tuple[Claim[pd.DataFrame], ...] = (
     *(
         Claim(
             "3.4.1",
-            f"{word(one).symbol} shortens the stack.",
+            f"{label(one).symbol} shortens the stack.",
             RAISE.replace("higher", "lower"),
             partial(lowers, parameter=one, target="length"),
         )

@@ -43,7 +43,7 @@ ABOUT = 0.25
 
 @dataclass(frozen=True)
 class Regressed:
-    """What the nested cross-validation gave for H/L.
+    """The results of the nested cross-validation for H/L.
 
     Attributes
     ----------

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 from thesis.claims.hypothesis_tests import (
     Claim,
     Estimate,
@@ -42,13 +42,13 @@ def indices(table: pd.DataFrame, parameter: str, target: str) -> list[Estimate]:
     """Return S of a parameter after each event."""
     rows = table[(table["parameter"] == parameter) & (table["target"] == target)]
     if rows.empty:
-        raise LookupError(f"S of {word(parameter).symbol}, {target}")
+        raise LookupError(f"S of {label(parameter).symbol}, {target}")
     rows = rows.sort_values("event")
     return [Estimate(float(s), float(e)) for s, e in zip(rows["s"], rows["standard_error"])]
 
 
 def _named(parameter: str, target: str) -> str:
-    return f"S of {word(parameter).symbol}, {target}"
+    return f"S of {label(parameter).symbol}, {target}"
 
 
 def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
@@ -75,7 +75,7 @@ def cohesion_is_strongest(table: pd.DataFrame) -> Finding:
     found = {one: _magnitude(index(table, one, "height")) for one in others}
     rival = max(found, key=lambda one: found[one].value)
     lead = _magnitude(index(table, COHESION, "height")) - found[rival]
-    return positive(lead, f"|S| of β minus |S| of {word(rival).symbol}, the next, height")
+    return positive(lead, f"|S| of β minus |S| of {label(rival).symbol}, the next, height")
 
 
 def length_less_than_height(table: pd.DataFrame) -> Finding:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from snowshed._core import InputError
 
+from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import read_simulated
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, statistics
 from snowshed.analysis.calibration.report import Calibration, calibrate, write
 from snowshed.io.formatting import number, percent
 from snowshed.plot.html_page import Grid, Picture
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 from snowshed.scene.thesis_tables import CALIBRATED
 from snowshed.study.table import read_table
 from thesis import printed
@@ -136,11 +136,11 @@ def ranges_grid(ranges: pd.DataFrame) -> Grid:
     """Return the posterior's ranges beside the truth."""
     rows = []
     for row in ranges.to_dict("records"):
-        known = word(row["parameter"])
+        known = label(row["parameter"])
         values = [CALIBRATED[row["parameter"]], row["best_set"], row["median"]]
         ends = [f"{known.value(row[low])} to {known.value(row[high])}"
                 for low, high in (("lower_68", "upper_68"), ("lower_95", "upper_95"))]  # fmt: skip
-        rows.append([known.label, *(known.value(value) for value in values), *ends, row["open"]])
+        rows.append([known.axis, *(known.value(value) for value in values), *ends, row["open"]])
     head = ["parameter", "truth", "best triplet", "median", "68 %", "95 %", "open"]
     return Grid(head, rows, "lrrrrrl")
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from snowshed._core import InputError
 
+from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.report import evaluate
 from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
 from snowshed.plot.html_page import Grid, Picture
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 from thesis import printed
 from thesis.claims.fixation import FIXATION as CLAIMS
 from thesis.claims.hypothesis_tests import judge
@@ -103,13 +103,12 @@ def fixation_grid(table: pd.DataFrame) -> Grid:
     events = sorted(table["event"].unique())
     rows = []
     for (parameter, value, target), of_one in grouped(table, "parameter", "value", "target"):
-        known = word(parameter)
+        known = label(parameter)
         by_event = of_one.set_index("event")
         cells = [
             plus_minus(by_event.loc[event, "mean_m"], by_event.loc[event, "deviation_m"])
             for event in events
         ]
-        shown = f"{known.value(value)} {known.unit}".rstrip()
-        rows.append([known.symbol, shown, target, *cells])
+        rows.append([known.symbol, known.quantity(value), target, *cells])
     head = ["parameter", "value", "of the", *(f"event {event:g}" for event in events)]
     return Grid(head, rows, "lll" + "r" * len(events))

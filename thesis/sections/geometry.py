@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from snowshed._core import InputError
 
+from snowshed._core import InputError
 from snowshed.analysis.regression.dataset import geometry_table as shipped_rows
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.io.csv_table import read_csv
@@ -68,7 +68,7 @@ def inputs_grid(table: pd.DataFrame) -> Grid:
 def columns_grid(table: pd.DataFrame) -> Grid:
     """Return the settings of the rows that their table tells, the thesis's beside ours."""
     rows = [
-        [row.name, row.text, ", ".join(str(value) for value in np.unique(table[row.path]))]
+        [row.title, row.text, ", ".join(str(value) for value in np.unique(table[row.path]))]
         for row in printed.PANEL_SETTINGS
         if row.path in table
     ]

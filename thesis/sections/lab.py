@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
-
 from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.snow.stack.quantities import QUANTITIES

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
-from snowshed._core import InputError
 
+from snowshed._core import InputError
 from snowshed.analysis.regression.summary import QUARTILES, THESIS_ERRORS, THESIS_QUARTILES
 from snowshed.io.csv_table import read_csv
 from snowshed.plot.html_page import Grid, Picture

@@ -8,7 +8,7 @@ from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.report import evaluate
 from snowshed.analysis.sensitivity.stored import read_stored
 from snowshed.plot.html_page import Grid, Picture
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 from snowshed.scene.thesis_tables import PAIRS
 from thesis import printed
 from thesis.claims.hypothesis_tests import judge
@@ -59,12 +59,12 @@ def build(found: Reproduction) -> Section:
 def _settings(scenes: list[str]) -> Grid:
     """Return Table 3.2.1 with what Table 3.3.1 has in its place."""
     grid = settings_grid(printed.SENSITIVITY, scenes)
-    pairs = {row.name: row for row in printed.SENSITIVITY if row.path in PAIRS}
+    pairs = {row.title: row for row in printed.SENSITIVITY if row.path in PAIRS}
     rows = [list(row) for row in grid.rows]
     for row in rows:
         if row[0] in pairs:
-            path, scale = pairs[row[0]].path, pairs[row[0]].scale
-            row[1] = ", ".join(f"{value / scale:g}" for value in PAIRS[path])
+            path = pairs[row[0]].path
+            row[1] = ", ".join(label(path).value(value) for value in PAIRS[path])
     note = "thesis (3.3.1 where a parameter varies; else its reference)"
     return Grid(["parameter", note, "here", "unit"], rows, grid.align)
 
@@ -74,14 +74,14 @@ def index_grid(table: pd.DataFrame) -> Grid:
     events = sorted(table["event"].unique())
     rows = []
     for (parameter, target), of_one in grouped(table, "parameter", "target"):
-        known = word(parameter)
+        known = label(parameter)
         first = of_one.iloc[0]
-        pair = f"{known.value(first['nominal'])} → {known.value(first['altered'])} {known.unit}"
+        pair = known.change(first["nominal"], first["altered"])
         by_event = of_one.set_index("event")
         cells = [
             plus_minus(by_event.loc[event, "s"], by_event.loc[event, "standard_error"])
             for event in events
         ]
-        rows.append([known.symbol, pair.rstrip(), target, *cells])
+        rows.append([known.symbol, pair, target, *cells])
     head = ["parameter", "from → to", "of the", *(f"event {event:g}" for event in events)]
     return Grid(head, rows, "lll" + "r" * len(events))

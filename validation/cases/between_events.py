@@ -11,7 +11,7 @@ from validation.case import Case, Outcome, Quantity
 from validation.driving import absolute, relative
 from validation.lab_stack import (
     AWAKE,
-    MEASURES,
+    COMPARED,
     Conversion,
     LabRun,
     noise,
@@ -50,8 +50,8 @@ def measure(settings: Settings) -> Outcome:
     conversions = _conversions(runs)
     if conversions:
         dx = float(settings["dx"])
-        changes = {name: [one.change(name) / dx for one in conversions] for name in MEASURES}
-        measured += [_largest(f"conversion_{name}", changes[name]) for name in MEASURES]
+        changes = {name: [one.change(name) / dx for one in conversions] for name in COMPARED}
+        measured += [_largest(f"conversion_{name}", changes[name]) for name in COMPARED]
         measured += [
             _largest("conversion_loose", (one.loose_change for one in conversions)),
             _largest("conversion_outline", (one.outline_moved / dx for one in conversions)),

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple, cast
 
 import numpy as np
-from snowshed._core import SimulationError
 
+from snowshed._core import SimulationError
 from snowshed.analysis.verification.measurements import Measured, Settings
 from snowshed.io.arrays import Floats
 from snowshed.scene.components import Condition, Panel, Slab

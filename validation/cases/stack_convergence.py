@@ -10,7 +10,7 @@ from snowshed.analysis.verification.measurements import Measured, Settings
 from validation.case import Case, Outcome, Quantity
 from validation.driving import relative
 from validation.lab_stack import (
-    MEASURES,
+    COMPARED,
     LabRun,
     noise,
     outcome_of,
@@ -92,7 +92,7 @@ def measure(settings: Settings) -> Outcome:
     """Run every seeding and compare the stacks after the last event with the reference."""
     runs = run_seedings(settings)
     event, dimension = int(settings["events"]), int(settings["dimension"])
-    measured = [_compared(name, runs, dimension, event) for name in MEASURES]
+    measured = [_compared(name, runs, dimension, event) for name in COMPARED]
     if len(runs) > 1:
         measured += [_spread(name, runs) for name in ("height", "length")]
     measured += [noise(name, runs, settings) for name in ("height", "length")]

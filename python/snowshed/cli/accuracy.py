@@ -1,9 +1,9 @@
-"""``--accuracy``: grid and scheme by the accuracy that is wanted, from recorded measurements.
+"""The option ``--accuracy``: grid and scheme for a wanted accuracy, from recorded measurements.
 
-What users care about are height and length of the stack. How far they were off in runs of the
-laboratory experiment, on which grid and with which scheme, is recorded. The size of cells is taken
-relative to the thickness of the slab: cells across the slab decide how well it bends and breaks,
-and every layer adds a gap of about a cell to the height.
+Accuracy means the errors of the stack's height and length. They are recorded for runs of the
+laboratory experiment on several grids and with several schemes. The size of cells counts relative
+to the thickness of the slab, because the number of cells across the slab decides how well it bends
+and breaks, and every layer adds a gap of about a cell to the height.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ ORDER_IN = MpmSettings.RESOLUTION  # the case is one of the material point metho
 
 
 def part(text: str) -> float:
-    """Parse a part of one, given as ``5%`` or ``0.05``.
+    """Return a fraction, given as ``5%`` or ``0.05``.
 
     Examples
     --------
@@ -69,9 +69,9 @@ class Choice:
     reached
         Whether the recorded runs with these settings were accurate enough.
     values
-        What is chosen, by its path in a scene; None for what keeps its default.
+        Chosen values by their paths in a scene; None for a setting that keeps its default.
     reason
-        What was chosen and why, in sentences.
+        The choice and its reason, in sentences.
     """
 
     reached: bool
@@ -84,16 +84,16 @@ def choose(
 ) -> Choice:
     """Choose the quickest settings whose stacks were as accurate as wanted in recorded runs.
 
-    Where none were, the most accurate are chosen, and the reason says so.
+    If none was accurate enough, the most accurate settings are chosen, and the reason says so.
 
     Parameters
     ----------
     wanted
         Largest relative error of the stack's height and length.
     scene
-        What the settings are for. It needs a slab.
+        The scene that the settings are for; it needs a slab.
     measurements
-        Of the case `CASE`; those that come with the package unless given.
+        Measurements of the case `CASE`; by default those of the package.
 
     Raises
     ------
@@ -161,7 +161,7 @@ class RecordedStack:
     Attributes
     ----------
     errors
-        Of each of `QUANTITIES`, relative; assured by all finer runs.
+        Relative error of each of `QUANTITIES`, assured by all finer runs.
     spreads
         Standard deviation of each over random seedings, relative to the mean; empty if unknown.
     wall_s
@@ -180,7 +180,7 @@ class RecordedStack:
 
 
 def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
-    """Return what is recorded of stacks."""
+    """Return the recorded stacks."""
     from snowshed.analysis.verification.measurements import to_table
     from snowshed.analysis.verification.solutions import assured_errors, key_of, rows_of, solutions
 
@@ -219,7 +219,7 @@ def _slab_thickness(data: Mapping[str, Any]) -> float:
 
 
 def _nearest(stacks: list[RecordedStack], data: Mapping[str, Any]) -> list[RecordedStack]:
-    """Return the stacks that were made in the circumstances nearest to the scene's."""
+    """Return the stacks whose circumstances are nearest to those of the scene."""
     for name, mine in _circumstances(data).items():
         held = {stack.settings[name] for stack in stacks if name in stack.settings}
         if held:
@@ -245,7 +245,7 @@ def _distance(value: Value, mine: Value) -> float:
 
 def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name: str) -> list[str]:
     """Return the rest of the first sentence, which tells the setting `name`, and what follows."""
-    from snowshed.analysis.verification.wording import settings
+    from snowshed.analysis.verification.setting_labels import settings
 
     scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != name}
     height, length = (percent(error, 2) for error in stack.errors)

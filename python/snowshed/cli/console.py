@@ -1,4 +1,4 @@
-"""What the commands that run and look at scenes print."""
+"""The output of the commands that run and describe scenes."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def print_slide(summary: SlideSummary, folder: Path) -> None:
 
 
 def print_plan(plan: dict[str, Any]) -> None:
-    """Print what a scene would use, leave out and cost."""
+    """Print the features that a scene uses and leaves out, and its cost."""
     shown = Table(show_header=False, box=None)
     shown.add_column(style="bold")
     for name, value in plan_rows(plan).items():

@@ -1,4 +1,4 @@
-"""How commands end that neither are done nor were given bad input."""
+"""Exit codes of commands that fail for other reasons than bad input."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import click
 
 
 class Stopped(click.ClickException):
-    """Interrupted; the message says how to go on. Click would swallow that of Ctrl-C itself."""
+    """An interruption, with a message that says how to go on; click drops that of Ctrl-C itself."""
 
     exit_code = 130
 
 
 class Failed(click.ClickException):
-    """Runs have failed, or it cannot go on."""
+    """A failure of runs, or of the command itself."""
 
     exit_code = 3

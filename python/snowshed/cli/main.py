@@ -1,8 +1,8 @@
-"""The command line: which commands there are, and how they end.
+"""The command line: the list of commands, and their exit codes.
 
-One event loop: ``snowshed panel|run|lua``; a slide on terrain: ``slide``; scenes and forecasts:
-``scene|plan|schema``; many runs: ``study``; a winter: ``season``; questions about them:
-``compare|sensitivity|calibrate``; the data set of panels: ``geometry|regress|predict``.
+``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``scene|plan|schema`` describe a scene,
+``study`` computes many runs, and ``season`` a winter. ``compare|sensitivity|calibrate`` answer
+questions about runs, and ``geometry|regress|predict`` treat the data set of panels.
 
 Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted. Errors are one
 line on stderr.
@@ -10,14 +10,14 @@ line on stderr.
 
 from __future__ import annotations
 
-import importlib
 import sys
 from collections.abc import Sequence
-from typing import Any, Optional
+from typing import Optional
 
 import click
 
 import snowshed._core as _core
+from snowshed.cli.deferred import Deferred
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -26,56 +26,23 @@ def cli() -> None:
     """Simulate snow that slides off a solar panel, event after event, and measure the stack."""
 
 
-class Deferred(click.Command):
-    """A command, or group of commands, that is imported when it is used; all others start quickly.
-
-    Parameters
-    ----------
-    name
-        As of the command it stands for, and of the function that makes it.
-    module
-        The module that defines it.
-    short_help
-        What the list of commands says of it, which does not import it.
-    """
-
-    def __init__(self, name: str, module: str, short_help: str) -> None:
-        super().__init__(name, short_help=short_help)
-        self._module = module
-
-    def make_context(
-        self,
-        info_name: Optional[str],
-        args: list[str],
-        parent: Optional[click.Context] = None,
-        **extra: Any,
-    ) -> click.Context:
-        """Return the context of the command itself, which takes over from here."""
-        return self.load().make_context(info_name, args, parent, **extra)
-
-    def load(self) -> click.Command:
-        """Return the command itself."""
-        command: click.Command = getattr(importlib.import_module(self._module), str(self.name))
-        return command
-
-
 #: Name of each command, the module in `snowshed.cli.commands` that has it, and what it does.
 DEFERRED = (
     ("panel", "run", "Run slide-offs from a panel described by options."),
     ("run", "run", "Run a scene file."),
     ("slide", "slide", "Run a small snow slide on terrain."),
-    ("plan", "scene", "Say what running a scene file would use and cost, without running it."),
+    ("plan", "scene", "Print the features and the cost of a scene file, without running it."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
     ("schema", "scene", "Print the JSON Schema of a scene."),
     ("compare", "scene", "Compare the stack heights of a 3D and a 2D results folder."),
-    ("lua", "lua", "Run a scene that Lua scripts describe, or leave Lua behind."),
-    ("study", "study", "Compute many runs: one scene, and parameters that vary."),
+    ("lua", "lua", "Run a scene that Lua scripts describe, or write it as JSON."),
+    ("study", "study", "Compute many runs of one scene whose parameters vary."),
     ("geometry", "regression", "Write the study of panel geometries that regress takes."),
     ("regress", "regression", "Regress stacks on panels: models, tables and figures."),
     ("predict", "regression", "Predict a stack's height and length without simulating it."),
-    ("season", "season", "Let the snow of a season gather, let go and pile up."),
-    ("sensitivity", "sensitivity", "Find which snow parameters matter for the stack."),
-    ("calibrate", "calibration", "Find the snow whose simulated stacks are those measured."),
+    ("season", "season", "Simulate a winter: snow accumulates, is released and piles up."),
+    ("sensitivity", "sensitivity", "Find the snow parameters that matter for the stack."),
+    ("calibrate", "calibration", "Find the snow whose simulated stacks agree with measured ones."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
     ("verify", "verify", "Check this installation against known answers, in seconds."),
     ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),
@@ -95,11 +62,11 @@ def main(
     Parameters
     ----------
     arguments
-        What follows the program's name.  [default: as the process was given them]
+        Arguments after the program's name. [default: those of the process]
     command
-        What to run; other programs than snowshed itself end in the same ways.
+        The command to run; other programs of the project end in the same ways.
     name
-        The program, as its help calls it.
+        Name of the program in its help.
     """
     try:
         settings = cli.context_settings

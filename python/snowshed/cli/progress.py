@@ -19,7 +19,7 @@ from rich.progress import Progress as Bar
 from snowshed.io.formatting import duration
 from snowshed.run.progress import Progress, Reporter
 
-#: Over how many seconds the speed is averaged that says what time is left.
+#: Time over which the speed is averaged that gives the time left, s.
 SPEED_PERIOD_S = 30.0
 LONG_PERIOD_S = 3600.0  # where units take long, and the time left should not jump when one ends
 
@@ -35,23 +35,23 @@ def progress_bar(
     width: int = 40,
     transient: bool = False,
 ) -> Iterator[Optional[Reporter]]:
-    """Yield what shows a `Progress` as a bar, which ends with the block.
+    """Yield a function that shows a `Progress` as a bar; the bar ends with the block.
 
-    The bar appears with the first report, so that errors before it stand alone. It shows the time
-    that is left: the one that the work tells, else the one that follows from the speed so far.
+    The bar appears with the first report, so that earlier errors stand alone. It shows the time
+    that is left as the work reports it, or else as it follows from the speed so far.
 
     Parameters
     ----------
     quiet
-        Whether to show nothing; None is yielded then.
+        Whether to show nothing; then None is yielded.
     announce
-        Returns a line to print before the bar, of the first report.
+        Function of the first report that returns a line to print before the bar.
     speed_period_s
-        Over how many seconds that speed is averaged.
+        Time over which this speed is averaged, s.
     width
-        Of the bar, in characters.
+        Width of the bar in characters.
     transient
-        Whether the bar vanishes at the end.
+        Whether the bar disappears at the end.
     """
     if quiet:
         yield None
@@ -92,7 +92,7 @@ def progress_bar(
 
 
 def _note(progress: Progress) -> str:
-    """Return the speed or the time left, as far as they are told."""
+    """Return the speed or the time left, if the report has them."""
     if progress.updates_per_s:
         return f"{progress.updates_per_s / 1e6:.1f} M updates/s"
     return "" if progress.left_s is None else f"{duration(progress.left_s)} left"

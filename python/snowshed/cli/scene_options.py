@@ -2,7 +2,7 @@
 
 The option for a parameter is the last part of its path in kebab case (``--youngs-modulus`` for
 ``snow.youngs_modulus``). Parameters of the panel, slab, ground and domain carry the section's name
-in front (``--slab-width``), and the names in `SHORT_NAMES` are exceptions to both.
+in front (``--slab-width``). The names in `SHORT_NAMES` are exceptions to both rules.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def scene_from_options(
 
 
 def in_terms_of_options(error: InputError) -> InputError:
-    """Return the error with the option in front, if it is about a parameter that has one."""
+    """Return the error with the option in front, if its parameter has one."""
     path = path_of(error)
     if current_path(path) in {parameter.path for parameter in scene_parameters()}:
         where, colon, rest = str(error).partition(":")
@@ -91,13 +91,13 @@ def in_terms_of_options(error: InputError) -> InputError:
 
 
 def path_of(error: InputError) -> str:
-    """Return the parameter that an error is about, as ``panel.tilt``; empty if it names none."""
+    """Return the path of an error's parameter, such as ``panel.tilt``; empty if it names none."""
     where = str(error).partition(":")[0]
     return where[1:].replace("/", ".") if where.startswith("/") else ""
 
 
 def numbers(text: str) -> list[float]:
-    """Parse numbers with commas between them."""
+    """Return the numbers in a text that separates them by commas."""
     try:
         return [float(part) for part in text.split(",")]
     except ValueError:
@@ -105,7 +105,7 @@ def numbers(text: str) -> list[float]:
 
 
 def json_object(text: str) -> Any:
-    """Parse a JSON object, given as text or as the name of a file that holds it."""
+    """Return a JSON object, given as text or as the name of a file."""
     try:
         if not text.lstrip().startswith("{"):
             text = read_input(Path(text)).decode("utf-8")

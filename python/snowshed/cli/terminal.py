@@ -1,4 +1,4 @@
-"""Tables that are whole without a terminal too."""
+"""Tables that stay whole without a terminal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rich.table import Table
 
 
 def wide_console(width: int = 100) -> Console:
-    """Return a console for stdout; what is no terminal gets `width` columns, not rich's 80."""
+    """Return a console for stdout; without a terminal it has `width` columns, not rich's 80."""
     console = Console(highlight=False)
     console.width = console.width if console.is_terminal else width
     return console
@@ -23,9 +23,9 @@ def plain_table(title: str, headings: Iterable[str] = (), **options: Any) -> Tab
     Parameters
     ----------
     title
-        Above it, at the left; may be empty.
+        Title above the table, at the left; may be empty.
     headings
-        Columns of numbers; all others are added to the table.
+        Heads of columns of numbers; other columns are added to the table.
     **options
         As of `rich.table.Table`.
     """

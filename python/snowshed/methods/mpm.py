@@ -32,7 +32,8 @@ class MpmSettings(MethodSettings):
     courant_factor : float
         Time step over the largest stable one. 0 < value <= 1; default 0.9; also step_factor.
     strain_limit : float
-        Largest |dt grad v| that a step may impose on a particle. 0 < value <= 0.5; default 0.2.
+        Largest ``|dt grad v|`` that a step may impose on a particle. 0 < value <= 0.5; default
+        0.2.
     sleep_speed : float
         Snow slower than this drops out of the steps until something moves it; 0: never [m/s]. 0 <=
         value <= 10000; default 0.02.

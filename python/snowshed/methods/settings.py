@@ -1,4 +1,4 @@
-"""What the settings of all methods have in common."""
+"""The common base of the settings of all methods."""
 
 from __future__ import annotations
 

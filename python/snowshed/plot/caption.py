@@ -5,7 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from snowshed.methods.registry import settings_of
+from snowshed.plot.labels import label, settings
 
+#: Parameters of the snow that are named.
+ELASTIC = ("youngs_modulus", "poissons_ratio")
+PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
@@ -27,22 +31,27 @@ def scene_caption(scene: dict[str, Any]) -> str:
     parts = [f"{scene['dimension']}D"]
     if panel := scene.get("panel"):
         parts.append(
-            f"panel {panel['length']:g} m, tilt {panel['tilt']:g}°, "
-            f"{panel['height']:g} m above ground, {_contact(panel)}"
+            f"panel {_shown('panel.length', panel)}, tilt {_shown('panel.tilt', panel)}, "
+            f"{_shown('panel.height', panel)} above ground, {_contact(panel)}"
         )
     if slab := scene.get("slab"):
         parts.append(_slab(slab))
-    if tilt := (scene.get("ground") or {}).get("tilt"):
-        parts.append(f"ground tilt {tilt:g}°")
-    settings = settings_of(scene)
-    parts.append(f"{settings.RESOLUTION} {settings.resolution:g} m")
-    return " · ".join(parts) + "\n" + _snow(scene) + f" · events {_between(scene)}"
+    if (ground := scene.get("ground")) and ground.get("tilt"):
+        parts.append(f"ground tilt {_shown('ground.tilt', ground)}")
+    method = settings_of(scene)
+    parts.append(f"{method.RESOLUTION} {method.resolution:g} m")
+    return " · ".join(parts) + f"\n{_snow(scene)} · events {scene['events']['between']}"
+
+
+def _shown(path: str, section: dict[str, Any]) -> str:
+    """Return the value of a parameter, which the section it belongs to holds, with its unit."""
+    return label(path).quantity(section[path.rpartition(".")[2]])
 
 
 def _slab(slab: dict[str, Any]) -> str:
     layers = slab["layers"]
     if not layers:
-        return f"slab {slab['thickness']:g} m thick"
+        return f"slab {_shown('slab.thickness', slab)} thick"
     thicknesses = [f"{layer['thickness']:.3g}" for layer in layers]
     if len(layers) > MOST_LAYERS:
         low, high = min(thicknesses, key=float), max(thicknesses, key=float)
@@ -57,23 +66,13 @@ def _contact(panel: dict[str, Any]) -> str:
 def _densities(scene: dict[str, Any]) -> str:
     layers = (scene.get("slab") or {}).get("layers") or [{}]
     found = [layer.get("snow", scene["snow"])["density"] for layer in layers]
-    return " to ".join(f"{density:g}" for density in sorted({min(found), max(found)}))
+    known = label("snow.density")
+    ends = sorted({min(found), max(found)})
+    return " to ".join([*map(known.value, ends[:-1]), known.quantity(ends[-1])])
 
 
 def _snow(scene: dict[str, Any]) -> str:
-    snow = scene["snow"]
-    text = (
-        f"snow {_densities(scene)} kg/m³, E {snow['youngs_modulus'] / 1e6:g} MPa, "
-        f"nu {snow['poissons_ratio']:g}"
-    )
-    if snow["model"] == "elastic":
-        return text + ", elastic"
-    return text + (
-        f", M {snow['critical_state_slope']:g}, "
-        f"p₀ {snow['preconsolidation_pressure'] / 1e3:g} kPa, "
-        f"β {snow['cohesion']:g}, ξ {snow['hardening_factor']:g}"
-    )
-
-
-def _between(scene: dict[str, Any]) -> str:
-    return str(scene["events"]["between"])
+    elastic = scene["snow"]["model"] == "elastic"
+    shown = ELASTIC if elastic else (*ELASTIC, *PLASTIC)
+    values = {f"snow.{name}": scene["snow"][name] for name in shown}
+    return f"snow {_densities(scene)}, {settings(values)}" + (", elastic" if elastic else "")

@@ -54,7 +54,7 @@ class Grid:
 
     @property
     def long(self) -> bool:
-        """Whether it should be folded."""
+        """True if it should be folded."""
         return len(self.rows) > LONG
 
 

@@ -1,81 +1,124 @@
-"""What tables and figures call the parameters of a scene: symbols, and units that read well."""
+"""Symbols, names and units of parameters, for tables, figures and messages."""
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from snowshed.scene.schema import parameter_units
+
+#: Units of the schema, as they are shown.
+SHOWN_UNITS: Mapping[str, str] = {"degrees": "°", "kg/m3": "kg/m³", "m/s2": "m/s²"}
+
 
 @dataclass(frozen=True)
-class Word:
-    """How a parameter is written.
+class Label:
+    """The name, symbol and unit of a parameter.
 
     Attributes
     ----------
-    symbol
-        Short, as the thesis writes it.
     name
         In words.
+    symbol
+        Short, as the thesis writes it; the name where there is none.
     unit
         Of the values as they are shown; empty for plain numbers.
     scale
         By how much values in SI units are divided to be shown.
     """
 
-    symbol: str
     name: str
+    symbol: str = ""
     unit: str = ""
     scale: float = 1.0
 
     @property
-    def label(self) -> str:
-        """Symbol and unit, for an axis."""
+    def axis(self) -> str:
+        """Symbol and unit, for an axis or the head of a column."""
         return f"{self.symbol}, {self.unit}" if self.unit else self.symbol
 
-    def value(self, number: float) -> str:
+    @property
+    def title(self) -> str:
+        """Name and symbol."""
+        return self.name if self.symbol == self.name else f"{self.name} {self.symbol}"
+
+    def value(self, number: float, digits: int = 4) -> str:
         """Return a value without its unit."""
-        return f"{number / self.scale:.4g}"
+        return f"{number / self.scale:.{digits}g}"
+
+    def quantity(self, number: float, digits: int = 4) -> str:
+        """Return a value with its unit."""
+        return self._with_unit(self.value(number, digits))
+
+    def change(self, before: float, after: float) -> str:
+        """Return two values with their unit."""
+        return self._with_unit(f"{self.value(before)} → {self.value(after)}")
+
+    def _with_unit(self, text: str) -> str:
+        return text + ("" if self.unit in ("", "°") else " ") + self.unit
 
 
-WORDS: Mapping[str, Word] = {
-    "snow.critical_state_slope": Word("M", "internal friction"),
-    "snow.preconsolidation_pressure": Word("p₀", "preconsolidation pressure", "kPa", 1e3),
-    "snow.cohesion": Word("β", "cohesion factor"),
-    "snow.hardening_factor": Word("ξ", "hardening factor"),
-    "snow.youngs_modulus": Word("E", "Young's modulus", "MPa", 1e6),
-    "seeding.seed": Word("seeding", "placement of the particles"),
-    "panel.friction": Word("panel friction", "panel friction"),
-    "panel.tilt": Word("panel tilt", "panel tilt", "degrees"),
+#: Name and symbol of each parameter, and the unit and scale where they differ from the schema's.
+LABELS: Mapping[str, Label] = {
+    "dimension": Label("dimension"),
+    "event": Label("event"),
+    "panel.height": Label("panel height"),
+    "panel.length": Label("panel length"),
+    "panel.width": Label("panel width"),
+    "panel.tilt": Label("panel tilt"),
+    "panel.condition": Label("panel, boundary condition"),
+    "panel.friction": Label("panel friction"),
+    "ground.tilt": Label("ground tilt"),
+    "ground.condition": Label("ground, boundary condition"),
+    "slab.thickness": Label("slab thickness"),
+    "slab.length": Label("slab length"),
+    "slab.width": Label("slab width"),
+    "snow.density": Label("density"),
+    "snow.youngs_modulus": Label("Young's modulus", "E", "MPa", 1e6),
+    "snow.poissons_ratio": Label("Poisson's ratio", "nu"),
+    "snow.critical_state_slope": Label("internal friction", "M"),
+    "snow.preconsolidation_pressure": Label("preconsolidation pressure", "p₀", "kPa", 1e3),
+    "snow.cohesion": Label("cohesion factor", "β"),
+    "snow.hardening_factor": Label("hardening factor", "ξ"),
+    "seeding.seed": Label("placement of the particles", "seeding"),
+    "numerics.dx": Label("grid size", "dx"),
+    "events.count": Label("events"),
+    "events.between": Label("stack between events"),
+    "events.max_time": Label("longest event"),
 }
 
 
-def word(path: str) -> Word:
-    """Return how a parameter is written; others than the known ones by their path.
+@functools.cache
+def label(path: str) -> Label:
+    """Return how a parameter is written; one that is not in `LABELS` by its path.
 
     Examples
     --------
-    >>> word("snow.preconsolidation_pressure").label
+    >>> label("snow.preconsolidation_pressure").axis
     'p₀, kPa'
-    >>> word("snow.preconsolidation_pressure").value(7000)
-    '7'
-    >>> word("slab.length").label
-    'slab.length'
+    >>> label("snow.preconsolidation_pressure").quantity(7000)
+    '7 kPa'
+    >>> label("events.rest_speed").axis
+    'events.rest_speed, m/s'
     """
-    return WORDS.get(path, Word(path, path))
+    known = LABELS.get(path, Label(path))
+    unit = known.unit or parameter_units().get(path, "")
+    return Label(known.name, known.symbol or known.name, SHOWN_UNITS.get(unit, unit), known.scale)
 
 
-def setting(values: Mapping[str, float]) -> str:
-    """Return values of some parameters as one text.
+def settings(values: Mapping[str, float]) -> str:
+    """Return values of some parameters as one text; those that are not finite are left out.
 
     Examples
     --------
-    >>> setting({"snow.cohesion": 0.2, "snow.youngs_modulus": 1e6})
-    'β 0.2, E 1 MPa'
+    >>> settings({"snow.cohesion": 0.2, "snow.youngs_modulus": 1e6, "panel.tilt": 40})
+    'β 0.2, E 1 MPa, panel tilt 40°'
     """
     return ", ".join(
-        f"{word(path).symbol} {word(path).value(value)} {word(path).unit}".rstrip()
+        f"{label(path).symbol} {label(path).quantity(value)}"
         for path, value in values.items()
         if np.isfinite(value)
     )

@@ -9,13 +9,12 @@ import numpy as np
 from matplotlib.colors import LightSource
 
 from snowshed.io.arrays import Floats
+from snowshed.methods.slide_maps import SlideMaps
 from snowshed.plot.figure_style import INK, STYLE, blank
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from snowshed.run.slides import SlideMaps
 
 LEAST_SHOWN = 0.01  # m of snow
 

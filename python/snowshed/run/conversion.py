@@ -1,4 +1,4 @@
-"""How far reseeding moved the stack (between = "reseed"): a row of conversions.csv."""
+"""A row of conversions.csv: how far reseeding moved the stack (between = "reseed")."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def resume_command(folder: Path) -> str:
 
 @dataclass
 class InterruptRequest:
-    """Whether an interrupt has been asked for."""
+    """True once an interrupt has been requested."""
 
     requested: bool = False
 

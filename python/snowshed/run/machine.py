@@ -1,4 +1,4 @@
-"""What a run ran on, and what it used."""
+"""Facts about the machine of a run, and the memory that it used."""
 
 from __future__ import annotations
 

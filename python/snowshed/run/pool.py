@@ -64,7 +64,7 @@ SHARED = Isolation()
 
 @dataclass(frozen=True)
 class Ended(Generic[Task, Result]):
-    """How a task ended: with a result, by an exception, or with its process.
+    """The end of a task: a result, an exception, or the death of its process.
 
     Attributes
     ----------

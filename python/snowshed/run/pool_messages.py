@@ -12,7 +12,7 @@ class Ready:
 
 @dataclass(frozen=True)
 class Fraction:
-    """How much of the task's work is done, 0 to 1."""
+    """The fraction of the task's work that is done, 0 to 1."""
 
     done: float
 

@@ -1,4 +1,4 @@
-"""How far long work has come: one form for runs, studies, regressions and whatever shows them."""
+"""Progress of long work: one form for runs, studies, regressions and all that shows them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Optional
 
 @dataclass(frozen=True)
 class Progress:
-    """How far long work has come.
+    """The progress of long work.
 
     Attributes
     ----------

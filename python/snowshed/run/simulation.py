@@ -394,7 +394,7 @@ class Simulation:
 
     @property
     def event_running(self) -> bool:
-        """Whether the present event has not ended."""
+        """True until the present event has ended."""
         return self._core.event_running
 
     @property

@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 import snowshed._core as _core
-from snowshed.io.arrays import Floats
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import Raster, write_ascii_grid
+from snowshed.io.raster import write_ascii_grid
+from snowshed.methods.slide_maps import SlideMaps
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
@@ -36,47 +36,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 REPORT_INTERVAL = 0.5  # s of wall time
-
-
-@dataclass(frozen=True)
-class SlideMaps:
-    """Maps of a slide at the nodes of its grid, the southernmost row first.
-
-    Attributes
-    ----------
-    terrain
-        Elevations, m.
-    peak_thickness, thickness
-        Of the snow, normal to the ground, m: the largest over time, and now.
-    peak_speed, speed
-        m/s.
-    west, south
-        Map coordinates of the south-west node, m.
-    cell
-        Distance of the nodes, m.
-    density
-        Of the snow, kg/m3.
-    """
-
-    terrain: Floats
-    peak_thickness: Floats
-    thickness: Floats
-    peak_speed: Floats
-    speed: Floats
-    west: float
-    south: float
-    cell: float
-    density: float
-
-    @property
-    def peak_pressure(self) -> Floats:
-        """Largest pressure over time, density times the square of the speed, kPa."""
-        pressure: Floats = 1e-3 * self.density * self.peak_speed**2
-        return pressure
-
-    def raster(self, values: Floats) -> Raster:
-        """Return one of the maps with its place."""
-        return Raster(values, self.west, self.south, self.cell)
 
 
 @dataclass(frozen=True)

@@ -340,7 +340,7 @@ class Domain(Record):
 
 @dataclass
 class Seeding(Record):
-    """How solids of snow are filled with particles (thesis A.3.2).
+    """The filling of solids of snow with particles (thesis A.3.2).
 
     Attributes
     ----------
@@ -363,7 +363,7 @@ class Seeding(Record):
 
 @dataclass
 class Events(Record):
-    """How many slide-offs, what happens between them, and when one has come to rest.
+    """The number of slide-offs, the treatment of the stack between them, and their end.
 
     Attributes
     ----------
@@ -388,7 +388,7 @@ class Events(Record):
 
 @dataclass
 class Output(Record):
-    """What a run writes besides its tables.
+    """Files that a run writes besides its tables.
 
     Attributes
     ----------

@@ -65,6 +65,19 @@ def scene_parameters(method: str = DEFAULT) -> tuple[Parameter, ...]:
 
 
 @functools.cache
+def parameter_units() -> Mapping[str, str]:
+    """Return the unit of every parameter that has one, by its dotted path, of all methods.
+
+    Examples
+    --------
+    >>> parameter_units()["snow.density"]
+    'kg/m3'
+    """
+    listed = (parameter for method in METHODS for parameter in scene_parameters(method))
+    return {parameter.path: parameter.unit for parameter in listed if parameter.unit}
+
+
+@functools.cache
 def schema_of_method(method: str) -> JsonObject:
     """Return the schema with the settings of one method, and only the parts that it takes.
 

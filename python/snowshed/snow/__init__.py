@@ -1,1 +1,1 @@
-"""What is known of snow: relations between its properties, and measuring a stack of it."""
+"""Snow: relations between its properties, and the measurement of a stack."""

@@ -22,13 +22,14 @@ AT_ONCE = 1000  # tasks handed over at once: enough for a cluster that grows wit
 class DaskWorkers:
     """The workers of a Dask scheduler; see `Workers` for the interface.
 
-    A worker computes as many runs at once as it has threads, each run with one thread. If one
-    dies, Dask hands its runs to others, which resume them where they share the study's folder.
+    A worker computes as many runs at once as it has threads, each run with one thread. If one dies,
+    Dask gives its runs to others. They resume these runs if they share the study's folder.
 
     Parameters
     ----------
     scheduler
-        Its address, the path of its .json file, a Dask cluster, or a client, which stays open.
+        The address of the scheduler, the path of its .json file, a Dask cluster, or a client, which
+        stays open.
 
     Raises
     ------
@@ -50,12 +51,12 @@ class DaskWorkers:
 
     @property
     def cores(self) -> int:
-        """How many runs the workers that are there now compute at once."""
+        """Number of runs that the present workers compute at once."""
         return max(1, sum(int(count) for count in self._client.nthreads().values()))
 
     @property
     def fractions(self) -> Mapping[str, float]:
-        """Nothing: of runs elsewhere only the end is known."""
+        """Nothing: only the end of runs in other processes is known."""
         return {}
 
     def submit(self, task: Task) -> None:
@@ -76,13 +77,13 @@ class DaskWorkers:
         return [_outcome(hash_, self._futures.pop(hash_)) for hash_ in ended]
 
     def stop(self) -> list[Outcome]:
-        """Take back what has not begun; what runs goes on to its end, but is not waited for."""
+        """Cancel the runs that have not begun; the others go on, but nobody waits for them."""
         self._client.cancel(list(self._futures.values()))
         self.close()
         return []
 
     def close(self) -> None:
-        """Let go of the scheduler."""
+        """Disconnect from the scheduler."""
         self._futures.clear()
         if self._owned:
             self._client.close()

@@ -1,4 +1,4 @@
-"""Computing one run, in whatever process it was handed to."""
+"""Computing one run in the process of a worker."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ FractionReporter = Callable[[float], None]
 
 
 def compute(task: Task, report: Optional[FractionReporter] = None) -> Outcome:
-    """Compute a run, from where an earlier attempt in its folder ended, and say what came of it.
+    """Compute a run, or resume an earlier attempt in its folder, and return the outcome.
 
     Parameters
     ----------
     task
-        The run. Where the folder that holds its folder does not exist, as on a cluster without
-        shared files, a temporary folder takes its place.
+        The run. If the parent of its folder does not exist, as on a cluster without shared files, a
+        temporary folder is used.
     report
-        Called with the part of the work that is done, about twice a second.
+        Called about twice a second with the fraction of the work that is done.
 
     Returns
     -------
     Outcome
-        Errors are outcomes too.
+        The outcome; errors are outcomes, too.
     """
     try:
         with _working_folder(Path(task.folder)) as folder:
@@ -76,7 +76,7 @@ def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Ou
 
 
 def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None:
-    """Run the events; an attempt that left nothing to resume from is thrown away."""
+    """Run the events; an earlier attempt without a checkpoint is removed."""
     if (folder / "scene.json").is_file():
         try:
             scene = ResolvedScene.load(folder / "scene.json")  # with the threads it had
@@ -91,7 +91,7 @@ def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None
 
 
 def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
-    """Return what the results folder says, as far as the run came."""
+    """Return the outcome that the results folder records."""
     results = RunFolder(folder)
     events = [{name: _value(name, cell) for name, cell in row.items()}
               for row in results.events.rows]  # fmt: skip
@@ -122,13 +122,13 @@ def _timing(facts: dict[str, Any]) -> dict[str, Any]:
 
 
 def _kind(error: Exception) -> str:
-    """Return the kind of an unforeseen error; the core's own messages say all."""
+    """Return the type of an unforeseen error as text; empty for errors of the core."""
     expected = isinstance(error, (InputError, _core.SimulationError))
     return "" if expected else f"{type(error).__name__}: "
 
 
 def _weighted(report: Optional[FractionReporter]) -> Optional[Reporter]:
-    """Turn a run's progress into the part of its work: event k moves the snow of k slabs."""
+    """Return a run's progress as a fraction of its work: event k moves the snow of k slabs."""
     if report is None:
         return None
 
@@ -143,7 +143,7 @@ def _weighted(report: Optional[FractionReporter]) -> Optional[Reporter]:
 
 @contextmanager
 def _working_folder(folder: Path) -> Iterator[Path]:
-    """Yield the folder, which no other process uses meanwhile, or a temporary one."""
+    """Yield the folder, locked against other processes, or a temporary one."""
     if folder.parent.is_dir():
         with holding(folder, _make):
             yield folder

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 LARGEST_STUDY = 1_000_000  # runs
 
-#: What may not be varied, because it does not change a result: all its values are the same run.
+#: Parameters that cannot vary, because they do not change a result.
 WITHOUT_EFFECT = ("title", "output", "numerics.threads")
 
 
@@ -36,23 +36,23 @@ class Study:
     Parameters
     ----------
     scene
-        What all runs have in common. It may be incomplete where a factor completes it.
+        The scene that all runs have in common. It may lack values that a factor sets.
     parts
-        Each part is a sequence of factors and stands for their product; the study is the union of
-        its parts. A run that several parts ask for is one run.
+        Each part is a sequence of factors and stands for their product. The study is the union of
+        its parts. A run that is in several parts is one run.
     name
         The study's name in its store.
     seeds
         Seeds of the particles' placement; every point is run with each of them. None keeps the
         scene's own.
     description
-        What it is for, for readers of its file.
+        Purpose of the study, for readers of its file.
 
     Raises
     ------
     InputError
-        If a factor names what a scene does not have, what does not change a result, or what
-        another factor of the same part names too; or if there are too many runs.
+        If a factor names a parameter that a scene does not have, that does not change a result, or
+        that another factor of the same part also names; or if there are too many runs.
 
     Examples
     --------
@@ -86,9 +86,9 @@ class Study:
         Parameters
         ----------
         scene, name, seeds
-            As of `Study`.
+            As for `Study`.
         axes
-            For each parameter, by its dotted path such as ``"snow.cohesion"``, its values.
+            The values of each parameter, by its dotted path such as ``"snow.cohesion"``.
         """
         return cls(scene, [[axis(path, values) for path, values in axes.items()]], name, seeds)
 
@@ -116,7 +116,7 @@ class Study:
         Raises
         ------
         InputError
-            If it holds a value that TOML does not have.
+            If the study holds a value that TOML cannot express.
 
         Examples
         --------
@@ -155,7 +155,7 @@ class Study:
 
     @property
     def axes(self) -> list[str]:
-        """The dotted paths of the parameters that vary, seeds not among them."""
+        """The dotted paths of the parameters that vary, without the seeds."""
         paths = (path for part in self.parts for factor in part for path in factor.columns)
         return list(dict.fromkeys(paths))
 
@@ -187,18 +187,18 @@ class Study:
     ) -> None:
         """Compute what is not yet in the store in `folder`.
 
-        Whenever this is interrupted, even killed, calling it again goes on from there, and
-        the results are the same, bit for bit, as if nothing had happened.
+        After an interruption, even a kill, the same call goes on. The results are the same, bit for
+        bit, as without the interruption.
 
         Parameters
         ----------
         folder
-            Where the store is: new, empty, or with a store in it, which studies may share. A
-            study of the same name that is already in it is replaced; runs it has computed stay.
+            Folder of the store: new, empty, or with a store in it, which studies may share. A study
+            of the same name is replaced; its computed runs stay.
         jobs
             Local processes at once; None: as many as there are cores.
         threads
-            Threads of each run; None: so many that the cores are full.
+            Threads of each run; None: as many as use all cores.
         scheduler
             Address of a Dask scheduler (or its .json file, a cluster or a client) that computes
             instead of local processes.
@@ -210,10 +210,10 @@ class Study:
         Raises
         ------
         InputError
-            If a scene is wrong, or the folder does not serve.
+            If a scene is wrong, or the folder cannot be used.
         StudyError
-            If the study cannot go on, for example because the disk is full. What has been
-            computed is safe.
+            If the study cannot go on, for example because the disk is full. Computed results are
+            safe.
         StudyInterrupted
             After Ctrl-C.
         """
@@ -244,7 +244,7 @@ class Study:
         Parameters
         ----------
         folder, jobs, threads, scheduler, retry_failed, progress
-            As for `compute`, which also says what may be raised.
+            As for `compute`, which raises the same errors.
 
         Returns
         -------
@@ -273,7 +273,7 @@ class Study:
         return read_table(folder, self.name)
 
     def expected_duration(self, *, jobs: Optional[int] = None) -> tuple[float, int]:
-        """Return how long all runs are expected to take on this machine, s, and its runs at once.
+        """Return the expected time of all runs on this machine, s, and the number of runs at once.
 
         Measures the machine's speed for a fraction of a second.
 

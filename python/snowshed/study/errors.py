@@ -1,4 +1,4 @@
-"""What can end a study before its last run is computed."""
+"""Errors that end a study before its last run is computed."""
 
 from __future__ import annotations
 

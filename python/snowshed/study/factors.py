@@ -1,7 +1,7 @@
 """Factors of a study: parameters of a scene, and the values they take together.
 
-A study crosses its factors: every point of one with every point of the others. What is to vary in
-step belongs into one factor.
+A study combines every point of a factor with every point of the others. Parameters that vary
+together are one factor.
 """
 
 from __future__ import annotations
@@ -28,12 +28,13 @@ class Factor:
     Parameters
     ----------
     columns
-        For each parameter, by its dotted path in a scene, its values; all have equally many.
+        The values of each parameter, by its dotted path in a scene; all parameters have the same
+        number of values.
 
     Raises
     ------
     InputError
-        If there are no values, or not equally many.
+        If there are no values, or different numbers of them.
 
     Examples
     --------
@@ -63,7 +64,7 @@ class Factor:
         return [dict(zip(self.columns, values)) for values in zip(*self.columns.values())]
 
 
-#: Factors that a study crosses with each other.
+#: Factors whose points a study combines with each other.
 Part = Sequence[Factor]
 
 
@@ -86,9 +87,9 @@ def linear(
     Parameters
     ----------
     start, stop
-        First value, and the last one that is allowed.
+        First value, and largest last value.
     step
-        Distance of the values; `stop` itself is among them if a whole number of steps reaches it.
+        Distance of the values; `stop` is one of them if a whole number of steps reaches it.
     count
         Number of values, at least 2; give either this or `step`.
 
@@ -170,7 +171,7 @@ def latin_hypercube(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> 
     Parameters
     ----------
     spans
-        For each parameter, by its dotted path, where to sample it.
+        The interval of each parameter, by its dotted path.
     count
         Number of points.
     seed
@@ -179,7 +180,7 @@ def latin_hypercube(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> 
     Raises
     ------
     InputError
-        If the count is not positive, the seed negative, or SciPy (extra ``study``) not installed.
+        If the count is not positive, or the seed is negative.
 
     Examples
     --------
@@ -193,8 +194,8 @@ def latin_hypercube(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> 
 def sobol(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
     """Return points of a scrambled Sobol sequence; `count` is a power of two.
 
-    Parameters and errors are those of `latin_hypercube`. Only at powers of two the sequence is
-    balanced, so that other counts are refused.
+    Parameters and errors are those of `latin_hypercube`. Counts that are not powers of two are
+    refused, because the sequence is not balanced there.
 
     Examples
     --------

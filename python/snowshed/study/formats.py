@@ -11,7 +11,7 @@ from snowshed.io.atomic import replacing
 from snowshed.io.extras import require
 from snowshed.io.units import unit_of_column
 from snowshed.scene.scene import PathLike
-from snowshed.scene.schema import scene_parameters
+from snowshed.scene.schema import parameter_units
 from snowshed.study.store import MEASURED_TYPES
 from snowshed.study.table import read_table
 
@@ -39,7 +39,7 @@ def export(
     file
         The file to write; it appears whole or not at all.
     form
-        "csv", "parquet" or "netcdf"; None: what the file's name ends with says (.csv, .parquet,
+        "csv", "parquet" or "netcdf"; None: chosen by the ending of the file's name (.csv, .parquet,
         .nc).
 
     Raises
@@ -56,8 +56,9 @@ def export(
 def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     """Return a study's table as an xarray Dataset with the dimensions run and event.
 
-    What differs from event to event has both dimensions, all else (hash, parameters, settings) is
-    a coordinate along run. Events that a run has not reached hold NaN, 0 steps and empty texts.
+    Columns that differ from event to event have both dimensions. All others (hash, parameters,
+    settings) are coordinates along run. Events that a run has not reached hold NaN, 0 steps and
+    empty texts.
 
     Raises
     ------
@@ -123,7 +124,7 @@ def _filled(columns: Any) -> Any:
 
 def _units() -> dict[str, str]:
     """Return the units of parameters, from the core's schema, and of measures, from their names."""
-    units = {parameter.path: parameter.unit for parameter in scene_parameters() if parameter.unit}
+    units = dict(parameter_units())
     for name in (*MEASURED_TYPES, "wall_s", "run_wall_s", "peak_memory_mb"):
         if unit := unit_of_column(name):
             units[name] = unit

@@ -17,9 +17,9 @@ class LocalWorkers:
     processes
         Runs at once.
     threads
-        Threads of each run; None: so many that the cores are full.
+        Threads of each run; None: as many as use all cores.
     cores
-        Cores to fill.
+        Number of cores to use.
     """
 
     def __init__(self, processes: int, threads: Optional[int], cores: int) -> None:
@@ -29,16 +29,16 @@ class LocalWorkers:
 
     @property
     def capacity(self) -> int:
-        """How many tasks it takes at once."""
+        """Number of tasks that it takes at once."""
         return self.pool.capacity
 
     def threads(self, unfinished: int) -> int:
-        """Return the threads of a run: few runs have several each, many have one."""
+        """Return the threads of a run: several if there are few runs, one if there are many."""
         return self._threads or max(1, self._cores // max(1, min(self.capacity, unfinished)))
 
     @property
     def fractions(self) -> dict[str, float]:
-        """How much of the work of each submitted run is done."""
+        """Fraction of the work of each submitted run that is done."""
         return {task.hash: done for task, done in self.pool.fractions}
 
     def submit(self, task: Task) -> None:

@@ -1,7 +1,7 @@
 """File locks that end with the process that holds them, however it ends.
 
-They are the kernel's (flock), on a file or a folder. That makes them the proof that a process is
-alive: unlike a process id they are never taken for those of a later process, and they hold across
+They are locks of the kernel (flock) on a file or a folder, and prove that a process is alive.
+Unlike a process id, a lock cannot be mistaken for that of a later process, and it works across
 containers.
 """
 
@@ -16,19 +16,19 @@ from pathlib import Path
 
 @contextmanager
 def holding(path: Path, make: Callable[[Path], None]) -> Iterator[None]:
-    """Hold the lock of a file or folder, after waiting for whoever holds it.
+    """Hold the lock of a file or folder, after waiting for its present holder.
 
     Parameters
     ----------
     path
-        What is locked.
+        The file or folder to lock.
     make
-        Makes it; called with `path`, which may be there already.
+        Creates it; called with `path`, which may exist already.
 
     Raises
     ------
     OSError
-        If it cannot be made, or the file system has no locks.
+        If it cannot be created, or the file system has no locks.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def holding(path: Path, make: Callable[[Path], None]) -> Iterator[None]:
 
 
 def is_held(path: Path) -> bool:
-    """Return whether some process holds the lock; nobody holds what is not there."""
+    """Return whether some process holds the lock; False if the path does not exist."""
     try:
         handle = os.open(path, os.O_RDONLY)
     except FileNotFoundError:
@@ -81,7 +81,7 @@ def _lock(handle: int, path: Path, kind: int) -> None:
 
 
 def _still_there(handle: int, path: Path) -> bool:
-    """Return whether the path still leads to what was opened: its last holder may remove it."""
+    """Return whether the path still leads to the opened file; its last holder may remove it."""
     try:
         return os.path.samestat(os.fstat(handle), path.stat())
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""What is handed to a worker, and what comes back."""
+"""The task that a worker is given, and the outcome that it returns."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class Task:
     hash, scene
         The run.
     folder
-        Where to work; an earlier attempt there is resumed.
+        Folder to work in; an earlier attempt there is resumed.
     threads
-        How many it may use.
+        Number of threads that the run may use.
     """
 
     hash: str
@@ -29,7 +29,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a run.
+    """The outcome of a run.
 
     Attributes
     ----------
@@ -39,14 +39,14 @@ class Outcome:
         - done: all events are there;
         - failed: the simulation could not go on, nor could it if repeated;
         - interrupted: stopped on request, to be resumed;
-        - lost: the worker died, or had not memory enough;
+        - lost: the worker died, or ran out of memory;
         - unable: the machine could not compute it, for example because its disk is full.
     events
         One row per completed event, as in events.csv.
     timing
         Facts about the computing, as in the table ``run_timing`` of the store.
     error
-        Why it is not done.
+        Reason why the run is not done.
     """
 
     hash: str

@@ -1,4 +1,4 @@
-"""Who computes: a process that claims runs, and whose lock says that it is alive."""
+"""The owner of runs: a process that claims them and holds a lock as long as it lives."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from snowshed.study.store import Store
 
 @contextmanager
 def ownership(store: Store) -> Iterator[str]:
-    """Be an owner: yield a name to claim runs with; at the end all claims are given up.
+    """Yield the name of a new owner, to claim runs with; its claims are released at the end.
 
-    If the process dies, its lock ends, and `release_dead` of another gives up its claims.
+    If the process dies, its lock ends, and `release_dead` of another process releases its claims.
     """
     owner = f"{platform.node()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
     with holding(_lock(store, owner), Path.touch):
@@ -36,7 +36,7 @@ def is_alive(store: Store, owner: str) -> bool:
 
 
 def release_dead(store: Store) -> None:
-    """Give up the claims of owners that have died."""
+    """Release the claims of owners that have died."""
     for owner in store.owners():
         if not is_alive(store, owner):
             store.release(owner)

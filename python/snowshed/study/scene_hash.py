@@ -1,10 +1,10 @@
-"""What makes two runs the same run: the content hash of their scene.
+"""The identity of a run: the content hash of its scene.
 
-The hash covers everything that decides a result: the complete scene as the core normalises it, with
-the contents of the meshes and grids it names instead of their paths, and the version of snowshed.
-It leaves out what does not change a result: the title, what is written besides the tables, and the
-number of threads. The instruction set is left out too, so that a study may be resumed on another
-machine; where it matters, ``SNOWSHED_KERNELS`` makes all machines round alike.
+The hash covers everything that decides a result: the complete scene as the core normalises it, and
+the version of snowshed. Files such as meshes and grids count by their contents, not by their paths.
+The title, the output and the number of threads do not change a result and are left out. The
+instruction set is left out, too, so that a study may be resumed on another machine.
+``SNOWSHED_KERNELS`` makes all machines round alike.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class Run:
     Attributes
     ----------
     hash
-        Its identity, 32 hexadecimal digits.
+        Content hash, 32 hexadecimal digits.
     scene
-        The complete scene as JSON; files it names have absolute paths.
+        The complete scene as JSON, with absolute paths of the files that it names.
     """
 
     hash: str
@@ -44,7 +44,7 @@ class Run:
 
     @classmethod
     def of(cls, scene: ResolvedScene) -> Run:
-        """Return the run of a scene, without outputs that a study would throw away.
+        """Return the run of a scene, without the outputs that a study does not keep.
 
         Examples
         --------
@@ -103,5 +103,5 @@ def _digest_of(path: str) -> str:
 
 @functools.lru_cache(maxsize=64)
 def _digest(path: str, modified: int, size: int) -> str:
-    """Return the digest of a file's content; the runs of a study mostly share their files."""
+    """Return the digest of a file's content; kept, since the runs of a study share their files."""
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()

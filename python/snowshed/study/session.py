@@ -19,7 +19,7 @@ from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.pool import available_cores
 from snowshed.run.progress import Progress, Reporter
 from snowshed.scene.scene import PathLike
-from snowshed.study import forecast
+from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.local import LocalWorkers
 from snowshed.study.locks import is_held
@@ -36,7 +36,7 @@ DEATHS = 3  # workers that may die of a run before it counts as failed
 
 @dataclass(frozen=True)
 class Resources:
-    """What a study may use; see `Study.run` for the fields."""
+    """The resources that a study may use; see `Study.run` for the fields."""
 
     jobs: Optional[int] = None
     threads: Optional[int] = None
@@ -51,7 +51,7 @@ class Resources:
                 raise InputError(f"{name}: not with a scheduler, whose workers decide that")
 
     def workers(self, runs: int) -> tuple[Workers, int]:
-        """Return workers for so many runs, and how many runs they compute at once."""
+        """Return workers for a number of runs, and how many runs they compute at once."""
         if self.scheduler is not None:
             from snowshed.study.cluster import DaskWorkers
 
@@ -74,12 +74,12 @@ def compute_runs(
     retry_failed: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
-    """Enter a study's runs into the store in a folder and compute what is missing.
+    """Enter a study's runs into the store in a folder, and compute the missing ones.
 
     Parameters
     ----------
     study, axes, runs
-        Its name, the paths of what varies in it, and its runs.
+        Name of the study, paths of the parameters that vary, and runs.
     folder, jobs, threads, scheduler, retry_failed, progress
         As for `Study.compute`.
     """
@@ -99,12 +99,12 @@ def resume(
     retry_failed: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
-    """Compute what is missing of a study, or of all studies, in a store.
+    """Compute the missing runs of a study, or of all studies, in a store.
 
     Parameters
     ----------
     folder
-        Where the store is.
+        Folder of the store.
     study
         Name of the study; None: all.
     jobs, threads, scheduler, retry_failed, progress
@@ -124,7 +124,7 @@ def resume(
 
 
 def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> tuple[float, int]:
-    """Return how long runs are expected to take on this machine, s, and how many run at once.
+    """Return the expected time of runs on this machine, s, and the number of runs at once.
 
     Measures the machine's speed for a fraction of a second.
 
@@ -136,9 +136,9 @@ def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> t
         As for `Study.compute`.
     """
     workers, at_once = Resources(jobs).workers(len(scenes))
-    works = [forecast.work(scene) for scene in scenes]
+    works = [cost_estimate.work(scene) for scene in scenes]
     threads = workers.threads(len(scenes))
-    return forecast.expected(scenes, works, at_once, threads), at_once
+    return cost_estimate.expected(scenes, works, at_once, threads), at_once
 
 
 def _compute(
@@ -177,7 +177,7 @@ def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
 
 
 def _tidy(store: Store) -> None:
-    """Remove what killed processes have left behind and nobody needs to go on."""
+    """Remove files of killed processes that no run needs to go on."""
     for path in store.running.iterdir():
         leftover = path.suffix == ".lock" or store.state(path.name)[0] != "pending"
         if leftover and not is_held(path):
@@ -189,7 +189,7 @@ def _remove(folder: Path) -> None:
 
 
 class _Session:
-    """The runs of some studies, from what is missing to what is stored."""
+    """The computation of the missing runs of some studies."""
 
     def __init__(
         self,
@@ -205,7 +205,7 @@ class _Session:
         self.interrupt = interrupt
         self.counts = Counter(run.status for run in runs)
         pending = [run for run in runs if run.status == "pending"]
-        self.work = {run.hash: forecast.work(run.scene) for run in pending}
+        self.work = {run.hash: cost_estimate.work(run.scene) for run in pending}
         # The longest first, so that none is left to run alone at the end.
         self.waiting = deque(sorted(pending, key=lambda run: -self.work[run.hash]))
         self.running: dict[str, StoredRun] = {}
@@ -214,7 +214,7 @@ class _Session:
         self.deaths: Counter[str] = Counter()
 
     def run(self, tell: Optional[Callable[[], None]]) -> None:
-        """Compute until nothing is left."""
+        """Compute until no run is missing."""
         try:
             self._compute(tell)
         except StudyError:
@@ -254,7 +254,7 @@ class _Session:
         return len(self.running) < self.workers.capacity
 
     def _look_elsewhere(self) -> None:
-        """Take over what other processes have left undone, and count what they have done."""
+        """Take over runs of dead processes, and count the runs that others have done."""
         if not self.elsewhere or time.monotonic() < self.looked + ELSEWHERE_S:
             return
         self.looked = time.monotonic()
@@ -271,7 +271,7 @@ class _Session:
         self.elsewhere = still
 
     def _wait(self) -> list[tuple[StoredRun, Outcome]]:
-        """Wait a moment for runs to end; return those that did."""
+        """Wait a moment for runs to end; return those that have ended."""
         if self.running:
             ended = self.workers.collect(POLL_S)
             return [(self.running.pop(outcome.hash), outcome) for outcome in ended]
@@ -289,7 +289,7 @@ class _Session:
             self.waiting.appendleft(run)
 
     def _after_death(self, outcome: Outcome) -> Outcome:
-        """Return the outcome of a run whose worker died: not every death is the run's fault."""
+        """Return the outcome of a run whose worker died; a run fails only after several deaths."""
         self.deaths[outcome.hash] += 1
         if self.deaths[outcome.hash] < DEATHS:
             return outcome
@@ -307,7 +307,7 @@ class _Session:
         del self.work[hash_]
 
     def _stop(self) -> None:
-        """Stop all workers, at checkpoints, and store what has ended meanwhile."""
+        """Stop all workers at checkpoints, and store the runs that have ended."""
         for outcome in self.workers.stop():
             if outcome.status in ("done", "failed"):
                 self._store(outcome)
@@ -317,7 +317,7 @@ class _Session:
 
 
 class _Narrator:
-    """Tells how far a session has come."""
+    """Reports the progress of a session."""
 
     def __init__(self, session: _Session, report: Reporter, at_once: int) -> None:
         self._session = session
@@ -327,7 +327,7 @@ class _Narrator:
         works = [session.work[run.hash] for run in session.waiting]
         threads = session.workers.threads(len(works))
         self._work = sum(works) or 1.0
-        self._expected = forecast.expected(scenes, works, at_once, threads)
+        self._expected = cost_estimate.expected(scenes, works, at_once, threads)
 
     def __call__(self) -> None:
         session = self._session

@@ -1,6 +1,6 @@
 """The store of studies: an SQLite database that survives any end of the processes that use it.
 
-Every change is one transaction with a write-ahead log that is flushed to the disk (WAL, FULL).
+Every change is one transaction, in a write-ahead log that is flushed to the disk (WAL, FULL).
 
 ============= ==========================================================================
 study         name, and its axes (JSON list of dotted paths)
@@ -11,8 +11,8 @@ event_timing  wall time of each event, apart, since it differs whenever a run is
 run_timing    wall time of each run, and what computed it
 ============= ==========================================================================
 
-The status of a run is pending, done or failed. Its owner, while it is being computed, is the name
-of a lock in the folder ``running`` (see `snowshed.study.owner`).
+The status of a run is pending, done or failed. While a run is computed, its owner is the name of a
+lock in the folder ``running`` (see `snowshed.study.owner`).
 """
 
 from __future__ import annotations
@@ -121,12 +121,12 @@ class Store:
 
     @classmethod
     def create(cls, folder: PathLike) -> Store:
-        """Open the store in a folder, which is made if need be.
+        """Open the store in a folder, and create both if they do not exist.
 
         Raises
         ------
         InputError
-            If the folder holds other things.
+            If the folder holds other files.
         StudyError
             If the store cannot be used.
         """
@@ -138,7 +138,7 @@ class Store:
 
     @classmethod
     def open(cls, folder: PathLike) -> Store:
-        """Open the store that is in a folder; where that cannot be written, for reading.
+        """Open the store in a folder; for reading only, if the folder is read-only.
 
         Raises
         ------
@@ -170,7 +170,7 @@ class Store:
         return self.folder / RUNNING
 
     def register(self, study: str, axes: Sequence[str], runs: Iterable[Run]) -> None:
-        """Enter a study with its runs; it takes the place of one with the same name."""
+        """Enter a study with its runs; it replaces a study of the same name."""
         runs = list(runs)
         with self._transaction() as write:
             write.execute("DELETE FROM study_run WHERE study = ?", (study,))
@@ -263,7 +263,7 @@ class Store:
         return (rows[0][0], rows[0][1]) if rows else ("unknown", None)
 
     def claim(self, hash_: str, owner: str) -> bool:
-        """Take a pending run that nobody else computes; return whether it is the owner's now."""
+        """Claim a pending run that no other owner computes; return whether this succeeded."""
         with self._transaction() as write:
             claimed = write.execute(
                 "UPDATE run SET owner = ?1 WHERE hash = ?2 AND status = 'pending'"
@@ -273,17 +273,17 @@ class Store:
             return claimed.rowcount == 1
 
     def release(self, owner: str) -> None:
-        """Give up all runs of an owner."""
+        """Release all runs of an owner."""
         with self._transaction() as write:
             write.execute("UPDATE run SET owner = NULL WHERE owner = ?", (owner,))
 
     def owners(self) -> list[str]:
-        """Return everybody who has claimed a run."""
+        """Return all owners that have claimed a run."""
         rows = self.read("SELECT DISTINCT owner FROM run WHERE owner IS NOT NULL")
         return [owner for (owner,) in rows]
 
     def record(self, outcome: Outcome) -> None:
-        """Store what a run gave, unless it is stored already."""
+        """Store the outcome of a run, unless it is stored already."""
         with self._transaction() as write:
             updated = write.execute(
                 "UPDATE run SET status = ?, error = ?, owner = NULL"
@@ -299,7 +299,7 @@ class Store:
             _insert(write, "run_timing", {"hash": outcome.hash, **outcome.timing})
 
     def reset(self, hashes: Iterable[str]) -> None:
-        """Make runs that failed pending again."""
+        """Set failed runs to pending."""
         with self._transaction() as write:
             for hash_ in hashes:
                 failed = write.execute(
@@ -327,7 +327,7 @@ def _make_folder(folder: Path) -> None:
 
 
 def _connect(folder: Path) -> sqlite3.Connection:
-    """Open the database, making what it lacks; no other process may do so at the same time."""
+    """Open the database, and create missing tables; no other process may do so at the same time."""
     if not (folder / FILE).exists() and any(folder.iterdir()):
         raise InputError(f"{folder}: not empty, and holds no study; choose a new folder")
     with _translated(folder):
@@ -345,7 +345,7 @@ def _connect(folder: Path) -> sqlite3.Connection:
 
 
 def _connect_read_only(folder: Path) -> sqlite3.Connection:
-    """Open the database in a folder where nothing can be written, so that nobody changes it."""
+    """Open the database in a folder that is read-only, so that no process changes it."""
     log = folder / f"{FILE}-wal"
     if log.exists() and log.stat().st_size > 0:
         raise InputError(
@@ -381,7 +381,7 @@ def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
 
 
 def _add_new_measures(connection: sqlite3.Connection) -> None:
-    """Give a store of earlier days the columns that events.csv has gained since."""
+    """Add the columns that events.csv has gained since the store was created."""
     present = {row[1] for row in connection.execute("PRAGMA table_info(event)")}
     for name in MEASURED_TYPES.keys() - present:
         connection.execute(f"ALTER TABLE event ADD COLUMN {name} {MEASURED_TYPES[name]}")
@@ -411,7 +411,7 @@ def _transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]
 
 @contextmanager
 def _translated(folder: Path) -> Iterator[None]:
-    """Turn errors of the database into what the user can do about them."""
+    """Turn errors of the database into errors that say what the user can do."""
     try:
         yield
     except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter: SQLite quotes damaged text

@@ -16,7 +16,7 @@ from snowshed.io.input_file import read_input
 from snowshed.io.messages import shortened
 from snowshed.io.record import check_once
 from snowshed.io.toml import toml_lines, toml_value
-from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
@@ -103,7 +103,7 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 # [[part]]
 # axes.panel.tilt = [50, 60]
 """
-_OTHER_SETTINGS = ", ".join(name for name in ACCURACY if name != MpmSettings.RESOLUTION)
+_OTHER_SETTINGS = ", ".join(name for name, path in ACCURACY.items() if path != resolution_path({}))
 
 #: A commented study file to begin with.
 TEMPLATE = _TEMPLATE.replace(
@@ -113,7 +113,7 @@ TEMPLATE = _TEMPLATE.replace(
 
 @dataclass(frozen=True)
 class Content:
-    """What a study file holds; see `Study` for the fields."""
+    """The contents of a study file; see `Study` for the fields."""
 
     scene: Scene
     parts: Sequence[Part]
@@ -134,7 +134,7 @@ def naming(file: Path) -> Iterator[None]:
 
 
 def read(file: Path) -> Content:
-    """Return what a study file holds; see `Study.load`, which names the file in errors."""
+    """Return the contents of a study file; see `Study.load`, which names the file in errors."""
     return _content(_parsed(read_input(file)), file)
 
 
@@ -158,7 +158,7 @@ def text(content: Content) -> str:
 
 
 def _shared_axes(parts: Sequence[Part]) -> Part:
-    """Return the factors with which all parts begin; of a single part all."""
+    """Return the factors with which all parts begin; all factors of a single part."""
     if len(parts) == 1:
         return parts[0]
     shared: list[Factor] = []
@@ -170,7 +170,7 @@ def _shared_axes(parts: Sequence[Part]) -> Part:
 
 
 def _factor_blocks(part: Part, prefix: str, folder: Path) -> Iterator[list[str]]:
-    """Yield the lines of each table that stands for factors, which reading finds in this order."""
+    """Yield the lines of each table of factors, in the order in which they are read."""
     columns = [_with_absolute_files(dict(factor.columns), folder) for factor in part]
     single = [len(one) == 1 for one in columns]
     first = single.index(False) if False in single else len(columns)
@@ -182,7 +182,7 @@ def _factor_blocks(part: Part, prefix: str, folder: Path) -> Iterator[list[str]]
 
 
 def _axis_lines(axes: Mapping[str, Any]) -> list[str]:
-    """Return a line for each axis, such that reading finds them in this order."""
+    """Return a line for each axis, in the order in which they are read."""
     lines = list(toml_lines(axes))
     if list(_flatten(tomllib.loads("\n".join(lines)))) == list(axes):
         return lines
@@ -263,7 +263,7 @@ def _with_absolute_files(value: Any, folder: Path) -> Any:
 
 
 def _absolute(value: Any, folder: Path) -> Any:
-    """Return a file's path, or those of an axis of files, found from `folder`."""
+    """Return the path of a file, or the paths of an axis of files, relative to `folder`."""
     if isinstance(value, list):
         return [_absolute(item, folder) for item in value]
     return os.fspath(folder / value) if value and isinstance(value, (str, os.PathLike)) else value
@@ -356,7 +356,7 @@ def _range_numbers(value: Any, keys: tuple[str, ...], where: str) -> dict[str, A
 
 
 def _flatten(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Return what nested tables hold under dotted paths; a range is a value, not a table."""
+    """Return the values of nested tables by dotted paths; a range is a value, not a table."""
     flat: dict[str, Any] = {}
     for key, value in table.items():
         if isinstance(value, dict) and not _is_range(value):
@@ -367,13 +367,13 @@ def _flatten(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def _is_range(table: Mapping[str, Any]) -> bool:
-    """Whether a table is a range, and no parameters that are called like its keys."""
+    """Return whether a table is a range, and not parameters that are called like its keys."""
     nested = any(isinstance(value, (dict, list)) for value in table.values())
     return not nested and bool(table.keys() & set(RANGE_KEYS))
 
 
 def _tables(data: Mapping[str, Any], key: str, where: str) -> list[tuple[Mapping[str, Any], str]]:
-    """Return the tables of an array of tables, each with where it is, counted from 1."""
+    """Return the tables of an array of tables, each with its place, counted from 1."""
     tables = data.get(key, [])
     if not isinstance(tables, list):
         raise InputError(f"{where}{key}: not a list of tables; write [[{where}{key}]]")
@@ -406,7 +406,7 @@ def _typed(value: Any, kind: type, where: str, expected: str) -> Any:
 
 
 def _named(where: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
-    """Call `make`, naming the place in the file if it refuses."""
+    """Call `make`, and name the place in the file in its errors."""
     try:
         return make(*arguments, **options)
     except InputError as error:

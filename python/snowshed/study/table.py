@@ -26,17 +26,17 @@ def read_table(
 ) -> pd.DataFrame:
     """Read the table of a study, as far as its runs are computed.
 
-    The table depends on the runs alone: not on their order of computation, on interruptions, or on
-    the number of workers.
+    The table depends on the runs alone. Their order, interruptions and the number of workers do not
+    change it.
 
     Parameters
     ----------
     folder
-        Where the store is.
+        Folder of the store.
     study
-        Name of the study; not needed if the store holds but one.
+        Name of the study; not needed if the store holds only one.
     timing
-        Whether to add what differs whenever a run is repeated: ``wall_s`` (of the event),
+        Whether to add the columns that differ when a run is repeated: ``wall_s`` (of the event),
         ``run_wall_s``, ``threads``, ``particles``, ``particle_updates``, ``peak_memory_mb``,
         ``host``, ``cpu`` and ``finished``.
 

@@ -1,4 +1,4 @@
-"""What computes the runs of a study: the interface of local processes and of a cluster."""
+"""Workers that compute the runs of a study: the interface of local processes and clusters."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ class Workers(Protocol):
 
     @property
     def capacity(self) -> int:
-        """How many tasks it takes at once."""
+        """Number of tasks that it takes at once."""
 
     def threads(self, unfinished: int) -> int:
-        """Return how many threads a run may use when so many are not yet done."""
+        """Return the number of threads of a run while `unfinished` runs are left."""
 
     def submit(self, task: Task) -> None:
         """Start computing a task; no more than `capacity` at once."""
@@ -26,10 +26,10 @@ class Workers(Protocol):
 
     @property
     def fractions(self) -> Mapping[str, float]:
-        """How much of the work of each submitted run is done, as far as that is known."""
+        """Fraction of the work of each submitted run that is done, as far as it is known."""
 
     def stop(self) -> Sequence[Outcome]:
-        """Ask all tasks to stop where they can go on later; return what ended meanwhile."""
+        """Ask all tasks to stop at checkpoints; return the tasks that ended meanwhile."""
 
     def close(self) -> None:
         """End all work at once."""

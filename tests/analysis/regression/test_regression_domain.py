@@ -22,7 +22,7 @@ def test_questions_inside(panel):
     [
         ((5, 4.5, 2, 40), "panel height 4.5 m is outside the data, which reach from 1 to 4 m"),
         ((6, 2, 2, 40), "event 6 is outside the data, which reach from 1 to 5"),
-        ((5, 2, 2, 30), "panel tilt 30 degrees is outside the data"),
+        ((5, 2, 2, 30), "panel tilt 30° is outside the data"),
         ((5, 1, 10, 70), "not together: panel height 1 m, panel length 10 m, panel tilt 70"),
         ((5, 3, 9, 60), "the nearest panel in the data has panel height 3 m, panel length 8 m"),
     ],
@@ -65,9 +65,7 @@ def test_an_input_that_does_not_vary_must_be_as_it_is():
     flat = Domain(np.array([[1, h, 1, 40] for h in (1, 2, 3)], float))
     assert flat.objections(np.array([1, 1.5, 1, 40.0])) == []
     (objection,) = flat.objections(np.array([1, 1.5, 1, 41.0]))
-    assert objection.endswith(
-        "panel tilt 41 degrees is outside the data, which have 40 degrees only"
-    )
+    assert objection.endswith("panel tilt 41° is outside the data, which have 40° only")
 
 
 def test_a_lonely_panel_does_not_fill_the_gap_before_it():

@@ -235,7 +235,7 @@ def test_panels_outside_the_data_are_named_and_marked(file):
         predict(**asked, model=file)
     said = str(refused.value)
     assert said.startswith("2 of 4 panels lie outside the data: panel 1: panel height 9 m is")
-    assert "; panel 3: panel tilt 89 degrees is outside the data" in said
+    assert "; panel 3: panel tilt 89° is outside the data" in said
     forced = predict(**asked, model=file, extrapolate=True)
     assert forced.table["extrapolated"].tolist() == [False, True, False, True]
     assert [text[:8] for text in forced.objections] == ["panel 1:", "panel 3:"]

@@ -122,6 +122,18 @@ def test_resuming_a_finished_season_changes_nothing(finished, season_file):
         run_season(season_file, panel_scene(), folder)
 
 
+def test_a_scene_may_be_a_file_or_its_data(season_file, tmp_path):
+    """Nothing lets go of a flat panel, so that nothing is simulated."""
+    flat = panel_scene(**{"panel.tilt": 1.0}).resolve()
+    flat.save(tmp_path / "scene.json")
+    tables = [
+        run_season(season_file, scene, tmp_path / name, pictures=False).table
+        for name, scene in (("a", flat), ("b", flat.data), ("c", tmp_path / "scene.json"))
+    ]
+    assert tables[0]["event"].isna().all()
+    assert tables[0].equals(tables[1]) and tables[0].equals(tables[2])
+
+
 def test_slabs_lie_where_the_core_would_lay_them(season_file):
     days = accumulate(read_season(season_file), SeasonSettings(friction=0.1), 50.0)
     for dimension in (2, 3):

@@ -22,7 +22,7 @@ def tilt(positions, degrees):
 
 
 def test_ridge():
-    """1.5 % of a triangle at either end: sqrt(0.03) of half the base; the shell loses a cell."""
+    """1.5 % of a triangle at either end: sqrt(0.03) of half the base; the surface loses a cell."""
     base, height = 1.0, 0.3
     stack = measure(triangle(base, height))
     length = base * (1 - np.sqrt(0.03))

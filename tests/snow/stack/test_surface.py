@@ -1,12 +1,12 @@
 import numpy as np
 
-from snowshed.snow.stack.surface import outline, shell
+from snowshed.snow.stack.surface import outline, surface_particles
 
 
 def test_keeps_the_highest_particle_of_each_cell():
     random = np.random.default_rng(1)
     heap = random.uniform(0, 1, (50_000, 3))
-    top = shell(heap)
+    top = surface_particles(heap)
     cells = np.minimum(np.floor(30 * heap[:, :2]), 29)
     assert len(top) == 900
     for i in top[::100]:
@@ -16,13 +16,13 @@ def test_keeps_the_highest_particle_of_each_cell():
 
 def test_cells_span_the_range_of_the_snow():
     heap = np.array([[5.0, 1, 0], [5.0, 2, 0], [8.0, 1, 0], [8.0, 2, 0]])
-    assert sorted(shell(heap)) == [0, 1, 2, 3]
+    assert sorted(surface_particles(heap)) == [0, 1, 2, 3]
 
 
 def test_plane_snow_has_thirty_columns():
     random = np.random.default_rng(2)
     heap = random.uniform(0, 1, (5_000, 3)) * [1, 0, 1]
-    assert len(shell(heap)) == 30
+    assert len(surface_particles(heap)) == 30
 
 
 def test_outline_follows_the_surface():
@@ -34,5 +34,5 @@ def test_outline_follows_the_surface():
     assert np.abs(profile[:, 1] - 1 - 0.5 * np.sin(2 * profile[:, 0])).max() < 0.03
 
 
-def test_nothing_has_no_shell():
-    assert len(shell(np.zeros((0, 3)))) == len(outline(np.zeros((0, 3)))) == 0
+def test_nothing_has_no_surface():
+    assert len(surface_particles(np.zeros((0, 3)))) == len(outline(np.zeros((0, 3)))) == 0

@@ -29,15 +29,15 @@ class Simulated:
     Attributes
     ----------
     parameters
-        Dotted paths of what is calibrated: all that varies but the panel's tilt and the seed.
+        Dotted paths of the calibrated parameters: all that vary, except the panel's tilt and the
+        seed.
     sets
         The parameter sets, one row each, indexed from 1; also those whose runs have failed.
     rows
         One row per run and event: ``set``, ``tilt``, ``event``, ``seed``, and the measures
         ``height``, ``length``, ``head``, ``tail`` in m.
     pending
-        Runs of the study that are not computed yet; sets without any other run are not among
-        these.
+        Number of runs that are not computed yet, without the sets of which no run is computed.
     """
 
     parameters: Sequence[str]
@@ -54,17 +54,17 @@ def read_simulated(
     Parameters
     ----------
     folder
-        Where the store is, or a table that ``snowshed study export`` wrote.
+        Folder of the store, or a table that ``snowshed study export`` wrote.
     study
-        Name of the study; not needed if the store holds but one.
+        Name of the study; not needed if the store holds only one.
     measure
         "stack": 97 % of the snow, as the thesis measures; "body": the largest connected body.
 
     Raises
     ------
     InputError
-        If there is no such study, it varies nothing that could be calibrated, or it does not say
-        the panel's tilt.
+        If there is no such study, no parameter varies in it, or the panel's tilt is not among its
+        axes.
     """
     table = StackTable.read(folder, study)
     try:
@@ -98,8 +98,8 @@ def compare(stacks: Simulated, measurements: Sequence[Measurement]) -> pd.DataFr
     -------
     pandas.DataFrame
         One row per parameter set and measurement: ``set``, the fields of the measurement, and
-        ``simulated`` (m), the mean over the seedings. A set that lacks one of the measured stacks
-        (a run has failed or is not computed yet) has none at all.
+        ``simulated`` (m), the mean over the seedings. A set is left out if one of the measured
+        stacks is missing, because a run has failed or is not computed yet.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
 from snowshed.study.definition import Study
 
-#: The corners of the thesis's grid, to see the way.
+#: The corners of the thesis's grid, for a trial.
 QUICK: Mapping[str, Sequence[float]] = {
     SLOPE: (min(CALIBRATION[SLOPE]), max(CALIBRATION[SLOPE])),
     PRESSURE: (min(CALIBRATION[PRESSURE]), max(CALIBRATION[PRESSURE])),
@@ -30,11 +30,11 @@ def calibration_study(
     Parameters
     ----------
     measurements
-        They decide the tilts of the panel and the number of events.
+        Measured stacks, which decide the tilts of the panel and the number of events.
     quick
-        Whether the 12 corners of the grid, in 2D and coarse, to see the way.
+        Whether to use the 12 corners of the grid, in 2D and coarse, for a trial.
     seeds
-        Seedings of each triplet and tilt; 2 if not given, so that their noise is known.
+        Seedings of each triplet and tilt; by default 2, which show the noise.
 
     Raises
     ------

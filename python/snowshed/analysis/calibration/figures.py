@@ -1,4 +1,4 @@
-"""Figures of chapter 4, and of the posterior beside it."""
+"""Figures of chapter 4 and of the posterior."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from snowshed.analysis.calibration.surrogate import EXTRA
 from snowshed.io.arrays import Booleans
 from snowshed.io.extras import require
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank, headline
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -104,7 +104,7 @@ def _bars(
 
 
 def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: Booleans) -> None:
-    words = [word(path) for path in parameters]
+    words = [label(path) for path in parameters]
     axes.set_xlabel(
         " · ".join(f"{one.symbol} ({one.unit})" if one.unit else one.symbol for one in words)
     )
@@ -112,7 +112,7 @@ def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: 
         axes.set_xticks([])
         return
     names = [
-        " · ".join(word(path).value(value) for path, value in zip(parameters, values))
+        " · ".join(label(path).value(value) for path, value in zip(parameters, values))
         for values in rows[list(parameters)].to_numpy(float)
     ]
     axes.set_xticks(range(len(rows)), names, rotation=90, fontsize=7)
@@ -133,7 +133,7 @@ def fit_figure(
     best
         Number of the best parameter set.
     posterior
-        Its quantities are drawn.
+        The posterior whose quantities are drawn.
     predictions
         From `predicted_bands`.
     """
@@ -187,7 +187,7 @@ def _draw_fit(axes: Axes, of_best: pd.DataFrame, bands: pd.DataFrame) -> None:
 
 
 def predicted_bands(posterior: Posterior, *, seed: int = 1) -> pd.DataFrame:
-    """Return what single runs of the snow that the posterior allows would measure.
+    """Return predictions of single runs of the snow that the posterior allows.
 
     Returns
     -------
@@ -217,7 +217,7 @@ def posterior_figure(posterior: Posterior, best: pd.Series[float]) -> Figure:
     Parameters
     ----------
     posterior
-        Its samples.
+        The posterior whose samples are drawn.
     best
         The parameters of the grid's best set, marked for comparison.
 
@@ -228,7 +228,7 @@ def posterior_figure(posterior: Posterior, best: pd.Series[float]) -> Figure:
     """
     corner = require("corner", EXTRA, "the figure of the posterior")
     paths = list(posterior.surrogate.parameters)
-    scales = np.array([word(path).scale for path in paths])
+    scales = np.array([label(path).scale for path in paths])
     low, high = posterior.surrogate.low / scales, posterior.surrogate.high / scales
     with matplotlib.rc_context({**STYLE, "axes.grid": False}):
         # Without a layout: corner places its diagrams itself.
@@ -237,7 +237,7 @@ def posterior_figure(posterior: Posterior, best: pd.Series[float]) -> Figure:
             posterior.samples / scales,
             bins=30,
             range=list(zip(low, high)),
-            labels=[word(path).label for path in paths],
+            labels=[label(path).axis for path in paths],
             truths=[float(best[path]) / scale for path, scale in zip(paths, scales)],
             truth_color=BEST,
             quantiles=[*LEVELS.values()],

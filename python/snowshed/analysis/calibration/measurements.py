@@ -74,17 +74,17 @@ class Measurement:
     Attributes
     ----------
     tilt
-        Of the panel, degrees.
+        Tilt of the panel, degrees.
     event
-        Slide-offs so far.
+        Number of slide-offs so far.
     round
         Repetition of the experiment.
     quantity
         One of `QUANTITIES`.
     value, uncertainty
-        And its standard deviation, m.
+        The measured value and its standard deviation, m.
     line
-        Where it stands in its file.
+        Line in the file.
     """
 
     tilt: float
@@ -184,7 +184,7 @@ class _Row:
         return self.row.cells
 
     def measurements(self, seen: dict[tuple[float, int, int], int]) -> list[Measurement]:
-        """Return what was measured; `seen` tells the line of every stack so far."""
+        """Return the measurements of the line; `seen` holds the line of every stack so far."""
         key = self._tilt(), self._whole("event"), self._whole(ROUND, 1)
         values = {quantity: self._value(quantity) for quantity in QUANTITIES}
         found = [

@@ -1,4 +1,4 @@
-"""How far simulated stacks are from measured ones, and the ranking of the parameter sets (4.2)."""
+"""Errors of simulated stacks against measured ones, and the ranking of parameter sets (4.2)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from snowshed.io.arrays import Floats
 if TYPE_CHECKING:
     import pandas as pd
 
-#: What the thesis ranks by; head and tail are scored where they were measured, and not ranked by.
+#: Quantities by which the thesis ranks; head and tail are only scored.
 RANKED = ("height", "length")
 
 

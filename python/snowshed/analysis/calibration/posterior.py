@@ -1,13 +1,13 @@
-"""Which snow the measurements allow: the posterior of the parameters, by MCMC on the surrogate.
+"""The posterior of the parameters, given the measurements, by MCMC on the surrogate.
 
 The mean of what several rounds measured of a stack is normally distributed around the surrogate's
 mean, with the variances of
 
-- the rounds: of each its measurement (its uncertainty), and the seeding noise of a single run,
-  since an experiment is one fall of snow too. Weights are the inverse of these variances,
+- the rounds: the uncertainty of each measurement, and the seeding noise of a single run, because an
+  experiment is a single slide-off, too. The weights are the inverse of these variances,
 - the surrogate,
-- the model itself, which is wrong by an unknown part of the measured quantity's mean (one for
-  heights, one for lengths, ...), a nuisance parameter with a half-normal prior of scale 0.1.
+- the model: its error is an unknown fraction of the quantity's measured mean (one for heights, one
+  for lengths, ...), a nuisance parameter with a half-normal prior of scale 0.1.
 
 The last two are the same for all rounds.
 
@@ -67,13 +67,13 @@ class Posterior:
     Attributes
     ----------
     surrogate
-        What they rest on.
+        The surrogate from which the samples were drawn.
     quantities
         The q measured quantities.
     draws
-        All of them, as arviz takes them: a variable for each parameter, in its unit, and for each
-        quantity ``discrepancy_height``, ..., the model's error relative to the measured mean; with
-        the dimensions ``chain`` (walker) and ``draw``.
+        All draws in the form of arviz, with the dimensions ``chain`` (walker) and ``draw``. There
+        is a variable for each parameter, in its unit, and one for each quantity
+        (``discrepancy_height``, ...), the model's error relative to the measured mean.
     """
 
     surrogate: Surrogate
@@ -82,7 +82,7 @@ class Posterior:
 
     @cached_property
     def samples(self) -> Floats:
-        """Parameters in their units, shape (n, k); of many draws every few."""
+        """Parameters in their units, shape (n, k), thinned if there are many draws."""
         return self._thinned(self.surrogate.parameters)
 
     @cached_property
@@ -98,11 +98,11 @@ class Posterior:
     def diagnostics(self) -> pd.DataFrame:
         """Convergence of the chains by arviz, indexed by the variables of `draws`.
 
-        ``ess_bulk`` and ``ess_tail``: how many independent samples the draws are worth for the
-        median and for the ends of the ranges; ``r_hat``: deviation of all chains over that within
-        single ones, 1 if they agree (Vehtari et al., Rank-normalization, folding, and localization,
-        Bayesian Analysis 16, 2021). The walkers, which are taken for the chains, learn from each
-        other; chains that are independent may differ a little more.
+        ``ess_bulk`` and ``ess_tail`` are the effective numbers of independent samples for the
+        median and for the ends of the ranges. ``r_hat`` is the deviation of all chains over that
+        within single ones, 1 if they agree (Vehtari et al., Rank-normalization, folding, and
+        localization, Bayesian Analysis 16, 2021). The chains are those of the walkers, which are
+        not independent; independent chains may differ a little more.
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what arviz has to say of its own next version
@@ -120,7 +120,7 @@ class Posterior:
             ``parameter``; ``low`` and ``high``: the box that was searched; the quantiles
             ``lower_95``, ``lower_68``, ``median``, ``upper_68``, ``upper_95``; ``open``: "below",
             "above" or "both" where the density at an end of the box is more than half of the
-            prior's, so that the range would go on beyond it; else empty; and the columns of
+            prior's, so that the range extends beyond it; else empty; and the columns of
             `diagnostics`.
         """
         import pandas as pd
@@ -144,7 +144,7 @@ class Posterior:
 
     @property
     def converged(self) -> bool:
-        """Whether the draws are enough for the quantiles of 95 %, and the chains agree."""
+        """True if the draws suffice for the quantiles of 95 % and the chains agree."""
         enough = self.effective >= ENOUGH
         return bool(enough and (self.diagnostics["r_hat"] <= LARGEST_R_HAT).all())
 
@@ -155,7 +155,7 @@ class Posterior:
 
 
 def outputs_of(measurements: Sequence[Measurement]) -> list[Output]:
-    """Return what a surrogate must predict for some measurements.
+    """Return the outputs that a surrogate must predict for some measurements.
 
     Examples
     --------
@@ -177,13 +177,13 @@ def sample_posterior(
     Parameters
     ----------
     surrogate
-        Predicts at least the outputs of the measurements.
+        A surrogate that predicts at least the outputs of the measurements.
     measurements
         Measured stacks.
     steps
-        Of every walker, the first third of which is thrown away.
+        Steps of every walker; the first third is dropped.
     seed
-        Of the random numbers; the same seed gives the same samples.
+        Seed of the random numbers; the same seed gives the same samples.
 
     Raises
     ------
@@ -312,7 +312,7 @@ def _weighted(rounds: Sequence[Measurement], seeding: float) -> tuple[float, flo
 
 
 def _open_ends(fractions: Floats) -> str:
-    """Return toward which ends of 0 to 1 the samples do not thin out."""
+    """Return the ends of the range 0 to 1 at which the density of the samples stays high."""
     below = bool(np.mean(fractions < EDGE) >= DENSE * EDGE)
     above = bool(np.mean(fractions > 1 - EDGE) >= DENSE * EDGE)
     return {(True, True): "both", (True, False): "below", (False, True): "above"}.get(

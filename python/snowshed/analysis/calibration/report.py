@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What measurements say of the snow.
+    """The result of a calibration.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Calibration:
     ranked
         The parameter sets, the best first; see `rank`.
     posterior
-        The parameters that the measurements allow.
+        The posterior of the parameters.
     """
 
     stacks: Simulated
@@ -72,17 +72,17 @@ def calibrate(
     stacks
         From `read_simulated`.
     quantities
-        What the posterior rests on, as far as it was measured. Length is tail - head: with both of
-        these it says nothing new and must not be counted twice.
+        Quantities that the posterior uses, if they were measured. Length is tail - head, so it must
+        not be used together with both of these.
     steps
-        Of the Markov chains.
+        Steps of the Markov chains.
     seed
-        Of their random numbers.
+        Seed of their random numbers.
 
     Raises
     ------
     InputError
-        If measurements and simulations do not fit together, or a library is missing.
+        If no quantity was measured, a measured stack was not simulated, or a library is missing.
     """
     used = _used(measurements, quantities)
     comparison = compare(stacks, measurements)
@@ -124,9 +124,9 @@ def evaluate(
     stored
         Folder of the store.
     folder
-        Where to write; the docs list the files.
+        Folder for the files, which the docs list.
     study
-        Name of the study; not needed if the store holds but one.
+        Name of the study; not needed if the store holds only one.
     measure
         "stack" or "body"; see `read_simulated`.
 

@@ -1,7 +1,7 @@
-"""Surrogate of the simulations: what is measured of a stack, as a function of the snow.
+"""Surrogate of the simulations: the measures of a stack as functions of the snow's parameters.
 
-One Gaussian process for each measured quantity, tilt and event, with a Matern 5/2 covariance, a
-length scale for each parameter, and white noise that stands for the seeding (extra
+There is one Gaussian process for each measured quantity, tilt and event. It has a Matern 5/2
+covariance with a length scale for each parameter, and white noise for the seeding (extra
 ``snowshed[calibration]``).
 """
 
@@ -47,7 +47,7 @@ class Process:
     noise
         Variance of the seeding, standardised.
     mean, deviation
-        Of the simulated values, m.
+        Mean and standard deviation of the simulated values, m.
     """
 
     kernel: Any
@@ -90,10 +90,10 @@ class Process:
         return self.mean + self.deviation * mean, self.deviation**2 * variance
 
     def left_out(self) -> tuple[Floats, Floats]:
-        """Return error and standard deviation of the prediction of each run without it, m.
+        """Return error and standard deviation of each run's prediction from all other runs, m.
 
-        In closed form (Rasmussen and Williams, Gaussian Processes for Machine Learning, eqs. 5.10
-        to 5.12).
+        The closed form is used (Rasmussen and Williams, Gaussian Processes for Machine Learning,
+        eqs. 5.10 to 5.12).
         """
         diagonal = np.diag(self.inverse)
         errors = (self.inverse @ self.values) / diagonal
@@ -102,7 +102,7 @@ class Process:
 
 @dataclass(frozen=True)
 class Surrogate:
-    """What runs would measure at any parameters within the box of those that were run.
+    """Predictions of stacks for any parameters within the box of those that were run.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Surrogate:
     low, high
         The box, shape (k,), in the parameters' units.
     outputs
-        What is predicted: quantity, tilt in degrees, and event.
+        The outputs that are predicted: quantity, tilt in degrees, and event.
     processes
         One for each output.
     """
@@ -164,17 +164,17 @@ class Surrogate:
         return np.array(means), np.array(variances)
 
     def noises(self) -> Floats:
-        """Return the part of these variances that the seeding of a single run has, (outputs,)."""
+        """Return the part of these variances that the seeding causes, shape (outputs,)."""
         return np.array([one.deviation**2 * one.noise for one in self.processes])
 
     def accuracy(self) -> pd.DataFrame:
-        """Return how well every output predicts runs it has not seen (leave one run out).
+        """Return the accuracy of every output for runs that it has not seen (leave one run out).
 
         Returns
         -------
         pandas.DataFrame
-            ``quantity``, ``tilt``, ``event``; ``rmse_m``; ``noise_m``: the part of it that is the
-            seeding's, as the surrogate sees it; ``explained``: 1 - (RMSE / deviation of the
+            ``quantity``, ``tilt``, ``event``; ``rmse_m``; ``noise_m``: the part of it that the
+            surrogate attributes to the seeding; ``explained``: 1 - (RMSE / deviation of the
             runs)²; ``within_two``: part of the runs within two predicted standard deviations,
             0.95 if these are right.
         """

@@ -1,34 +1,45 @@
-"""Regression of stacks on panels, and predictions inside the data (chapter 5 of the thesis).
+"""Regression of stacks on panels, and predictions inside the data (chapter 5 of the thesis)."""
 
-The names below are imported when they are used, since the command line passes through here.
-"""
+from typing import TYPE_CHECKING
 
-import importlib
-from typing import Any
+from snowshed.analysis.regression.dataset import geometry_rows, geometry_table
+from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.analysis.regression.geometry import geometry_study
+from snowshed.analysis.regression.model_file import StackModel, load_model, save_model
+from snowshed.analysis.regression.nested import RegressionInterrupted
+from snowshed.analysis.regression.pipeline import TargetReport, regress
+from snowshed.analysis.regression.predictor import OutsideDataError, Prediction, predict
+from snowshed.analysis.regression.rows import StackRows, read_rows, rows_of
 
-_WHERE = {
-    "CrossValidation": "folds",
-    "EpsilonSVR": "svr",
-    "OutsideDataError": "predictor",
-    "Prediction": "predictor",
-    "RegressionInterrupted": "nested",
-    "StackModel": "model_file",
-    "StackRows": "rows",
-    "TargetReport": "pipeline",
-    "geometry_rows": "dataset",
-    "geometry_study": "geometry",
-    "geometry_table": "dataset",
-    "load_model": "model_file",
-    "predict": "predictor",
-    "read_rows": "rows",
-    "regress": "pipeline",
-    "rows_of": "rows",
-    "save_model": "model_file",
-}
-__all__ = list(_WHERE)
+if TYPE_CHECKING:
+    from snowshed.analysis.regression.svr import EpsilonSVR
+else:
 
+    def __getattr__(name):
+        """Import what needs scikit-learn, which is an extra, only when it is asked for."""
+        if name == "EpsilonSVR":
+            from snowshed.analysis.regression.svr import EpsilonSVR
 
-def __getattr__(name: str) -> Any:
-    if name not in _WHERE:
+            return EpsilonSVR
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f"{__name__}.{_WHERE[name]}"), name)
+
+
+__all__ = [
+    "CrossValidation",
+    "EpsilonSVR",
+    "OutsideDataError",
+    "Prediction",
+    "RegressionInterrupted",
+    "StackModel",
+    "StackRows",
+    "TargetReport",
+    "geometry_rows",
+    "geometry_study",
+    "geometry_table",
+    "load_model",
+    "predict",
+    "read_rows",
+    "regress",
+    "rows_of",
+    "save_model",
+]

@@ -1,4 +1,4 @@
-"""What reading a damaged archive of arrays may raise."""
+"""Errors that NumPy raises when it reads a damaged archive of arrays."""
 
 import tokenize
 import zipfile

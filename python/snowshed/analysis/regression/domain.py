@@ -1,4 +1,4 @@
-"""Where a model may be asked: inside the data it was made from."""
+"""The domain of a model: the inputs inside the data from which it was made."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from functools import cached_property
 import numpy as np
 from scipy import optimize, spatial
 
-from snowshed.analysis.regression.rows import INPUT_UNITS, INPUT_WORDS
+from snowshed.analysis.regression.rows import INPUTS
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.io.arrays import Floats
+from snowshed.plot.labels import label, settings
 
+#: A value just beyond a range must not read like its end.
+DIGITS = 7
 TOLERANCE = 1e-6  # of standardised inputs
 #: Part of the panels whose nearest neighbours are not farther than what counts as spacing: a few
 #: lonely panels do not make the data dense about them.
@@ -62,13 +65,14 @@ class Domain:
     def _ranges(self, question: Floats) -> list[str]:
         found = []
         low, high = self.inputs.min(axis=0), self.inputs.max(axis=0)
-        for value, least, most, word, unit in zip(question, low, high, INPUT_WORDS, INPUT_UNITS):
+        for name, value, least, most in zip(INPUTS, question, low, high):
             margin = TOLERANCE * max(1.0, abs(most))
             if not least - margin <= value <= most + margin:
-                reach = f"which reach from {least:g} to {most:g} {unit}"
-                reach = f"which have {least:g} {unit} only" if least == most else reach
-                text = f"{word} {value:g} {unit}".strip() + f" is outside the data, {reach}"
-                found.append(text.strip())
+                known = label(name)
+                given, end = (known.quantity(number, DIGITS) for number in (value, most))
+                reach = f"reach from {known.value(least, DIGITS)} to {end}"
+                reach = f"have {end} only" if least == most else reach
+                found.append(f"{known.name} {given} is outside the data, which {reach}")
         return found
 
     def _misplaced(self, question: Floats, panels: Floats) -> list[str]:
@@ -102,12 +106,12 @@ class Domain:
 
     @cached_property
     def _known(self) -> int:
-        """How many panels have any event."""
+        """Number of panels with any event."""
         return len(np.unique(self.inputs[:, 1:], axis=0))
 
 
 def _in_hull(points: Floats, place: Floats) -> bool:
-    """Whether a place is a weighted mean of points: weights, none negative, that sum to one."""
+    """Return whether a place is a weighted mean of points, with weights from 0 that sum to 1."""
     equal = np.vstack([points.T, np.ones(len(points))])
     _, miss = optimize.nnls(equal, np.append(place, 1.0))
     return bool(miss <= TOLERANCE)
@@ -132,9 +136,6 @@ def panel_in_words(panel: Floats) -> str:
     Examples
     --------
     >>> panel_in_words(np.array([2, 4, 60]))
-    'panel height 2 m, panel length 4 m, panel tilt 60 degrees'
+    'panel height 2 m, panel length 4 m, panel tilt 60°'
     """
-    return ", ".join(
-        f"{word} {value:g} {unit}"
-        for word, value, unit in zip(INPUT_WORDS[1:], panel, INPUT_UNITS[1:])
-    )
+    return settings(dict(zip(INPUTS[1:], panel)))

@@ -13,11 +13,12 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.model_file import Member
-from snowshed.analysis.regression.rows import INPUT_UNITS, INPUT_WORDS, TARGETS, StackRows
+from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.io.arrays import Floats
 from snowshed.plot import figure_style
 from snowshed.plot.figure_style import FAINT, INK, STYLE, blank, headline
+from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -130,7 +131,7 @@ def predictions(
                     _vary(axes, member, rows, target, reference, number, event, shade)
             row[0].set_ylabel(f"{titles[kind]}\n{_quantity(target)}")
         for axes, number in zip(grid[-1], varying):
-            axes.set_xlabel(f"{INPUT_WORDS[number]}, {INPUT_UNITS[number]}")
+            axes.set_xlabel(label(INPUTS[number]).axis)
         for axes, number in zip(grid[0], varying):
             others = [other for other in (1, 2, 3) if other != number]
             axes.set_title(", ".join(_at(other, reference) for other in others), fontsize=9)
@@ -249,7 +250,7 @@ def _by_round(results: Sequence[FoldResult], score: str) -> Floats:
 
 def _parameter_word(name: str) -> str:
     if name.startswith("length_"):
-        return f"length scale,\n{INPUT_WORDS[int(name.removeprefix('length_')) - 1]}"
+        return f"length scale,\n{label(INPUTS[int(name.removeprefix('length_')) - 1]).name}"
     return name
 
 
@@ -259,8 +260,8 @@ def _quantity(target: str) -> str:
 
 
 def _at(number: int, reference: Floats) -> str:
-    unit = "°" if INPUT_UNITS[number] == "degrees" else f" {INPUT_UNITS[number]}"
-    return f"{INPUT_WORDS[number].removeprefix('panel ')} {reference[number - 1]:g}{unit}"
+    known = label(INPUTS[number])
+    return f"{known.name.removeprefix('panel ')} {known.quantity(reference[number - 1])}"
 
 
 def _shades(count: int) -> list[Any]:

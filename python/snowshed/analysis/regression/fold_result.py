@@ -1,4 +1,4 @@
-"""What one outer fold gives, and its file."""
+"""The result of one outer fold, and its file."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class Member:
 
 @dataclass(frozen=True)
 class StackModel:
-    """What predicts stacks: for each target and kind of model an ensemble.
+    """A model that predicts stacks: an ensemble for each target and kind of model.
 
     Attributes
     ----------
@@ -82,12 +82,12 @@ class StackModel:
 
     @cached_property
     def domain(self) -> Domain:
-        """Where the model may be asked."""
+        """The domain of the model."""
         return Domain(self.inputs)
 
     @property
     def targets(self) -> list[str]:
-        """What can be predicted."""
+        """The targets that can be predicted."""
         return [name for name in TARGETS if any(name == target for target, _ in self.members)]
 
     @property

@@ -12,6 +12,7 @@ from sklearn.utils.validation import check_is_fitted
 
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.score import median_absolute_error
+from snowshed.analysis.regression.support_vectors import NotConvergedError
 from snowshed.io.arrays import Floats, Integers
 
 Value = Union[int, float]
@@ -98,11 +99,22 @@ class PathSearchCV(MetaEstimatorMixin, BaseEstimator):
             self.n_fits_ += estimator.path_fits(path) * len(splits)
         mean = np.array(scores)
         mean[np.isnan(mean)] = -np.inf  # did not converge
-        best = int(mean.argmax())
         self.cv_results_ = {"params": params, "mean_test_score": mean}
-        self.best_params_, self.best_score_ = params[best], float(mean[best])
-        self.best_estimator_ = clone(self.estimator).set_params(**params[best]).fit(X, y)
+        self._elect(params, mean, X, y)
         return self
+
+    def _elect(self, params: list[dict[str, Value]], scores: Floats, X: Floats, y: Floats) -> None:
+        """Train the best point on all rows; if it does not converge there, the next one."""
+        while True:
+            best = int(scores.argmax())
+            self.best_params_, self.best_score_ = params[best], float(scores[best])
+            try:
+                self.best_estimator_ = clone(self.estimator).set_params(**params[best]).fit(X, y)
+                return
+            except NotConvergedError:
+                if np.isneginf(scores[best]):
+                    raise
+                scores[best] = -np.inf
 
     def _in_order(self, point: Mapping[str, Value]) -> dict[str, Value]:
         return {name: point[name] for name in self.param_grid}

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.regression import figures, summary
+from snowshed.analysis.regression import summary
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.folds import CrossValidation
@@ -20,7 +20,6 @@ from snowshed.analysis.regression.spread import stack_spread, unseen_panels
 from snowshed.analysis.regression.threads import one_thread
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing, write_text
-from snowshed.plot.figure_style import save
 from snowshed.run.pool import available_cores
 from snowshed.run.progress import Reporter
 from snowshed.scene.scene import PathLike
@@ -34,7 +33,7 @@ MODEL = "model.npz"
 
 @dataclass(frozen=True)
 class TargetReport:
-    """What came out for one target.
+    """The results for one target.
 
     Attributes
     ----------
@@ -191,20 +190,30 @@ class _Output:
         if report.expression:
             write_text(folder / "linear.txt", report.expression + "\n")
         of_target = {kind: member for (name, kind), member in members.items() if name == target}
-        drawings: dict[str, Callable[[], Optional[Figure]]] = {
-            "selection.png": lambda: figures.selection(elected, self._titles, target),
-            "hyperparameters.png": lambda: figures.hyperparameters(elected, self._titles, target),
-            "qq.png": lambda: figures.quantiles(elected, self._titles, values, target),
-            "predictions.png": lambda: figures.predictions(
-                of_target, self._titles, self._rows, target
-            ),
-            "cost.png": lambda: figures.cost(report.errors, self._titles, target),
-        }
-        for name, draw in drawings.items():
-            figure = draw()
-            if figure is not None:
-                save(figure, folder / name)
+        self._draw(report, elected, of_target)
         return report
+
+    def _draw(
+        self,
+        report: TargetReport,
+        elected: Mapping[str, Sequence[FoldResult]],
+        members: Mapping[str, Member],
+    ) -> None:
+        from snowshed.analysis.regression import figures
+        from snowshed.plot.figure_style import save
+
+        target, titles = report.target, self._titles
+        values = self._rows.targets[target]
+        drawings: dict[str, Optional[Figure]] = {
+            "selection.png": figures.selection(elected, titles, target),
+            "hyperparameters.png": figures.hyperparameters(elected, titles, target),
+            "qq.png": figures.quantiles(elected, titles, values, target),
+            "predictions.png": figures.predictions(members, titles, self._rows, target),
+            "cost.png": figures.cost(report.errors, titles, target),
+        }
+        for name, figure in drawings.items():
+            if figure is not None:
+                save(figure, self._folder / target / name)
 
 
 def _write_table(table: pd.DataFrame, path: Path) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.regression.dataset import MODEL
 from snowshed.analysis.regression.model_file import StackModel, load_model
-from snowshed.analysis.regression.questions import Questions
+from snowshed.analysis.regression.questions import Numbers, Questions
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD
 from snowshed.io.arrays import Floats
@@ -20,8 +20,6 @@ from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from snowshed.analysis.regression.questions import Numbers
 
 SHOWN = 5  # panels that a refusal names
 
@@ -59,7 +57,7 @@ class Prediction:
 
     @property
     def extrapolated(self) -> bool:
-        """Whether a panel lies outside the data."""
+        """True if a panel lies outside the data."""
         return bool(self.objections)
 
     def array(self, target: str, column: str = "value") -> Floats:

@@ -1,4 +1,4 @@
-"""What a model is asked: panels and their events, given as numbers, arrays or a table."""
+"""Questions to a model: panels and their events, given as numbers, arrays or a table."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from snowshed.io.arrays import Booleans, Floats, Integers
 if TYPE_CHECKING:
     import pandas as pd
 
-    #: A number, or one for each panel.
-    Numbers = Union[float, Sequence[float], Floats, Integers, "pd.Series[float]", "pd.Series[int]"]
+#: A number, or one for each panel.
+Numbers = Union[float, Sequence[float], Floats, Integers, "pd.Series[float]", "pd.Series[int]"]
 
 NAMES = ("height", "length", "tilt", "events")
 MOST_EVENTS = 1000  # of a panel

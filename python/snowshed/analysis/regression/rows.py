@@ -17,9 +17,6 @@ from snowshed.snow.stack.quantities import Measure, measure_named
 
 #: The inputs of section 5.2.2 with the tilt of section 5.1.3; columns of a study's table.
 INPUTS = ("event", "panel.height", "panel.length", "panel.tilt")
-#: What messages call the inputs, and their units.
-INPUT_WORDS = ("event", "panel height", "panel length", "panel tilt")
-INPUT_UNITS = ("", "m", "m", "degrees")
 #: What can be predicted, and its unit.
 TARGETS: Mapping[str, str] = {"ratio": "", "height": "m", "length": "m"}
 #: What of a stack is regressed.
@@ -89,12 +86,12 @@ class StackRows:
 
     @property
     def panel_count(self) -> int:
-        """How many panels there are."""
+        """Number of panels."""
         return int(self.panels.max()) + 1
 
     @property
     def digest(self) -> str:
-        """What tells these rows from any others."""
+        """Hash of the inputs and the stacks."""
         content = hashlib.sha256(np.ascontiguousarray(self.inputs).tobytes())
         for name in TARGETS:
             content.update(np.ascontiguousarray(self.stacks[name]).tobytes())

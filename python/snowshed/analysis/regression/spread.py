@@ -1,4 +1,4 @@
-"""How far a stack may lie from its prediction.
+"""The spread of stacks around their prediction.
 
 The 100 models differ, and the data scatter about any model. Both are measured on panels that a
 model has never seen: rows of the same panel are alike, and leaving out single rows would flatter.

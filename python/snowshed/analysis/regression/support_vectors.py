@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 from sklearn.svm import SVR
 
+from snowshed._core import InputError
 from snowshed.analysis.regression.interior_point import SupportVectors, solve
 from snowshed.io.arrays import Floats
 
@@ -17,6 +18,10 @@ LIBSVM_ITERATIONS = 2500
 LIBSVM_TOLERANCE = 1e-4  # of the targets' standard deviation; scikit-learn's default is 1e-3
 #: A multiplier closer than this part to its bound counts as at the bound.
 AT_BOUND = 1e-3
+
+
+class NotConvergedError(InputError):
+    """A fit that does not converge with its parameters."""
 
 
 def fit_along_c(

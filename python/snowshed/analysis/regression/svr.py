@@ -11,7 +11,7 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.kernels import Expansion, kernel_matrix
-from snowshed.analysis.regression.support_vectors import fit_along_c, fit_one
+from snowshed.analysis.regression.support_vectors import NotConvergedError, fit_along_c, fit_one
 from snowshed.io.arrays import Floats
 
 KERNELS = ("linear", "rbf")
@@ -27,7 +27,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
     Parameters
     ----------
     kernel
-        "rbf", exp(-gamma |x - x'|^2), or "linear", x . x'.
+        "rbf", ``exp(-gamma |x - x'|^2)``, or "linear", ``x . x'``.
     C
         Bound of the multipliers, positive: how much an error beyond the tube costs.
     epsilon
@@ -87,7 +87,7 @@ class EpsilonSVR(RegressorMixin, BaseEstimator):
         rates = self._rates(points)
         found = fit_one(kernel_matrix(points, points, rates), targets, self.epsilon, self.C)
         if np.isnan(found.intercept):
-            raise InputError(f"the {self._words()} does not converge on these rows")
+            raise NotConvergedError(f"the {self._words()} does not converge on these rows")
         self.expansion_ = Expansion(points, found.coefficients, found.intercept, rates)
         return self
 

@@ -24,7 +24,7 @@ class Task:
 
     @property
     def file(self) -> str:
-        """Where its result lies in the results folder."""
+        """Path of its result in the results folder."""
         return f"folds/{self.target}/{self.kind}/{self.round:03}-{self.fold:03}.npz"
 
 

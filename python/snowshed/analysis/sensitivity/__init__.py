@@ -1,26 +1,21 @@
-"""Sensitivity of the stack to the parameters of the snow (chapter 3 of the thesis).
+"""Sensitivity of the stack to the parameters of the snow (chapter 3 of the thesis)."""
 
-The names below are imported when they are used, since the command line passes through here.
-"""
+from snowshed.analysis.sensitivity.designs import sensitivity_study
+from snowshed.analysis.sensitivity.fixed_parameter import fixation
+from snowshed.analysis.sensitivity.global_indices import morris_effects, sobol_indices
+from snowshed.analysis.sensitivity.noise import seeding_noise
+from snowshed.analysis.sensitivity.report import evaluate
+from snowshed.analysis.sensitivity.single_parameter import local_index
+from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
 
-import importlib
-from typing import Any
-
-_WHERE = {
-    "StoredRuns": "stored",
-    "evaluate": "report",
-    "fixation": "fixed_parameter",
-    "local_index": "single_parameter",
-    "morris_effects": "global_indices",
-    "read_stored": "stored",
-    "seeding_noise": "noise",
-    "sensitivity_study": "designs",
-    "sobol_indices": "global_indices",
-}
-__all__ = list(_WHERE)
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _WHERE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f"{__name__}.{_WHERE[name]}"), name)
+__all__ = [
+    "StoredRuns",
+    "evaluate",
+    "fixation",
+    "local_index",
+    "morris_effects",
+    "read_stored",
+    "seeding_noise",
+    "sensitivity_study",
+    "sobol_indices",
+]

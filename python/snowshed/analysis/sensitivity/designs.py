@@ -17,12 +17,12 @@ from snowshed.study.factors import Factor, Part, axis
 
 @dataclass(frozen=True)
 class Size:
-    """How large a study of one method is.
+    """The size of a study of one method.
 
     Attributes
     ----------
     seeds
-        Seedings of each point, where they are repeated.
+        Seedings of each point, for methods that repeat points.
     samples
         Base points (Sobol) or trajectories (Morris).
     """
@@ -31,14 +31,14 @@ class Size:
     samples: int = 0
 
 
-#: Runs enough for numbers that mean something.
+#: Sizes of full studies.
 FULL: Mapping[str, Size] = {
     "s": Size(seeds=4),
     "fixation": Size(seeds=2),
     "sobol": Size(samples=128),
     "morris": Size(samples=20),
 }
-#: Runs that show the way.
+#: Sizes of trials.
 QUICK: Mapping[str, Size] = {
     "s": Size(seeds=3),
     "fixation": Size(seeds=2),
@@ -46,7 +46,7 @@ QUICK: Mapping[str, Size] = {
     "morris": Size(samples=4),
 }
 METHODS = tuple(FULL)
-#: What the studies are, for readers of their files.
+#: Descriptions of the studies, for readers of their files.
 DESCRIPTIONS: Mapping[str, str] = {
     "s": "Single-parameter variation, section 3.3: nominal and altered values of Table 3.3.1, all "
     "other parameters at the reference values of Table 3.2.1.",
@@ -57,7 +57,7 @@ DESCRIPTIONS: Mapping[str, str] = {
     "morris": "{count} trajectories after Morris on a grid of 4 levels, in the ranges of Table "
     "3.2.1. The order of the points is the design.",
 }
-#: As Table 3.2.1 has it, and for a trial.
+#: Settings of Table 3.2.1, and of a trial.
 FULL_SCENE: Mapping[str, object] = {"dimension": 3, "events.count": 3, "numerics.dx": 0.01}
 QUICK_SCENE: Mapping[str, object] = {"dimension": 2, "events.count": 2, "numerics.dx": 0.03}
 
@@ -77,7 +77,7 @@ def sensitivity_study(
         "s": single-parameter variation (3.3); "fixation": single-parameter fixation (3.4);
         "sobol" or "morris": a sample of the same ranges.
     quick
-        Whether in 2D on a coarse grid with two events, to see the way; its numbers mean little.
+        Whether to use 2D, a coarse grid and two events, for a trial whose numbers mean little.
     seeds
         Seedings of each point, for "s" and "fixation".
     samples
@@ -86,7 +86,7 @@ def sensitivity_study(
     Raises
     ------
     InputError
-        If the method is unknown, or a number is out of its range or not for this method.
+        If the method is unknown, or a number is out of its range or not used by this method.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from snowshed.analysis.sensitivity.single_parameter import CONFIDENT
 from snowshed.analysis.sensitivity.stored import TARGETS
 from snowshed.io.arrays import Floats
 from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank, headline
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def local_index_figure(table: pd.DataFrame) -> Figure:
 
 
 def _draw_indices(axes: Axes, rows: pd.DataFrame, number: int, events: int, colour: Any) -> None:
-    """Draw the bars of one event, the `number`-th of `events`; hollow where noise may make them."""
+    """Draw the bars of one event, the `number`-th of `events`; hollow if noise could cause them."""
     width = BARS / events
     places = _places(len(rows), events, number)
     for place, (_, row) in zip(places, rows.iterrows()):
@@ -73,9 +73,8 @@ def _draw_indices(axes: Axes, rows: pd.DataFrame, number: int, events: int, colo
 
 def _pair_label(table: pd.DataFrame, parameter: str) -> str:
     row = table[table["parameter"] == parameter].iloc[0]
-    known = word(parameter)
-    values = f"{known.value(row['nominal'])} → {known.value(row['altered'])} {known.unit}"
-    return f"{known.symbol}\n{values.rstrip()}"
+    known = label(parameter)
+    return f"{known.symbol}\n{known.change(row['nominal'], row['altered'])}"
 
 
 def fixation_figure(table: pd.DataFrame, group: str) -> Figure:
@@ -100,7 +99,7 @@ def fixation_figure(table: pd.DataFrame, group: str) -> Figure:
                 _draw_lines(axes, lines, events)
             row[0].set_ylabel(f"{target}, rescaled")
         for axes, parameter in zip(grid[-1], parameters):
-            axes.set_xlabel(word(parameter).label)
+            axes.set_xlabel(label(parameter).axis)
         colours = _shades(len(events))
         keys: list[Any] = [
             Line2D([], [], color=colour, marker="o", label=f"event {event}")
@@ -114,10 +113,10 @@ def fixation_figure(table: pd.DataFrame, group: str) -> Figure:
 
 
 def _draw_lines(axes: Axes, lines: pd.DataFrame, events: Sequence[int]) -> None:
-    """Draw one line with its envelope per event, and beside its end the noise."""
+    """Draw a line with its envelope for each event, and the noise beside its end."""
     for event, colour in zip(events, _shades(len(events))):
         rows = lines[lines["event"] == event].sort_values("value")
-        x = rows["value"].to_numpy(float) / word(str(rows["parameter"].iloc[0])).scale
+        x = rows["value"].to_numpy(float) / label(str(rows["parameter"].iloc[0])).scale
         mean, deviation = rows["mean"].to_numpy(float), rows["deviation"].to_numpy(float)
         axes.fill_between(x, mean - deviation, mean + deviation, color=colour, alpha=0.2, lw=0)
         axes.plot(x, mean, "o-", color=colour, markersize=4, linewidth=1.6)
@@ -168,7 +167,7 @@ def _draw_shares(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str]) -> N
     low, high = axes.get_ylim()
     axes.set_ylim(max(low, -0.5), min(max(high, 1.0), 2.0))
     axes.grid(axis="x", visible=False)
-    axes.set_xticks(range(len(parameters)), [word(path).symbol for path in parameters])
+    axes.set_xticks(range(len(parameters)), [label(path).symbol for path in parameters])
 
 
 def morris_figure(table: pd.DataFrame) -> Figure:
@@ -193,7 +192,7 @@ def morris_figure(table: pd.DataFrame) -> Figure:
             row[0].set_ylabel("spread (standard deviation)")
             row[0].set(xlim=(0, None), ylim=(0, None))  # now that all of the row is drawn
         keys: list[Any] = [
-            Line2D([], [], color=_colour(number, path), marker="o", ls="", label=word(path).symbol)
+            Line2D([], [], color=_colour(number, path), marker="o", ls="", label=label(path).symbol)
             for number, path in enumerate(parameters)
         ]
         keys.append(Line2D([], [], color=INK, label="95 % by bootstrap"))

@@ -1,4 +1,4 @@
-"""Single-parameter fixation, section 3.4: one parameter held, all others of its group varying."""
+"""Single-parameter fixation (section 3.4): one parameter is fixed, the others of its group vary."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def rescaled(values: Floats) -> Floats:
-    """Return x' = (x - min x) / (max x - min x), equation 3.4.1; zeros if all are alike.
+    """Return x' = (x - min x) / (max x - min x), equation 3.4.1; zeros if all values are equal.
 
     Examples
     --------
@@ -30,7 +30,7 @@ def rescaled(values: Floats) -> Floats:
 
 
 def groups_of(stored: StoredRuns) -> dict[str, list[str]]:
-    """Return the groups of parameters that a study varies; others than the thesis's are "other"."""
+    """Return the groups of parameters that a study varies; "other" are those not in the thesis."""
     groups = {
         name: [path for path in paths if path in stored.parameters]
         for name, paths in GROUPS.items()
@@ -43,17 +43,17 @@ def groups_of(stored: StoredRuns) -> dict[str, list[str]]:
 def fixation(stored: StoredRuns) -> pd.DataFrame:
     """Return mean and deviation at each value of each parameter, over all values of the others.
 
-    While a group of parameters varies, those of the other groups keep their values: those at
-    which the study has most points (all of them, if several have equally many). Seedings of a
-    point count as one, by their mean.
+    While a group of parameters varies, the parameters of the other groups are fixed at the values
+    for which the study has the most points. If several values have equally many, all of them are
+    used. The seedings of a point count as one, by their mean.
 
     Returns
     -------
     pandas.DataFrame
         ``group``, ``parameter``, ``value``, ``event``, ``target``; ``points``: over how many;
         ``mean_m``, ``deviation_m``, ``lowest_m``, ``highest_m``; ``mean`` and ``deviation`` of the
-        rescaled target (3.4.1, over the group and all events); ``noise``: what the seeding alone
-        makes of the mean of one point, rescaled likewise (standard deviation; NaN if not known).
+        rescaled target (3.4.1, over the group and all events); ``noise``: the standard deviation of
+        the mean of one point by the seeding alone, rescaled likewise; NaN if not known.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Global sensitivity indices from designed samples, by SALib (extra ``snowshed[sensitivity]``).
 
-The design is read off the points themselves, so that a store is all that is needed: Saltelli's
-blocks of k + 2 points for Sobol indices, Morris's trajectories of k + 1 points for elementary
-effects. A block with runs that failed or are not yet computed is left out as a whole.
+The design is recognised from the points, so that only a store is needed. Sobol indices need
+Saltelli's blocks of k + 2 points, elementary effects need Morris's trajectories of k + 1 points. A
+block is left out as a whole if one of its runs failed or is not yet computed.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def sobol_indices(stored: StoredRuns) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the points are no such design, or fewer than two blocks are complete.
+        If the points are not Saltelli's design, or fewer than two blocks are complete.
     """
     analyzer = require("SALib.analyze.sobol", EXTRA, "Sobol indices")
     design = _Design.of(stored, 2, _is_saltelli, "a sample after Saltelli")
@@ -74,9 +74,8 @@ def morris_effects(stored: StoredRuns) -> pd.DataFrame:
     """Return elementary effects after Morris per parameter and event.
 
     An effect is the change of the stack, relative to its mean over the sample, per sampled range of
-    the parameter, or of its logarithm where that has the steps. A seed has no range: its effects
-    are taken as if its steps had the mean size of the others, so that its strength is what noise
-    adds to theirs.
+    the parameter, or of its logarithm if that has even steps. A seed has no range. Its steps are
+    given the mean size of the others, so that its strength is the part of noise in theirs.
 
     Returns
     -------
@@ -89,8 +88,8 @@ def morris_effects(stored: StoredRuns) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the points are no such design, a parameter has steps of different size, or fewer than
-        two trajectories are complete.
+        If the points are not Morris's design, a parameter has steps of different size, or fewer
+        than two trajectories are complete.
     """
     analyzer = require("SALib.analyze.morris", EXTRA, "elementary effects")
     design = _Design.of(stored, 1, _is_trajectory, "trajectories after Morris")
@@ -124,11 +123,11 @@ class _Design:
     Attributes
     ----------
     names
-        Of the inputs.
+        Names of the inputs.
     points
         Shape (blocks * size, inputs), in the inputs' units.
     size
-        Points of a block.
+        Number of points of a block.
     """
 
     names: list[str]
@@ -139,18 +138,19 @@ class _Design:
     def of(
         cls, stored: StoredRuns, more: int, is_block: Callable[[Booleans], bool], words: str
     ) -> _Design:
-        """Read the design off a study's points.
+        """Return the design of a study's points.
 
         Parameters
         ----------
         stored
             The study.
         more
-            How many points a block has more than inputs.
+            Number of points of a block beyond the number of inputs.
         is_block
-            Whether the changes from each point to the next make a block.
+            Function that tells from the changes between neighbouring points whether they are a
+            block.
         words
-            What the points should be, for messages.
+            Name of the design, for messages.
         """
         names = list(stored.axes)
         points = stored.points[names].to_numpy(float)
@@ -163,14 +163,14 @@ def _analyzed(
     design: _Design,
     analyze: Callable[[Booleans, Floats], dict[str, Floats]],
 ) -> pd.DataFrame:
-    """Return indices of all events and targets.
+    """Return the indices of all events and targets.
 
     Parameters
     ----------
     stored, design
         The study, and its design.
     analyze
-        Returns columns for which of the points count, and the values at all of them.
+        Function of the points that count and of the values at all points; returns columns.
     """
     import pandas as pd
 
@@ -201,7 +201,7 @@ def _values(stored: StoredRuns) -> Iterator[tuple[int, str, Floats]]:
 def _check_blocks(
     points: Floats, size: int, is_block: Callable[[Booleans], bool], design: str
 ) -> None:
-    """Raise an InputError unless the points come in such blocks."""
+    """Raise an InputError unless the points consist of such blocks."""
     if len(points) % size or len(points) == 0:
         raise InputError(
             f"its {len(points)} points are not {design}: for {size - 1} or fewer inputs these come "
@@ -213,15 +213,15 @@ def _check_blocks(
 
 
 def _is_trajectory(changes: Booleans) -> bool:
-    """Whether every step changes one input, and every input is changed once."""
+    """Return whether every step changes one input, and every input is changed once."""
     return bool((changes.sum(axis=0) == 1).all() and (changes.sum(axis=1) == 1).all())
 
 
 def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
     """Return the points in the unit cube, and the size of each input's step there.
 
-    Inputs are taken linearly or by their logarithms, whichever makes all their steps equal. Of
-    seeds nothing counts but that they differ.
+    Each input is taken linearly or by its logarithm, whichever makes all its steps equal. Seeds
+    only need to differ.
     """
     unit, steps = np.empty_like(points), np.full(len(names), np.nan)
     for number, name in enumerate(names):
@@ -243,7 +243,7 @@ def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
 
 
 def _is_saltelli(changes: Booleans) -> bool:
-    """Whether A is followed by A with each input of B in turn, and by B.
+    """Return whether A is followed by A with each input of B in turn, and by B.
 
     From A to the first of them the first input changes, from one to the next two neighbours, and
     from the last one to B all but the last.

@@ -1,4 +1,4 @@
-"""How far stacks differ that differ in nothing but the placement of their particles."""
+"""The noise of stacks: their deviation if only the placement of the particles differs."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 def seeding_noise(stored: StoredRuns) -> pd.DataFrame:
     """Return the deviation between seedings, event by event.
 
-    It is pooled over all points with several seedings: few seedings of many points give a firm
-    estimate, where few seedings of one point do not.
+    The deviation is pooled over all points with several seedings. Few seedings of many points give
+    a reliable estimate; few seedings of one point do not.
 
     Returns
     -------

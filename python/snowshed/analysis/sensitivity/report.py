@@ -44,16 +44,16 @@ def evaluate(
     stored
         Folder of the store.
     folder
-        Where to write: ``METHOD.csv``, ``METHOD.png`` (for fixation one figure per group of
-        parameters), and ``noise.csv``.
+        Folder for ``METHOD.csv``, ``METHOD.png`` (for fixation one figure per group of parameters)
+        and ``noise.csv``.
     method
         "s", "fixation", "sobol" or "morris".
     study
-        Name of the study; not needed if the store holds but one.
+        Name of the study; not needed if the store holds only one.
     measure
         "stack": height and length of 97 % of the snow; "body": of the largest connected body.
     note
-        Called with what readers should know before they trust the table.
+        Called with notes on the limits of the table.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def evaluate(
     Raises
     ------
     InputError
-        If there is no such study, or its runs do not serve for the method.
+        If there is no such study, or its runs do not fit the method.
     """
     from snowshed.plot.figure_style import save
 

@@ -1,7 +1,7 @@
 """Samples for global sensitivity indices, by SALib (extra ``snowshed[sensitivity]``).
 
-The seed of the particles' placement is one of the inputs. Snow is chaotic: another seed gives
-another stack. What changing the seed alone does is the noise that every effect has to exceed.
+The seed of the particles' placement is one of the inputs. Another seed gives another stack, because
+the motion is chaotic. The effect of the seed alone is the noise that any other effect must exceed.
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ Columns = dict[str, list[float]]
 
 
 def problem(names: list[str]) -> dict[str, Any]:
-    """Return what SALib calls a problem: inputs in the unit cube."""
+    """Return the inputs in the unit cube as a problem of SALib."""
     return {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
 
 
 def sobol_points(count: int) -> Columns:
     """Return points for first-order and total Sobol indices, after Saltelli.
 
-    Blocks of k + 2 points for k inputs (seed included): a point A, then A with one input after
-    another taken from a second point B, then B.
+    For k inputs (with the seed) a block has k + 2 points: a point A; then A with each input in turn
+    replaced by that of a second point B; then B.
 
     Parameters
     ----------
     count
-        Blocks; a power of two, at which Sobol's sequence is balanced.
+        Number of blocks, a power of two, for which Sobol's sequence is balanced.
 
     Examples
     --------
@@ -64,8 +64,8 @@ def sobol_points(count: int) -> Columns:
 def morris_points(count: int) -> Columns:
     """Return trajectories for elementary effects, after Morris.
 
-    Each has k + 1 points for k inputs (seed included), and from one point to the next one input
-    changes by two thirds of its range.
+    For k inputs (with the seed) a trajectory has k + 1 points. From one point to the next, one
+    input changes by two thirds of its range.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def _columns(cube: Floats, block: int) -> Columns:
 
 
 def _seeds(fractions: Floats, block: int) -> list[float]:
-    """Return two seeds for each block, of which the first is where it starts.
+    """Return two seeds for each block; it starts with the first.
 
     No two blocks have a seed in common, so that no point of the design occurs twice.
     """

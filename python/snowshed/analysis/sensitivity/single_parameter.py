@@ -21,10 +21,10 @@ CONFIDENT = 1.96  # standard errors on either side: 95 %
 def local_index(stored: StoredRuns) -> pd.DataFrame:
     """Return S = ((R_a - R_n)/R_n) / ((P_a - P_n)/P_n), equation 3.3.1, per parameter and event.
 
-    R is the stack's height or length, the mean over the seedings; P_n and P_a are the nominal and
-    altered value of Table 3.3.1 where the study has both, and else the lowest and the highest it
-    has. All other parameters are alike. Where the study has several such pairs of points, S is the
-    mean over them.
+    R is the height or length of the stack, as the mean over the seedings. P_n and P_a are the
+    nominal and the altered value of Table 3.3.1 if the study has both, otherwise the lowest and the
+    highest value of the study. All other parameters are equal. If the study has several such pairs
+    of points, S is the mean over them.
 
     Returns
     -------

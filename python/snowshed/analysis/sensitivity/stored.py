@@ -1,4 +1,4 @@
-"""A stored study as sensitivity analysis reads it: points, and what was measured at each."""
+"""A stored study for sensitivity analysis: points, and the stacks measured at each."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class StoredRuns:
     Attributes
     ----------
     name
-        Of the study.
+        Name of the study.
     axes
-        Dotted paths of what has several values, in the study's order; the seed only if it is
-        among its axes.
+        Dotted paths of the parameters with several values, in the study's order; with the seed only
+        if it is an axis of the study.
     points
         One row per run in the study's order, computed or not: ``hash``, the axes, and
         ``seeding.seed``.
@@ -43,12 +43,12 @@ class StoredRuns:
 
     @property
     def parameters(self) -> list[str]:
-        """The axes that have more than one value, the seed not among them."""
+        """The axes with more than one value, without the seed."""
         return [path for path in self.axes if path != SEED and self.points[path].nunique() > 1]
 
     @property
     def incomplete(self) -> int:
-        """How many runs lack the stack of some event."""
+        """Number of runs that lack the stack of some event."""
         measured = self.rows["hash"].value_counts().reindex(self.points["hash"], fill_value=0)
         return int((measured < len(self.events)).sum())
 
@@ -66,9 +66,9 @@ def read_stored(
     Parameters
     ----------
     folder
-        Where the store is, or a table that ``snowshed study export`` wrote.
+        Folder of the store, or a table that ``snowshed study export`` wrote.
     study
-        Name of the study; not needed if the store holds but one.
+        Name of the study; not needed if the store holds only one.
     measure
         "stack": height and length of 97 % of the snow, as the thesis measures; "body": of the
         largest connected body.

@@ -1,4 +1,4 @@
-"""The command ``snowshed calibrate``; it imports what takes long when it runs."""
+"""The command ``snowshed calibrate``; slow imports are made when it runs."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ def calibrate(
     quiet: bool,
     **options: Any,
 ) -> None:
-    """Find the snow whose simulated stacks are those that were measured.
+    """Find the snow whose simulated stacks agree with measured ones.
 
-    Computes the runs that are missing, into DIR/runs, ranks the parameter sets and gives the
-    ranges that the measurements allow. After an interruption the same command goes on; with
-    --stored it evaluates what another study has stored.
+    Computes the missing runs into DIR/runs, ranks the parameter sets, and gives the ranges that the
+    measurements allow. After an interruption the same command goes on. With --stored it evaluates
+    the store of another study.
 
     \b
     Example:

@@ -1,8 +1,7 @@
 """Studies that a command designs, computes and evaluates.
 
-The design is kept as a study file beside the results, and the runs are those of a ``snowshed study
-run``, so that they are resumed and stored as those of any study. The evaluation takes nothing but
-the store.
+The design is kept as a study file beside the results. Its runs are computed, stored and resumed as
+those of ``snowshed study run``. The evaluation needs only the store.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 PATH = click.Path(path_type=Path)
 STUDY = "study.toml"
 RUNS = "runs"
-#: Options that do nothing beside another one, by their parameters' names.
+#: Options without effect beside another one, by the names of their parameters.
 USELESS: Mapping[str, Sequence[str]] = {
     "stored": ["file", "plan_only", "quick", "seeds", "samples", "jobs"],
     "file": ["quick", "seeds", "samples"],
@@ -30,7 +29,7 @@ USELESS: Mapping[str, Sequence[str]] = {
 
 
 def measure_help() -> str:
-    """Return what the values of ``--measure`` mean."""
+    """Return the help on the values of ``--measure``."""
     return " or ".join(f"{one.name} ({one.label})" for one in MEASURES.values()) + "."
 
 
@@ -67,7 +66,7 @@ def design_options(command: Command) -> Command:
 
 
 def check_options(context: click.Context) -> Path:
-    """Return the results folder; refuse a command without it, or with options that do nothing.
+    """Return the results folder; refuse a command without it, or with options without effect.
 
     Raises
     ------
@@ -96,7 +95,7 @@ def _flag(context: click.Context, name: str) -> str:
 
 
 def chosen_study(context: click.Context, folder: Path, design: Callable[[], Study]) -> Study:
-    """Return the study of the file that was given, else the one designed, kept in the folder."""
+    """Return the study of the given file, or the designed one, which is saved in the folder."""
     file: Optional[Path] = context.params["file"]
     if file is not None:
         return Study.load(file)
@@ -107,10 +106,10 @@ def chosen_study(context: click.Context, folder: Path, design: Callable[[], Stud
 
 
 def computed(context: click.Context, study: Study, folder: Path) -> Optional[tuple[Path, str]]:
-    """Compute what is missing of a study; return the folder of the store, and its name there.
+    """Compute the missing runs of a study; return the folder of its store, and its name there.
 
-    Return None if the command should only say how long that takes. The command ends, with the exit
-    codes of ``snowshed study run``, if runs fail or are interrupted; the same command goes on then.
+    Returns None if the command should only estimate the time. If runs fail or are interrupted, the
+    command ends with the exit codes of ``snowshed study run``, and the same command goes on.
     """
     jobs, quiet = context.params["jobs"], context.params["quiet"]
     if context.params["plan_only"]:

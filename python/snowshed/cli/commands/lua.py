@@ -10,7 +10,8 @@ from typing import Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.commands.run import PATH, run_options, run_scene
+from snowshed.cli.commands.run import PATH, run_options
+from snowshed.cli.run_scene import run_scene
 from snowshed.run.results import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
@@ -34,9 +35,9 @@ def lua(
     resume: bool,
     quiet: bool,
 ) -> None:
-    """Run a scene that Lua scripts describe, or leave Lua behind.
+    """Run a scene that Lua scripts describe, or write it as JSON.
 
-    UPDATE runs after INIT; its values override those before. Needs the extra snowshed[lua].
+    UPDATE runs after INIT, and its values override earlier ones. Needs the extra snowshed[lua].
     """
     if file is None and folder is None:
         raise click.UsageError("give -o DIR to run the scene, or --to-json FILE to write it")
@@ -57,7 +58,7 @@ def _load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:
 
 
 def _save_all(runs: Sequence[LuaRun], path: Path) -> None:
-    """Write the scene to the file `path`; runs that have names go to a folder of that name."""
+    """Write the scene to the file `path`; named runs are written to a folder of that name."""
     if not runs[0].name:
         runs[0].scene.save(path)
         return
@@ -71,9 +72,9 @@ def _save_all(runs: Sequence[LuaRun], path: Path) -> None:
 
 
 def _run_all(runs: Sequence[LuaRun], folder: Path, *, resume: bool, quiet: bool) -> None:
-    """Run the scene into `folder`; runs that have names go to folders of these names inside it.
+    """Run the scene into `folder`; named runs have folders of their names inside it.
 
-    Resuming also starts the named runs that had not begun.
+    Resuming also starts named runs that had not begun.
     """
     if not runs[0].name:
         run_scene(runs[0].scene, folder, resume, quiet)

@@ -1,4 +1,4 @@
-"""The commands ``snowshed geometry|regress|predict``; they import what takes long when they run."""
+"""The commands ``snowshed geometry|regress|predict``; slow imports are made when they run."""
 
 from __future__ import annotations
 

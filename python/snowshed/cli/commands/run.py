@@ -10,9 +10,8 @@ import click
 
 from snowshed.cli.accuracy import accuracy_option
 from snowshed.cli.commands.scene import resolve_options
-from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.run_scene import run_scene
 from snowshed.cli.scene_options import scene_options
-from snowshed.run.interrupt import Interrupted
 from snowshed.scene.scene import ResolvedScene
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -21,7 +20,7 @@ PATH = click.Path(path_type=Path)
 
 
 def run_options(command: Command, *, required: bool = True) -> Command:
-    """Add the options of commands that run a scene; `required`: that they cannot do without."""
+    """Add the options of commands that run a scene; `required` says whether -o must be given."""
     for option in (
         click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
         click.option("--resume", is_flag=True, help="Go on from the checkpoint in the folder."),
@@ -67,27 +66,4 @@ def panel(
 @run_options
 def run(scene: Path, folder: Path, resume: bool, quiet: bool) -> None:
     """Run a scene file."""
-    from snowshed.methods.registry import NAME_KEY
-
-    ready = ResolvedScene.load(scene)
-    if ready.data.get(NAME_KEY) == "slide":
-        from snowshed.cli.commands.slide import run_slide_scene
-
-        run_slide_scene(ready, folder, resume, quiet)
-    else:
-        run_scene(ready, folder, resume, quiet)
-
-
-def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
-    """Run a scene into a folder with a progress bar, and print the stack after each event."""
-    from snowshed.cli import console
-    from snowshed.cli.progress import progress_bar
-    from snowshed.run.events import run_events
-
-    try:
-        with progress_bar(quiet=quiet) as progress:
-            table = run_events(ready, folder, resume=resume, progress=progress)
-    except Interrupted as interrupted:
-        raise Stopped(str(interrupted)) from None
-    if not quiet:
-        console.print_events(table, folder)
+    run_scene(ResolvedScene.load(scene), folder, resume, quiet)

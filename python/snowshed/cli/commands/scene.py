@@ -1,4 +1,4 @@
-"""The commands that look at a scene: ``snowshed scene|plan|schema|compare``."""
+"""The commands that describe a scene: ``snowshed scene|plan|schema|compare``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PATH = click.Path(path_type=Path)
 @click.argument("scene", type=PATH)
 @accuracy_option
 def plan(scene: Path, accuracy: Optional[float]) -> None:
-    """Say what running a scene file would use and cost, without running it."""
+    """Print the features and the cost of a scene file, without running it."""
     from snowshed.cli import console
 
     ready = ResolvedScene.load(scene)
@@ -74,7 +74,7 @@ def resolve_options(
     *,
     quiet: bool = False,
 ) -> ResolvedScene:
-    """Return the scene that options describe; errors are in terms of the options."""
+    """Return the scene that options describe; errors name the options."""
     try:
         scene = scene_from_options(preset, snow_preset, options)
         if accuracy is not None:
@@ -86,7 +86,7 @@ def resolve_options(
 
 
 def _accurate(scene: Scene, accuracy: float, *, quiet: bool = False) -> Scene:
-    """Return the scene with dx and scheme chosen for an accuracy, and say so."""
+    """Return the scene with dx and scheme chosen for an accuracy, and print the choice."""
     choice = choose(accuracy, scene)
     if not quiet:
         click.echo(choice.reason, err=True)

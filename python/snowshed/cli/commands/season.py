@@ -1,4 +1,4 @@
-"""The command ``snowshed season``; all that takes long to import is imported when it runs."""
+"""The command ``snowshed season``; slow imports are made when it runs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 PATH = click.Path(path_type=Path)
 DEFAULTS = SeasonSettings()
 
-# What the season file decides, so that a bare panel need not be given it.
+# Values that the season file decides, and that need not be given.
 DECIDED = {"slab.thickness": 0.1}
 
 
@@ -103,11 +103,11 @@ def season(
     snow_preset: Optional[str],
     **options: Any,
 ) -> None:
-    """Let the snow of a season gather on a panel, let go and pile up, row by row of a file.
+    """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
 
     FILE is a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
     friction and adhesion_pa. The panel, the ground and the method are described by the same
-    options as in ``snowshed panel``; --friction is that of snow that slides.
+    options as in ``snowshed panel``; --friction is that of sliding snow.
 
     \b
     Example:
@@ -144,7 +144,7 @@ def _scene(
 
 
 def _given(options: dict[str, Any]) -> dict[str, Any]:
-    """Return the options that were given, by their paths in a scene."""
+    """Return the given options by their paths in a scene."""
     return {
         name.replace("__", "."): value
         for name, value in options.items()

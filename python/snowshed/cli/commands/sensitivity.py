@@ -1,4 +1,4 @@
-"""The command ``snowshed sensitivity``; it imports what takes long when it runs."""
+"""The command ``snowshed sensitivity``; slow imports are made when it runs."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ def sensitivity(
     quiet: bool,
     **options: Any,
 ) -> None:
-    """Find which snow parameters matter for the stack, beside its noise.
+    """Find the snow parameters that matter for the stack, compared with its noise.
 
-    Computes the runs that are missing, into DIR/runs, and evaluates them. After an interruption
-    the same command goes on; with --stored it evaluates what another study has stored.
+    Computes the missing runs into DIR/runs, and evaluates them. After an interruption the same
+    command goes on. With --stored it evaluates the store of another study.
 
     \b
     Example:

@@ -9,8 +9,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.commands.run import run_options
-from snowshed.cli.exit_codes import Stopped
-from snowshed.run.interrupt import Interrupted
+from snowshed.cli.run_scene import run_scene
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.schema import Parameter, scene_parameters
 
@@ -89,26 +88,11 @@ def slide(
         if max_time is not None:
             scene.set("events.max_time", max_time)
         ready = scene.resolve()
-    run_slide_scene(ready, folder, resume, quiet)
+    run_scene(ready, folder, resume, quiet)
     if avaframe is not None:
         _write_as_avaframe(folder, avaframe)
     if steps:
         _write_particles(ready, folder, steps)
-
-
-def run_slide_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
-    """Run a scene of a slide into a folder with a progress bar, and print its figures."""
-    from snowshed.cli import console
-    from snowshed.cli.progress import progress_bar
-    from snowshed.run.slides import run_slide
-
-    try:
-        with progress_bar(quiet=quiet) as progress:
-            summary = run_slide(ready, folder, resume=resume, progress=progress)
-    except Interrupted as interrupted:
-        raise Stopped(str(interrupted)) from None
-    if not quiet:
-        console.print_slide(summary, folder)
 
 
 def _scene(

@@ -44,7 +44,7 @@ def _computing_options(command: Command) -> Command:
 
 @click.group()
 def study() -> None:
-    """Compute many runs: one scene, and parameters that vary.
+    """Compute many runs of one scene whose parameters vary.
 
     \b
     Example:
@@ -70,7 +70,7 @@ def template(file: Optional[Path]) -> None:
 @click.argument("file", type=PATH)
 @click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]")
 def plan(file: Path, jobs: Optional[int]) -> None:
-    """Say how many runs a file makes, and how long they take."""
+    """Print the number and the expected time of a study's runs."""
     print_plan(Study.load(file), jobs)
 
 
@@ -81,7 +81,7 @@ def plan(file: Path, jobs: Optional[int]) -> None:
 )
 @_computing_options
 def run(file: Path, folder: Path, quiet: bool, **options: Any) -> None:
-    """Compute what is missing of a study.
+    """Compute the missing runs of a study.
 
     After an interruption the same command goes on.
     """
@@ -93,7 +93,7 @@ def run(file: Path, folder: Path, quiet: bool, **options: Any) -> None:
 @click.option("--study", "name", help="Name of the study.  [default: all in the folder]")
 @_computing_options
 def resume(folder: Path, name: Optional[str], quiet: bool, **options: Any) -> None:
-    """Compute what is missing of the studies in a folder."""
+    """Compute the missing runs of the studies in a folder."""
     from snowshed.study import session
 
     with _outcome_as_exit_code(), _progress(quiet) as progress:
@@ -106,7 +106,7 @@ def resume(folder: Path, name: Optional[str], quiet: bool, **options: Any) -> No
 @study.command()
 @click.argument("folder", type=PATH)
 def status(folder: Path) -> None:
-    """Say what is done, also while a study is being computed."""
+    """Print the status of studies, also during their computation."""
     from snowshed.cli.display.study import print_status
 
     with _outcome_as_exit_code(), Store.open(folder) as store:
@@ -142,7 +142,7 @@ def export(
 @click.argument("hash_", metavar="HASH")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
 def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
-    """Write the scene of one run, to run it alone.
+    """Write the scene of one run, to repeat it alone.
 
     HASH is the beginning of its hash.
     """
@@ -155,7 +155,7 @@ def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
 
 
 def print_plan(study: Study, jobs: Optional[int]) -> None:
-    """Say how many runs a study has, and how long they take."""
+    """Print the number of runs of a study, and their expected time."""
     seconds, at_once = study.expected_duration(jobs=jobs)
     count = len(study.runs())
     click.echo(f"{study.name}: {count} runs, {at_once} at once, {about(seconds)}")
@@ -185,7 +185,7 @@ def _progress(quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
 
 
 def _finish(folder: Path, names: list[str], quiet: bool) -> None:
-    """Say where the results are; fail if runs have failed."""
+    """Print where the results are; fail if runs have failed."""
     from rich.console import Console
 
     from snowshed.cli.display.study import print_failures

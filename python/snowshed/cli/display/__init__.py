@@ -1,1 +1,1 @@
-"""What commands print: tables and progress."""
+"""The output of commands: tables and notes."""

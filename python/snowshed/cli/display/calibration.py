@@ -1,4 +1,4 @@
-"""What ``snowshed calibrate`` shows: the best parameter sets, and the ranges of the parameters."""
+"""The output of ``snowshed calibrate``: the best parameter sets, and ranges of the parameters."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rich.table import Table
 from snowshed.analysis.calibration.misfit import RANKED
 from snowshed.analysis.calibration.report import Calibration
 from snowshed.cli.terminal import plain_table, wide_console
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 
 SHOWN = 5  # parameter sets
 POOR = 0.5  # part of the runs' variance that a surrogate should explain
@@ -23,7 +23,7 @@ OPEN = {
 
 
 def print_calibration(found: Calibration) -> None:
-    """Print ranking and ranges, and what to beware of."""
+    """Print the ranking, the ranges, and notes on their limits."""
     console = wide_console()
     console.print(_ranking(found))
     console.print(_ranges(found))
@@ -38,13 +38,13 @@ def print_calibration(found: Calibration) -> None:
 def _ranking(found: Calibration) -> Table:
     paths = found.stacks.parameters
     measured = [q for q in RANKED if f"{q}_rmse_m" in found.ranked]
-    headings = ["rank", *(word(path).label for path in paths)]
+    headings = ["rank", *(label(path).axis for path in paths)]
     headings += [f"{q}\nRMSE, m" for q in measured] + [f"{q}\nerror" for q in measured]
     shown = plain_table(
         "Parameter sets by mean rescaled RMSE", [*headings, "rescaled\nRMSE"], padding=(0, 1)
     )
     for _, row in found.ranked.head(SHOWN).iterrows():
-        cells = [f"{row['rank']:.0f}", *(word(path).value(row[path]) for path in paths)]
+        cells = [f"{row['rank']:.0f}", *(label(path).value(row[path]) for path in paths)]
         cells += [f"{row[f'{q}_rmse_m']:.4f}" for q in measured]
         cells += [f"{100 * row[f'{q}_relative_error']:+.1f} %" for q in measured]
         shown.add_row(*cells, f"{row['rescaled_rmse']:.3f}")
@@ -56,21 +56,21 @@ def _ranges(found: Calibration) -> Table:
     shown = plain_table("Parameters that the measurements allow", headings, padding=(0, 1))
     shown.add_column("", no_wrap=True)
     for _, row in found.ranges.iterrows():
-        known = word(str(row["parameter"]))
-        cells = [known.label, known.value(row["best_set"]), known.value(row["median"])]
+        known = label(str(row["parameter"]))
+        cells = [known.axis, known.value(row["best_set"]), known.value(row["median"])]
         cells += [_interval(row, level) for level in ("68", "95")]
         shown.add_row(*cells, OPEN[str(row["open"])])
     return shown
 
 
 def _interval(row: Any, level: str) -> str:
-    known = word(str(row["parameter"]))
+    known = label(str(row["parameter"]))
     ends = (row[f"{end}_{level}"] / known.scale for end in ("lower", "upper"))
     return " to ".join(f"{end:.3g}" for end in ends)
 
 
 def warnings(found: Calibration) -> list[str]:
-    """Return what limits the trust in a calibration."""
+    """Return notes on the limits of a calibration."""
     said = []
     if found.stacks.pending:
         said.append(

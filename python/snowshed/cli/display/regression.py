@@ -1,4 +1,4 @@
-"""What ``snowshed regress`` and ``snowshed predict`` show."""
+"""The output of ``snowshed regress`` and ``snowshed predict``."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def print_prediction(prediction: Prediction, title: str) -> None:
 
 
 def _scene(prediction: Prediction) -> str:
-    """Return what was simulated, apart from the settings of the method."""
+    """Return the simulated scene in words, without the settings of the method."""
     known = prediction.settings.items()
     told = [
         f"{name} {value}" for name, value in known if "." in name or name in ("dimension", "dx")

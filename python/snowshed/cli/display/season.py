@@ -1,4 +1,4 @@
-"""What the command ``snowshed season`` shows."""
+"""The output of ``snowshed season``."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
 
 
 def print_season(result: SeasonResult, folder: Path) -> None:
-    """Print the table, the event that buries the panel, and what to know of them."""
+    """Print the table, the event that buries the panel, and notes on their limits."""
     console = wide_console(120)
     columns = dict(SEASON_TABLE)
     if (result.table["settled_height_m"] < result.table["stack_height_m"]).any():
@@ -41,7 +41,7 @@ def print_season(result: SeasonResult, folder: Path) -> None:
 
 
 def verdict(result: SeasonResult) -> list[str]:
-    """Say when the stack reaches the panel's lower edge."""
+    """Return a sentence on when the stack reaches the panel's lower edge."""
     if not result.simulated:
         return []
     return [

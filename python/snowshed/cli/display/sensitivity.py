@@ -1,4 +1,4 @@
-"""What ``snowshed sensitivity`` shows: one line per parameter, one column per event."""
+"""The output of ``snowshed sensitivity``: a line per parameter, a column per event."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed.analysis.sensitivity.stored import TARGETS
 from snowshed.cli.terminal import plain_table, wide_console
-from snowshed.plot.labels import word
+from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,5 +72,5 @@ def print_table(method: str, table: pd.DataFrame) -> None:
 
 def _name(key: Any) -> str:
     path, *value = key
-    known = word(path)
-    return " ".join([known.symbol, *(f"{known.value(one)} {known.unit}" for one in value)]).strip()
+    known = label(path)
+    return " ".join([known.symbol, *(known.quantity(one) for one in value)])

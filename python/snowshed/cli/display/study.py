@@ -1,4 +1,4 @@
-"""What the commands of studies show: how long they will take, and their status."""
+"""The output of the commands of studies: expected times, and status."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from snowshed.study.store import Store, StoredRun
 
 
 def announcement(progress: Progress) -> str:
-    """Return what is said before the first run starts."""
+    """Return the announcement before the first run starts."""
     left = progress.count - progress.done - progress.failed
     earlier = f" ({progress.count - left} of {progress.count} are there already)"
     return (
@@ -24,7 +24,7 @@ def announcement(progress: Progress) -> str:
 
 
 def print_status(store: Store) -> None:
-    """Print what is done and what is not, study by study."""
+    """Print the status of the runs, study by study."""
     console = Console(highlight=False, soft_wrap=True)
     for name in store.studies():
         runs = store.runs(name)

@@ -1,4 +1,4 @@
-"""The output of ``snowshed verify``: what runs here, and a table of the checks."""
+"""The output of ``snowshed verify``: facts about the installation, and a table of the checks."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ STRIP_LAYERS = 9  # of grid cells that stand for the plane of a 2D scene
 
 @dataclass(frozen=True)
 class WrittenVdb:
-    """What an OpenVDB file holds.
+    """The contents of an OpenVDB file that was written.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What time does to a stack between two slide-offs: it settles, and its bonds sinter."""
+"""Ageing of a stack between two slide-offs: it settles, and its bonds sinter."""
 
 from snowshed.run.ageing.ageing import AGEING_COLUMNS, Ageing, Interval
 

@@ -49,7 +49,7 @@ class Interval(NamedTuple):
 
 @dataclass(frozen=True)
 class Ageing:
-    """How a stack ages before each of the events.
+    """The ageing of a stack before each event.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""A season of snowfalls on a panel: gathering, letting go, piling up, and burying the panel."""
+"""A season of snowfalls: accumulation on a panel, release, and the growth of the stack below it."""
 
 from snowshed.run.season.accumulation import Day, accumulate
 from snowshed.run.season.driver import SeasonResult, run_season

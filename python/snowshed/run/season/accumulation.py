@@ -1,4 +1,4 @@
-"""Snow gathering on the panel, row after row of the season file, until it lets go."""
+"""Accumulation of snow on a panel, row after row of the season file, until it is released."""
 
 from __future__ import annotations
 
@@ -17,20 +17,21 @@ from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 @dataclass(frozen=True)
 class Day:
-    """What a row of the season file did to the snow on the panel.
+    """The snow on the panel at one row of the season file.
 
     Attributes
     ----------
     weather
         The row.
     density
-        Of the row's snowfall, kg/m3, measured or estimated; None without snowfall.
+        Density of the row's snowfall, kg/m3, measured or estimated; None without snowfall.
     load, thickness
-        Of the snow on the panel once it had fallen, kg per m2 of the panel, and m normal to it.
+        Mass of the snow on the panel after the snowfall, kg per m2 of the panel, and its thickness
+        normal to the panel, m.
     balance
-        What pulled at it and what held it.
+        Driving and resisting stress of this snow.
     event
-        Number of the release, from 1; None: it stayed.
+        Number of the release, from 1; None if the snow stayed.
     """
 
     weather: Weather
@@ -44,20 +45,20 @@ class Day:
 def accumulate(
     season: Sequence[Weather], settings: SeasonSettings, tilt: float, gravity: float = 9.81
 ) -> list[Day]:
-    """Return what every row of a season does to the snow on a panel.
+    """Return the snow on a panel at every row of a season.
 
-    Snow of a depth h on level ground lies h cos(Phi) thick on the panel, measured normal to it:
-    its mass per area of the ground is the same. Snow lets go as a whole (`balance`). It neither
-    melts nor is blown away.
+    Snow of a depth h on level ground has the thickness h cos(Phi) normal to the panel, because its
+    mass per area of the ground is the same. All snow is released at once (`balance`). Melting and
+    wind are left out.
 
     Parameters
     ----------
     season
         The rows, in order.
     settings
-        Friction, adhesion and the rest.
+        The settings of accumulation and release.
     tilt
-        Phi, the panel's, degrees.
+        Phi, the tilt of the panel, degrees.
     gravity
         m/s2.
 
@@ -90,9 +91,9 @@ def accumulate(
 
 
 def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
-    """Return for every event but the first what time passes between it and the one before.
+    """Return the time between each event and the one before, for every event but the first.
 
-    From a row of the season file to the next the temperature is that of the earlier one.
+    The temperature of a row of the season file holds until the next row.
     """
     found: dict[int, list[Interval]] = {}
     waiting: Optional[list[Interval]] = None

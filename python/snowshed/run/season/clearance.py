@@ -1,4 +1,4 @@
-"""How far the stack below a panel is from its lower edge, and when it gets there."""
+"""The clearance between a panel's lower edge and the stack, and the event that closes it."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from snowshed.snow.stack.measure import level
 
 @dataclass(frozen=True)
 class Clearance:
-    """What is left between a panel's lower edge and the stack, m, normal to the ground.
+    """The clearance between a panel's lower edge and the stack, m, normal to the ground.
 
     Attributes
     ----------
     below
-        Between the edge and the snow right below it: all of its height where there is none, and 0
-        once the snow covers the edge.
+        Distance between the edge and the snow directly below it. Without snow it is the height of
+        the edge; it is 0 once the snow covers the edge.
     crest
-        Between the edge's height and that of the highest snow, wherever it lies.
+        Height of the edge minus that of the highest snow, wherever it lies.
     """
 
     below: float
@@ -58,8 +58,8 @@ def clearance(scene: Mapping[str, Any], outline: Floats, height: float) -> Clear
 def below_panel(scene: Mapping[str, Any], outline: Floats) -> Floats:
     """Return the points of an outline (k, 2) that do not lie over the panel's face.
 
-    Snow that rests against the panel's lower end may lie on it higher than what a measure of the
-    stack takes for snow on the panel.
+    Snow that rests against the panel's lower end may reach up its face without counting as snow on
+    the panel. It is not a part of the stack below the edge.
     """
     if len(outline) == 0:
         return outline
@@ -93,8 +93,8 @@ def _surface(outline: Floats, x: float) -> float:
 def first_reached(clearances: Sequence[float], dx: float) -> Optional[int]:
     """Return the first event after which a clearance is gone, from 1; None: it never is.
 
-    The grid sees no gap below one cell, and the particles' centres are half a spacing below the
-    surface: a clearance of `dx`, m, counts as none.
+    A clearance of `dx`, m, counts as none: the grid does not resolve a gap below one cell, and the
+    particles' centres are half a spacing below the surface.
 
     Examples
     --------

@@ -1,39 +1,37 @@
-"""A whole season: from a season file to a table, a figure and the event that buries the panel."""
+"""A whole season: from a season file to a table, a figure, and the event that buries the panel."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
 from snowshed.io.atomic import write_text
-from snowshed.io.csv_table import read_csv
+from snowshed.io.csv_table import Table, read_csv
 from snowshed.methods.registry import resolution_of
 from snowshed.run.events import run_events
 from snowshed.run.progress import Reporter
-from snowshed.run.results import EVENT_COLUMNS, check_empty
+from snowshed.run.results import check_empty
 from snowshed.run.season.accumulation import Day, accumulate, pauses
 from snowshed.run.season.clearance import first_reached, panel_ends
+from snowshed.run.season.notes import first_staying, notes
 from snowshed.run.season.results import SeasonFolder
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
 from snowshed.run.season.table import season_table
 from snowshed.run.season.weather import Season, read_season
-from snowshed.scene.scene import PathLike, ResolvedScene, Scene
+from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-# Part of a slab that may stay on the panel; beyond it the core lays the next slab on top.
-STAYING = 0.02
-
 
 @dataclass(frozen=True)
 class SeasonResult:
-    """What a season came to.
+    """The results of a season.
 
     Attributes
     ----------
@@ -42,13 +40,15 @@ class SeasonResult:
     releases, simulated
         Number of releases, and of those that were simulated.
     burial_event
-        First event after which the snow below the panel's lower edge reaches it; None: none.
+        First event after which the snow below the panel's lower edge reaches it; None if there is
+        none.
     crest_event
-        First event after which the stack is as high as the lower edge, wherever; None: none.
+        First event after which the stack is anywhere as high as the lower edge; None if there is
+        none.
     staying_event
-        First event after which snow stayed on the panel; None: none.
+        First event after which snow stayed on the panel; None if there is none.
     notes
-        What a reader of the table has to know.
+        Notes on the limits of the results.
     """
 
     table: pd.DataFrame
@@ -62,7 +62,7 @@ class SeasonResult:
 
 def run_season(
     season: Season,
-    scene: Union[Scene, ResolvedScene],
+    scene: SceneLike,
     out_dir: PathLike,
     *,
     settings: Optional[SeasonSettings] = None,
@@ -70,21 +70,22 @@ def run_season(
     progress: Optional[Reporter] = None,
     pictures: bool = True,
 ) -> SeasonResult:
-    """Let the snow of a season gather on a panel, let go, and pile up below it.
+    """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
 
     Parameters
     ----------
     season
         A season file or a pandas DataFrame (see `read_season`), or rows of `Weather`.
     scene
-        Panel, ground, obstacles, snow and method (`season_scene` says what holds of it). The
-        panel's friction is that of snow that slides.
+        A scene, its JSON data, or the path of a scene file. Its panel, ground, obstacles, snow and
+        method hold; `season_scene` replaces its slab and its events. The panel's friction is that
+        of sliding snow.
     out_dir
         The results folder (``snowshed.run.season.results``); new or empty, unless resuming.
     settings
         Release, density and settling; None: the defaults.
     resume
-        Go on with an interrupted season in `out_dir`.
+        Whether to go on with an interrupted season in `out_dir`.
     progress
         Called about twice a second while a slide-off runs.
     pictures
@@ -101,6 +102,7 @@ def run_season(
     --------
     >>> from datetime import datetime
     >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene
     >>> from snowshed.run.season import Weather
     >>> row = Weather(2, datetime(2024, 12, 1), 0.1, 100.0, -4.0)
     >>> with TemporaryDirectory() as folder:
@@ -110,7 +112,7 @@ def run_season(
     """
     settings = settings or SeasonSettings()
     rows = read_season(season)
-    ready = scene.resolve() if isinstance(scene, Scene) else scene
+    ready = resolve_scene(scene)
     data: dict[str, Any] = ready.data
     if "panel" not in data:
         raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
@@ -142,12 +144,12 @@ def _result(
 ) -> SeasonResult:
     import pandas as pd
 
-    events = _table_or_empty(folder.run.events.path, EVENT_COLUMNS)
-    outlines = _table_or_empty(folder.run.outlines.path, ("event", "x", "z"))
+    events = _table_or_empty(folder.run.events)
+    outlines = _table_or_empty(folder.run.outlines)
     table = season_table(scene.data, days, settings, events, outlines)
     simulated = table[pd.notna(table["event"]) & pd.notna(table["stack_height_m"])]
     dx = resolution_of(scene.data)
-    staying = _first_staying(events)
+    staying = first_staying(events)
     return SeasonResult(
         table,
         releases=int(pd.notna(table["event"]).sum()),
@@ -155,69 +157,14 @@ def _result(
         burial_event=first_reached(simulated["clearance_m"].tolist(), dx),
         crest_event=first_reached(simulated["crest_clearance_m"].tolist(), dx),
         staying_event=staying,
-        notes=[*_notes(scene.data, days, settings, staying), *_cut_short(events)],
+        notes=notes(dx, days, settings, events, staying),
     )
 
 
-def _first_staying(events: pd.DataFrame) -> Optional[int]:
-    """Return the first event after which much of what it brought still lies on the panel."""
-    total = events["mass_kg"] + events["on_panel_kg"]
-    brought = total.diff().fillna(total)
-    stayed = events["event"][events["on_panel_kg"] > STAYING * brought]
-    return int(stayed.iloc[0]) if len(stayed) else None
-
-
-def _cut_short(events: pd.DataFrame) -> list[str]:
-    """Say how many slide-offs were measured before the snow had come to rest."""
-    count = int((events["ended"] == "time_limit").sum())
-    if not count:
-        return []
-    return [
-        f"{count} of {len(events)} slide-offs ended before the snow rested; "
-        "allow a longer --max-time"
-    ]
-
-
-def _table_or_empty(path: Any, columns: Sequence[str]) -> pd.DataFrame:
+def _table_or_empty(table: Table) -> pd.DataFrame:
     import pandas as pd
 
-    return read_csv(path) if path.is_file() else pd.DataFrame(columns=list(columns))
-
-
-def _notes(
-    scene: dict[str, Any], days: Sequence[Day], settings: SeasonSettings, staying: Optional[int]
-) -> list[str]:
-    notes = []
-    released = [day for day in days if day.event is not None]
-    estimated = sum(day.density is not None and day.weather.density is None for day in days)
-    if estimated:
-        notes.append(f"{estimated} densities are estimates ({settings.density})")
-    if released:
-        dx = resolution_of(scene)
-        thinnest = min(day.thickness for day in released)
-        if thinnest < 2.0 * dx:
-            notes.append(
-                f"the thinnest slab has {1000 * thinnest:.1f} mm, less than two cells of "
-                f"{1000 * dx:g} mm: its stack is coarse"
-            )
-    else:
-        notes.append("no snow let go: friction and adhesion held all of it")
-    if settings.settling:
-        notes.append(
-            f"the stack settles between events ({settings.settling}), for which a factor of 4 and "
-            "more is published; settled heights are estimates for the time until the next"
-        )
-    if settings.sintering:
-        notes.append(
-            f"broken bonds regain strength ({settings.sintering}), all of it in "
-            f"{settings.strength_age:g} hours"
-        )
-    if staying is not None:
-        notes.append(
-            f"from event {staying} on, snow that should have left stayed on the panel; later slabs "
-            "are laid on top of it"
-        )
-    return notes
+    return read_csv(table.path) if table.path.is_file() else pd.DataFrame(columns=table.columns)
 
 
 def _write(
@@ -235,7 +182,7 @@ def _write(
     if pictures:
         from snowshed.plot.figure_style import save
 
-        outlines = _table_or_empty(folder.run.outlines.path, ("event", "x", "z"))
+        outlines = _table_or_empty(folder.run.outlines)
         save(drawn(result, outlines, scene.data), folder.figure)
 
 

@@ -1,4 +1,4 @@
-"""When snow on a panel lets go."""
+"""The criterion for the release of snow from a panel."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Balance:
-    """What pulls at the snow on a panel, and what holds it, Pa (per area of the panel)."""
+    """The driving and the resisting stress of the snow on a panel, Pa."""
 
     driving: float
     resisting: float
 
     @property
     def releases(self) -> bool:
-        """Whether the snow lets go."""
+        """True if the snow is released."""
         return self.driving > self.resisting
 
 
 def balance(
     load: float, tilt: float, friction: float, adhesion: float, gravity: float = 9.81
 ) -> Balance:
-    """Weigh the downslope part of the snow's weight against friction and adhesion.
+    """Return the downslope part of the snow's weight, and the friction and adhesion against it.
 
-    tau = m g sin(Phi) against mu m g cos(Phi) + a (Mohr-Coulomb). Without adhesion the load does
-    not matter: the snow lets go where tan(Phi) > mu. With it, snow gathers until
-    m = a / (g (sin(Phi) - mu cos(Phi))).
+    The snow is released if m g sin(Phi) > mu m g cos(Phi) + a (Mohr-Coulomb). Without adhesion the
+    load does not matter: snow is released if tan(Phi) > mu. With adhesion, snow accumulates until m
+    = a / (g (sin(Phi) - mu cos(Phi))).
 
     Parameters
     ----------

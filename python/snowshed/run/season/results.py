@@ -4,7 +4,7 @@
 season.csv         one row per row of the season file: `SEASON_COLUMNS`
 season.png         the season: load on the panel, stack and clearance, outlines
 season.json        settings, and the events at which the stack reached the panel
-run/               the slide-offs: a results folder as of ``snowshed run`` (without release: none)
+run/               the slide-offs: a results folder as of ``snowshed run`` (missing without release)
 ================== ==========================================================================
 """
 
@@ -37,7 +37,7 @@ SEASON_COLUMNS = (
 
 
 class SeasonFolder:
-    """Where the files of a season are."""
+    """The paths of a season's files."""
 
     def __init__(self, folder: PathLike) -> None:
         self.folder = Path(folder)

@@ -1,4 +1,4 @@
-"""What decides, besides the weather, about accumulation and release."""
+"""The settings of accumulation, release and ageing in a season."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw
 
 @dataclass(frozen=True)
 class SeasonSettings:
-    """How snow gathers on the panel, lets go, and settles.
+    """The settings of accumulation, release and ageing.
 
     Attributes
     ----------
     friction
-        Static Coulomb coefficient that the snow must overcome to let go. The laboratory measured
-        0.6 to 0.8 on Plexiglas (thesis 2.1). Once it slides, the panel's own friction holds.
+        Static Coulomb coefficient between snow and panel. The laboratory measured 0.6 to 0.8 on
+        Plexiglas (thesis 2.1). Sliding snow has the friction of the scene's panel.
     adhesion
-        What else holds the snow, Pa.
+        Adhesion of the snow to the panel, Pa.
     catch
-        Part of the snowfall that stays on the panel and is not blown past it.
+        Part of the snowfall that the panel catches; wind blows the rest past it.
     density
         Name of the relation (`NEW_SNOW_DENSITY`) for rows without a density.
     settling
-        Name of a law in `SETTLING_LAWS`, by which the snow on the panel and in the stack settles
-        between events; None: it does not.
+        Name of a law in `SETTLING_LAWS`, by which the snow on the panel and in the stack settles;
+        None: it does not settle.
     sintering
         Name of a law in `SINTERING_LAWS`, by which broken snow in the stack regains strength
-        between events; None: it does not.
+        between events; None: it does not sinter.
     strength_age
-        Age of bonds, hours, that have the strength of the snow that slides.
+        Age at which bonds have the strength of the sliding snow, hours.
 
     Raises
     ------
@@ -60,12 +60,12 @@ class SeasonSettings:
         self.ageing({})
 
     def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:
-        """Return what happens to the stack in the pauses before the events."""
+        """Return the ageing of the stack in the pauses before the events."""
         return Ageing(pauses, self.settling, self.sintering, self.strength_age)
 
     @property
     def ages(self) -> bool:
-        """Whether time does anything to the stack."""
+        """True if the stack settles or sinters."""
         return bool(self.settling or self.sintering)
 
     @property

@@ -1,7 +1,7 @@
 """The scene of a season: one slide-off for every release, each with its own slab.
 
-Every release is a layer of the scene's slab that is laid at the start of its event, with the mass
-and the mean density that had gathered.
+Every release is a layer of the scene's slab, laid at the start of its event. It has the mass and
+the mean density of the accumulated snow.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ MOST_SNOWS = 250  # a scene has up to 256
 
 
 def season_scene(base: ResolvedScene, days: Sequence[Day]) -> ResolvedScene:
-    """Return the scene that slides off, event by event, what a season releases.
+    """Return the scene whose events are the releases of a season.
 
     Parameters
     ----------
     base
-        Panel, ground, obstacles, snow and method. Its slab's length and width hold, its thickness
-        and the density of its snow do not, nor does its number of events.
+        The scene with panel, ground, obstacles, snow and method. The length and width of its slab
+        hold. The slab's thickness, the density of the snow and the number of events are replaced.
     days
-        What `accumulate` made of the season; at least one of them has an event.
+        From `accumulate`; at least one of them has an event.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def season_scene(base: ResolvedScene, days: Sequence[Day]) -> ResolvedScene:
 
 
 def _densities(released: Sequence[Day]) -> list[float]:
-    """Return the densities of the slabs in numbers to read, kg/m3; thicknesses follow them."""
+    """Return rounded densities of the slabs, kg/m3, of which there are few enough for a scene."""
     for step in (1.0, 10.0):
         found = [max(step * round(day.load / day.thickness / step), step) for day in released]
         if len(set(found)) <= MOST_SNOWS:

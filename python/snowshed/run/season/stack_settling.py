@@ -1,9 +1,9 @@
-"""How far the stack has settled since the last slide-off, at any time before the next.
+"""An estimate of how far the stack has settled since the last slide-off.
 
-The simulated stack ages just before the next event (`snowshed.run.ageing`). Until then the snow
-below its crest is taken as a column of its mean density, which settles under its own weight. The
-ratio of its thickness to the simulated height lowers the whole profile. The estimate serves the
-table only.
+The simulated stack ages just before the next event (`snowshed.run.ageing`). For the time until
+then, the snow below its crest is treated as a column with the mean density of the stack, which
+settles under its own weight. The ratio of its thickness to the simulated height lowers the whole
+profile. The estimate is used in the table only.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class SettlingStack:
     Parameters
     ----------
     law
-        How it settles; None: not at all.
+        The law of settling; None: it does not settle.
     gravity
         m/s2.
 
@@ -43,7 +43,7 @@ class SettlingStack:
         return min(self._column.thickness / self._height, 1.0) if self._height else 1.0
 
     def take(self, height: float, density: float) -> None:
-        """Take the stack as an event left it: its height, m, and its density, kg/m3."""
+        """Set the stack to the height, m, and the density, kg/m3, that an event left."""
         self._column.clear()
         self._column.add(height * density, density)
         self._height = height

@@ -1,4 +1,4 @@
-"""The table of a season, from what the weather did and what the slide-offs left."""
+"""The table of a season: the weather, the snow on the panel, and the stack of the slide-offs."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def season_table(
     scene
         The complete scene, with a panel.
     days
-        What `accumulate` made of the season.
+        From `accumulate`.
     settings
-        Say how the stack settles.
+        The settings of settling.
     events, outlines
         The tables of the slide-offs, as in events.csv and outline.csv.
     """
@@ -89,7 +89,7 @@ class _Stack:
         self.outline = np.zeros((0, 2))
 
     def take(self, event: int) -> None:
-        """Take what an event left."""
+        """Set the stack to what an event left."""
         row = self.events[event]
         self.height, self.length = float(row["height_m"]), float(row["length_m"])
         self.left = float(row["on_panel_kg"])

@@ -1,8 +1,8 @@
-"""The season's weather: when it snowed, how much, and what snow.
+"""The weather of a season: the dates, depths and densities of its snowfalls.
 
-A table in a file of comma-separated values, in which lines that are empty or begin with ``#`` are
-left out, or a DataFrame. A row may be without snowfall: it then only lets time pass, and tests the
-release with the friction and adhesion of that day.
+It is a table: a CSV file, in which empty lines and lines that begin with ``#`` are ignored, or a
+DataFrame. A row without snowfall lets time pass and tests the release with the friction and
+adhesion of that day.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ class Weather:
     Attributes
     ----------
     line
-        Its line in the file, or its row in the table, from 1.
+        Line in the file, or row in the table, from 1.
     date
-        When the snow had fallen.
+        Date at which the snow had fallen.
     snowfall
         Depth of the new snow on level ground, m.
     density
         Density of the new snow, kg/m3; None: not measured.
     temperature
-        Of the air, degrees C; it holds until the next row.
+        Temperature of the air, degrees C, until the next row.
     friction, adhesion
-        Of the panel on that day, the latter in Pa; None: as on any day.
+        Friction and adhesion (Pa) of the panel on that day; None: those of the settings.
     """
 
     line: int
@@ -55,7 +55,7 @@ class Weather:
 
 @dataclass(frozen=True)
 class _Column:
-    """What a column may hold."""
+    """The unit and the range of a column."""
 
     low: float
     high: float
@@ -88,9 +88,9 @@ def read_season(season: Season) -> list[Weather]:
     season
         A CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or timestamps,
         increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c`` and, if
-        known, ``density_kg_m3``, ``friction`` and ``adhesion_pa``. Names tell the units; where a
-        DataFrame's ``attrs["units"]`` has the unit of a column, it must agree. Rows of `Weather`
-        are returned as they are.
+        known, ``density_kg_m3``, ``friction`` and ``adhesion_pa``. The names tell the units. If
+        ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of `Weather`
+        are returned unchanged.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where a scene's panel is, in the plane (x, z)."""
+"""The position of a scene's panel in the plane (x, z)."""
 
 from __future__ import annotations
 

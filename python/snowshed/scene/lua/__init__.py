@@ -1,4 +1,4 @@
-"""Scenes from Lua scripts, the thesis's way of working (A.3.1). Needs ``snowshed[lua]``."""
+"""Scenes from Lua scripts, as in the thesis (A.3.1). Needs ``snowshed[lua]``."""
 
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.limits import Limits

@@ -1,4 +1,4 @@
-"""A scene in the making that knows which line of which script set what."""
+"""A scene under construction that knows which line of which script set each value."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from snowshed.scene.scene import ResolvedScene, Scene
 
 @dataclass(frozen=True)
 class LuaRun:
-    """A scene that scripts ask to be run.
+    """A run of a scene that scripts request.
 
     Attributes
     ----------
     name
-        What the word ``run`` called it; empty if the scripts do not use that word.
+        Name given to ``run``; empty if the scripts do not call it.
     scene
         The scene, validated and completed by the core.
     """
@@ -32,12 +32,12 @@ class LuaRun:
 
 
 class Builder:
-    """Applies settings to a scene, and hands out the scene as it stands.
+    """Applies settings to a scene, and returns the scene with its present values.
 
     Parameters
     ----------
     folder
-        The folder of the scripts, in which the files are that they name.
+        The folder of the scripts, in which the files that they name must be.
     """
 
     def __init__(self, folder: PathLike) -> None:
@@ -87,19 +87,19 @@ class Builder:
             names[-1] = name
 
     def ask(self, name: str, place: Place) -> None:
-        """Add the scene as it stands to what is to be run.
+        """Request a run of the scene with its present values.
 
         Parameters
         ----------
         name
-            What the run is called.
+            Name of the run.
         place
-            The line that asked, for errors that no other line can be blamed for.
+            The line that requests the run, for errors that no other line has caused.
 
         Raises
         ------
         InputError
-            If the scene is wrong, with the line that set what is wrong in it.
+            If the scene is wrong, with the line that set the wrong value.
         """
         try:
             data = self._scene.to_data()
@@ -112,7 +112,7 @@ class Builder:
         self.runs.append(LuaRun(name, scene))
 
     def _check_file(self, where: str, file: Any) -> None:
-        """Refuse files that scripts have no business with."""
+        """Refuse files that are missing, or outside the folder of the scripts."""
         path = (self._folder / str(file)).resolve()
         if self._folder not in path.parents:
             raise InputError(f"{where}: {file!r} is not in the scripts' folder {self._folder}")
@@ -129,7 +129,7 @@ def _pointer(path: str) -> str:
 
 
 def _files(data: Any, path: str) -> Iterator[tuple[str, Any]]:
-    """Find what is called a file, anywhere in JSON data, with its JSON path."""
+    """Yield the files that JSON data names, with their JSON paths."""
     if isinstance(data, Mapping):
         for key, value in data.items():
             if key == "file":

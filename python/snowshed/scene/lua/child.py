@@ -1,8 +1,8 @@
-"""The process in which Lua runs: a request in JSON comes in, what the scripts said goes out.
+"""The process in which Lua runs: it reads a request in JSON and writes the calls of the scripts.
 
-It is started as a program of its own, without the rest of the package, so that it starts quickly
-and holds nothing worth reaching. Before the scripts run it gives up what it does not need: opening
-files, starting processes, memory and time. Nothing of Python is put into the Lua state.
+It is a program of its own, without the rest of the package. It therefore starts quickly, and holds
+nothing that a script could misuse. Before the scripts run it gives up the right to open files and
+to start processes, and limits its memory and time. No Python object is put into the Lua state.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def _new_state(memory: int) -> Any:
 
 
 def _furnish(lua: Any, request: dict[str, Any]) -> Any:
-    """Load our own Lua, which makes the sandbox."""
+    """Load the Lua code that makes the sandbox."""
     folder = Path(__file__).parent
     loaded = [
         lua.compile((folder / f"{name}.lua").read_text(encoding="utf-8"), name=f"={name}", mode="t")

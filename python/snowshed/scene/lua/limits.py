@@ -1,4 +1,4 @@
-"""What a script may use before it is stopped."""
+"""Limits of the resources that scripts may use."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Limits:
-    """What the scripts of one scene may use together.
+    """The resources that the scripts of one scene may use together.
 
-    Scripts that go wrong run into one of the first three, and the error names the line. The times
-    after them end the process, for single operations that do not return. What counts is processor
-    time, which a busy machine hardly stretches; a script cannot wait for anything.
+    A script that exceeds one of the first three is stopped with an error that names the line. The
+    next two end the process, in case a single operation does not return. Processor time is counted,
+    because a busy machine hardly changes it; a script cannot wait for anything.
 
     Attributes
     ----------
@@ -20,7 +20,7 @@ class Limits:
     memory_bytes
         Memory of the Lua state, bytes.
     soft_seconds
-        Processor time, s, looked at every few hundred instructions.
+        Processor time, s, checked every few hundred instructions.
     hard_seconds
         Processor time, s, after which the operating system ends the process.
     wall_seconds
@@ -28,7 +28,7 @@ class Limits:
     calls
         Calls of the vocabulary.
     printed_lines
-        Lines printed; what comes after them is dropped.
+        Printed lines; further lines are dropped.
     line_length
         Bytes of a printed line that are kept.
     script_bytes

@@ -38,7 +38,8 @@ def load_lua(
     Returns
     -------
     list of LuaRun
-        One scene for every call of ``run``; without any, the scene as it stands at the end.
+        One scene for every call of ``run``; without such a call, the scene at the end of the
+        scripts.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Which line of which script set a value of a scene, so that the core's errors can name it."""
+"""The line of the script that set each value of a scene, for the errors of the core."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Origins:
         self._places: dict[str, Place] = {}
 
     def note(self, path: str, value: Any, place: Place) -> None:
-        """Remember that `place` set `value` at `path`, with all that is inside of it."""
+        """Note that `place` set `value` at `path`, and all values inside it."""
         self._places.pop(path, None)  # so that the order is that of the last setting
         self._places[path] = place
         if isinstance(value, Mapping):
@@ -35,7 +35,7 @@ class Origins:
                 self.note(f"{path}/{i}", inner, place)
 
     def of(self, path: str) -> Optional[Place]:
-        """Return what set the value at `path`, else what is around it, else the last inside it."""
+        """Return the place that set the value at `path`, or what contains it, or its last part."""
         around = path
         while around:
             if around in self._places:

@@ -1,4 +1,4 @@
-"""Runs scripts in a process of their own and takes in what they said."""
+"""Running scripts in a process of their own, and reading the calls that they made."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def _failure(error: dict[str, Any], names: list[str], limits: Limits) -> InputEr
 
 
 def _printable(text: str) -> str:
-    """Return text that does nothing to a terminal, nor floods it."""
+    """Return text without control characters, shortened to `LONGEST_MESSAGE`."""
     if len(text) > LONGEST_MESSAGE:
         text = text[:LONGEST_MESSAGE] + "..."
     return "".join(c if c.isprintable() else " " for c in text)

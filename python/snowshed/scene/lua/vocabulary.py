@@ -1,7 +1,7 @@
-"""The words scripts use, and what each does to a scene.
+"""The functions that scripts call, and their effects on a scene.
 
-Values set later override earlier ones, as in the thesis (A.3.1). The guide to Lua scripts lists
-the words.
+Later values override earlier ones, as in the thesis (A.3.1). The guide to Lua scripts lists the
+functions.
 """
 
 from __future__ import annotations
@@ -57,14 +57,14 @@ MOST_RUNS = 1000
 
 
 def apply(call: Call, builder: Builder) -> None:
-    """Do what a call says.
+    """Apply a call to the scene.
 
     Parameters
     ----------
     call
         A call of one of the `WORDS`.
     builder
-        Whose scene is changed.
+        Holds the scene that is changed.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def _arguments(call: Call, count: int) -> list[Any]:
 
 
 def _table(word: str, value: Any) -> dict[str, Any]:
-    """Return a table of named values; an empty one could as well be an empty list."""
+    """Return a table of named values; an empty table may come as an empty list."""
     if value == []:
         return {}
     if not isinstance(value, dict):
@@ -174,7 +174,7 @@ def _body(builder: Builder, place: Place, value: Any) -> None:
 
 
 def _run(builder: Builder, call: Call) -> None:
-    """Ask for a run of the scene as it stands."""
+    """Request a run of the scene with its present values."""
     name = call.arguments[0] if len(call.arguments) == 1 else None
     if not (isinstance(name, str) and RUN_NAME.fullmatch(name)):
         raise InputError(

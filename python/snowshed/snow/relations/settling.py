@@ -1,4 +1,4 @@
-"""How fast a layer of dry snow settles: its strain rate under the snow above it.
+"""Settling of dry snow: the strain rate of a layer under the snow above it.
 
 Both laws are those of snow cover models, made for layers on the ground. How well they hold for snow
 that has slid, broken and piled up is not known.

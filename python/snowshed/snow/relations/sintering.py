@@ -1,4 +1,4 @@
-"""How fast bonds between grains regain strength: powers of their age.
+"""Sintering: the strength of bonds between grains as a power of their age.
 
 Both publications measured the growth from some minutes after contact to days, at one temperature.
 How the factor before the power depends on temperature is not known well enough to be here.

@@ -1,12 +1,12 @@
-"""Measuring a stack: levelling, outlier removal, shell, extents (thesis A.4, Figure 2.2.1).
+"""Measuring a stack: levelling, trimming, surface, extents (thesis A.4, Figure 2.2.1).
 
 The steps, in this order:
 
 1. Snow still on the panel is set aside and reported.
 2. The ground is turned level (A.4.4).
 3. The outermost 3 % are dropped (A.4.1, A.4.2; module ``trimming``).
-4. The shell is extracted (A.4.3; module ``surface``); height, length, head, tail and width are
-   those of the shell, as in the thesis.
+4. The surface is extracted (A.4.3; module ``surface``); height, length, head, tail and width are
+   those of the surface, as in the thesis.
 
 Steps 3 and 4 are repeated on the largest connected body alone (module ``connected_components``),
 because the lab measured a continuous body and left out what had rolled away. Mass and volume are
@@ -26,13 +26,13 @@ from snowshed._core import InputError
 from snowshed.io.array_arguments import column, finite, flags, points, positive
 from snowshed.io.arrays import Floats
 from snowshed.snow.stack.connected_components import largest_body
-from snowshed.snow.stack.surface import outline, shell
+from snowshed.snow.stack.surface import outline, surface_particles
 from snowshed.snow.stack.trimming import inliers
 
 
 @dataclass(frozen=True)
 class Extent:
-    """Where snow lies, in metres; x from the panel's centre, z from the ground. NaN: no snow."""
+    """The extent of snow in metres; x from the panel's centre, z from the ground. NaN: no snow."""
 
     height: float = 0.0
     length: float = 0.0
@@ -185,10 +185,10 @@ def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
 
 
 def _extent(snow: Floats, dimension: int) -> Extent:
-    """Measure the shell of levelled snow without outliers (Table 2.3.2)."""
+    """Measure the surface of levelled, trimmed snow (Table 2.3.2)."""
     if len(snow) == 0:
         return Extent()
-    x, y, z = snow[shell(snow)].T
+    x, y, z = snow[surface_particles(snow)].T
     return Extent(
         height=float(z.max()),
         length=float(np.ptp(x)),

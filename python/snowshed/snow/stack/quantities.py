@@ -1,4 +1,4 @@
-"""What is measured of a stack, by which name, in which column of a table."""
+"""The measures of a stack, their names, and their columns in tables."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ QUANTITIES = ("height", "length", "head", "tail")
 
 @dataclass(frozen=True)
 class Measure:
-    """What counts as the stack.
+    """A definition of what counts as the stack.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The shell of a stack: the highest particle of every cell of a 30 x 30 grid (thesis A.4.3)."""
+"""The surface of a stack: the highest particle of every cell of a 30 x 30 grid (thesis A.4.3)."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from snowshed.io.arrays import Floats, Integers
 CELLS = 30  # across the range of x, and of y
 
 
-def shell(positions: Floats) -> Integers:
-    """Return the indices of the particles that form the shell, ordered by x cell, then y cell.
+def surface_particles(positions: Floats) -> Integers:
+    """Return the indices of the particles that form the surface, ordered by x cell, then y cell.
 
     Parameters
     ----------
     positions : (n, 3)
-        Levelled positions of the particles that are left after the outlier removal, m. In 2D,
+        Levelled positions of the particles that are left after trimming, m. In 2D,
         where y is zero throughout, 30 columns remain of the 900 cells.
 
     Examples
     --------
-    >>> shell(np.array([[0.0, 0, 1], [0.001, 0, 2], [1, 0, 1]])).tolist()
+    >>> surface_particles(np.array([[0.0, 0, 1], [0.001, 0, 2], [1, 0, 1]])).tolist()
     [1, 2]
     """
     x, y, z = positions.T

@@ -12,7 +12,7 @@ import numpy as np
 from snowshed.io.arrays import Booleans, Floats, Integers
 
 DROPPED_FRACTION = 0.03
-DIVISIONS = 30  # of radius and angle, as of the shell's grid (A.4.3)
+DIVISIONS = 30  # of radius and angle, as of the grid of the surface (A.4.3)
 
 
 def inliers(positions: Floats, masses: Floats, dimension: int) -> Booleans:

@@ -1,4 +1,4 @@
-"""What a study will cost, before it starts: the core's forecast, and speeds measured here."""
+"""The expected cost of a study: the core's estimate of its work, and speeds measured here."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ MEASURED = 0.01  # share of the expected time after which there is no further ro
 
 
 def work(scene: str) -> float:
-    """Return how many particle updates a run is expected to take, with weights as in ``plan``.
+    """Return the expected number of particle updates of a run, weighted as in ``plan``.
 
     Parameters
     ----------
     scene
-        The complete scene as JSON. One that cannot be run takes no work.
+        The complete scene as JSON. The work of a scene that cannot be run is 0.
 
     Examples
     --------
@@ -52,14 +52,14 @@ def speed(scene: str, threads: int) -> float:
 
 
 def duration(works: Iterable[float], workers: int) -> float:
-    """Return how long workers take for tasks if the longest are begun first.
+    """Return the time that workers need for tasks if the longest are begun first.
 
     Parameters
     ----------
     works
-        What each task takes, in any unit.
+        Time of each task, in any unit.
     workers
-        Tasks at once.
+        Number of tasks at once.
 
     Examples
     --------
@@ -73,20 +73,20 @@ def duration(works: Iterable[float], workers: int) -> float:
 
 
 def expected(scenes: Sequence[str], works: Sequence[float], workers: int, threads: int) -> float:
-    """Return how long runs are expected to take, s.
+    """Return the expected time of runs, s.
 
-    The speed is measured on three runs, each of which stands for a third of the work; before
-    long studies several times, of which the quickest counts, as nothing makes a machine quicker
-    than it is, while others may hold it up for seconds.
+    The speed is measured on three runs, each of which stands for a third of the work. Before long
+    studies each is measured several times, and the highest speed counts: other work may slow a
+    machine down for seconds, but nothing makes it faster.
 
     Parameters
     ----------
     scenes, works
-        Of each run, its complete scene and its `work`.
+        The complete scene of each run, and its `work`.
     workers
         Runs at once.
     threads
-        Threads of each.
+        Threads of each run.
     """
     order = sorted(range(len(works)), key=works.__getitem__)
     done = list(itertools.accumulate(works[run] for run in order))
