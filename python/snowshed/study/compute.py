@@ -17,12 +17,12 @@ from snowshed._core import InputError
 from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.results import RunFolder
+from snowshed.run.results import WORDS, RunFolder
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome, Task
 from snowshed.study.scene_hash import content_hash
-from snowshed.study.store import COUNTS, WORDS
+from snowshed.study.store import COUNTS
 
 FractionReporter = Callable[[float], None]
 

@@ -29,7 +29,7 @@ from typing import Any, Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.json_file import check_values, parse_object
-from snowshed.run.results import EVENT_COLUMNS
+from snowshed.run.results import EVENT_COLUMNS, WORDS
 from snowshed.scene.scene import PathLike
 from snowshed.study.errors import StudyError
 from snowshed.study.locks import holding
@@ -44,7 +44,6 @@ NO_STUDY = "holds no study; start one with `snowshed study run`"
 BUSY_S = 60.0  # s to wait for another process that is writing
 
 COUNTS = ("steps",)
-WORDS = ("ended",)
 #: What is measured after an event, with the type it has in the store.
 MEASURED_TYPES: Mapping[str, str] = {
     name: "INTEGER" if name in COUNTS else "TEXT" if name in WORDS else "REAL"

@@ -113,8 +113,9 @@ def read_rows(
     file
         A CSV file, or a Parquet file (.parquet); or the folder of a study's store.
     measure
-        "stack": height and length of 97 % of the snow, as the thesis measures; "body": of the
-        largest connected body.
+        One of `snowshed.snow.stack.quantities.MEASURES`. "stack": height and length of 97 % of the
+        snow, as the thesis measures, by the reading of A.4.2 that the table names; "body": of the
+        largest connected body; "outermost_first" or "equal_pace": as "stack", by that reading.
     where
         Columns and the value they must have: only these rows are read.
 
@@ -170,7 +171,10 @@ def _rows(table: StackTable, measure: Measure) -> StackRows:
     table.check_columns([*INPUTS, *measure.columns(STACK)])
     nothing = table.without_stack(measure, STACK)
     left_out = int(nothing.sum())
-    table = replace(table, frame=table.frame.loc[~nothing])
+    frame = table.frame.loc[~nothing]
+    if measure.trimming is not None and "trimming" in frame:
+        frame = frame.assign(trimming=measure.trimming)
+    table = replace(table, frame=frame)
     _check_enough(len(table.frame), left_out)
     settings = table.common_settings(INPUTS)
     inputs = np.column_stack([table.numbers(name) for name in INPUTS])

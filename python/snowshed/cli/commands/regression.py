@@ -10,6 +10,7 @@ import click
 from click.core import ParameterSource
 
 from snowshed.analysis.regression.geometry import FRICTION
+from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
 
 PATH = click.Path(path_type=Path)
@@ -97,7 +98,7 @@ def geometry(
 @click.option(
     "--measure",
     default="stack",
-    help="stack (97 % of the snow) or body (the largest connected one).  [default: stack]",
+    help=f"{measure_help()}  [default: stack]",
 )
 @click.option(
     "--where",
