@@ -13,7 +13,8 @@ from snowshed import InputError, Shape
 from snowshed.run.results import EVENT_COLUMNS
 from snowshed.scene.components import Obstacle
 from snowshed.study import Factor, Study, export, read_table, to_dataset
-from snowshed.study.store import FILE, MEASURED_TYPES, TIMING, Store
+from snowshed.study.database import FILE, MEASURED_TYPES, TIMING
+from snowshed.study.store import Store
 
 computed = study_helpers.computed  # a fixture
 

@@ -8,8 +8,9 @@ import pandas as pd
 from thesis.size import QUICK
 
 from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.study.database import MEASURED_TYPES, WORDS
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import MEASURED_TYPES, WORDS, Store
+from snowshed.study.store import Store
 
 #: Fewer values and folds than the quick reproduction has, with two seedings where it has one.
 TINY = replace(

@@ -13,8 +13,9 @@ from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
+from snowshed.study.database import COUNTS, MEASURED_TYPES, TIMING
 from snowshed.study.factors import SEED
-from snowshed.study.store import COUNTS, MEASURED_TYPES, TIMING, Store, StoredRun
+from snowshed.study.store import Store, StoredRun
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -130,8 +131,10 @@ def scene_columns(scene: Mapping[str, Any], axes: Sequence[str]) -> dict[str, An
 
 def _events(store: Store, study: str) -> dict[str, list[dict[str, Any]]]:
     names = ("event", *MEASURED_TYPES, "wall_s")
+    present = store.columns("event")
+    measures = [name if name in present else f"NULL AS {name}" for name in MEASURED_TYPES]
     rows = store.read(
-        f"SELECT event.hash, event.event, {', '.join(MEASURED_TYPES)}, wall_s"
+        f"SELECT event.hash, event.event, {', '.join(measures)}, wall_s"
         " FROM study_run JOIN event USING (hash) JOIN event_timing USING (hash, event)"
         " WHERE study = ? ORDER BY position, event.event",
         (study,),
