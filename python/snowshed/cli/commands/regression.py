@@ -9,6 +9,7 @@ from typing import Optional
 import click
 from click.core import ParameterSource
 
+from snowshed.analysis.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
@@ -44,6 +45,14 @@ PATH = click.Path(path_type=Path)
     help="Stacks for each panel up to 1 m, whose means are regressed; up to 2 m a third of them, "
     "up to 4 m a sixth, beyond a sixteenth, rounded up.",
 )
+@click.option(
+    "--deviation",
+    "deviations",
+    multiple=True,
+    type=click.Choice([*DEVIATIONS, ALL]),
+    help="Do as the thesis does in this; may be repeated, and all is the preset `thesis`. Goes "
+    "before --between and --dx.",
+)
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid, which take seconds.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
 @click.pass_context
@@ -53,6 +62,7 @@ def geometry(
     friction: float,
     dx: float,
     seeds: int,
+    deviations: Sequence[str],
     trial: bool,
     file: Optional[Path],
 ) -> None:
@@ -69,7 +79,11 @@ def geometry(
 
     if trial and context.get_parameter_source("dx") == ParameterSource.COMMANDLINE:
         raise click.UsageError("--dx does nothing with --trial, which has cells of its own")
-    study = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
+    if trial and deviations:
+        raise click.UsageError("--deviation does nothing with --trial")
+    study = geometry_study(
+        between, friction=friction, dx=dx, seeds=seeds, deviations=deviations, trial=trial
+    )
     if file is None:
         click.echo(study.to_toml(), nl=False)
     else:
