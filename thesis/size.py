@@ -43,6 +43,8 @@ class Size:
         has no factor in common with the numbers of lengths, or the same ones would come again.)
     folds
         Of the nested cross-validation.
+    one_seed_rounds
+        Of its rounds for the rows of one seed, where there are several.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Size:
     deviation_longest: float
     deviation_seeds: int
     folds: CrossValidation
+    one_seed_rounds: int
 
 
 FULL = Size(
@@ -88,6 +91,7 @@ FULL = Size(
     deviation_longest=10.0,
     deviation_seeds=2,
     folds=CrossValidation(),
+    one_seed_rounds=10,
 )
 #: The thesis's dimensions, cells and events, with the frictions that it measured, fewer seedings,
 #: and the panels that come with snowshed.
@@ -105,6 +109,7 @@ MIDDLE = replace(
     deviation_longest=4.0,
     deviation_seeds=1,
     folds=CrossValidation(rounds=3),
+    one_seed_rounds=3,
 )
 QUICK = Size(
     name="quick",
@@ -127,5 +132,6 @@ QUICK = Size(
     deviation_longest=1.0,
     deviation_seeds=1,
     folds=CrossValidation(rounds=2, folds=5, inner_folds=3),
+    one_seed_rounds=1,
 )
 SIZES: Mapping[str, Size] = {size.name: size for size in (QUICK, MIDDLE, FULL)}

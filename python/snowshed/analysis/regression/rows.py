@@ -78,6 +78,23 @@ class StackRows:
         deviations = np.nanmean(np.abs(values - np.nanmean(values, axis=1)[:, None]), axis=1)
         return float((deviations * np.sqrt(count / (count - 1))).mean())
 
+    @property
+    def most_seeds(self) -> int:
+        """How many stacks the row has that has most."""
+        return int(np.isfinite(self.stacks["ratio"]).sum(axis=1).max(initial=0))
+
+    def of_one_seed(self) -> StackRows:
+        """Return the rows with the first stack of each alone, as the thesis has them.
+
+        Examples
+        --------
+        >>> rows = rows_of([[1, 2, 4, 40]] * 2, np.array([1.0, 3.0]), np.array([4.0, 4.0]))
+        >>> rows.targets["height"].tolist(), rows.of_one_seed().targets["height"].tolist()
+        ([2.0], [1.0])
+        """
+        stacks = {name: values[:, :1] for name, values in self.stacks.items()}
+        return replace(self, stacks=stacks)
+
     def __len__(self) -> int:
         return len(self.inputs)
 

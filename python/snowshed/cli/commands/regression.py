@@ -122,6 +122,11 @@ def geometry(
     help="Only rows that have this value; may be repeated.",
 )
 @click.option(
+    "--one-seed",
+    is_flag=True,
+    help="Take the first stack of each panel and event only, as the thesis has one, not the mean.",
+)
+@click.option(
     "--split",
     default="rows",
     help="What the folds split: rows, or panels with all their events.  [default: rows]",
@@ -142,6 +147,7 @@ def regress(
     kinds: Sequence[str],
     measure: str,
     conditions: Sequence[str],
+    one_seed: bool,
     split: str,
     rounds: int,
     folds: int,
@@ -165,6 +171,7 @@ def regress(
     from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
 
     rows = read_rows(table, measure, dict(map(_condition, conditions)))
+    rows = rows.of_one_seed() if one_seed else rows
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
     if rows.left_out and not quiet:
         click.echo(f"note: {rows.left_out} rows have no stack and are left out", err=True)
