@@ -75,6 +75,13 @@ def ratios(stacks: pd.DataFrame, trimming: str) -> pd.Series:
     return stacks[measure.column("height")] / stacks[measure.column("length")]
 
 
+def measured_as(stacks: pd.DataFrame, trimming: str, quantity: str) -> pd.Series:
+    """Return "height", "length" or "ratio" of stacks by a reading of A.4.2."""
+    if quantity == "ratio":
+        return ratios(stacks, trimming)
+    return stacks[MEASURES[trimming].column(quantity)]
+
+
 def quartiles(stacks: pd.DataFrame, trimming: str) -> list[float]:
     """Return the quartiles of H/L, the last one the largest, by a reading of A.4.2."""
     return [float(one) for one in np.quantile(ratios(stacks, trimming), QUANTILES)]
@@ -107,7 +114,7 @@ def change(stacks: pd.DataFrame, variant: str, quantity: str) -> Estimate:
         If there are no stacks to compare.
     """
     ours, theirs = (
-        _measured(stacks[stacks["variant"] == name], trimming_of(name), quantity)
+        measured_as(_rows(stacks, name), trimming_of(name), quantity)
         for name in (DEFAULTS, variant)
     )
     both = (theirs / ours).dropna().map(math.log)
@@ -120,14 +127,18 @@ def change(stacks: pd.DataFrame, variant: str, quantity: str) -> Estimate:
     return Estimate(mean - 1, mean * noise * widening(count - 1) if noise else 0.0)
 
 
-def _measured(stacks: pd.DataFrame, trimming: str, quantity: str) -> pd.Series:
-    rows = stacks.set_index(list(ROW))
-    if quantity == "ratio":
-        return ratios(rows, trimming)
-    return rows[MEASURES[trimming].column(quantity)]
+def _rows(stacks: pd.DataFrame, variant: str) -> pd.DataFrame:
+    return stacks[stacks["variant"] == variant].set_index(list(ROW))
 
 
 def by_size(stacks: pd.DataFrame) -> list[str]:
     """Return the deviations that were computed, the one that changes H/L most first."""
     there = [name for name in DEVIATIONS if name in set(stacks["variant"])]
-    return sorted(there, key=lambda name: -abs(change(stacks, name, "ratio").value))
+    sizes = {name: abs(change(stacks, name, "ratio").value) for name in there}
+    return sorted(there, key=lambda name: (is_unswitched(stacks, name), -sizes[name]))
+
+
+def is_unswitched(stacks: pd.DataFrame, name: str) -> bool:
+    """Return whether the scenes of a deviation that is simulated are those of our settings."""
+    same = stacks.loc[stacks["variant"] == name, "same_runs"]
+    return DEVIATIONS[name].simulated and bool(same.all())

@@ -95,10 +95,10 @@ def test_deviations_are_listed_by_their_size():
     assert grid.rows[0][3].startswith("+50 ± ")
 
 
-def test_a_deviation_that_our_settings_have_says_so():
+def test_a_deviation_whose_scenes_are_our_own_says_so():
     table = stacks(slip=(1.0, 1.0))
     table.loc[table["variant"] == "slip", "same_runs"] = True
-    assert section.changes_grid(table).rows[0][0] == "slip (as our settings)"
+    assert section.changes_grid(table).rows[0][0] == "slip (not switched)"
     assert len(section.quartiles_grid(table).rows) == 2 + 1  # both readings, and the thesis
 
 

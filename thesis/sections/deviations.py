@@ -16,7 +16,7 @@ from thesis.claims.hypothesis_tests import SIGMAS, Estimate
 from thesis.reproduction import Reproduction
 from thesis.section import Section
 from thesis.studies import DEFAULTS, PANEL, THESIS
-from thesis.variants import by_size, change, quartiles, read_variants
+from thesis.variants import by_size, change, is_unswitched, quartiles, read_variants
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -108,8 +108,7 @@ def quartiles_grid(stacks: pd.DataFrame) -> Grid:
 
 
 def _title(stacks: pd.DataFrame, variant: str) -> str:
-    """Return a variant's name; a deviation that the scene has anyway says so."""
+    """Return a variant's name; a deviation that changes nothing in the scene says so."""
     if variant in (DEFAULTS, THESIS):
         return {DEFAULTS: "none", THESIS: "all: the preset thesis"}[variant]
-    same = bool(stacks.loc[stacks["variant"] == variant, "same_runs"].all())
-    return f"{variant} (as our settings)" if same and DEVIATIONS[variant].simulated else variant
+    return f"{variant} (not switched)" if is_unswitched(stacks, variant) else variant

@@ -60,7 +60,7 @@ def build(found: Reproduction) -> Section:
     if not state.finished:
         raise InputError(f"regression: {state.in_words()}")
     parts = found.regression.parts()
-    data = {_rows_in_words(part.rows): _regressed(part) for part in parts}
+    data = {rows_in_words(part.rows): _regressed(part) for part in parts}
     single, scheme = next(iter(data.values())), parts[0].scheme
     numbers = {"rounds": scheme.rounds, "folds": scheme.folds, "inner": scheme.inner_folds}
     text = [line.format(rows=single.rows, thesis_rows=THESIS_ROWS, **numbers) for line in TEXT]
@@ -83,7 +83,8 @@ def build(found: Reproduction) -> Section:
     return Section("regression", "Regression (5.2, 5.3)", text, tables, pictures, claims)
 
 
-def _rows_in_words(rows: StackRows) -> str:
+def rows_in_words(rows: StackRows) -> str:
+    """Return whether rows are of one seed, or means."""
     return "rows of one seed" if rows.most_seeds == 1 else f"means of up to {rows.most_seeds} seeds"
 
 
@@ -133,16 +134,15 @@ def rows_grid(file: Path) -> Grid:
     """Return the quartiles of H/L of a table's rows by each measure that it has."""
     rows = []
     for measure in MEASURES.values():
+        if measure.name == "stack":  # one of the two that name their reading of A.4.2
+            continue
         try:
             found = read_rows(file, measure.name)
         except InputError:  # a table from before there was this measure
             continue
-        label = measure.label
-        if measure.name == "stack" and "trimming" in found.settings:
-            label += f" (as {found.settings['trimming']})"
         for of_one in (found.of_one_seed(), *([found] if found.most_seeds > 1 else [])):
             numbers = _numbers(quartiles(of_one.targets[TARGET]))
-            rows.append([label, _rows_in_words(of_one), *numbers])
+            rows.append([measure.label, rows_in_words(of_one), *numbers])
     return Grid(["the stack is", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
 
 
