@@ -87,7 +87,7 @@ def markdown(grid: Grid) -> str:
 
 def _scatter_part(stacks: pd.DataFrame) -> list[str]:
     panels, seeds = len(stacks[list(PANEL)].drop_duplicates()), stacks["seed"].nunique()
-    cells = ", ".join(f"{100 * dx:g} cm" for dx in stacks["dx"].unique())
+    cells = ", ".join(f"{100 * dx:.3g} cm" for dx in stacks["dx"].unique())
     names = {"height": "height", "length": "length", "ratio": "H/L"}
     rows = [
         [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 from snowshed._core import InputError
@@ -12,7 +12,7 @@ from snowshed._core import InputError
 from snowshed.analysis.deviations import DEVIATIONS, deviating_trimming
 from snowshed.io.csv_table import read_csv
 from snowshed.snow.stack.quantities import MEASURES
-from snowshed.snow.stack.trimming import TRIMMINGS
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.store import Store
 from snowshed.study.table import read_table
 from thesis.claims.hypothesis_tests import Estimate, widening
@@ -92,7 +92,9 @@ def trimming_of(variant: str) -> str:
     return deviating_trimming(VARIANTS[variant])
 
 
-def change(stacks: pd.DataFrame, variant: str, quantity: str) -> Estimate:
+def change(
+    stacks: pd.DataFrame, variant: str, quantity: str, trimming: Optional[str] = None
+) -> Estimate:
     """Return by which part of itself a deviation changes a stack.
 
     Each stack is compared with that of the defaults below the same panel after the same event with
@@ -107,16 +109,16 @@ def change(stacks: pd.DataFrame, variant: str, quantity: str) -> Estimate:
         The name of a deviation, or "thesis".
     quantity
         "height", "length" or "ratio".
+    trimming
+        The reading of A.4.2 of the variant's stacks; None: its own.
 
     Raises
     ------
     LookupError
         If there are no stacks to compare.
     """
-    ours, theirs = (
-        measured_as(_rows(stacks, name), trimming_of(name), quantity)
-        for name in (DEFAULTS, variant)
-    )
+    ours = measured_as(_rows(stacks, DEFAULTS), DEFAULT_TRIMMING, quantity)
+    theirs = measured_as(_rows(stacks, variant), trimming or trimming_of(variant), quantity)
     both = (theirs / ours).dropna().map(math.log)
     by_panel = both.groupby(level=list(range(len(PANEL)))).mean()
     if by_panel.empty:

@@ -87,6 +87,13 @@ def test_the_trimming_is_compared_by_its_own_reading():
     np.testing.assert_allclose(ours, 2 * np.array(theirs))
 
 
+def test_all_deviations_are_given_with_and_without_that_in_the_trimming():
+    table = stacks(thesis=(1.1, 1.0))
+    rows = {row[0]: row[1:] for row in section.changes_grid(table).rows}
+    assert rows["all but the trimming"][0].startswith("+10 ± ")
+    assert rows["all: the preset thesis"][1].startswith("+100 ± ")
+
+
 def test_deviations_are_listed_by_their_size():
     table = stacks(slip=(1.0, 1.1), reseed=(1.2, 0.8), frames=(0.9, 1.0))
     assert variants.by_size(table) == ["reseed", "frames", "slip"]

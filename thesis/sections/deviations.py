@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from snowshed.analysis.regression.summary import THESIS_QUARTILES, THESIS_ROWS
 from snowshed.io.atomic import write_text
 from snowshed.io.formatting import NOTHING
 from snowshed.plot.html_page import Grid
-from snowshed.snow.stack.trimming import TRIMMINGS
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from thesis.claims.hypothesis_tests import SIGMAS, Estimate
 from thesis.reproduction import Reproduction
 from thesis.section import Section
@@ -44,7 +44,7 @@ def sample_text(stacks: pd.DataFrame) -> list[str]:
     """Return in words what was computed, and how to read the tables."""
     ours = stacks[stacks["variant"] == DEFAULTS]
     panels, seeds = len(ours[list(PANEL)].drop_duplicates()), ours["seed"].nunique()
-    cells = " and ".join(f"{100 * dx:g} cm" for dx in sorted(stacks["dx"].unique(), reverse=True))
+    cells = " and ".join(f"{100 * dx:.3g} cm" for dx in sorted(stacks["dx"].unique(), reverse=True))
     longest, events = ours["panel.length"].max(), ours["event"].max()
     return [
         f"A sample of {panels} of the 122 panels of chapter 5, up to {longest:g} m long, with "
@@ -70,10 +70,17 @@ def deviations_grid() -> Grid:
 def changes_grid(stacks: pd.DataFrame) -> Grid:
     """Return how much each deviation changes a stack, the largest change of H/L first."""
     rows = []
-    for name in [*by_size(stacks), *([THESIS] if THESIS in set(stacks["variant"]) else [])]:
-        changes = [change_in_words(change(stacks, name, quantity)) for quantity in QUANTITIES]
-        rows.append([_title(stacks, name), *changes])
+    for name in by_size(stacks):
+        rows.append([_title(stacks, name), *_changes(stacks, name)])
+    if THESIS in set(stacks["variant"]):
+        rows.append(["all but the trimming", *_changes(stacks, THESIS, DEFAULT_TRIMMING)])
+        rows.append([_title(stacks, THESIS), *_changes(stacks, THESIS)])
     return Grid(["undone", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
+
+
+def _changes(stacks: pd.DataFrame, name: str, trimming: Optional[str] = None) -> list[str]:
+    found = (change(stacks, name, quantity, trimming) for quantity in QUANTITIES)
+    return [change_in_words(one) for one in found]
 
 
 def change_in_words(found: Estimate) -> str:

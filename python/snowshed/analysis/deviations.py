@@ -99,9 +99,10 @@ DEVIATIONS: Mapping[str, Deviation] = {
         ),
         Deviation(
             "trimming",
-            "A.4.2 to the letter: both ends of a 2D stack step inward by the same increment.",
-            "The particle farthest from the centre of mass goes first, which A.4.2 allows too: "
-            "it has the principle of the 3D rule.",
+            "A.4.2, its second sentence to the letter: both ends of a 2D stack step inward by the "
+            "same increment.",
+            "The particle farthest from the centre of mass goes first, as the first sentence asks: "
+            "it is the principle of the 3D rule.",
             "Where snow has rolled far off, steps at equal pace take the 3 % from the dense end; "
             "the length of a stack then scatters more from seeding to seeding.",
             lambda chapter: {},
