@@ -39,7 +39,7 @@ help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
 	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
 	@echo "make verify    problems with known answers, a minute (VERIFY=--full: hours)"
-	@echo "make thesis    the thesis reproduced, some minutes (THESIS=--full: days)"
+	@echo "make thesis    the thesis reproduced, some minutes (THESIS=--middle: hours, --full: days)"
 	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
 	@echo "make sanitize  the tests with AddressSanitizer, UBSan and ThreadSanitizer"
 	@echo "make fuzz      fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"

@@ -32,18 +32,23 @@ def reproduce() -> None:
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, old or new."
 )
 @click.option(
-    "--quick/--full",
-    "quick",
+    "--quick",
+    "size",
+    flag_value="quick",
     default=True,
-    help="Minutes, in 2D on a coarse grid; or the thesis's settings, days.  [default: quick]",
+    help="Minutes: in 2D, a coarse grid (default).",
 )
+@click.option(
+    "--middle", "size", flag_value="middle", help="Hours: the thesis's settings, few seedings."
+)
+@click.option("--full", "size", flag_value="full", help="Days: all of it, several seedings.")
 @click.option(
     "--stage",
     "names",
     multiple=True,
     metavar="NAME",
-    help="Compute only this: lab, s-index, fixation, calibration, geometry (with --full) or "
-    "regression; may be repeated.",
+    help="Compute only this: lab, s-index, fixation, calibration, deviations, geometry (with "
+    "--full) or regression; may be repeated.",
 )
 @click.option(
     "--table", type=PATH, help="Rows of panels to use for chapter 5 instead of simulating them."
@@ -53,7 +58,7 @@ def reproduce() -> None:
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 def thesis(
     folder: Path,
-    quick: bool,
+    size: str,
     names: Sequence[str],
     table: Optional[Path],
     report_only: bool,
@@ -72,14 +77,14 @@ def thesis(
     from thesis.folder import ReproductionFolder
     from thesis.report import write_report
     from thesis.reproduction import Reproduction
-    from thesis.size import FULL, QUICK
+    from thesis.size import SIZES
     from thesis.stage import choose
 
-    size = QUICK if quick else FULL
+    chosen = SIZES[size]
     if table is not None:  # so that a wrong table is known before anything is computed
-        size.folds.check(read_rows(table))
-    results = ReproductionFolder.claim(folder, size.name)
-    all_of_it = Reproduction(results, size, table)
+        chosen.folds.check(read_rows(table))
+    results = ReproductionFolder.claim(folder, chosen.name)
+    all_of_it = Reproduction(results, chosen, table)
     if not report_only:
         _compute(choose(all_of_it.stages, names), folder, jobs, quiet)
     claims = write_report(all_of_it)

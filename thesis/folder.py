@@ -3,7 +3,7 @@
 ==================== ========================================================================
 thesis.html          the report
 claims.csv           one row per claim: source, claim, rule, verdict, finding
-reproduction.json    what the folder is for: quick or full
+reproduction.json    what the folder is for: quick, middle or full
 runs/                the store of all simulations
 s-index/ ...         tables and figures of the stages
 geometry.csv         the rows that are regressed

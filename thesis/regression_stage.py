@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.rows import StackRows, read_rows
 from snowshed.run.pool import available_cores
 from snowshed.run.progress import Progress, Reporter
@@ -62,8 +64,39 @@ class GeometryRows:
         return read_rows(self._folder.geometry_rows)
 
 
+@dataclass(frozen=True)
+class Part:
+    """A regression of some rows.
+
+    Attributes
+    ----------
+    rows, folder, scheme
+        What is regressed, where its results are, and by which folds.
+    """
+
+    rows: StackRows
+    folder: Path
+    scheme: CrossValidation
+
+    @property
+    def count(self) -> int:
+        """How many outer folds it has."""
+        return self.scheme.rounds * self.scheme.folds * len(KINDS)
+
+    @property
+    def done(self) -> int:
+        """How many of them are computed; all only when the tables are written."""
+        done = len(list(self.folder.glob("folds/*/*/*.npz")))
+        written = (self.folder / TARGET / "errors.csv").is_file()
+        return done if written else min(done, self.count - 1)
+
+
 class RegressionStage:
-    """Nested cross-validation of the linear and the RBF kernel."""
+    """Nested cross-validation of the linear and the RBF kernel.
+
+    Where a row is the mean of several seeds, the rows of a single seed are regressed as well: the
+    thesis has one stack for each row, and means scatter less.
+    """
 
     name = NAME
 
@@ -72,27 +105,28 @@ class RegressionStage:
         self._size = size
         self._rows = rows
 
-    def results(self) -> Path:
-        """Return where the results of these rows are; other rows have another folder.
+    def parts(self) -> list[Part]:
+        """Return what is regressed: the rows of one seed, and then the means if there are any.
 
         Raises
         ------
         InputError
             If the rows are not there.
         """
-        return self._folder.of_stage(f"{NAME}-{self._rows.read().digest[:8]}")
+        rows, scheme = self._rows.read(), self._size.folds
+        if rows.most_seeds == 1:
+            return [self._part(rows, scheme)]
+        fewer = replace(scheme, rounds=self._size.one_seed_rounds)
+        return [self._part(rows.of_one_seed(), fewer), self._part(rows, scheme)]
 
     def state(self) -> State:
         """Return how far it is."""
-        scheme = self._size.folds
-        count = scheme.rounds * scheme.folds * len(KINDS)
         try:
-            folder = self.results()
+            parts = self.parts()
         except InputError:
-            return State(0, 0, count, "folds")
-        done = len(list(folder.glob("folds/*/*/*.npz")))
-        written = (folder / TARGET / "errors.csv").is_file()
-        return State(done if written else min(done, count - 1), 0, count, "folds")
+            scheme = self._size.folds
+            return State(0, 0, scheme.rounds * scheme.folds * len(KINDS), "folds")
+        return State(sum(one.done for one in parts), 0, sum(one.count for one in parts), "folds")
 
     def expected_s(self, jobs: Optional[int]) -> float:
         """Return how long what is left is expected to take, s."""
@@ -101,11 +135,10 @@ class RegressionStage:
         state = self.state()
         if state.finished:
             return 0.0
-        scheme = self._size.folds
-        per_fold = sum(kind.cost_s for kind in kinds_named(KINDS).values())
-        scale = scheme.inner_folds / KNOWN_INNER * (self._rows.count() / KNOWN_ROWS) ** 2
-        left = 1 - state.done / state.count
-        return left * per_fold * scale * scheme.rounds * scheme.folds / (jobs or available_cores())
+        per_fold = sum(kind.cost_s for kind in kinds_named(KINDS).values()) / len(KINDS)
+        inner = self._size.folds.inner_folds
+        scale = inner / KNOWN_INNER * (self._rows.count() / KNOWN_ROWS) ** 2
+        return (state.count - state.done) * per_fold * scale / (jobs or available_cores())
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
         """Regress what is left; raises RegressionInterrupted after Ctrl-C.
@@ -115,23 +148,33 @@ class RegressionStage:
         InputError
             If the rows are not there.
         """
-        if self.state().finished:
-            return
         from snowshed.analysis.regression.pipeline import regress
 
-        regress(
-            self._rows.read(),
-            self.results(),
-            targets=[TARGET],
-            models=KINDS,
-            scheme=self._size.folds,
-            jobs=jobs,
-            progress=_told(report),
-        )
+        parts = self.parts()
+        whole = sum(one.count for one in parts)
+        for number, part in enumerate(parts):
+            if part.done == part.count:
+                continue
+            before = sum(one.count for one in parts[:number])
+            regress(
+                part.rows,
+                part.folder,
+                targets=[TARGET],
+                models=KINDS,
+                scheme=part.scheme,
+                jobs=jobs,
+                progress=_told(report, before, part.count, whole),
+            )
+
+    def _part(self, rows: StackRows, scheme: CrossValidation) -> Part:
+        """Return a part; other rows, and other folds, have another folder."""
+        name = f"{NAME}-{rows.digest[:8]}"
+        return Part(rows, self._folder.of_stage(name), scheme)
 
 
-def _told(report: StageReporter) -> Reporter:
+def _told(report: StageReporter, before: int, count: int, whole: int) -> Reporter:
     def tell(progress: Progress) -> None:
-        report(progress.fraction, f"{NAME}: {progress.done}/{progress.count} folds")
+        done = before + progress.done
+        report((before + progress.fraction * count) / whole, f"{NAME}: {done}/{whole} folds")
 
     return tell

@@ -32,6 +32,7 @@ SECTIONS = {
     "s_index": "s-index",
     "fixation": "fixation",
     "calibration": "calibration",
+    "deviations": "deviations",
     "geometry": "geometry",
     "regression": "regression",
 }

@@ -15,11 +15,14 @@ from thesis.regression_stage import GeometryRows, RegressionStage
 from thesis.size import Size
 from thesis.stage import Stage, StudyStage
 
+#: Stages of panels, whose measure is in doubt: their particles are kept.
+KEPT = ("deviations", "geometry")
 MAKERS = {
     "lab": studies.lab,
     "s-index": studies.index,
     "fixation": studies.fixation,
     "calibration": studies.calibration,
+    "deviations": studies.deviations,
     "geometry": studies.geometry,
 }
 
@@ -43,7 +46,7 @@ class Reproduction:
             table = geometry_table()
         self.table = table
         self.study_stages = {
-            name: StudyStage(name, folder.runs, partial(make, size))
+            name: StudyStage(name, folder.runs, partial(make, size), keep_particles=name in KEPT)
             for name, make in MAKERS.items()
             if name != "geometry" or table is None
         }

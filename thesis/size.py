@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
@@ -19,7 +19,7 @@ class Size:
     Attributes
     ----------
     name
-        "quick" or "full".
+        "quick", "middle" or "full".
     dimension, dx
         Of the snow's simulations in chapters 3 and 4, and the grid size (m) of the laboratory too.
     frictions, release_frictions
@@ -35,8 +35,16 @@ class Size:
     simulates_panels
         Whether the panels of chapter 5 are simulated, the thesis's 122 and those with more tilts
         besides; else the rows are those that come with snowshed.
+    deviation_dx
+        Size of the grid cells (m) where deviations from the thesis are undone one by one: ours, and
+        that which stands for the thesis's. They have the ratio of 1.5 cm to 1 cm.
+    deviation_panels, deviation_longest, deviation_seeds
+        Of the data set's panels up to some length, m, every n-th is simulated for it, so often. (n
+        has no factor in common with the numbers of lengths, or the same ones would come again.)
     folds
         Of the nested cross-validation.
+    one_seed_rounds
+        Of its rounds for the rows of one seed, where there are several.
     """
 
     name: str
@@ -54,7 +62,12 @@ class Size:
     cohesions: Sequence[float]
     steps: int
     simulates_panels: bool
+    deviation_dx: tuple[float, float]
+    deviation_panels: int
+    deviation_longest: float
+    deviation_seeds: int
     folds: CrossValidation
+    one_seed_rounds: int
 
 
 FULL = Size(
@@ -73,7 +86,30 @@ FULL = Size(
     cohesions=CALIBRATION[COHESION],
     steps=2000,
     simulates_panels=True,
+    deviation_dx=(0.015, 0.01),
+    deviation_panels=4,
+    deviation_longest=10.0,
+    deviation_seeds=2,
     folds=CrossValidation(),
+    one_seed_rounds=10,
+)
+#: The thesis's dimensions, cells and events, with the frictions that it measured, fewer seedings,
+#: and the panels that come with snowshed.
+MIDDLE = replace(
+    FULL,
+    name="middle",
+    frictions=(0.6, 0.8),
+    release_frictions=(0.5, 0.6),
+    lab_seeds=2,
+    index_seeds=2,
+    fixation_seeds=1,
+    grid_seeds=1,
+    simulates_panels=False,
+    deviation_panels=7,
+    deviation_longest=4.0,
+    deviation_seeds=1,
+    folds=CrossValidation(rounds=3),
+    one_seed_rounds=3,
 )
 QUICK = Size(
     name="quick",
@@ -91,5 +127,11 @@ QUICK = Size(
     cohesions=(0.05, 0.2),
     steps=500,
     simulates_panels=False,
+    deviation_dx=(0.03, 0.02),
+    deviation_panels=7,
+    deviation_longest=1.0,
+    deviation_seeds=1,
     folds=CrossValidation(rounds=2, folds=5, inner_folds=3),
+    one_seed_rounds=1,
 )
+SIZES: Mapping[str, Size] = {size.name: size for size in (QUICK, MIDDLE, FULL)}

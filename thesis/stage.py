@@ -72,8 +72,16 @@ class Stage(Protocol):
 class StudyStage:
     """A stage that computes studies, in a store that stages share."""
 
-    def __init__(self, name: str, runs: Path, make: Callable[[], Sequence[Study]]) -> None:
+    def __init__(
+        self,
+        name: str,
+        runs: Path,
+        make: Callable[[], Sequence[Study]],
+        *,
+        keep_particles: bool = False,
+    ) -> None:
         self.name = name
+        self._keep_particles = keep_particles
         self._runs = runs
         self._make = make
         self._names: Optional[list[str]] = None
@@ -120,7 +128,9 @@ class StudyStage:
             studies = self._make()
             with Store.create(self._runs) as store:
                 for study in studies:
-                    store.register(study.name, study.axes, study.runs())
+                    store.register(
+                        study.name, study.axes, study.runs(), keep_particles=self._keep_particles
+                    )
             self._names = [study.name for study in studies]
         return self._names
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from snowshed import Scene
 from snowshed.analysis.calibration.design import calibration_study
 from snowshed.analysis.calibration.measurements import Measurement
+from snowshed.analysis.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.dataset import MODEL_BETWEEN
 from snowshed.analysis.regression.geometry import FRICTION, geometry_study
 from snowshed.analysis.sensitivity.designs import sensitivity_study
@@ -18,13 +21,23 @@ from snowshed.scene.thesis_tables import (
     PRESSURE,
     SLOPE,
 )
-from snowshed.study import Study
+from snowshed.study import Factor, Study
+from snowshed.study.factors import SEED
+from snowshed.study.table import value_at
 from thesis.size import MEASURED_FRICTION, Size
 
 LAB_2D, LAB_3D, RELEASE = "lab-2d", "lab-3d", "lab-30-degrees"
 INDEX, FIXATION = "sensitivity-s", "sensitivity-fixation"
 GRID, TRUTH = "calibration", "calibration-truth"
 PANELS, TILTS = "geometry", "geometry-tilts"
+#: The variants of the deviations: none undone, then each, then all.
+DEFAULTS, THESIS = "defaults", "thesis"
+VARIANTS: Mapping[str, Sequence[str]] = {
+    DEFAULTS: (),
+    **{one.name: (one.name,) for one in DEVIATIONS.values()},
+    THESIS: (ALL,),
+}
+PANEL = ("panel.tilt", "panel.height", "panel.length")
 #: Seed of the synthetic truth: one that no run of the grid has.
 TRUTH_SEED = 101
 LAB_TILTS = LABORATORY_TILTS
@@ -101,6 +114,54 @@ def geometry(size: Size) -> list[Study]:
         "panel.tilt": [45.0, 55.0, 65.0],
     }
     return [panels, Study.product(panels.scene, others, name=TILTS)]
+
+
+def deviations(size: Size) -> list[Study]:
+    """Return a sample of the panels: with our settings, with each deviation undone, and with all.
+
+    A deviation in the measuring needs no runs of its own.
+
+    Examples
+    --------
+    >>> from thesis.size import QUICK
+    >>> [study.name for study in deviations(QUICK)][:3]
+    ['deviations-defaults', 'deviations-slip', 'deviations-damping']
+    """
+    return [
+        _variant(size, name, names)
+        for name, names in VARIANTS.items()
+        if name not in DEVIATIONS or DEVIATIONS[name].simulated
+    ]
+
+
+def study_of(variant: str) -> str:
+    """Return the name of the study whose runs are those of a variant."""
+    measured_only = variant in DEVIATIONS and not DEVIATIONS[variant].simulated
+    return f"deviations-{DEFAULTS if measured_only else variant}"
+
+
+def sampled_panels(size: Size) -> dict[str, list[Any]]:
+    """Return the panels for the deviations: of the data set's, in their order, every n-th.
+
+    Which they are is a matter of their geometry alone.
+    """
+    study = geometry_study(MODEL_BETWEEN)
+    scenes = [json.loads(run.scene) for run in study.runs()]
+    panels = sorted(tuple(value_at(scene, path) for path in PANEL) for scene in scenes)
+    few = [one for one in panels if one[2] <= size.deviation_longest]
+    chosen = few[min(size.deviation_panels, len(few)) // 2 :: size.deviation_panels]
+    return {path: list(values) for path, values in zip(PANEL, zip(*chosen))}
+
+
+def _variant(size: Size, name: str, names: Sequence[str]) -> Study:
+    study = geometry_study(MODEL_BETWEEN, deviations=names)
+    ours, thesis = size.deviation_dx
+    finer = "grid" in names or ALL in names
+    scene = study.scene.set("numerics.dx", thesis if finer else ours)
+    common = [one for one in study.parts[0] if not {*PANEL, SEED} & set(one.columns)]
+    seeds = list(range(1, size.deviation_seeds + 1))
+    panels = Factor(sampled_panels(size))
+    return Study(scene, [[*common, panels]], f"deviations-{name}", seeds)
 
 
 def _lab_scene(size: Size, dimension: int) -> Scene:

@@ -3,6 +3,7 @@
 import copy
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from snowshed import InputError, Scene, run_events
@@ -62,3 +63,29 @@ def test_what_is_no_table_of_stacks_is_named(store, tmp_path):
         StackTable.read(store, "x")
     with pytest.raises(InputError, match=r"none\.csv: No such file"):
         StackTable.read(tmp_path / "none.csv")
+
+
+def test_a_table_of_before_is_of_the_reading_that_there_was(store, tmp_path):
+    """Its measures are found by the name of that reading; the other one it does not have."""
+    export(store, tmp_path / "new.csv")
+    new = pd.read_csv(tmp_path / "new.csv")
+    former = [name for name in new if "trimm" in name or "_pace_" in name or "most_first" in name]
+    assert len(former) == 1 + 2 * 4
+    new.drop(columns=former).to_csv(tmp_path / "old.csv", index=False)
+    old = StackTable.read(tmp_path / "old.csv")
+    assert set(old.frame["trimming"]) == {"equal_pace"}
+    for name in ("height", "length", "head", "tail"):
+        plain, named = (old.measured(one, [name])[name].tolist() for one in ("stack", "equal_pace"))
+        assert plain == named == new[f"{name}_m"].tolist()
+    with pytest.raises(InputError, match=r"no column outermost_first_height_m.*A\.4\.2"):
+        old.measured("outermost_first", ["height"])
+
+
+def test_every_stack_has_both_readings(store):
+    table = StackTable.read(store)
+    of_each = {
+        name: table.measured(name, ["length"])["length"].to_numpy()
+        for name in ("stack", "outermost_first", "equal_pace")
+    }
+    assert (of_each["stack"] == of_each["outermost_first"]).all()
+    assert (of_each["equal_pace"] != of_each["outermost_first"]).any()

@@ -12,8 +12,8 @@ import pytest
 
 from snowshed import Scene
 from snowshed.study import Study, session
+from snowshed.study.database import FILE, MEASURED_TYPES, WORDS
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import FILE, MEASURED_TYPES, WORDS
 
 ALONE = {"jobs": 1, "threads": 1}
 

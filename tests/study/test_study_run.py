@@ -18,9 +18,10 @@ from study_helpers import ALONE, contents, snowshed_command, tiny_scene, tiny_st
 from snowshed import Obstacle, ResolvedScene, Shape, _core, read_events, run_events
 from snowshed.study import Run, Study, StudyError, read_table, resume
 from snowshed.study.compute import compute
+from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.local import LocalWorkers
 from snowshed.study.outcome import Task
-from snowshed.study.store import MEASURED_TYPES, Store
+from snowshed.study.store import Store
 
 computed = study_helpers.computed  # a fixture
 

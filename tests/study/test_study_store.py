@@ -1,6 +1,7 @@
 """The store: what is in it, who may compute, and what it survives."""
 
 import multiprocessing
+import os
 import sqlite3
 from dataclasses import replace
 
@@ -8,9 +9,10 @@ import pytest
 from study_helpers import contents, outcome, tiny_study
 
 from snowshed import InputError, _core
-from snowshed.study import StudyError, store
+from snowshed.study import StudyError, database
+from snowshed.study.database import FILE, MEASURED_TYPES
 from snowshed.study.owner import is_alive, ownership, release_dead
-from snowshed.study.store import FILE, MEASURED_TYPES, Store
+from snowshed.study.store import Store
 from snowshed.study.table import read_table
 
 RUNS = tiny_study().runs()
@@ -204,7 +206,7 @@ def test_runs_are_found_by_the_beginning_of_their_hash(opened):
 def test_measures_that_came_later_are_added_to_an_older_store(opened, monkeypatch):
     opened.record(outcome(HASHES[0]))
     opened.close()
-    monkeypatch.setattr(store, "MEASURED_TYPES", {**MEASURED_TYPES, "wetness": "REAL"})
+    monkeypatch.setattr(database, "MEASURED_TYPES", {**MEASURED_TYPES, "wetness": "REAL"})
     with Store.open(opened.folder) as newer:
         assert newer.read("SELECT height_m, wetness FROM event WHERE event = 1") == [(10.0, None)]
 
@@ -257,7 +259,7 @@ def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
     with Store.create(tmp_path / "store") as opened:
         opened.register("tiny", ["panel.friction"], RUNS)
         opened.record(outcome(HASHES[0]))
-        monkeypatch.setattr(store.os, "access", lambda *where: False)
+        monkeypatch.setattr(os, "access", lambda *where: False)
         with pytest.raises(InputError, match=r"left amid a change; copy it to where it can be"):
             Store.open(tmp_path / "store")
     before = {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()}

@@ -13,7 +13,8 @@ from snowshed import InputError, Shape
 from snowshed.run.results import EVENT_COLUMNS
 from snowshed.scene.components import Obstacle
 from snowshed.study import Factor, Study, export, read_table, to_dataset
-from snowshed.study.store import FILE, MEASURED_TYPES, TIMING, Store
+from snowshed.study.database import FILE, MEASURED_TYPES, TIMING
+from snowshed.study.store import Store
 
 computed = study_helpers.computed  # a fixture
 
@@ -53,6 +54,21 @@ def test_every_row_says_how_it_was_computed(computed):
     timed = read_table(computed, timing=True)
     assert (timed.wall_s > 0).all() and (timed.run_wall_s > 0).all()
     assert (timed.threads == 1).all() and (timed.particles > 0).all()
+
+
+def test_rows_from_before_the_readings_had_names_are_of_the_one_there_was(mixed):
+    """An older store gains columns, which its rows leave empty; what failed has no measures."""
+    named = [name for name in MEASURED_TYPES if "trimm" in name or name.startswith("equal_pace")]
+    with sqlite3.connect(mixed / FILE) as database:
+        database.execute(f"UPDATE event SET {', '.join(f'{name} = NULL' for name in named)}")
+    table = read_table(mixed)
+    measured = table["height_m"].notna()
+    assert measured.tolist() == [True, True, True, False]
+    assert (table["trimming"][measured] == "equal_pace").all()
+    assert not table["trimming"][~measured].notna().any()
+    for name in ("height", "length", "head", "tail"):
+        same = table[f"equal_pace_{name}_m"] == table[f"{name}_m"]
+        assert same[measured].all()
 
 
 def test_a_store_of_the_last_version_is_read_by_the_names_of_today(tmp_path):
@@ -177,4 +193,8 @@ def test_units_of_measures_are_known():
 
     units = _units()
     assert units["panel.tilt"] == "degrees" and units["volume_m3"] == "m3"
-    assert {name for name in MEASURED_TYPES if name not in units} == {"steps", "ended"}
+    assert {name for name in MEASURED_TYPES if name not in units} == {
+        "steps",
+        "ended",
+        "trimming",
+    }

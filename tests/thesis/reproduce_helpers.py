@@ -8,8 +8,10 @@ import pandas as pd
 from thesis.size import QUICK
 
 from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.snow.stack.trimming import TRIMMINGS
+from snowshed.study.database import MEASURED_TYPES, WORDS
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import MEASURED_TYPES, WORDS, Store
+from snowshed.study.store import Store
 
 #: Fewer values and folds than the quick reproduction has, with two seedings where it has one.
 TINY = replace(
@@ -67,6 +69,8 @@ def _events(scene):
         row.update(event=event, wall_s=0.1, steps=10, mass_kg=float(not stays))
         row.update(on_panel_kg=float(stays))
         row.update(height_m=height, length_m=length, head_m=head, tail_m=head + length)
+        for name in TRIMMINGS:
+            row.update({f"{name}_height_m": height, f"{name}_length_m": length})
         rows.append(row)
     return rows
 

@@ -10,14 +10,14 @@ from thesis import studies
 from thesis.folder import ReproductionFolder
 from thesis.reproduction import Reproduction, compute
 from thesis.sections.regression import read_regressed
-from thesis.size import FULL, QUICK
+from thesis.size import FULL, MIDDLE, QUICK
 from thesis.stage import State, StudyStage, choose
 
 from snowshed import Scene
 from snowshed._core import InputError
 from snowshed.study import Study
 
-NAMES = ["lab", "s-index", "fixation", "calibration", "geometry", "regression"]
+NAMES = ["lab", "s-index", "fixation", "calibration", "deviations", "geometry", "regression"]
 
 
 def test_full_is_what_the_thesis_computes():
@@ -33,6 +33,15 @@ def test_full_is_what_the_thesis_computes():
         for study in make(FULL):
             scene = json.loads(study.runs()[0].scene)
             assert (scene["dimension"], scene["numerics"]["dx"]) == (3, 0.01)
+
+
+def test_middle_is_the_thesis_at_the_frictions_it_measured():
+    assert MIDDLE.frictions == (0.6, 0.8) and not MIDDLE.simulates_panels
+    for make in (studies.lab, studies.index, studies.fixation, studies.calibration):
+        few, many = (sum(len(one.runs()) for one in make(size)) for size in (MIDDLE, FULL))
+        assert few < many
+        scene = json.loads(make(MIDDLE)[-1].runs()[0].scene)
+        assert (scene["dimension"], scene["numerics"]["dx"]) == (3, 0.01)
 
 
 def test_the_laboratory_has_both_dimensions_and_30_degrees():
@@ -157,7 +166,7 @@ def test_regression_is_resumed_and_not_repeated(tmp_path):
     assert stage.state() == State(0, 0, 4, "folds") and stage.expected_s(1) > 0
     compute([stage], jobs=1)
     assert stage.state().finished and stage.expected_s(1) == 0
-    fold = next(stage.results().glob("folds/*/*/*.npz"))
+    fold = next(stage.parts()[0].folder.glob("folds/*/*/*.npz"))
     before = fold.stat().st_mtime_ns
     compute([stage], jobs=1)
     assert fold.stat().st_mtime_ns == before

@@ -22,6 +22,7 @@ from snowshed.run.results import read_events
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.snow.stack.quantities import Measure, measure_named
+from snowshed.snow.stack.trimming import TRIMMINGS
 from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 LARGEST_TABLE = 1_000_000  # rows of a Parquet file, which packs them well
 #: Columns that make two rows the result of different physics or methods where they differ.
-SETTINGS = ("version", "dimension", *ACCURACY)
+SETTINGS = ("version", "dimension", "trimming", *ACCURACY)
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,9 @@ class StackTable:
     @classmethod
     def of(cls, frame: pd.DataFrame, name: str = "table") -> StackTable:
         """Return the table of a DataFrame that has the columns of a study's table."""
-        frame = frame.rename(columns=FORMER_NAMES)
+        from snowshed.study.table import with_trimming
+
+        frame = with_trimming(frame.rename(columns=FORMER_NAMES))
         axes = [str(path) for path in frame if "." in str(path)]
         points = frame[[path for path in ("hash", *axes) if path in frame]]
         if "seed" in frame:
@@ -183,12 +186,14 @@ class StackTable:
         missing = [name for name in needed if name not in self.frame]
         if not missing:
             return
-        hint = (
-            "; a study's table has a column for each parameter in its axes, also with a single "
-            "value: axes.panel.tilt = 40"
-            if any(name.startswith("panel.") for name in missing)
-            else ""
-        )
+        hint = ""
+        if any(name.startswith("panel.") for name in missing):
+            hint = (
+                "; a study's table has a column for each parameter in its axes, also with a single "
+                "value: axes.panel.tilt = 40"
+            )
+        elif any(name.startswith(tuple(TRIMMINGS)) for name in missing):
+            hint = "; its stacks were measured before there was that reading of A.4.2"
         raise InputError(f"no column {', '.join(missing)}; it has {self.columns}{hint}")
 
     def numbers(self, column: str, *, positive: bool = False) -> Floats:

@@ -27,7 +27,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
@@ -40,6 +40,8 @@ from snowshed.run.ageing import AGEING_COLUMNS
 from snowshed.run.conversion import CONVERSION_COLUMNS
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.measure import StackMeasure
+from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
+from snowshed.snow.stack.trimming import TRIMMINGS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -65,10 +67,14 @@ EVENT_COLUMNS = (
     "crest_m",
     "body_head_m",
     "body_tail_m",
+    "trimming",
+    *(MEASURES[name].column(quantity) for name in TRIMMINGS for quantity in QUANTITIES),
 )
+#: Columns that hold words.
+WORDS = ("ended", "trimming")
 
 
-def measured_columns(stack: StackMeasure) -> dict[str, float]:
+def measured_columns(stack: StackMeasure) -> dict[str, Union[float, str]]:
     """Return the columns of events.csv that a measured stack fills."""
     return {
         "height_m": stack.height,
@@ -86,6 +92,12 @@ def measured_columns(stack: StackMeasure) -> dict[str, float]:
         "crest_m": stack.crest,
         "body_head_m": stack.body.head,
         "body_tail_m": stack.body.tail,
+        "trimming": stack.trimming,
+        **{
+            MEASURES[name].column(quantity): getattr(extent, quantity)
+            for name, extent in stack.trimmed.items()
+            for quantity in QUANTITIES
+        },
     }
 
 
@@ -173,7 +185,7 @@ def read_events(folder: PathLike) -> pd.DataFrame:
     for name in ("event", "height_m"):
         if name not in table:
             raise InputError(f"{path}: not a table of events; no column {name}")
-    for name in table.columns.intersection(list(EVENT_COLUMNS)).drop("ended", errors="ignore"):
+    for name in table.columns.intersection(list(EVENT_COLUMNS)).drop(list(WORDS), errors="ignore"):
         if table[name].dtype.kind not in "if" or np.isinf(table[name]).any():
             raise InputError(f"{path}: not a table of events; no finite numbers in a column {name}")
     return table

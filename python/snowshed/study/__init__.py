@@ -27,6 +27,7 @@ from snowshed.study.factors import (
     sobol,
 )
 from snowshed.study.formats import export, to_dataset
+from snowshed.study.remeasuring import remeasure
 from snowshed.study.scene_hash import Run
 from snowshed.study.session import resume
 from snowshed.study.table import read_table
@@ -44,6 +45,7 @@ __all__ = [
     "linear",
     "logarithmic",
     "read_table",
+    "remeasure",
     "resume",
     "sobol",
     "to_dataset",

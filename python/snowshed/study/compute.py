@@ -14,15 +14,16 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.run.event_particles import read_event_particles
 from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.results import RunFolder
+from snowshed.run.results import WORDS, RunFolder
 from snowshed.scene.scene import ResolvedScene
+from snowshed.study.database import COUNTS
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome, Task
 from snowshed.study.scene_hash import content_hash
-from snowshed.study.store import COUNTS, WORDS
 
 FractionReporter = Callable[[float], None]
 
@@ -96,7 +97,14 @@ def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
     events = [{name: _value(name, cell) for name, cell in row.items()}
               for row in results.events.rows]  # fmt: skip
     status = "done" if error is None else "failed"
-    return Outcome(task.hash, status, events, _timing(results.read_run()), error)
+    particles = _particles(folder) if task.keep_particles else {}
+    return Outcome(task.hash, status, events, _timing(results.read_run()), error, particles)
+
+
+def _particles(folder: Path) -> dict[int, bytes]:
+    if not (folder / "scene.json").is_file():  # it failed before there was anything
+        return {}
+    return {event: found.packed() for event, found in read_event_particles(folder)}
 
 
 def _value(name: str, cell: str) -> Any:

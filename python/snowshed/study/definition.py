@@ -183,6 +183,7 @@ class Study:
         threads: Optional[int] = None,
         scheduler: object = None,
         retry_failed: bool = False,
+        keep_particles: bool = False,
         progress: Optional[Reporter] = None,
     ) -> None:
         """Compute what is not yet in the store in `folder`.
@@ -204,6 +205,9 @@ class Study:
             instead of local processes.
         retry_failed
             Whether to compute failed runs again.
+        keep_particles
+            Whether to store the particles after each event too, of the runs that are still to be
+            computed, so that `snowshed.study.remeasure` can measure the stacks in another way.
         progress
             Called with a `Progress` a few times a second.
 
@@ -226,6 +230,7 @@ class Study:
             threads=threads,
             scheduler=scheduler,
             retry_failed=retry_failed,
+            keep_particles=keep_particles,
             progress=progress,
         )
 
@@ -237,13 +242,14 @@ class Study:
         threads: Optional[int] = None,
         scheduler: object = None,
         retry_failed: bool = False,
+        keep_particles: bool = False,
         progress: Optional[Reporter] = None,
     ) -> pd.DataFrame:
         """Compute what is not yet in the store in `folder`, and return the study's table.
 
         Parameters
         ----------
-        folder, jobs, threads, scheduler, retry_failed, progress
+        folder, jobs, threads, scheduler, retry_failed, keep_particles, progress
             As for `compute`, which raises the same errors.
 
         Returns
@@ -268,6 +274,7 @@ class Study:
             threads=threads,
             scheduler=scheduler,
             retry_failed=retry_failed,
+            keep_particles=keep_particles,
             progress=progress,
         )
         return read_table(folder, self.name)

@@ -12,7 +12,7 @@ from snowshed.io.extras import require
 from snowshed.io.units import unit_of_column
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import parameter_units
-from snowshed.study.store import MEASURED_TYPES
+from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
@@ -47,8 +47,23 @@ def export(
     InputError
         If the format is unknown, or the libraries for it (extra ``study``) are not installed.
     """
+    write_table(lambda: read_table(folder, study, timing=timing), file, form)
+
+
+def write_table(
+    make: Callable[[], pd.DataFrame], file: PathLike, form: Optional[str] = None
+) -> None:
+    """Write the table that `make` returns, which is not called if the format is unknown.
+
+    Parameters
+    ----------
+    make
+        Returns a table as `read_table` does.
+    file, form
+        As for `export`.
+    """
     write = _writer(Path(file), form)
-    table = read_table(folder, study, timing=timing)
+    table = make()
     with replacing(file) as beside:
         write(table, beside)
 

@@ -19,12 +19,15 @@ class Task:
         Folder to work in; an earlier attempt there is resumed.
     threads
         Number of threads that the run may use.
+    keep_particles
+        Whether its outcome holds the particles after each event.
     """
 
     hash: str
     scene: str
     folder: str
     threads: int
+    keep_particles: bool = False
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,9 @@ class Outcome:
         Facts about the computing, as in the table ``run_timing`` of the store.
     error
         Reason why the run is not done.
+    particles
+        Those after each completed event, packed (see `snowshed.run.event_particles`), by events;
+        empty unless the task asked for them.
     """
 
     hash: str
@@ -54,3 +60,4 @@ class Outcome:
     events: Sequence[Mapping[str, Any]] = ()
     timing: Mapping[str, Any] = field(default_factory=dict)
     error: Optional[str] = None
+    particles: Mapping[int, bytes] = field(default_factory=dict)

@@ -72,6 +72,7 @@ def compute_runs(
     threads: Optional[int] = None,
     scheduler: object = None,
     retry_failed: bool = False,
+    keep_particles: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
     """Enter a study's runs into the store in a folder, and compute the missing ones.
@@ -80,12 +81,12 @@ def compute_runs(
     ----------
     study, axes, runs
         Name of the study, paths of the parameters that vary, and runs.
-    folder, jobs, threads, scheduler, retry_failed, progress
+    folder, jobs, threads, scheduler, retry_failed, keep_particles, progress
         As for `Study.compute`.
     """
     resources = Resources(jobs, threads, scheduler)
     with Store.create(folder) as store:
-        store.register(study, axes, runs)
+        store.register(study, axes, runs, keep_particles=keep_particles)
         _compute(store, [study], resources, retry_failed, progress)
 
 
@@ -246,7 +247,8 @@ class _Session:
             if self.store.claim(run.hash, self.owner):
                 self.running[run.hash] = run
                 folder = os.fspath(self._folder(run.hash))
-                self.workers.submit(Task(run.hash, run.scene, folder, threads))
+                keep = run.keep_particles
+                self.workers.submit(Task(run.hash, run.scene, folder, threads, keep))
             else:
                 self.elsewhere.append(run)
 

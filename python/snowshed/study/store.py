@@ -1,18 +1,8 @@
 """The store of studies: an SQLite database that survives any end of the processes that use it.
 
-Every change is one transaction, in a write-ahead log that is flushed to the disk (WAL, FULL).
-
-============= ==========================================================================
-study         name, and its axes (JSON list of dotted paths)
-study_run     the runs of each study, in order; studies may share runs
-run           content hash, version, complete scene (JSON), status, error, and who computes it
-event         what was measured after each event of a run: the columns of events.csv
-event_timing  wall time of each event, apart, since it differs whenever a run is repeated
-run_timing    wall time of each run, and what computed it
-============= ==========================================================================
-
-The status of a run is pending, done or failed. While a run is computed, its owner is the name of a
-lock in the folder ``running`` (see `snowshed.study.owner`).
+Its tables are described in `snowshed.study.database`. The status of a run is pending, done or
+failed. While a run is computed, its owner is the name of a lock in the folder ``running`` (see
+`snowshed.study.owner`).
 """
 
 from __future__ import annotations
@@ -29,59 +19,21 @@ from typing import Any, Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.json_file import check_values, parse_object
-from snowshed.run.results import EVENT_COLUMNS
 from snowshed.scene.scene import PathLike
-from snowshed.study.errors import StudyError
+from snowshed.study.database import (
+    FILE,
+    MEASURED_TYPES,
+    RUNNING,
+    connect,
+    connect_read_only,
+    transaction,
+    translated,
+)
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome
 from snowshed.study.scene_hash import Run
 
-FILE = "store.sqlite"
-RUNNING = "running"
-APPLICATION = 0x534E4F57  # "SNOW": tells our databases from others
-VERSION = 1
 NO_STUDY = "holds no study; start one with `snowshed study run`"
-BUSY_S = 60.0  # s to wait for another process that is writing
-
-COUNTS = ("steps",)
-WORDS = ("ended",)
-#: What is measured after an event, with the type it has in the store.
-MEASURED_TYPES: Mapping[str, str] = {
-    name: "INTEGER" if name in COUNTS else "TEXT" if name in WORDS else "REAL"
-    for name in EVENT_COLUMNS
-    if name not in ("event", "wall_s")
-}
-#: Facts about the computing of a run.
-TIMING: Mapping[str, str] = {
-    "run_wall_s": "REAL",
-    "threads": "INTEGER",
-    "particles": "INTEGER",
-    "particle_updates": "INTEGER",
-    "peak_memory_mb": "REAL",
-    "host": "TEXT",
-    "cpu": "TEXT",
-    "finished": "TEXT",
-}
-
-
-def _columns(types: Mapping[str, str]) -> str:
-    return ", ".join(f"{name} {kind}" for name, kind in types.items())
-
-
-TABLES = (
-    "CREATE TABLE study (name TEXT PRIMARY KEY, axes TEXT NOT NULL)",
-    "CREATE TABLE run (hash TEXT PRIMARY KEY, version TEXT NOT NULL, scene TEXT NOT NULL,"
-    " status TEXT NOT NULL DEFAULT 'pending' CHECK (status IN ('pending', 'done', 'failed')),"
-    " error TEXT, owner TEXT)",
-    "CREATE INDEX run_owner ON run (owner) WHERE owner IS NOT NULL",
-    "CREATE TABLE study_run (study TEXT NOT NULL REFERENCES study, position INTEGER NOT NULL,"
-    " hash TEXT NOT NULL REFERENCES run, PRIMARY KEY (study, position)) WITHOUT ROWID",
-    f"CREATE TABLE event (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
-    f" {_columns(MEASURED_TYPES)}, PRIMARY KEY (hash, event)) WITHOUT ROWID",
-    "CREATE TABLE event_timing (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
-    " wall_s REAL, PRIMARY KEY (hash, event)) WITHOUT ROWID",
-    f"CREATE TABLE run_timing (hash TEXT PRIMARY KEY REFERENCES run, {_columns(TIMING)})",
-)
 
 
 @dataclass(frozen=True)
@@ -94,11 +46,11 @@ class StoredRun:
     status: str
     error: Optional[str]
     owner: Optional[str]
+    keep_particles: bool
 
 
 #: What tells a complete scene from anything else that a damaged store may hold.
 WHOLE_SCENE = {"dimension": float, "seeding": dict, "numerics": dict, "events": dict}
-RUN_COLUMNS = ", ".join(f"run.{name}" for name in StoredRun.__annotations__)
 
 
 class Store:
@@ -134,7 +86,7 @@ class Store:
         if folder.exists() and not folder.is_dir():
             raise InputError(f"{folder}: not a folder")
         with holding(folder, _make_folder):
-            return cls(folder, _connect(folder))
+            return cls(folder, connect(folder))
 
     @classmethod
     def open(cls, folder: PathLike) -> Store:
@@ -152,7 +104,7 @@ class Store:
             raise InputError(f"{folder}: {NO_STUDY}")
         if os.access(folder, os.W_OK):
             return cls.create(folder)
-        return cls(folder, _connect_read_only(folder))
+        return cls(folder, connect_read_only(folder))
 
     def __enter__(self) -> Store:
         return self
@@ -169,8 +121,14 @@ class Store:
         """The folder of the runs that are being computed."""
         return self.folder / RUNNING
 
-    def register(self, study: str, axes: Sequence[str], runs: Iterable[Run]) -> None:
-        """Enter a study with its runs; it replaces a study of the same name."""
+    def register(
+        self, study: str, axes: Sequence[str], runs: Iterable[Run], *, keep_particles: bool = False
+    ) -> None:
+        """Enter a study with its runs; it takes the place of one with the same name.
+
+        With `keep_particles` the particles after each event are stored too, of those runs that are
+        still to be computed.
+        """
         runs = list(runs)
         with self._transaction() as write:
             write.execute("DELETE FROM study_run WHERE study = ?", (study,))
@@ -181,6 +139,11 @@ class Store:
                 " DO UPDATE SET scene = excluded.scene WHERE status = 'pending'",
                 ((run.hash, _core.version, run.scene) for run in runs),
             )
+            if keep_particles:
+                write.executemany(
+                    "UPDATE run SET keep_particles = 1 WHERE hash = ? AND status = 'pending'",
+                    ((run.hash,) for run in runs),
+                )
             write.executemany(
                 "INSERT INTO study_run VALUES (?, ?, ?)",
                 ((study, position, run.hash) for position, run in enumerate(runs)),
@@ -228,7 +191,7 @@ class Store:
             If one of them is damaged.
         """
         rows = self.read(
-            f"SELECT {RUN_COLUMNS} FROM study_run JOIN run USING (hash)"
+            f"SELECT {self._run_columns()} FROM study_run JOIN run USING (hash)"
             " WHERE study = ? ORDER BY position",
             (study,),
         )
@@ -237,7 +200,7 @@ class Store:
     def find(self, beginning: str) -> StoredRun:
         """Return the run whose hash begins so; raises InputError unless there is exactly one."""
         rows = self.read(
-            f"SELECT {RUN_COLUMNS} FROM run WHERE substr(hash, 1, ?) = ? LIMIT 2",
+            f"SELECT {self._run_columns()} FROM run WHERE substr(hash, 1, ?) = ? LIMIT 2",
             (len(beginning), beginning),
         )
         if len(rows) != 1:
@@ -250,9 +213,9 @@ class Store:
         return InputError(f"{self.folder / FILE}: damaged: {what}")
 
     def _stored(self, row: Sequence[Any]) -> StoredRun:
-        if not all(text is None or isinstance(text, str) for text in row):
+        if not all(text is None or isinstance(text, str) for text in row[:-1]):
             raise self.damaged(f"run {row[0]!r}: not a text in every column")
-        run = StoredRun(*row)
+        run = StoredRun(*[*row[:-1], bool(row[-1])])
         where = f"{self.folder / FILE}: run {run.hash}: its scene"
         check_values(parse_object(run.scene, where), WHOLE_SCENE, where)
         return run
@@ -296,6 +259,9 @@ class Store:
                 key = {"hash": outcome.hash, "event": row["event"]}
                 _insert(write, "event", {**key, **{name: row[name] for name in MEASURED_TYPES}})
                 _insert(write, "event_timing", {**key, "wall_s": row["wall_s"]})
+            for event, data in outcome.particles.items():
+                key = {"hash": outcome.hash, "event": event}
+                _insert(write, "event_particles", {**key, "data": data})
             _insert(write, "run_timing", {"hash": outcome.hash, **outcome.timing})
 
     def reset(self, hashes: Iterable[str]) -> None:
@@ -308,17 +274,44 @@ class Store:
                     (hash_,),
                 )
                 if failed.rowcount:
-                    for table in ("event", "event_timing", "run_timing"):
+                    for table in ("event", "event_timing", "event_particles", "run_timing"):
                         write.execute(f"DELETE FROM {table} WHERE hash = ?", (hash_,))
+
+    def particles(self, hash_: str) -> dict[int, bytes]:
+        """Return the particles after each event of a run, packed; none if it did not keep them.
+
+        Raises
+        ------
+        InputError
+            If the store is damaged.
+        """
+        if not self.columns("event_particles"):
+            return {}
+        query = "SELECT event, data FROM event_particles WHERE hash = ? ORDER BY event"
+        found = dict(self.read(query, (hash_,)))
+        if not all(isinstance(data, bytes) for data in found.values()):
+            raise self.damaged(f"run {hash_}: its particles are no bytes")
+        return found
+
+    def columns(self, table: str) -> set[str]:
+        """Return the columns of a table; one of earlier days that cannot be written has fewer."""
+        return {row[1] for row in self.read(f"PRAGMA table_info({table})")}
+
+    def _run_columns(self) -> str:
+        present = self.columns("run")
+        return ", ".join(
+            f"run.{name}" if name in present else f"0 AS {name}"
+            for name in StoredRun.__annotations__
+        )
 
     def read(self, query: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
         """Return the rows of a query."""
-        with _translated(self.folder):
+        with translated(self.folder):
             return self._connection.execute(query, values).fetchall()
 
     @contextmanager
     def _transaction(self) -> Iterator[sqlite3.Connection]:
-        with _translated(self.folder), _transaction(self._connection) as write:
+        with translated(self.folder), transaction(self._connection) as write:
             yield write
 
 
@@ -326,93 +319,7 @@ def _make_folder(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
 
 
-def _connect(folder: Path) -> sqlite3.Connection:
-    """Open the database, and create missing tables; no other process may do so at the same time."""
-    if not (folder / FILE).exists() and any(folder.iterdir()):
-        raise InputError(f"{folder}: not empty, and holds no study; choose a new folder")
-    with _translated(folder):
-        connection = sqlite3.connect(folder / FILE, timeout=BUSY_S, isolation_level=None)
-        try:
-            connection.execute("PRAGMA journal_mode = WAL")
-            connection.execute("PRAGMA synchronous = FULL")
-            with _transaction(connection):
-                _provide_tables(connection, folder)
-        except BaseException:
-            connection.close()
-            raise
-    (folder / RUNNING).mkdir(exist_ok=True)
-    return connection
-
-
-def _connect_read_only(folder: Path) -> sqlite3.Connection:
-    """Open the database in a folder that is read-only, so that no process changes it."""
-    log = folder / f"{FILE}-wal"
-    if log.exists() and log.stat().st_size > 0:
-        raise InputError(
-            f"{folder}: cannot be written, and was left amid a change; copy it to where it can be"
-        )
-    with _translated(folder):
-        address = f"{(folder / FILE).as_uri()}?mode=ro&immutable=1"
-        connection = sqlite3.connect(address, uri=True, isolation_level=None)
-        try:
-            _check_format(connection, folder)
-        except BaseException:
-            connection.close()
-            raise
-    return connection
-
-
-def _provide_tables(connection: sqlite3.Connection, folder: Path) -> None:
-    application = _pragma(connection, "application_id")
-    if not application and not connection.execute("SELECT * FROM sqlite_master").fetchone():
-        for table in TABLES:
-            connection.execute(table)
-        connection.execute(f"PRAGMA application_id = {APPLICATION}")
-        connection.execute(f"PRAGMA user_version = {VERSION}")
-    _check_format(connection, folder)
-    _add_new_measures(connection)
-
-
-def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
-    if _pragma(connection, "application_id") != APPLICATION:
-        raise InputError(f"{folder / FILE}: not a store of studies")
-    if _pragma(connection, "user_version") != VERSION:
-        raise InputError(f"{folder / FILE}: made by another version of snowshed")
-
-
-def _add_new_measures(connection: sqlite3.Connection) -> None:
-    """Add the columns that events.csv has gained since the store was created."""
-    present = {row[1] for row in connection.execute("PRAGMA table_info(event)")}
-    for name in MEASURED_TYPES.keys() - present:
-        connection.execute(f"ALTER TABLE event ADD COLUMN {name} {MEASURED_TYPES[name]}")
-
-
-def _pragma(connection: sqlite3.Connection, name: str) -> int:
-    return int(connection.execute(f"PRAGMA {name}").fetchone()[0])
-
-
 def _insert(write: sqlite3.Connection, table: str, row: Mapping[str, Any]) -> None:
     names = ", ".join(row)
     marks = ", ".join("?" * len(row))
     write.execute(f"INSERT INTO {table} ({names}) VALUES ({marks})", tuple(row.values()))
-
-
-@contextmanager
-def _transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
-    connection.execute("BEGIN IMMEDIATE")
-    try:
-        yield connection
-        connection.execute("COMMIT")
-    except BaseException:
-        if connection.in_transaction:
-            connection.execute("ROLLBACK")
-        raise
-
-
-@contextmanager
-def _translated(folder: Path) -> Iterator[None]:
-    """Turn errors of the database into errors that say what the user can do."""
-    try:
-        yield
-    except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter: SQLite quotes damaged text
-        raise StudyError(f"{folder / FILE}: {error}") from None

@@ -8,15 +8,20 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed.io.json_file import is_number
 from snowshed.io.messages import shortened
+from snowshed.run.results import WORDS
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
+from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
+from snowshed.study.database import COUNTS, MEASURED_TYPES, TIMING
 from snowshed.study.factors import SEED
-from snowshed.study.store import COUNTS, MEASURED_TYPES, TIMING, WORDS, Store, StoredRun
+from snowshed.study.store import Store, StoredRun
 
 if TYPE_CHECKING:
     import pandas as pd
 
+#: The reading of A.4.2 of tables from before they named it.
+FORMER_TRIMMING = "equal_pace"
 FAILED = "failed"  # what the column `ended` says of the event at which a run failed
 RUN_TIMING = tuple(TIMING)
 
@@ -63,7 +68,36 @@ def read_table(
     columns = ["hash", *axes, "seed", "event", *MEASURED_TYPES, "error", "version", "dimension"]
     columns += [*ACCURACY, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
-    return table.astype(dict.fromkeys(COUNTS, "Int64"))
+    return with_trimming(table.astype(dict.fromkeys(COUNTS, "Int64")))
+
+
+def with_trimming(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a table whose rows all name their reading of A.4.2.
+
+    Rows from before there were two of them do not; they are of `FORMER_TRIMMING`, and their
+    measures are also those in its columns. A run that failed has no measures, and names none.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> table = with_trimming(pd.DataFrame({"height_m": [0.2], "length_m": [0.5]}))
+    >>> table[["trimming", "equal_pace_length_m"]].values.tolist()
+    [['equal_pace', 0.5]]
+    """
+    if "height_m" not in table:
+        return table
+    named = table["trimming"] if "trimming" in table else table["height_m"].map(lambda _: "")
+    measured = table["height_m"].notna() & (table["height_m"].astype(str) != "")
+    former = measured & (named.isna() | (named.astype(str) == ""))
+    if not former.any():
+        return table
+    added = {"trimming": named.astype(object).where(~former, FORMER_TRIMMING)}
+    for quantity in QUANTITIES:
+        plain, own = f"{quantity}_m", MEASURES[FORMER_TRIMMING].column(quantity)
+        if plain in table:
+            there = table[own] if own in table else table[plain]
+            added[own] = there.where(~former, table[plain])
+    return table.assign(**added)
 
 
 def _rows(store: Store, study: str) -> Iterator[dict[str, Any]]:
@@ -97,8 +131,10 @@ def scene_columns(scene: Mapping[str, Any], axes: Sequence[str]) -> dict[str, An
 
 def _events(store: Store, study: str) -> dict[str, list[dict[str, Any]]]:
     names = ("event", *MEASURED_TYPES, "wall_s")
+    present = store.columns("event")
+    measures = [name if name in present else f"NULL AS {name}" for name in MEASURED_TYPES]
     rows = store.read(
-        f"SELECT event.hash, event.event, {', '.join(MEASURED_TYPES)}, wall_s"
+        f"SELECT event.hash, event.event, {', '.join(measures)}, wall_s"
         " FROM study_run JOIN event USING (hash) JOIN event_timing USING (hash, event)"
         " WHERE study = ? ORDER BY position, event.event",
         (study,),

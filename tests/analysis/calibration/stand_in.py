@@ -11,8 +11,9 @@ import numpy as np
 import pandas as pd
 
 from snowshed.analysis.calibration.measurements import Measurement
+from snowshed.study.database import MEASURED_TYPES, WORDS
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import MEASURED_TYPES, WORDS, Store
+from snowshed.study.store import Store
 
 SLOPE, PRESSURE, COHESION = (
     "snow.critical_state_slope",

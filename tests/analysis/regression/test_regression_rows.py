@@ -170,3 +170,15 @@ def test_columns_of_the_last_version_are_read_by_the_names_of_today(tmp_path):
     for name in ("step_factor", "courant_factor"):
         read = read_rows(tmp_path / "rows.csv", where={name: "0.5"})
         assert read.settings["courant_factor"] == "0.5"
+
+
+def test_stacks_by_two_readings_are_not_mixed_unless_one_is_asked_for(tmp_path):
+    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    trimming = ["outermost_first" if row % 2 else "equal_pace" for row in range(len(table))]
+    both = {f"equal_pace_{name}": 2 * table[name] for name in ("height_m", "length_m")}
+    table.assign(trimming=trimming, **both).to_csv(tmp_path / "rows.csv", index=False)
+    with pytest.raises(InputError, match="trimming: the rows have different values"):
+        read_rows(tmp_path / "rows.csv")
+    chosen = read_rows(tmp_path / "rows.csv", measure="equal_pace")
+    assert len(chosen) == 96 and chosen.settings["trimming"] == "equal_pace"
+    assert chosen.targets["height"][0] == 2 * table["height_m"][0]

@@ -9,8 +9,9 @@ from snowshed import Scene
 from snowshed.analysis.sensitivity import read_stored
 from snowshed.cli.main import main
 from snowshed.study import Study
+from snowshed.study.database import MEASURED_TYPES, WORDS
 from snowshed.study.outcome import Outcome
-from snowshed.study.store import MEASURED_TYPES, WORDS, Store
+from snowshed.study.store import Store
 
 SLOPE, COHESION = "snow.critical_state_slope", "snow.cohesion"
 

@@ -4,6 +4,7 @@ import pytest
 from piles import ball, cone, triangle
 
 from snowshed import InputError, level, measure_stack
+from snowshed.snow.stack.trimming import TRIMMINGS
 
 
 def measure(positions, *, dimension=2, density=200.0, mass=0.001, dx=0.02, **options):
@@ -68,6 +69,17 @@ def test_a_roller_counts_for_the_stack_but_not_for_its_body():
     assert together.body.height == pytest.approx(alone.height)
     assert together.detached_mass == pytest.approx(3.0)
     assert together.mass == pytest.approx(43.0)
+
+
+def test_a_stack_is_measured_by_both_readings_and_is_that_of_the_one_asked_for():
+    snow = np.vstack([triangle(1.0, 0.3), ball((4.0, 0, 0.05), 0.05, 1000)])
+    stacks = {name: measure(snow, trimming=name) for name in TRIMMINGS}
+    for name, stack in stacks.items():
+        assert stack.trimming == name
+        assert (stack.length, stack.head) == (stack.trimmed[name].length, stack.trimmed[name].head)
+        assert stack.trimmed["outermost_first"].length < 1 < 4 < stack.trimmed["equal_pace"].length
+    solid = measure(cone(0.5, 0.3), dimension=3, trimming="equal_pace")
+    assert repr(solid.trimmed["equal_pace"]) == repr(solid.trimmed["outermost_first"])
 
 
 def test_snow_on_the_panel_is_set_aside():
@@ -149,6 +161,7 @@ def test_anything_array_like_is_measured_alike():
         ({"dx": 0.0}, "dx: 0; it must be above 0"),
         ({"dx": "small"}, "dx: 'small'; a finite number"),
         ({"ground_tilt_deg": np.nan}, "ground_tilt_deg: nan; a finite number"),
+        ({"trimming": "3D"}, "trimming: '3D' is unknown; allowed: outermost_first, equal_pace"),
     ],
 )
 def test_errors_name_the_argument(given, message):

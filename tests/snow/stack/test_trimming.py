@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from snowshed.snow.stack.trimming import DIVISIONS, circular_order, inliers
+from snowshed import InputError
+from snowshed.snow.stack.trimming import DIVISIONS, TRIMMINGS, circular_order, inliers
 
 
 def disc(count: int, seed: int = 3) -> np.ndarray:
@@ -40,10 +41,40 @@ def test_3d_circles_from_the_x_axis_towards_y():
     assert order[:5].tolist() == ring.tolist()
 
 
-def test_2d_steps_inward_from_both_ends_alike():
+def kept_of(x, trimming, masses=None):
+    x = np.asarray(x, float)
+    masses = np.ones(len(x)) if masses is None else masses
+    return inliers(np.column_stack([x, 0 * x, 0 * x]), masses, 2, trimming)
+
+
+@pytest.mark.parametrize("trimming", TRIMMINGS)
+def test_2d_takes_from_both_ends_of_a_symmetric_stack_alike(trimming):
     x = np.linspace(-1, 1, 1001)
-    kept = inliers(np.column_stack([x, 0 * x, 0 * x]), np.ones(1001), 2)
+    kept = kept_of(x, trimming)
     assert x[kept].min() == -x[kept].max() == pytest.approx(-0.97)
+
+
+def test_the_readings_differ_where_a_chunk_has_rolled_far_off():
+    """Outermost first, the far chunk goes at once; at equal pace the stack pays for its way."""
+    stack, chunk = np.linspace(0, 1, 980), np.linspace(8.9, 9.0, 20)
+    outermost, equal = (kept_of([*stack, *chunk], name) for name in TRIMMINGS)
+    # The chunk, and ten of the end that lies farther from the centre of mass, at x = 0.67.
+    assert np.flatnonzero(~outermost).tolist() == [*range(10), *range(980, 1000)]
+    # Both ends have come 2.5 cm inward when 30 particles are gone: 25 of the stack, 5 of the chunk.
+    assert np.flatnonzero(~equal).tolist() == [*range(25), *range(995, 1000)]
+
+
+def test_outermost_first_looks_from_the_centre_of_mass_not_of_the_extent():
+    x = np.concatenate([np.zeros(95), np.linspace(1, 2, 5)])
+    kept = kept_of(x, "outermost_first")
+    assert np.flatnonzero(~kept).tolist() == [97, 98, 99]
+    heavy = np.concatenate([np.full(95, 0.01), np.full(5, 10.0)])  # now the dense end is far
+    assert not kept_of(x, "outermost_first", heavy)[:95].any()
+
+
+def test_a_reading_must_be_one():
+    with pytest.raises(InputError, match=r"trimming: 'both'.*: outermost_first, equal_pace"):
+        kept_of([0.0, 1.0], "both")
 
 
 def test_mass_counts_not_number():

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from math import ceil, inf
 
 from snowshed._core import InputError
+from snowshed.analysis.deviations import DEVIATIONS, deviating_settings, deviations_named
+from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.scene.thesis_tables import (
@@ -37,6 +39,7 @@ def geometry_study(
     friction: float = FRICTION,
     dx: float = 0.01,
     seeds: int = 1,
+    deviations: Sequence[str] = (),
     trial: bool = False,
 ) -> Study:
     """Return the study of the geometry data set, Tables 5.1.1 and 5.2.1.
@@ -57,6 +60,9 @@ def geometry_study(
         How many stacks for each panel up to 1 m; they differ in the chance placement of the
         particles. Longer panels take more time and scatter less: those up to 2 m have a third as
         many, up to 4 m a sixth, the others a sixteenth, rounded up.
+    deviations
+        Names of `snowshed.analysis.deviations` to undo, or "all": what the thesis does instead.
+        They go before `between` and `dx`; the trial has none.
     trial
         A few panels on a coarse grid, which take seconds, to try the way from study to prediction;
         its numbers mean nothing.
@@ -64,7 +70,7 @@ def geometry_study(
     Raises
     ------
     InputError
-        If `between` is unknown.
+        If `between` or a deviation is unknown.
 
     Examples
     --------
@@ -75,6 +81,8 @@ def geometry_study(
     scene = Scene.preset("geometry").update({"snow": Snow.preset("calibrated").to_data()})
     if trial:
         return _trial(scene, between, friction, seeds)
+    changes = deviating_settings(5, deviations)
+    between = str(changes.pop("events.between", between))
     scene.update(
         {
             "dimension": 2,
@@ -82,10 +90,12 @@ def geometry_study(
             "events.max_time": 30.0,  # s; 10 m at 40 degrees alone take 9 s
             "seeding.particles_per_voxel": 4,  # the fewest in 2D (A.3.2)
             "numerics.dx": dx,
+            **changes,
         }
     )
-    # One value each, which the table shows.
-    common = [axis("panel.friction", [friction]), axis("events.between", [between])]
+    shown = {"panel.friction": friction, "events.between": between}
+    shown.update({path: one for path, one in changes.items() if path not in ACCURACY.values()})
+    common = [axis(path, [value]) for path, value in shown.items()]  # which the table shows
     grids = (
         ((FLAT_TILT,), PANEL_HEIGHTS, PANEL_LENGTHS),
         (STEEP_TILTS, STEEP_HEIGHTS, STEEP_LENGTHS),
@@ -96,7 +106,10 @@ def geometry_study(
         for share in SHARES.values()
         if (some := [one for one in lengths if _share(one) == share])
     ]
-    return Study(scene, parts, f"geometry-{between}", description=DESCRIPTION)
+    undone = deviations_named(deviations)
+    others = [one.name for one in undone if one.simulated and one.name != between]
+    name = ["thesis"] if len(undone) == len(DEVIATIONS) else [between, *others]
+    return Study(scene, parts, "-".join(["geometry", *name]), description=DESCRIPTION)
 
 
 def _trial(scene: Scene, between: str, friction: float, seeds: int) -> Study:

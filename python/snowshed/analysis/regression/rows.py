@@ -75,6 +75,23 @@ class StackRows:
         deviations = np.nanmean(np.abs(values - np.nanmean(values, axis=1)[:, None]), axis=1)
         return float((deviations * np.sqrt(count / (count - 1))).mean())
 
+    @property
+    def most_seeds(self) -> int:
+        """How many stacks the row has that has most."""
+        return int(np.isfinite(self.stacks["ratio"]).sum(axis=1).max(initial=0))
+
+    def of_one_seed(self) -> StackRows:
+        """Return the rows with the first stack of each alone, as the thesis has them.
+
+        Examples
+        --------
+        >>> rows = rows_of([[1, 2, 4, 40]] * 2, np.array([1.0, 3.0]), np.array([4.0, 4.0]))
+        >>> rows.targets["height"].tolist(), rows.of_one_seed().targets["height"].tolist()
+        ([2.0], [1.0])
+        """
+        stacks = {name: values[:, :1] for name, values in self.stacks.items()}
+        return replace(self, stacks=stacks)
+
     def __len__(self) -> int:
         return len(self.inputs)
 
@@ -110,8 +127,9 @@ def read_rows(
     file
         A CSV file, or a Parquet file (.parquet); or the folder of a study's store.
     measure
-        "stack": height and length of 97 % of the snow, as the thesis measures; "body": of the
-        largest connected body.
+        One of `snowshed.snow.stack.quantities.MEASURES`. "stack": height and length of 97 % of the
+        snow, as the thesis measures, by the reading of A.4.2 that the table names; "body": of the
+        largest connected body; "outermost_first" or "equal_pace": as "stack", by that reading.
     where
         Columns and the value they must have: only these rows are read.
 
@@ -167,7 +185,10 @@ def _rows(table: StackTable, measure: Measure) -> StackRows:
     table.check_columns([*INPUTS, *measure.columns(STACK)])
     nothing = table.without_stack(measure, STACK)
     left_out = int(nothing.sum())
-    table = replace(table, frame=table.frame.loc[~nothing])
+    frame = table.frame.loc[~nothing]
+    if measure.trimming is not None and "trimming" in frame:
+        frame = frame.assign(trimming=measure.trimming)
+    table = replace(table, frame=frame)
     _check_enough(len(table.frame), left_out)
     settings = table.common_settings(INPUTS)
     inputs = np.column_stack([table.numbers(name) for name in INPUTS])

@@ -9,7 +9,9 @@ from typing import Optional
 import click
 from click.core import ParameterSource
 
+from snowshed.analysis.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
+from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
 
 PATH = click.Path(path_type=Path)
@@ -43,6 +45,14 @@ PATH = click.Path(path_type=Path)
     help="Stacks for each panel up to 1 m, whose means are regressed; up to 2 m a third of them, "
     "up to 4 m a sixth, beyond a sixteenth, rounded up.",
 )
+@click.option(
+    "--deviation",
+    "deviations",
+    multiple=True,
+    type=click.Choice([*DEVIATIONS, ALL]),
+    help="Do as the thesis does in this; may be repeated, and all is the preset `thesis`. Goes "
+    "before --between and --dx.",
+)
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid, which take seconds.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
 @click.pass_context
@@ -52,6 +62,7 @@ def geometry(
     friction: float,
     dx: float,
     seeds: int,
+    deviations: Sequence[str],
     trial: bool,
     file: Optional[Path],
 ) -> None:
@@ -68,7 +79,11 @@ def geometry(
 
     if trial and context.get_parameter_source("dx") == ParameterSource.COMMANDLINE:
         raise click.UsageError("--dx does nothing with --trial, which has cells of its own")
-    study = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
+    if trial and deviations:
+        raise click.UsageError("--deviation does nothing with --trial")
+    study = geometry_study(
+        between, friction=friction, dx=dx, seeds=seeds, deviations=deviations, trial=trial
+    )
     if file is None:
         click.echo(study.to_toml(), nl=False)
     else:
@@ -97,7 +112,7 @@ def geometry(
 @click.option(
     "--measure",
     default="stack",
-    help="stack (97 % of the snow) or body (the largest connected one).  [default: stack]",
+    help=f"{measure_help()}  [default: stack]",
 )
 @click.option(
     "--where",
@@ -105,6 +120,11 @@ def geometry(
     multiple=True,
     metavar="COLUMN=VALUE",
     help="Only rows that have this value; may be repeated.",
+)
+@click.option(
+    "--one-seed",
+    is_flag=True,
+    help="Take the first stack of each panel and event only, as the thesis has one, not the mean.",
 )
 @click.option(
     "--split",
@@ -127,6 +147,7 @@ def regress(
     kinds: Sequence[str],
     measure: str,
     conditions: Sequence[str],
+    one_seed: bool,
     split: str,
     rounds: int,
     folds: int,
@@ -150,6 +171,7 @@ def regress(
     from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
 
     rows = read_rows(table, measure, dict(map(_condition, conditions)))
+    rows = rows.of_one_seed() if one_seed else rows
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
     if rows.left_out and not quiet:
         click.echo(f"note: {rows.left_out} rows have no stack and are left out", err=True)

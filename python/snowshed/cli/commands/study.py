@@ -14,6 +14,7 @@ from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.io.atomic import write_text
 from snowshed.io.formatting import about
 from snowshed.run.progress import Reporter
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.definition import Study
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.store import NO_STUDY, Store
@@ -79,6 +80,9 @@ def plan(file: Path, jobs: Optional[int]) -> None:
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Folder of the store, old or new."
 )
+@click.option(
+    "--keep-particles", is_flag=True, help="Store particles too, for `snowshed study remeasure`."
+)
 @_computing_options
 def run(file: Path, folder: Path, quiet: bool, **options: Any) -> None:
     """Compute the missing runs of a study.
@@ -134,6 +138,38 @@ def export(
 
     with _outcome_as_exit_code():
         write(folder, file, study=name, form=form, timing=timing)
+        _warn_of_missing(folder, name)
+
+
+@study.command()
+@click.argument("folder", type=PATH)
+@click.option("-o", "--output", "file", type=PATH, required=True, help="File to write.")
+@click.option(
+    "--trimming",
+    type=click.Choice(list(TRIMMINGS)),
+    default=DEFAULT_TRIMMING,
+    show_default=True,
+    help="How A.4.2 is read: what height_m, length_m and the like are of.",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["csv", "parquet", "netcdf"]),
+    help="[default: by the file's ending .csv, .parquet or .nc]",
+)
+@click.option("--study", "name", help="Name of the study, if the folder holds several.")
+def remeasure(
+    folder: Path, file: Path, trimming: str, form: Optional[str], name: Optional[str]
+) -> None:
+    """Measure the stacks of a study again, and write its table.
+
+    The study must have been computed with --keep-particles.
+    """
+    from snowshed.study import remeasuring
+    from snowshed.study.formats import write_table
+
+    with _outcome_as_exit_code():
+        write_table(lambda: remeasuring.remeasure(folder, name, trimming=trimming), file, form)
         _warn_of_missing(folder, name)
 
 

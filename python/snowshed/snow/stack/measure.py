@@ -4,7 +4,8 @@ The steps, in this order:
 
 1. Snow still on the panel is set aside and reported.
 2. The ground is turned level (A.4.4).
-3. The outermost 3 % are dropped (A.4.1, A.4.2; module ``trimming``).
+3. The outermost 3 % are dropped (A.4.1, A.4.2; module ``trimming``). In 2D the thesis can be read
+   in two ways: a stack is measured by one, which has a name, and its extent is given by both.
 4. The surface is extracted (A.4.3; module ``surface``); height, length, head, tail and width are
    those of the surface, as in the thesis.
 
@@ -16,6 +17,7 @@ more than a voxel, whatever its deformation says. In 2D the snow is a strip one 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Optional
 
@@ -27,7 +29,7 @@ from snowshed.io.array_arguments import column, finite, flags, points, positive
 from snowshed.io.arrays import Floats
 from snowshed.snow.stack.connected_components import largest_body
 from snowshed.snow.stack.surface import outline, surface_particles
-from snowshed.snow.stack.trimming import inliers
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS, check_trimming, inliers
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,10 @@ class StackMeasure(Extent):
 
     Attributes
     ----------
+    trimming
+        The reading of A.4.2 by which the stack's own extent and that of its body were measured.
+    trimmed
+        Extent of all snow off the panel by each reading; in 3D there is but one, under both names.
     body
         Extent of the largest connected body.
     mass, volume
@@ -60,6 +66,8 @@ class StackMeasure(Extent):
         Snow that was excluded because it lies on the panel, kg.
     """
 
+    trimming: str = DEFAULT_TRIMMING
+    trimmed: Mapping[str, Extent] = field(default_factory=dict)
     body: Extent = field(default_factory=Extent)
     mass: float = 0.0
     volume: float = 0.0
@@ -108,6 +116,7 @@ def measure_stack(
     dx: float,
     ground_tilt_deg: float = 0.0,
     exclude: Optional[ArrayLike] = None,
+    trimming: str = DEFAULT_TRIMMING,
 ) -> StackMeasure:
     """Measure the stack that particles form.
 
@@ -130,6 +139,9 @@ def measure_stack(
         Psi, degrees; positive falls in the slide direction.
     exclude : (n,), optional
         Booleans: True for particles that are not part of the stack, because they lie on the panel.
+    trimming
+        How A.4.2 is read where the outermost 3 % are dropped in 2D: "outermost_first" or
+        "equal_pace", see `snowshed.snow.stack.trimming`.
 
     Returns
     -------
@@ -140,7 +152,8 @@ def measure_stack(
     ------
     InputError
         If an array has another shape or length, or holds anything but finite numbers, or a mass or
-        density is negative, or `dimension` or `dx` is none; the message names the argument.
+        density is negative, or `dimension`, `dx` or `trimming` is none; the message names the
+        argument.
 
     Examples
     --------
@@ -153,6 +166,7 @@ def measure_stack(
     """
     if dimension not in (2, 3):
         raise InputError(f"dimension: {dimension!r}; allowed: 2, 3")
+    check_trimming(trimming)
     voxel = positive("dx", dx) ** dimension
     places = points("positions", positions, dimension)
     every_mass = column("masses", masses, len(places), non_negative=True)
@@ -168,10 +182,12 @@ def measure_stack(
     if dimension == 2:
         snow[:, 1] = 0.0
     body = largest_body(snow, mass, dx)
-    kept = inliers(snow, mass, dimension)
+    trimmed = {name: _trimmed_extent(snow, mass, dimension, name) for name in TRIMMINGS}
     return StackMeasure(
-        **vars(_extent(snow[kept], dimension)),
-        body=_extent(snow[body][inliers(snow[body], mass[body], dimension)], dimension),
+        **vars(trimmed[trimming]),
+        trimming=trimming,
+        trimmed=trimmed,
+        body=_trimmed_extent(snow[body], mass[body], dimension, trimming),
         mass=float(mass.sum()),
         volume=_volume(mass, every_density[off], voxel),
         detached_mass=float(mass[~body].sum()),
@@ -182,6 +198,10 @@ def measure_stack(
 def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
     with np.errstate(divide="ignore"):
         return float(np.minimum(masses / densities, voxel).sum())
+
+
+def _trimmed_extent(snow: Floats, masses: Floats, dimension: int, trimming: str) -> Extent:
+    return _extent(snow[inliers(snow, masses, dimension, trimming)], dimension)
 
 
 def _extent(snow: Floats, dimension: int) -> Extent:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.snow.stack.trimming import TRIMMINGS
 
 #: Lengths of a stack that are compared, calibrated on and drawn, m.
 QUANTITIES = ("height", "length", "head", "tail")
@@ -23,6 +25,9 @@ class Measure:
         What it is, in words.
     prefix
         What its columns begin with.
+    trimming
+        The reading of A.4.2 that it stands for; None: the one that the table names in its column
+        ``trimming``.
 
     Examples
     --------
@@ -33,6 +38,7 @@ class Measure:
     name: str
     label: str
     prefix: str = ""
+    trimming: Optional[str] = None
 
     def column(self, quantity: str) -> str:
         """Return the column of one of `QUANTITIES`, in m."""
@@ -48,6 +54,10 @@ MEASURES: Mapping[str, Measure] = {
     for one in (
         Measure("stack", "97 % of the snow"),
         Measure("body", "the largest connected body of snow", "body_"),
+        *(
+            Measure(name, f"97 % of the snow, trimmed {name.replace('_', ' ')}", f"{name}_", name)
+            for name in TRIMMINGS
+        ),
     )
 }
 

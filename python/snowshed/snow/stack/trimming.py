@@ -3,19 +3,36 @@
 The thesis counts particles, because they all carry the same mass there; here their mass is summed,
 which is the same where masses are equal and still right where they are not. The last step inward
 gives up only its outermost particles, so that never more than 3 % go.
+
+For 2D the text can be read in two ways (A.4.2: "the same principle as the 3D one, but doesn't need
+to rotate. Instead, it starts from the 2 ends of the stack and starts to integrate by a increment dx
+towards the center of mass"). Both are here by name; `docs/theory.md` says why which is the default.
+
+``outermost_first``
+    As in 3D: whatever lies farthest from the centre of mass goes first, at either end.
+``equal_pace``
+    Both ends step inward together. When a chunk has rolled far off on one side, the steps from the
+    other end take most of the 3 % from the stack.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 
+from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats, Integers
 
 DROPPED_FRACTION = 0.03
 DIVISIONS = 30  # of radius and angle, as of the grid of the surface (A.4.3)
+#: The reading that stacks are measured by unless another one of `TRIMMINGS` is asked for.
+DEFAULT_TRIMMING = "outermost_first"
 
 
-def inliers(positions: Floats, masses: Floats, dimension: int) -> Booleans:
+def inliers(
+    positions: Floats, masses: Floats, dimension: int, trimming: str = DEFAULT_TRIMMING
+) -> Booleans:
     """Return which particles remain when the outermost 3 % of the mass is dropped.
 
     Parameters
@@ -26,6 +43,13 @@ def inliers(positions: Floats, masses: Floats, dimension: int) -> Booleans:
         Particle masses, kg (any unit will do).
     dimension
         3: from the outside inward around the centre of mass (A.4.1); 2: from both ends (A.4.2).
+    trimming
+        How A.4.2 is read: one of `TRIMMINGS`. In 3D there is nothing to choose.
+
+    Raises
+    ------
+    InputError
+        If there is no such reading.
 
     Examples
     --------
@@ -34,10 +58,11 @@ def inliers(positions: Floats, masses: Floats, dimension: int) -> Booleans:
     >>> int(inliers(row, np.ones(100), 2).sum())
     97
     """
+    check_trimming(trimming)
     if len(positions) == 0:
         return np.zeros(0, dtype=bool)
     if dimension == 2:
-        order = end_inward_order(positions[:, 0])
+        order = TRIMMINGS[trimming](positions[:, 0], masses)
     else:
         order = circular_order(positions[:, 0], positions[:, 1], masses)
     allowance = DROPPED_FRACTION * masses.sum() * (1 + 1e-9)
@@ -47,17 +72,42 @@ def inliers(positions: Floats, masses: Floats, dimension: int) -> Booleans:
     return kept
 
 
-def end_inward_order(x: Floats) -> Integers:
+def outermost_first_order(x: Floats, masses: Floats) -> Integers:
+    """Return the order of the distance to the centre of mass, the farthest first.
+
+    Examples
+    --------
+    >>> outermost_first_order(np.array([0.0, 1.0, 2.0, 9.0]), np.ones(4)).tolist()
+    [3, 0, 1, 2]
+    """
+    return np.argsort(-np.abs(x - np.average(x, weights=masses)), kind="stable")
+
+
+def equal_pace_order(x: Floats, masses: Floats) -> Integers:
     """Return the order in which particles are met when stepping inward from both ends at once.
 
-    Both ends step at the same pace, as the text says, wherever the snow lies: when a chunk has
-    rolled far off on one side, the steps from the other end take most of the 3 % from the stack.
-    The extent of the largest connected body is there for that.
-
     Since the last increment gives up only its outermost particles, the size of the increments
-    does not matter: it is the order of the distance to the nearer end.
+    does not matter: it is the order of the distance to the nearer end. The masses do not either.
+
+    Examples
+    --------
+    >>> equal_pace_order(np.array([0.0, 1.0, 2.0, 9.0]), np.ones(4)).tolist()
+    [0, 3, 1, 2]
     """
     return np.argsort(np.minimum(x - x.min(), x.max() - x), kind="stable")
+
+
+#: The readings of A.4.2 by name: from x (m) and masses to the order in which particles are dropped.
+TRIMMINGS: Mapping[str, Callable[[Floats, Floats], Integers]] = {
+    "outermost_first": outermost_first_order,
+    "equal_pace": equal_pace_order,
+}
+
+
+def check_trimming(name: str) -> None:
+    """Raise InputError unless there is a reading of that name."""
+    if name not in TRIMMINGS:
+        raise InputError(f"trimming: {name!r} is unknown; allowed: {', '.join(TRIMMINGS)}")
 
 
 def circular_order(x: Floats, y: Floats, masses: Floats) -> Integers:

@@ -1,0 +1,170 @@
+"""Where our settings deviate from the letter of the thesis, each with its reason.
+
+All deviations undone are the preset ``thesis``; each can be undone alone. What the thesis leaves
+open, as the panel's friction, is none: the docs say what is taken there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
+
+#: Frames of an event by the thesis's chapters: Tables 3.2.1, 4.1.1, 5.1.1.
+FRAMES: Mapping[int, int] = {3: 50, 4: 60, 5: 100}
+#: Frames in a second. The thesis does not print it; this is Houdini's usual rate.
+FRAME_RATE = 24.0
+#: Size of the thesis's grid cells, m.
+THESIS_DX = 0.01
+#: Stands for all deviations together.
+ALL = "all"
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """One thing that the thesis does in another way.
+
+    Attributes
+    ----------
+    name
+        By which it is asked for.
+    thesis, here, reason
+        What the thesis does, what is done here unless asked otherwise, and why; sentences.
+    change
+        From the thesis's chapter to what it sets in a scene, by dotted paths.
+    trimming
+        The reading of A.4.2 that it measures stacks by, if it is about that.
+    """
+
+    name: str
+    thesis: str
+    here: str
+    reason: str
+    change: Callable[[int], Mapping[str, object]]
+    trimming: Optional[str] = None
+
+    @property
+    def simulated(self) -> bool:
+        """False if it changes the measuring alone, so that it needs no run of its own."""
+        return self.trimming is None
+
+
+def _cut(chapter: int) -> dict[str, object]:
+    return {"events.max_time": FRAMES[chapter] / FRAME_RATE}
+
+
+DEVIATIONS: Mapping[str, Deviation] = {
+    one.name: one
+    for one in (
+        Deviation(
+            "slip",
+            "The panel is SLIP: the normal speed of snow on it is zero.",
+            "Snow may leave the panel's face.",
+            "With SLIP to the letter snow leaves the plane of the panel over its edge only, and a "
+            "slab that tips over the edge is held down behind it.",
+            lambda chapter: {"panel.condition": "slip"},
+        ),
+        Deviation(
+            "damping",
+            "FLIP has a share of 0.99 in each step, whatever the step.",
+            "What the presets have.",
+            "A share in each step makes the damping depend on the step: a shorter one damps more.",
+            lambda chapter: {"numerics.transfer": "flip", "numerics.flip_ratio": 0.99},
+        ),
+        Deviation(
+            "reseed",
+            "Between events the stack is turned into a solid and seeded anew.",
+            "The particles stay as they are.",
+            "Seeding anew makes broken bonds whole, forgets compaction, and moves the stack.",
+            lambda chapter: {"events.between": "reseed"},
+        ),
+        Deviation(
+            "grid",
+            "Cells of 1 cm.",
+            "Cells of 1.5 cm for the panels of chapter 5, 1 cm elsewhere.",
+            "Cells of 1 cm take 3.4 times as long; the time went into more seedings.",
+            lambda chapter: {"numerics.dx": THESIS_DX},
+        ),
+        Deviation(
+            "frames",
+            "An event is over after 50, 60 and 100 frames in chapters 3, 4 and 5: "
+            "2.1, 2.5 and 4.2 s at 24 frames a second (the rate is not printed).",
+            "An event is over when the snow rests.",
+            "A long slab on a rough panel slides longer than that, and snow that still moves is no "
+            "stack yet.",
+            _cut,
+        ),
+        Deviation(
+            "trimming",
+            "A.4.2, its second sentence to the letter: both ends of a 2D stack step inward by the "
+            "same increment.",
+            "The particle farthest from the centre of mass goes first, as the first sentence asks: "
+            "it is the principle of the 3D rule.",
+            "Where snow has rolled far off, steps at equal pace take the 3 % from the dense end; "
+            "the length of a stack then scatters more from seeding to seeding.",
+            lambda chapter: {},
+            "equal_pace",
+        ),
+    )
+}
+
+
+def deviations_named(names: Sequence[str]) -> list[Deviation]:
+    """Return deviations in their order; "all" stands for every one.
+
+    Raises
+    ------
+    InputError
+        If there is none of a name.
+
+    Examples
+    --------
+    >>> [one.name for one in deviations_named(["frames", "slip"])]
+    ['slip', 'frames']
+    """
+    for name in names:
+        if name not in DEVIATIONS and name != ALL:
+            allowed = ", ".join([*DEVIATIONS, ALL])
+            raise InputError(f"deviation: {name!r} is unknown; allowed: {allowed}")
+    return [one for one in DEVIATIONS.values() if one.name in names or ALL in names]
+
+
+def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str, object]:
+    """Return what deviations set in a scene: by default the preset ``thesis``.
+
+    Parameters
+    ----------
+    chapter
+        Of the thesis: 3, 4 (with the laboratory of chapter 2) or 5.
+    names
+        Of the deviations.
+
+    Returns
+    -------
+    dict
+        Values by dotted paths, as `snowshed.Scene.update` takes them.
+
+    Raises
+    ------
+    InputError
+        If there is no such chapter or deviation.
+
+    Examples
+    --------
+    >>> deviating_settings(4, ["frames"])
+    {'events.max_time': 2.5}
+    """
+    if chapter not in FRAMES:
+        raise InputError(f"chapter: {chapter!r}; allowed: {', '.join(map(str, FRAMES))}")
+    settings: dict[str, object] = {}
+    for one in deviations_named(names):
+        settings.update(one.change(chapter))
+    return settings
+
+
+def deviating_trimming(names: Sequence[str] = (ALL,)) -> str:
+    """Return the reading of A.4.2 by which stacks are measured with some deviations."""
+    return next((one.trimming for one in deviations_named(names) if one.trimming), DEFAULT_TRIMMING)

@@ -1,0 +1,167 @@
+"""The database of a store of studies: its tables, and how it is opened and changed.
+
+Every change is one transaction with a write-ahead log that is flushed to the disk (WAL, FULL).
+
+=============== ========================================================================
+study           name, and its axes (JSON list of dotted paths)
+study_run       the runs of each study, in order; studies may share runs
+run             content hash, version, complete scene (JSON), status, error, who computes it, and
+                whether its particles are kept
+event           what was measured after each event of a run: the columns of events.csv
+event_timing    wall time of each event, apart, since it differs whenever a run is repeated
+event_particles the particles after each event, packed, of runs that keep them
+run_timing      wall time of each run, and what computed it
+=============== ========================================================================
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from snowshed._core import InputError
+from snowshed.run.results import EVENT_COLUMNS, WORDS
+from snowshed.study.errors import StudyError
+
+FILE = "store.sqlite"
+RUNNING = "running"
+APPLICATION = 0x534E4F57  # "SNOW": tells our databases from others
+VERSION = 1
+BUSY_S = 60.0  # s to wait for another process that is writing
+
+COUNTS = ("steps",)
+#: What is measured after an event, with the type it has in the store.
+MEASURED_TYPES: Mapping[str, str] = {
+    name: "INTEGER" if name in COUNTS else "TEXT" if name in WORDS else "REAL"
+    for name in EVENT_COLUMNS
+    if name not in ("event", "wall_s")
+}
+#: Facts about the computing of a run.
+TIMING: Mapping[str, str] = {
+    "run_wall_s": "REAL",
+    "threads": "INTEGER",
+    "particles": "INTEGER",
+    "particle_updates": "INTEGER",
+    "peak_memory_mb": "REAL",
+    "host": "TEXT",
+    "cpu": "TEXT",
+    "finished": "TEXT",
+}
+
+
+def _columns(types: Mapping[str, str]) -> str:
+    return ", ".join(f"{name} {kind}" for name, kind in types.items())
+
+
+PARTICLES_TABLE = (
+    "CREATE TABLE IF NOT EXISTS event_particles (hash TEXT NOT NULL REFERENCES run,"
+    " event INTEGER NOT NULL, data BLOB NOT NULL, PRIMARY KEY (hash, event))"
+)
+TABLES = (
+    "CREATE TABLE study (name TEXT PRIMARY KEY, axes TEXT NOT NULL)",
+    "CREATE TABLE run (hash TEXT PRIMARY KEY, version TEXT NOT NULL, scene TEXT NOT NULL,"
+    " status TEXT NOT NULL DEFAULT 'pending' CHECK (status IN ('pending', 'done', 'failed')),"
+    " error TEXT, owner TEXT, keep_particles INTEGER NOT NULL DEFAULT 0)",
+    "CREATE INDEX run_owner ON run (owner) WHERE owner IS NOT NULL",
+    "CREATE TABLE study_run (study TEXT NOT NULL REFERENCES study, position INTEGER NOT NULL,"
+    " hash TEXT NOT NULL REFERENCES run, PRIMARY KEY (study, position)) WITHOUT ROWID",
+    f"CREATE TABLE event (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
+    f" {_columns(MEASURED_TYPES)}, PRIMARY KEY (hash, event)) WITHOUT ROWID",
+    "CREATE TABLE event_timing (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
+    " wall_s REAL, PRIMARY KEY (hash, event)) WITHOUT ROWID",
+    PARTICLES_TABLE,
+    f"CREATE TABLE run_timing (hash TEXT PRIMARY KEY REFERENCES run, {_columns(TIMING)})",
+)
+
+
+def connect(folder: Path) -> sqlite3.Connection:
+    """Open the database, making what it lacks; no other process may do so at the same time."""
+    if not (folder / FILE).exists() and any(folder.iterdir()):
+        raise InputError(f"{folder}: not empty, and holds no study; choose a new folder")
+    with translated(folder):
+        connection = sqlite3.connect(folder / FILE, timeout=BUSY_S, isolation_level=None)
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+            connection.execute("PRAGMA synchronous = FULL")
+            with transaction(connection):
+                _provide_tables(connection, folder)
+        except BaseException:
+            connection.close()
+            raise
+    (folder / RUNNING).mkdir(exist_ok=True)
+    return connection
+
+
+def connect_read_only(folder: Path) -> sqlite3.Connection:
+    """Open the database in a folder where nothing can be written, so that nobody changes it."""
+    log = folder / f"{FILE}-wal"
+    if log.exists() and log.stat().st_size > 0:
+        raise InputError(
+            f"{folder}: cannot be written, and was left amid a change; copy it to where it can be"
+        )
+    with translated(folder):
+        address = f"{(folder / FILE).as_uri()}?mode=ro&immutable=1"
+        connection = sqlite3.connect(address, uri=True, isolation_level=None)
+        try:
+            _check_format(connection, folder)
+        except BaseException:
+            connection.close()
+            raise
+    return connection
+
+
+def _provide_tables(connection: sqlite3.Connection, folder: Path) -> None:
+    application = _pragma(connection, "application_id")
+    if not application and not connection.execute("SELECT * FROM sqlite_master").fetchone():
+        for table in TABLES:
+            connection.execute(table)
+        connection.execute(f"PRAGMA application_id = {APPLICATION}")
+        connection.execute(f"PRAGMA user_version = {VERSION}")
+    _check_format(connection, folder)
+    _add_what_is_new(connection)
+
+
+def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
+    if _pragma(connection, "application_id") != APPLICATION:
+        raise InputError(f"{folder / FILE}: not a store of studies")
+    if _pragma(connection, "user_version") != VERSION:
+        raise InputError(f"{folder / FILE}: made by another version of snowshed")
+
+
+def _add_what_is_new(connection: sqlite3.Connection) -> None:
+    """Give a store of earlier days the columns that events.csv has gained since, and particles."""
+    present = {row[1] for row in connection.execute("PRAGMA table_info(event)")}
+    for name in MEASURED_TYPES.keys() - present:
+        connection.execute(f"ALTER TABLE event ADD COLUMN {name} {MEASURED_TYPES[name]}")
+    connection.execute(PARTICLES_TABLE)
+    if "keep_particles" not in {row[1] for row in connection.execute("PRAGMA table_info(run)")}:
+        kept = "keep_particles INTEGER NOT NULL DEFAULT 0"
+        connection.execute(f"ALTER TABLE run ADD COLUMN {kept}")
+
+
+def _pragma(connection: sqlite3.Connection, name: str) -> int:
+    return int(connection.execute(f"PRAGMA {name}").fetchone()[0])
+
+
+@contextmanager
+def transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
+    """Make changes all or none."""
+    connection.execute("BEGIN IMMEDIATE")
+    try:
+        yield connection
+        connection.execute("COMMIT")
+    except BaseException:
+        if connection.in_transaction:
+            connection.execute("ROLLBACK")
+        raise
+
+
+@contextmanager
+def translated(folder: Path) -> Iterator[None]:
+    """Turn errors of the database into what the user can do about them."""
+    try:
+        yield
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter: SQLite quotes damaged text
+        raise StudyError(f"{folder / FILE}: {error}") from None

@@ -1,0 +1,106 @@
+"""Measuring the stacks of a study again, from the particles that its store keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Optional
+
+from snowshed._core import InputError
+from snowshed.run.event_particles import EventParticles
+from snowshed.run.results import measured_columns
+from snowshed.scene.scene import PathLike
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, check_trimming
+from snowshed.study.store import Store
+from snowshed.study.table import read_table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: From the particles after an event to columns of the table.
+Measuring = Callable[[EventParticles], Mapping[str, Any]]
+
+
+def remeasure(
+    folder: PathLike,
+    study: Optional[str] = None,
+    *,
+    trimming: str = DEFAULT_TRIMMING,
+    measure: Optional[Measuring] = None,
+) -> pd.DataFrame:
+    """Measure the stacks of a study again, and return its table.
+
+    Particles are kept in single precision, so that the last digits of a measure may differ from
+    those that were measured while the run went on.
+
+    Parameters
+    ----------
+    folder
+        Where the store is.
+    study
+        Name of the study; not needed if the store holds but one.
+    trimming
+        The reading of A.4.2 that the columns without a prefix shall be of.
+    measure
+        Returns more columns for an event, or others of the same name.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As `read_table` returns it.
+
+    Raises
+    ------
+    InputError
+        If there is no such study or reading, or the store is damaged, or lacks the particles of a
+        stack: the study was computed without `keep_particles`.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed import Scene
+    >>> from snowshed.study import Study
+    >>> scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.03})
+    >>> scene = scene.update({"events": {"count": 1, "max_time": 0.5}})
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = Study(scene).run(folder, jobs=1, keep_particles=True)
+    ...     table = remeasure(folder, measure=lambda found: {"count": len(found.masses)})
+    >>> bool(table["count"][0] > 0), table["trimming"][0]
+    (True, 'outermost_first')
+    """
+    check_trimming(trimming)
+    table = read_table(folder, study)
+    rows = {
+        (row["hash"], int(row["event"])): index
+        for index, row in table.iterrows()
+        if isinstance(row["trimming"], str)  # a run that failed has a row without a stack
+    }
+    found: dict[Any, dict[str, Any]] = {}
+    with Store.open(folder) as store:
+        for hash_ in table["hash"].unique():
+            for event, data in store.particles(hash_).items():
+                if (hash_, event) in rows:
+                    particles = _unpacked(store, hash_, event, data)
+                    columns = measured_columns(particles.measure(trimming))
+                    columns.update(measure(particles) if measure else {})
+                    found[rows[hash_, event]] = columns
+    if len(found) < len(rows):
+        raise InputError(
+            f"{folder}: no particles of {len(rows) - len(found)} of {len(rows)} stacks; their runs "
+            "were computed without keep_particles"
+        )
+    return _replaced(table, found)
+
+
+def _unpacked(store: Store, hash_: str, event: int, data: bytes) -> EventParticles:
+    try:
+        return EventParticles.unpacked(data)
+    except InputError as error:
+        raise store.damaged(f"run {hash_}, event {event}: {error}") from None
+
+
+def _replaced(table: pd.DataFrame, found: Mapping[Any, Mapping[str, Any]]) -> pd.DataFrame:
+    """Return the table with what was found for its rows."""
+    import pandas as pd
+
+    new = pd.DataFrame.from_dict(dict(found), orient="index").reindex(table.index)
+    return table.assign(**{str(name): new[name] for name in new})

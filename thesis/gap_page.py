@@ -1,0 +1,247 @@
+"""The page ``docs/thesis-gap.md``: how far our stacks are from the thesis's, and why.
+
+Every number on it comes from the files in ``thesis/data``, which hold results of longer runs;
+``python -m thesis.gap_page`` writes it anew.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional
+
+import click
+
+from snowshed._core import InputError
+from snowshed.analysis.deviations import DEVIATIONS
+from snowshed.analysis.regression.dataset import geometry_table
+from snowshed.analysis.regression.rows import read_rows
+from snowshed.analysis.regression.summary import (
+    QUARTILES,
+    THESIS_QUARTILES,
+    thesis_relative_error,
+)
+from snowshed.io.atomic import write_text
+from snowshed.io.formatting import percent
+from snowshed.plot.html_page import Grid
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
+from thesis.claims.hypothesis_tests import SIGMAS
+from thesis.claims.regression import Regressed
+from thesis.scatter import read_scatter, scatter
+from thesis.sections import deviations as deviations_section
+from thesis.sections.regression import (
+    errors_grid,
+    quartiles_grid,
+    read_regressed,
+    rows_grid,
+    rows_in_words,
+)
+from thesis.studies import PANEL, THESIS
+from thesis.variants import by_size, change, is_unswitched, quartiles, read_variants_file
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+DATA = Path(__file__).with_name("data")
+PAGE = Path(__file__).parents[1] / "docs" / "thesis-gap.md"
+DEVIATIONS_FILE, SCATTER_FILE = "deviations.csv", "scatter.csv"
+#: Folders of regressions, as `snowshed regress` writes them, and the files that are kept of them.
+REGRESSIONS = ("regression-one-seed", "regression-means")
+KEPT = ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv")
+#: A gap of less is not worth a sentence.
+SMALL_GAP = 0.1
+
+
+def page(data: Path = DATA) -> str:
+    """Return the page, from the results in a folder."""
+    stacks = read_variants_file(data / DEVIATIONS_FILE)
+    parts = [
+        "# The gap to the thesis",
+        "This page is written by `python -m thesis.gap_page` from the results in `thesis/data`; "
+        "change those, not this. It says how far our stacks below panels are from those of the "
+        "thesis's chapter 5, and what makes them so. [Reproducing the thesis](reproduce.md) has "
+        "the rest.",
+        *_scatter_part(read_scatter(data / SCATTER_FILE)),
+        *_causes_part(stacks),
+        *_regression_part(data),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def markdown(grid: Grid) -> str:
+    """Return a table in Markdown.
+
+    Examples
+    --------
+    >>> print(markdown(Grid(["name", "m"], [["a", "1"]], "lr")))
+    | name | m |
+    | --- | ---: |
+    | a | 1 |
+    """
+    marks = ["---:" if one == "r" else "---" for one in grid.align]
+    lines = [grid.head, marks, *([cell.replace("|", "\\|") for cell in row] for row in grid.rows)]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _scatter_part(stacks: pd.DataFrame) -> list[str]:
+    panels, seeds = len(stacks[list(PANEL)].drop_duplicates()), stacks["seed"].nunique()
+    cells = ", ".join(f"{100 * dx:.3g} cm" for dx in stacks["dx"].unique())
+    names = {"height": "height", "length": "length", "ratio": "H/L"}
+    rows = [
+        [
+            name,
+            *(percent(scatter(stacks, name, quantity), 2) for quantity in names),
+            *(f"{one:.3f}" for one in quartiles(stacks, name)),
+        ]
+        for name in TRIMMINGS
+    ]
+    grid = Grid(["reading", *names.values(), *QUARTILES], rows, "l" + "r" * 7)
+    other = next(name for name in TRIMMINGS if name != DEFAULT_TRIMMING)
+    ours, theirs = (scatter(stacks, name, "length") for name in (DEFAULT_TRIMMING, other))
+    return [
+        "## The two readings of A.4.2",
+        f"[Two readings](theory.md#two-readings-of-a42) of the same stacks: {panels} panels up to "
+        f"{stacks['panel.length'].max():g} m long, {seeds} seedings each, cells of {cells}. The "
+        "columns are the deviation between seedings as a part of the mean (root mean square over "
+        "panels and events), and the quartiles of H/L of the rows.",
+        markdown(grid),
+        f"The length by `{DEFAULT_TRIMMING}` scatters by {percent(ours, 2)}, by `{other}` by "
+        f"{percent(theirs, 2)}. The steadier one is the default, whatever it says of the thesis's "
+        "numbers.",
+    ]
+
+
+def _causes_part(stacks: pd.DataFrame) -> list[str]:
+    order = by_size(stacks)
+    return [
+        "## Causes, the largest first",
+        " ".join(deviations_section.sample_text(stacks)),
+        markdown(deviations_section.changes_grid(stacks)),
+        "\n".join(f"{place}. {_cause(stacks, name)}" for place, name in enumerate(order, 1)),
+        "### Quartiles of H/L with each deviation undone",
+        markdown(deviations_section.quartiles_grid(stacks)),
+        *_left_over(stacks),
+    ]
+
+
+def _cause(stacks: pd.DataFrame, name: str) -> str:
+    """Return what a deviation does to H/L, in words."""
+    one, found = DEVIATIONS[name], change(stacks, name, "ratio")
+    if is_unswitched(stacks, name):
+        size = "not switched in these runs, whose scenes are our own; what it changes is not known"
+    elif found.value == 0:
+        size = "it changes no stack of the sample"
+    else:
+        size = f"H/L changes by {deviations_section.change_in_words(found)}"
+        if not abs(found.value) > SIGMAS * found.noise:
+            size += ", which may be chance"
+    return f"**`{name}`**: {size}. The thesis: {one.thesis} Here: {one.here} {one.reason}"
+
+
+def _left_over(stacks: pd.DataFrame) -> list[str]:
+    """Return in words what is left between Table 5.3.1 and the preset ``thesis``."""
+    of_all = stacks[stacks["variant"] == THESIS]
+    if of_all.empty:
+        return []
+    words = [f"by `{name}` {_gaps(quartiles(of_all, name))}" for name in TRIMMINGS]
+    return [
+        "With all undone the quartiles Q1 to Q4 of this sample's rows differ from the thesis's "
+        f"predictions for all panels {'; '.join(words)}. The panel's friction, which the thesis "
+        "does not print, is the same in all of them."
+    ]
+
+
+def _gaps(ours: list[float]) -> str:
+    parts = (one / printed - 1 for one, printed in zip(ours, THESIS_QUARTILES["rbf"]))
+    return "by " + ", ".join(f"{100 * part:+.0f}" for part in parts) + " %"
+
+
+def _regression_part(data: Path) -> list[str]:
+    rows = read_rows(geometry_table())
+    found: Mapping[str, Regressed] = {
+        rows_in_words(part): read_regressed(data / folder, len(rows), rows.panel_count)
+        for folder, part in zip(REGRESSIONS, (rows.of_one_seed(), rows))
+    }
+    one = next(iter(found.values()))
+    rounds, folds = one.scores["round"].nunique(), one.scores["fold"].nunique()
+    quartile = [float(value) for value in one.quartiles.loc["rbf", list(QUARTILES)].to_numpy()]
+    share = float(one.errors["mean_absolute_error"]["rbf"]) / quartile[1]
+    times = f"{rounds} round{'s' if rounds > 1 else ''} of {folds} outer folds"
+    return [
+        "## Tables 5.3.1 and 5.3.2",
+        "The rows that come with snowshed ([their settings](regression.md#the-rows-that-come-with-"
+        f"snowshed)), by `{rows.settings['trimming']}`, regressed in {times}. The thesis's table "
+        "holds quartiles of predictions, and its rows are single stacks: our predictions from rows "
+        "of one seed are their like."
+        + "".join(
+            f" By `{name}` the rows are not known: their particles were not kept."
+            for name in TRIMMINGS
+            if not _has(geometry_table(), name)
+        ),
+        markdown(quartiles_grid(found)),
+        f"The RBF kernel's predictions from rows of one seed differ {_gaps(quartile)}.",
+        markdown(rows_grid(geometry_table())),
+        markdown(errors_grid(found)),
+        f"The RBF kernel's error is {percent(share, 2)} of its median prediction; the thesis's is "
+        f"{percent(thesis_relative_error('rbf'), 2)}. Means of many seeds have "
+        "smaller errors because they scatter less, which says nothing of the model.",
+    ]
+
+
+def _has(table: Path, trimming: str) -> bool:
+    """Return whether a table has stacks by a reading of A.4.2."""
+    try:
+        read_rows(table, trimming)
+    except InputError:
+        return False
+    return True
+
+
+def keep(
+    data: Path,
+    deviations: Optional[Path],
+    seeds: Optional[Path],
+    regressions: Mapping[str, Optional[Path]],
+) -> None:
+    """Take new results into the folder that the page is written from; None: the old ones stay.
+
+    Raises
+    ------
+    InputError
+        If a file is not what it should be.
+    """
+    data.mkdir(exist_ok=True)
+    if deviations is not None:
+        read_variants_file(deviations)
+        shutil.copyfile(deviations, data / DEVIATIONS_FILE)
+    if seeds is not None:
+        text = read_scatter(seeds).to_csv(index=False, float_format="%.5g")
+        write_text(data / SCATTER_FILE, text)
+    for name, folder in regressions.items():
+        if folder is None:
+            continue
+        for file in KEPT:
+            (data / name / file).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(folder / file, data / name / file)
+
+
+@click.command()
+@click.option("--deviations", type=click.Path(path_type=Path), help="New deviations/stacks.csv.")
+@click.option("--scatter", "seeds", type=click.Path(path_type=Path), help="New table of seedings.")
+@click.option("--one-seed", type=click.Path(path_type=Path), help="New folder of a regression.")
+@click.option("--means", type=click.Path(path_type=Path), help="New folder of a regression.")
+def main(
+    deviations: Optional[Path],
+    seeds: Optional[Path],
+    one_seed: Optional[Path],
+    means: Optional[Path],
+) -> None:
+    """Write docs/thesis-gap.md from thesis/data, after taking new results into it."""
+    keep(DATA, deviations, seeds, dict(zip(REGRESSIONS, (one_seed, means))))
+    write_text(PAGE, page())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,121 @@
+"""Where our settings deviate from the thesis: each undone alone, and all together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Optional
+
+import numpy as np
+
+from snowshed.analysis.deviations import DEVIATIONS, FRAME_RATE
+from snowshed.analysis.regression.summary import THESIS_QUARTILES, THESIS_ROWS
+from snowshed.io.atomic import write_text
+from snowshed.io.formatting import NOTHING
+from snowshed.plot.html_page import Grid
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
+from thesis.claims.hypothesis_tests import SIGMAS, Estimate
+from thesis.reproduction import Reproduction
+from thesis.section import Section
+from thesis.studies import DEFAULTS, PANEL, THESIS
+from thesis.variants import by_size, change, is_unswitched, quartiles, read_variants
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+STACKS = "stacks.csv"
+QUANTITIES = {"height": "height", "length": "length", "ratio": "H/L"}
+
+
+def build(found: Reproduction) -> Section:
+    """Return the section; raises InputError if nothing of it is computed."""
+    stacks = read_variants(found.folder.runs)
+    folder = found.folder.of_stage("deviations")
+    folder.mkdir(exist_ok=True)
+    write_text(folder / STACKS, stacks.to_csv(index=False, float_format="%.6g"))
+    tables = [
+        ("What the deviations are", deviations_grid()),
+        ("What each changes when it is undone", changes_grid(stacks)),
+        ("Quartiles of H/L, of the rows, by both readings of A.4.2", quartiles_grid(stacks)),
+    ]
+    title = "Deviations from the thesis, one by one"
+    return Section("deviations", title, sample_text(stacks), tables)
+
+
+def sample_text(stacks: pd.DataFrame) -> list[str]:
+    """Return in words what was computed, and how to read the tables."""
+    ours = stacks[stacks["variant"] == DEFAULTS]
+    panels, seeds = len(ours[list(PANEL)].drop_duplicates()), ours["seed"].nunique()
+    cells = " and ".join(f"{100 * dx:.3g} cm" for dx in sorted(stacks["dx"].unique(), reverse=True))
+    longest, events = ours["panel.length"].max(), ours["event"].max()
+    return [
+        f"A sample of {panels} of the 122 panels of chapter 5, up to {longest:g} m long, with "
+        f"{events:g} events and {seeds} seeding{'s' if seeds > 1 else ''} each: by our settings, "
+        "with each deviation undone alone, and with all undone together. It is chosen by the "
+        f"panels' geometry alone. Cells of {cells}; undoing the grid takes the smaller ones.",
+        "A change is that of the mean stack below a panel, against our settings with the same "
+        "seed; the noise is the standard error over the panels. Stacks are measured by "
+        "outermost_first, but for the deviation in the trimming and for all together. A change "
+        f"that is not above {SIGMAS:g} standard errors may be chance.",
+        f"Table 5.3.1 holds quartiles of predictions for {THESIS_ROWS} rows; these are of rows of "
+        "a sample, so that rows are to be compared with each other.",
+        f"Frames are counted at {FRAME_RATE:g} a second; the thesis prints their number only.",
+    ]
+
+
+def deviations_grid() -> Grid:
+    """Return what each deviation is, and its reason."""
+    rows = [[one.name, one.thesis, one.here, one.reason] for one in DEVIATIONS.values()]
+    return Grid(["deviation", "the thesis", "here", "because"], rows, "llll")
+
+
+def changes_grid(stacks: pd.DataFrame) -> Grid:
+    """Return how much each deviation changes a stack, the largest change of H/L first."""
+    rows = []
+    for name in by_size(stacks):
+        rows.append([_title(stacks, name), *_changes(stacks, name)])
+    if THESIS in set(stacks["variant"]):
+        rows.append(["all but the trimming", *_changes(stacks, THESIS, DEFAULT_TRIMMING)])
+        rows.append([_title(stacks, THESIS), *_changes(stacks, THESIS)])
+    return Grid(["undone", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
+
+
+def _changes(stacks: pd.DataFrame, name: str, trimming: Optional[str] = None) -> list[str]:
+    found = (change(stacks, name, quantity, trimming) for quantity in QUANTITIES)
+    return [change_in_words(one) for one in found]
+
+
+def change_in_words(found: Estimate) -> str:
+    """Return a relative change with its noise.
+
+    Examples
+    --------
+    >>> change_in_words(Estimate(-0.081, 0.02)), change_in_words(Estimate(0.0, 0.0))
+    ('-8 ± 2 %', 'none')
+    """
+    if found.value == 0 and found.noise == 0:
+        return "none"
+    noise = NOTHING if np.isnan(found.noise) else f"{100 * found.noise:.0f}"
+    return f"{100 * found.value:+.0f} ± {noise} %"
+
+
+def quartiles_grid(stacks: pd.DataFrame) -> Grid:
+    """Return the quartiles of H/L of each variant that has runs of its own, by both readings."""
+    rows = [
+        [
+            _title(stacks, str(name)),
+            trimming,
+            *(f"{one:.3f}" for one in quartiles(of_one, trimming)),
+        ]
+        for name, of_one in stacks.groupby("variant", sort=False)
+        for trimming in TRIMMINGS
+        if name == DEFAULTS or not of_one["same_runs"].all()
+    ]
+    printed = [f"{one:.3f}" for one in THESIS_QUARTILES["rbf"]]
+    rows.append(["Table 5.3.1, RBF", "not printed", *printed])
+    return Grid(["undone", "reading of A.4.2", "Q1", "Q2", "Q3", "Q4"], rows, "llrrrr")
+
+
+def _title(stacks: pd.DataFrame, variant: str) -> str:
+    """Return a variant's name; a deviation that changes nothing in the scene says so."""
+    if variant in (DEFAULTS, THESIS):
+        return {DEFAULTS: "none", THESIS: "all: the preset thesis"}[variant]
+    return f"{variant} (not switched)" if is_unswitched(stacks, variant) else variant
