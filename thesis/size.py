@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.scene.components import Condition
 from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
 
 #: Of the panel where there is one value: the least static coefficient that the thesis measured.
@@ -37,6 +38,8 @@ class Size:
         besides; else the rows are those that come with snowshed.
     folds
         Of the nested cross-validation.
+    condition
+        Of the panel: "separate", which is snowshed's default, or "slip", which is the thesis's.
     """
 
     name: str
@@ -55,6 +58,7 @@ class Size:
     steps: int
     simulates_panels: bool
     folds: CrossValidation
+    condition: Condition = "separate"
 
 
 FULL = Size(

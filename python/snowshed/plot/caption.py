@@ -2,41 +2,71 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
 
 from snowshed.methods.registry import settings_of
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
-def scene_caption(scene: dict[str, Any]) -> str:
+def scene_caption(scene: dict[str, Any], damping_rate: Optional[float] = None) -> str:
     """Return what tells one scene from another.
 
     Parameters
     ----------
     scene
         Complete scene data, as in scene.json.
+    damping_rate
+        Mean rate of the damping in a run of it, 1/s, as run.json has it.
 
     Examples
     --------
     >>> from snowshed.scene.scene import Scene
     >>> print(scene_caption(Scene.preset("lab-50").resolve().data))
-    3D · panel 0.245 m, tilt 50°, 0.33 m above ground, friction 0.3 · slab 0.02 m thick · dx 0.01 m
+    3D · panel 0.245 m, tilt 50°, 0.33 m above ground, separate, friction 0.3 · slab 0.02 m thick
     snow 210 kg/m³, E 1 MPa, nu 0.3, M 0.5, p₀ 7 kPa, β 0.2, ξ 0.1 · events carry
+    dx 0.01 m · FLIP 0.99 a step
     """
     parts = [f"{scene['dimension']}D"]
     if panel := scene.get("panel"):
         parts.append(
             f"panel {panel['length']:g} m, tilt {panel['tilt']:g}°, "
-            f"{panel['height']:g} m above ground, {_contact(panel)}"
+            f"{panel['height']:g} m above ground, {contact_text(panel)}"
         )
     if slab := scene.get("slab"):
         parts.append(_slab(slab))
     if tilt := (scene.get("ground") or {}).get("tilt"):
         parts.append(f"ground tilt {tilt:g}°")
     settings = settings_of(scene)
-    parts.append(f"{settings.RESOLUTION} {settings.resolution:g} m")
-    return " · ".join(parts) + "\n" + _snow(scene) + f" · events {_between(scene)}"
+    method = [f"{settings.RESOLUTION} {settings.resolution:g} m"]
+    if damping := settings.damping_text(damping_rate):
+        method.append(damping)
+    snow = [_snow(scene), f"events {_between(scene)}"]
+    return "\n".join(" · ".join(line) for line in (parts, snow, method))
+
+
+def mean_damping_rate(table: pd.DataFrame) -> Optional[float]:
+    """Return the mean rate of the damping over a table of events, 1/s; None where it has none."""
+    if "damping_rate_per_s" not in table or table["damping_rate_per_s"].isna().any():
+        return None
+    return float(np.average(table["damping_rate_per_s"], weights=table["sim_time_s"]))
+
+
+def contact_text(part: dict[str, Any]) -> str:
+    """Return the contact condition of a panel, ground or obstacle, with its friction.
+
+    Examples
+    --------
+    >>> contact_text({"condition": "slip", "friction": 0.3})
+    'slip, friction 0.3'
+    """
+    condition: str = part["condition"]
+    return condition if condition == "sticky" else f"{condition}, friction {part['friction']:g}"
 
 
 def _slab(slab: dict[str, Any]) -> str:
@@ -48,10 +78,6 @@ def _slab(slab: dict[str, Any]) -> str:
         low, high = min(thicknesses, key=float), max(thicknesses, key=float)
         return f"{len(layers)} layers of {low} to {high} m"
     return f"layers {', '.join(thicknesses)} m"
-
-
-def _contact(panel: dict[str, Any]) -> str:
-    return "sticky" if panel["condition"] == "sticky" else f"friction {panel['friction']:g}"
 
 
 def _densities(scene: dict[str, Any]) -> str:

@@ -65,6 +65,7 @@ EVENT_COLUMNS = (
     "crest_m",
     "body_head_m",
     "body_tail_m",
+    "damping_rate_per_s",
 )
 
 
