@@ -87,7 +87,7 @@ snowshed::EventSequence open(const Options& o) {
   std::vector<std::string> notes;
   const snowshed::Scene scene = snowshed::load_scene(o.scene, &notes);
   for (const std::string& note : notes)
-    std::fprintf(stderr, "note: %s: %s\n", o.scene.c_str(), note.c_str());
+    if (!o.quiet) std::fprintf(stderr, "note: %s: %s\n", o.scene.c_str(), note.c_str());
   if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder);
   refuse_ageing(o.folder);
   return snowshed::EventSequence::resume(scene, ".", o.folder);

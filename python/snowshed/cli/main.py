@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import importlib
 import sys
+import warnings
 from collections.abc import Sequence
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 import click
 
@@ -100,6 +101,12 @@ def main(
     name
         The program, as its help calls it.
     """
+    with warnings.catch_warnings():
+        warnings.showwarning = _note
+        return _run(command, arguments, name)
+
+
+def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) -> int:
     try:
         settings = cli.context_settings
         return command.main(arguments, prog_name=name, standalone_mode=False, **settings) or 0
@@ -114,6 +121,11 @@ def main(
     except (KeyboardInterrupt, click.Abort):
         return _fail("interrupted", 130)
     return 0
+
+
+def _note(message: Union[Warning, str], category: type[Warning], *where: object) -> None:
+    """Print a warning for users, which needs no place in the code."""
+    print("note:", message, file=sys.stderr)
 
 
 def _fail(message: str, code: int) -> int:

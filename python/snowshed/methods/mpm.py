@@ -27,7 +27,11 @@ class MpmSettings(MethodSettings):
     transfer : {"flip", "apic"}
         How velocities move between particles and grid. Default "flip".
     flip_ratio : float
-        Share of FLIP in FLIP/PIC; 0 is pure PIC. 0 <= value <= 1; default 0.99.
+        Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC. 0
+        <= value <= 1; default 0.99.
+    damping_rate : float
+        In place of flip_ratio: rate of the damping by PIC, whatever the step [1/s]. 0 <= value <=
+        1e+09.
     basis : {"quadratic", "cubic"}
         B-spline of the grid. Default "quadratic".
     courant_factor : float
