@@ -19,7 +19,7 @@ def mesh(file: str, **more: Any) -> dict:
 BAD_SCENES = {
     "unknown key": ({"wind": 3}, "/wind: unknown key"),
     "unknown inner key": ({"snow": {"densty": 1}}, "/snow/densty: unknown key"),
-    "another version": ({"snowshed": 2}, "/snowshed: 2"),
+    "another version": ({"snowshed": 3}, "/snowshed: 3"),
     "wrong type": ({"snow": {"density": "heavy"}}, '/snow/density: "heavy" is not a number'),
     "not whole": ({"events": {"count": 1.5}}, "/events/count: 1.5"),
     "not a number": ({"snow": {"density": float("nan")}}, "bad.json:1:"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -11,6 +12,7 @@ import click
 from snowshed.cli.exit_codes import Failed, Stopped
 
 if TYPE_CHECKING:
+    from snowshed.scene.components import Condition
     from thesis.reproduction import Reproduction
     from thesis.stage import Stage
 
@@ -53,6 +55,13 @@ def reproduce() -> None:
 @click.option(
     "--table", type=PATH, help="Rows of panels to use for chapter 5 instead of simulating them."
 )
+@click.option(
+    "--condition",
+    type=click.Choice(["separate", "slip"]),
+    default="separate",
+    help="Contact with the panel: snow may leave it, or, as in the thesis (SLIP), only over its "
+    "edge.  [default: separate]",
+)
 @click.option("--report-only", is_flag=True, help="Compute nothing, write the report.")
 @click.option("--jobs", type=int, help="Processes at once.  [default: the number of cores]")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
@@ -61,6 +70,7 @@ def thesis(
     size: str,
     names: Sequence[str],
     table: Optional[Path],
+    condition: Condition,
     report_only: bool,
     jobs: Optional[int],
     quiet: bool,
@@ -80,10 +90,10 @@ def thesis(
     from thesis.size import SIZES
     from thesis.stage import choose
 
-    chosen = SIZES[size]
+    chosen = replace(SIZES[size], condition=condition)
     if table is not None:  # so that a wrong table is known before anything is computed
         chosen.folds.check(read_rows(table))
-    results = ReproductionFolder.claim(folder, chosen.name)
+    results = ReproductionFolder.claim(folder, chosen.name, condition)
     all_of_it = Reproduction(results, chosen, table)
     if not report_only:
         _compute(choose(all_of_it.stages, names), folder, jobs, quiet)

@@ -3,7 +3,7 @@
 ==================== ========================================================================
 thesis.html          the report
 claims.csv           one row per claim: source, claim, rule, verdict, finding
-reproduction.json    what the folder is for: quick, middle or full
+reproduction.json    what the folder is for: quick, middle or full, and the panel's condition
 runs/                the store of all simulations
 s-index/ ...         tables and figures of the stages
 geometry.csv         the rows that are regressed
@@ -30,26 +30,32 @@ class ReproductionFolder:
     path: Path
 
     @classmethod
-    def claim(cls, path: Path, size: str) -> ReproductionFolder:
-        """Open a folder, old or new, for a reproduction of a size.
+    def claim(cls, path: Path, size: str, condition: str = "separate") -> ReproductionFolder:
+        """Open a folder, old or new, for a reproduction of a size with a condition of the panel.
 
         Raises
         ------
         InputError
-            If it holds a reproduction of another size, or something else.
+            If it holds a reproduction of another size or condition, or something else.
         """
         file = path / IDENTITY
         if file.is_file():
-            there = read_object(file).get("size")
-            if there != size:
+            there = {"condition": "separate", **read_object(file)}
+            if there.get("size") != size:
                 raise InputError(
-                    f"{path}: holds a reproduction with --{there}; take a new folder for --{size}"
+                    f"{path}: holds a reproduction with --{there.get('size')}; "
+                    f"take a new folder for --{size}"
+                )
+            if there["condition"] != condition:
+                raise InputError(
+                    f"{path}: holds a reproduction with --condition {there['condition']}; "
+                    f"take a new folder for --condition {condition}"
                 )
         elif path.exists() and (not path.is_dir() or any(path.iterdir())):
             raise InputError(f"{path}: not empty, and holds no reproduction")
         else:
             path.mkdir(parents=True, exist_ok=True)
-            write_text(file, json.dumps({"size": size}) + "\n")
+            write_text(file, json.dumps({"size": size, "condition": condition}) + "\n")
         return cls(path)
 
     @property

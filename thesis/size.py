@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from snowshed.analysis.regression.folds import CrossValidation
+from snowshed.scene.components import Condition
 from snowshed.scene.thesis_tables import CALIBRATION, COHESION, PRESSURE, SLOPE
 
 #: Of the panel where there is one value: the least static coefficient that the thesis measured.
@@ -45,6 +46,8 @@ class Size:
         Of the nested cross-validation.
     one_seed_rounds
         Of its rounds for the rows of one seed, where there are several.
+    condition
+        Of the panel: "separate", which is snowshed's default, or "slip", which is the thesis's.
     """
 
     name: str
@@ -68,6 +71,7 @@ class Size:
     deviation_seeds: int
     folds: CrossValidation
     one_seed_rounds: int
+    condition: Condition = "separate"
 
 
 FULL = Size(

@@ -105,7 +105,8 @@ def calibration(size: Size) -> list[Study]:
 def geometry(size: Size) -> list[Study]:
     """Return the panels of chapter 5, and those that Table 5.1.1 has besides the data set."""
     panels = geometry_study(MODEL_BETWEEN)
-    panels = Study(panels.scene, panels.parts, PANELS, panels.seeds)
+    scene = panels.scene.set("panel.condition", size.condition)
+    panels = Study(scene, panels.parts, PANELS, panels.seeds)
     others: dict[str, list[Any]] = {
         "panel.friction": [FRICTION],
         "events.between": [MODEL_BETWEEN],
@@ -166,7 +167,7 @@ def _variant(size: Size, name: str, names: Sequence[str]) -> Study:
 
 def _lab_scene(size: Size, dimension: int) -> Scene:
     scene = Scene.preset("lab-50").update({"dimension": dimension, "numerics.dx": size.dx})
-    return scene.set("events.count", LAB_EVENTS)
+    return scene.update({"events.count": LAB_EVENTS, "panel.condition": size.condition})
 
 
 def _sensitivity(method: str, name: str, size: Size, seeds: int) -> Study:
@@ -176,4 +177,5 @@ def _sensitivity(method: str, name: str, size: Size, seeds: int) -> Study:
 
 def _resized(study: Study, size: Size) -> Scene:
     settings = {"dimension": size.dimension, "numerics.dx": size.dx}
-    return study.scene.update({**settings, "panel.friction": MEASURED_FRICTION})
+    panel = {"panel.friction": MEASURED_FRICTION, "panel.condition": size.condition}
+    return study.scene.update({**settings, **panel})

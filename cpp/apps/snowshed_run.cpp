@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/run/event_sequence.hpp"
@@ -83,7 +84,10 @@ void refuse_ageing(const std::filesystem::path& folder) {
 }
 
 snowshed::EventSequence open(const Options& o) {
-  const snowshed::Scene scene = snowshed::load_scene(o.scene);
+  std::vector<std::string> notes;
+  const snowshed::Scene scene = snowshed::load_scene(o.scene, &notes);
+  for (const std::string& note : notes)
+    if (!o.quiet) std::fprintf(stderr, "note: %s: %s\n", o.scene.c_str(), note.c_str());
   if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder);
   refuse_ageing(o.folder);
   return snowshed::EventSequence::resume(scene, ".", o.folder);

@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <limits>
+
 #include "bindings.hpp"
 #include "simulation_handle.hpp"
 #include "snowshed/run/event_sequence.hpp"
@@ -18,6 +20,7 @@ py::dict facts_dict(const EventFacts& facts) {
   d["wall_s"] = facts.wall;
   d["ended"] = facts.ended;
   d["laid_height_m"] = facts.laid_height;
+  d["damping_rate_per_s"] = facts.damping_rate.value_or(std::numeric_limits<double>::quiet_NaN());
   py::dict energy;
   for (const auto& [name, joules] : facts.energy) energy[name.c_str()] = joules;
   d["energy"] = energy;

@@ -1,7 +1,11 @@
 #include <pybind11/stl.h>
 
+#include <nlohmann/json.hpp>
+
 #include "bindings.hpp"
 #include "snowshed/run/plan.hpp"
+#include "snowshed/scene/earlier_version.hpp"
+#include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/presets.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
@@ -32,6 +36,20 @@ py::dict plan_dict(const std::string& text, const std::string& base_dir) {
   return d;
 }
 
+/// Python's warnings tell what has another name since the version of a scene.
+void warn(const std::vector<std::string>& notes, const std::string& file = "") {
+  for (const std::string& note : notes) {
+    const std::string message = file.empty() ? note : file + ": " + note;
+    if (PyErr_WarnEx(PyExc_FutureWarning, message.c_str(), 1)) throw py::error_already_set();
+  }
+}
+
+std::string updated(const std::string& text) {
+  nlohmann::json scene = parse_json(text, "scene");
+  update_version(scene);
+  return scene.dump();
+}
+
 }  // namespace
 
 void bind_scene(py::module_& m) {
@@ -39,13 +57,24 @@ void bind_scene(py::module_& m) {
   m.def(
       "parse_scene",
       [](const std::string& text, const std::string& base_dir) {
-        return write_scene(resolve(with_absolute_files(base_dir, parse_scene(text))));
+        std::vector<std::string> notes;
+        const Scene scene = parse_scene(text, "scene", &notes);
+        warn(notes);
+        return write_scene(resolve(with_absolute_files(base_dir, scene)));
       },
       "text"_a, "base_dir"_a = ".",
       "The complete, validated JSON of a scene; files it names are found from base_dir.");
   m.def(
-      "load_scene", [](const std::string& path) { return write_scene(resolve(load_scene(path))); },
+      "load_scene",
+      [](const std::string& path) {
+        std::vector<std::string> notes;
+        const Scene scene = load_scene(path, &notes);
+        warn(notes, path);
+        return write_scene(resolve(scene));
+      },
       "path"_a, "The same of a file; files it names are found beside it.");
+  m.def("update_version", &updated, "text"_a,
+        "The JSON of a scene, where it is of an earlier version as the present one says the same.");
   m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
   m.def(
       "preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);

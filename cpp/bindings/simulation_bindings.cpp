@@ -356,6 +356,7 @@ void bind_facts(SimulationClass& c) {
   c.property("event_count", [](const Simulation& s) { return s.scene().events.count; });
   c.property("event_running", [](const Simulation& s) { return s.event_running(); });
   c.property("time_s", [](const Simulation& s) { return s.event_time(); });
+  c.property("damping_rate_per_s", [](const Simulation& s) { return s.damping_rate(); });
   c.property("total_steps", [](const Simulation& s) { return s.solver().counters().steps; });
   c.property("rejected_steps", [](const Simulation& s) { return s.solver().counters().rejected; });
   c.property("particle_updates",

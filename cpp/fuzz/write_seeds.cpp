@@ -31,7 +31,7 @@ std::string raw(const std::vector<Number>& numbers) {
 }
 
 /// A scene with every feature. Y(y) is the y component of a vector, which 2D scenes lack.
-const char* const rich_scene = R"({"snowshed": 1, "dimension": %D, "title": "seed",
+const char* const rich_scene = R"({"snowshed": 2, "dimension": %D, "title": "seed",
   "snow": {"model": "elastic", "density": 250, "cohesion": 0.1},
   "panel": {"height": 0.5, "length": 1, "width": 1, "tilt": 45, "condition": "separate"},
   "slab": {"layers": [{"thickness": 0.06, "snow": {"model": "cam_clay", "density": 100}},
@@ -71,7 +71,7 @@ void write_scenes(const fs::path& folder) {
   for (const int dimension : {2, 3})
     write(folder / ("rich-" + std::to_string(dimension) + "d.json"),
           write_scene(parse_scene(rich_scene_in(dimension))));
-  write(folder / "least.json", R"({"snowshed": 1, "bodies": [{"shape": {"type": "sphere",)"
+  write(folder / "least.json", R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere",)"
                                R"( "center": [0, 0, 1], "radius": 1e-1}}]})");
 }
 
@@ -233,7 +233,7 @@ void write_npy(const fs::path& folder) {
 /// Returns a scene of a few particles: plain and between two events, or with many features and in
 /// the middle of an event.
 Scene scene_of_checkpoint(int dimension, bool running) {
-  Scene scene = parse_scene(R"({"snowshed": 1, "bodies": [{"shape": {"type": "sphere", "center":)"
+  Scene scene = parse_scene(R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "center":)"
                             R"( [0, 0, 0.25], "radius": 0.1}, "event": 0}], "ground": {},)"
                             R"( "events": {"count": 2}, "numerics": {"dx": 0.1, "threads": 1}})");
   scene.dimension = dimension;

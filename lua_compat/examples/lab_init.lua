@@ -27,7 +27,7 @@ panel {
   length = length,
   width = 0.213,
   tilt = 40,
-  condition = SLIP,
+  condition = SEPARATE,
   friction = 0.3,
 }
 slab { thickness = 0.02, length = length, width = 0.142 }

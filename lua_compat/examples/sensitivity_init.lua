@@ -8,7 +8,7 @@ grid_size(0.01)
 
 material { rho = 210, E = 1e6, nu = 0.3, M = 0.5, p0 = 5000, beta = 0.1, xi = 0.1 }
 
-panel { height = 0.5, length = 0.245, width = 0.213, tilt = 40, condition = SLIP, friction = 0.3 }
+panel { height = 0.5, length = 0.245, width = 0.213, tilt = 40, condition = SEPARATE, friction = 0.3 }
 slab { thickness = 0.02, length = 0.245, width = 0.142 }
 ground { condition = STICKY }
 

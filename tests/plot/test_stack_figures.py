@@ -1,4 +1,5 @@
 import json
+import re
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ class Snow:
 
     scene = Scene.preset("lab-50").set("dimension", 2).resolve().json
     event = 3
+    damping_rate_per_s = 188.2
 
     def __init__(self, positions, tilt=0.0, panel=True):
         self._positions = positions
@@ -59,6 +61,7 @@ def test_stack_picture_shows_panel_and_stack_to_scale(tmp_path, panel, tilt):
     assert low < (-0.4 if panel else 0.0) and high > 1.9
     low, high = enlarged.get_xlim()
     assert low < stack.head and stack.tail < high
+    assert "damping 188 1/s (FLIP 0.99 a step)" in figure.get_suptitle()
     labels = [text.get_text() for text in enlarged.texts]
     assert f"height {stack.height:.3f} m" in labels and f"length {stack.length:.3f} m" in labels
     if panel:
@@ -81,11 +84,12 @@ def test_growth_shows_stack_and_body(finished):
         "tail",
     ]
     assert "panel 0.245 m, tilt 50°" in figure.get_suptitle()
+    assert re.search(r"separate, friction 0\.3 .*damping [\d.]+ 1/s", figure.get_suptitle(), re.S)
     assert all(len(axes.lines) == 2 for axes in figure.axes)
 
 
 def test_the_scene_beside_the_pictures_is_complete(finished):
-    assert json.loads((finished / "scene.json").read_text())["snowshed"] == 1
+    assert json.loads((finished / "scene.json").read_text())["snowshed"] == 2
 
 
 def test_what_rolled_far_away_does_not_hide_the_stack():

@@ -157,7 +157,7 @@ def test_bad_scenes_are_refused(bad_scene, tmp_path):  # noqa: F811
         (b"{", "s.json:1:2: not valid JSON"),
         (b"\xff\xfe\x00{}", "s.json:1:1: not valid JSON"),
         (b"[]", "/: an array is not an object"),
-        (b'{"snowshed": 1}', "nothing holds snow"),
+        (b'{"snowshed": 2}', "nothing holds snow"),
     ],
 )
 def test_files_that_are_no_scenes_are_refused(tmp_path, capsys, content, message):

@@ -30,9 +30,10 @@ def test_python_goes_on_with_it(folder):
     first = read_events(folder)
     table = resume(folder)
     assert list(table.event) == [1, 2]
-    assert (table.iloc[:1][first.columns] == first).all(axis=None)
+    assert (table.iloc[:1][list(first)] == first).all(axis=None)
     # Each row names the reading of A.4.2 by which it was measured; the old one's has no name.
     assert table["trimming"].fillna("").tolist() == ["", "outermost_first"]
+    assert table.damping_rate_per_s.isna().tolist() == [True, False]  # nobody wrote it then
     facts = json.loads((folder / "run.json").read_text())
     assert facts["status"] == "finished"
     assert table.steps.sum() == facts["steps"] and table.wall_s.sum() <= facts["wall_s"]

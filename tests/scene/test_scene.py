@@ -212,7 +212,7 @@ def test_parameters_have_kinds_and_defaults():
 
 def test_defaults_live_in_the_core():
     assert Panel() == Panel(None, None, None)
-    assert Scene().to_data() == {"snowshed": 1}
+    assert Scene().to_data() == {"snowshed": 2}
 
 
 def test_lab_presets_are_table_2_3_1():

@@ -24,13 +24,13 @@ DEFAULTS: Settings = {
     "transfer": "flip",
     "basis": "quadratic",
     "precision": "float",
-    "condition": "slip",
+    "condition": "separate",
     "model": "cam_clay",
 }
 METHODS: Sequence[Settings] = (
     {"transfer": "apic"},
     {"flip_ratio": 1.0},
-    {"condition": "separate"},
+    {"condition": "slip"},
     {"basis": "cubic"},
     {"precision": "double"},
     {"seed": 2},
@@ -42,7 +42,7 @@ STOPS: Sequence[Settings] = (
     {"dx": 0.02},
     {"dx": 0.005},
     {"transfer": "apic"},
-    {"condition": "separate"},
+    {"condition": "slip"},
     {"model": "cam_clay"},
     {"model": "cam_clay", "friction": 0.9},
 )

@@ -27,7 +27,7 @@ SLAB: Settings = {
     "transfer": "flip",
     "basis": "quadratic",
     "precision": "float",
-    "condition": "slip",
+    "condition": "separate",
     "model": "cam_clay",
     "length": LENGTH,
 }
@@ -150,7 +150,7 @@ def matrix(full: bool) -> list[Settings]:
         {"transfer": "apic", "dx": 0.02},
         {"transfer": "apic", "dx": 0.005},
         {"flip_ratio": 1.0},
-        {"condition": "separate"},
+        {"condition": "slip"},
         {"precision": "double"},
         {"basis": "cubic"},
         {"model": "elastic"},

@@ -149,7 +149,9 @@ def column_scene(settings: Settings) -> Scene:
     corner[-1], size[-1] = floor, HEIGHT
     walls = [_wall(corner, axis=dimension - 1, side=1, condition="sticky")]
     for axis in range(dimension - 1):
-        walls += [_wall(at, axis, side, "slip") for at, side in ((corner, 1), (corner + size, -1))]
+        walls += [
+            _wall(at, axis, side, "separate") for at, side in ((corner, 1), (corner + size, -1))
+        ]
     snow = Body(shape=Shape.box((corner + size / 2).tolist(), size.tolist()))
     scene = Scene(dimension=2, obstacles=walls, bodies=[snow], gravity=GRAVITY)
     scene.update(

@@ -104,7 +104,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Range("tilt", "Tilt of panel or plate", "degrees", 1.0, 89.0, 50.0),
     Range("ground_tilt", "Tilt of the ground", "degrees", -45.0, 45.0, 0.0),
     Range("friction", "Friction coefficient", "", 0.0, 2.0, 0.3),
-    Choice("condition", "Condition of panel or plate", ("slip", "separate", "sticky")),
+    Choice("condition", "Condition of panel or plate", ("separate", "slip", "sticky")),
     Choice("ground_condition", "Condition of the ground", ("sticky", "separate", "slip")),
     Range("speed", "Speed of thrown snow", "m/s", 0.1, 100.0, 2.0, log=True),
     Range("thickness", "Thickness of the snow", "m", 0.005, 1.0, 0.06, log=True),

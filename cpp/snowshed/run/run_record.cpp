@@ -19,10 +19,15 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
+ordered_json or_null(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
 ordered_json to_json(const EventFacts& facts) {
   ordered_json j{{"event", facts.event}, {"sim_time_s", facts.sim_time},
                  {"steps", facts.steps}, {"wall_s", facts.wall},
                  {"ended", facts.ended}, {"laid_height_m", facts.laid_height}};
+  j["damping_rate_per_s"] = or_null(facts.damping_rate);
   for (const auto& [name, joules] : facts.energy) j["energy"][name] = joules;
   return j;
 }
@@ -45,6 +50,8 @@ EventFacts event_facts(const json& j, const std::string& path) {
   facts.wall = number("wall_s");
   facts.ended = to_text(require(j, "ended", path), path + "/ended");
   facts.laid_height = number("laid_height_m");
+  const char* const damping = "damping_rate_per_s";
+  if (j.contains(damping) && !j[damping].is_null()) facts.damping_rate = number(damping);
   if (!j.contains("energy")) return facts;
   for (const auto& [name, _] : named_energies({}))  // in the order of tables
     facts.energy.emplace_back(name, to_number(require(j["energy"], name.c_str(), path + "/energy"),
@@ -90,6 +97,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   j["particles"] = method.size();
   j["steps"] = c.steps;
   j["rejected_steps"] = c.rejected;
+  j["damping_rate_per_s"] = or_null(sim.damping_rate());
   j["particle_updates"] = c.particle_updates;
   j["slept_updates"] = c.slept_updates;
   j["updates_per_s"] = wall > 0 ? double(c.particle_updates) / wall : 0.0;

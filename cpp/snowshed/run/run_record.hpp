@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,10 +18,12 @@ struct EventFacts {
   int event = 0;
   double sim_time = 0;  // s
   std::int64_t steps = 0;
-  double wall = 0;                                     // s
-  std::string ended;                                   // "rest" or "time_limit"
-  double laid_height = 0;                              // m, see Simulation::laid_height
-  std::vector<std::pair<std::string, double>> energy;  // J, by name; empty without the energy balance
+  double wall = 0;                     // s
+  std::string ended;                   // "rest" or "time_limit"
+  double laid_height = 0;              // m, see Simulation::laid_height
+  std::optional<double> damping_rate;  // 1/s, its mean, see MpmSettings::mean_damping_rate
+  std::vector<std::pair<std::string, double>>
+      energy;  // J, by name; empty without the energy balance
 };
 
 /// Returns what run.json calls the two ways in which events end.

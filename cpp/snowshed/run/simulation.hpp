@@ -96,6 +96,11 @@ class Simulation {
   /// The smallest length that is resolved, m.
   double resolution() const { return snowshed::resolution(scene_.numerics); }
 
+  /// Mean rate of the damping by PIC so far, 1/s; see MpmSettings::mean_damping_rate.
+  std::optional<double> damping_rate() const {
+    return scene_.mpm().mean_damping_rate(solver_->counters().steps, solver_->time());
+  }
+
   /// How high all snow laid so far would lie on the panel had none of it left, m.
   double laid_height() const { return laid_height_; }
 

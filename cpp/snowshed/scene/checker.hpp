@@ -17,6 +17,11 @@ class Checker : public PathVisitor<Checker> {
     check(at(key), value, range.in(dimension_), unit);
   }
 
+  void number_instead(const char* key, std::optional<double>& value, const char*, const char* unit,
+                      const Range& range, const char* doc) {
+    if (value) number(key, *value, unit, range, doc);
+  }
+
   template <class Int>
   void integer(const char* key, Int& value, const Range& range, const char*) {
     check(at(key), static_cast<double>(value), range);

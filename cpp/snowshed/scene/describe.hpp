@@ -6,6 +6,8 @@
 //
 //   version(key, number, doc)                a fixed number
 //   number(key, member, unit, range, doc)    integer(key, member, range, doc)
+//   number_instead(key, member, other, unit, range, doc)
+//                                            an optional number that takes the place of another
 //   flag(key, member, doc)                   text(key, member, doc)    file(key, member, doc)
 //   choice(key, member, doc)                 an enumeration, see enum_names.hpp
 //   vector(key, member, unit, range, doc)    [x, y, z], in 2D [x, z]; range of each component
@@ -43,6 +45,10 @@ inline constexpr Range time = non_negative.up_to(1e9);          // s
 inline constexpr Range duration = positive.up_to(1e9);          // s
 inline constexpr Range coefficient = non_negative.up_to(100.0);
 }  // namespace allowed
+
+inline constexpr const char* condition_doc =
+    "What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and leave "
+    "(separate)";
 
 template <class V>
 void describe(V& v, Snow& s) {
@@ -137,7 +143,7 @@ template <class V>
 void describe(V& v, ObstacleSpec& o) {
   v.text("name", o.name, "Name in messages and results");
   v.object("shape", o.shape, Need::required, "The solid");
-  v.choice("condition", o.condition, "What snow that touches it may do");
+  v.choice("condition", o.condition, condition_doc);
   v.number("friction", o.friction, "", allowed::coefficient,
            "Coulomb coefficient; unused when sticky");
   v.optional("motion", o.motion, "Prescribed rigid motion; fixed without it");
@@ -165,7 +171,7 @@ void describe(V& v, Panel& p) {
   v.number("tilt", p.tilt, "degrees", non_negative.below(90.0), "Tilt from the horizontal");
   v.number("thickness", p.thickness, "m", allowed::size_or_zero,
            "Thickness, below the sliding face");
-  v.choice("condition", p.condition, "What snow that touches it may do");
+  v.choice("condition", p.condition, condition_doc);
   v.number("friction", p.friction, "", allowed::coefficient,
            "Coulomb coefficient; unused when sticky");
 }
@@ -193,7 +199,7 @@ template <class V>
 void describe(V& v, Ground& g) {
   v.number("tilt", g.tilt, "degrees", Range{-60.0, 60.0, true, true, Need::optional},
            "Tilt; positive falls in the slide direction");
-  v.choice("condition", g.condition, "What snow that touches it may do");
+  v.choice("condition", g.condition, condition_doc);
   v.number("friction", g.friction, "", allowed::coefficient,
            "Coulomb coefficient; unused when sticky");
 }
@@ -246,13 +252,17 @@ void describe(V& v, Seeding& s) {
 
 template <class V>
 void describe(V& v, MpmSettings& n) {
-  v.accuracy({"dx", "precision", "transfer", "flip_ratio", "basis", "courant_factor",
-              "strain_limit", "sleep_speed", "sleep_time"});
+  v.accuracy({"dx", "precision", "transfer", "flip_ratio", "damping_rate", "basis",
+              "courant_factor", "strain_limit", "sleep_speed", "sleep_time"});
   v.alias("courant_factor", "step_factor");  // its name up to version 0.1
   v.number("dx", n.dx, "m", allowed::size, "Size of grid cells and voxels");
   v.choice("precision", n.precision, "Floating-point type of the particles and the grid");
   v.choice("transfer", n.transfer, "How velocities move between particles and grid");
-  v.number("flip_ratio", n.flip_ratio, "", fraction, "Share of FLIP in FLIP/PIC; 0 is pure PIC");
+  v.number(
+      "flip_ratio", n.flip_ratio, "", fraction,
+      "Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC");
+  v.number_instead("damping_rate", n.damping_rate, "flip_ratio", "1/s", non_negative.up_to(1e9),
+                   "In place of flip_ratio: rate of the damping by PIC, whatever the step");
   v.choice("basis", n.basis, "B-spline of the grid");
   v.number("courant_factor", n.courant_factor, "", positive.up_to(1.0),
            "Time step over the largest stable one");

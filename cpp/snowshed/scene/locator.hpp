@@ -18,6 +18,10 @@ class Locator : public PathVisitor<Locator> {
   void number(const char* key, T& value, const Rest&...) {
     compare(at(key), value);
   }
+  template <class... Rest>
+  void number_instead(const char* key, std::optional<double>& value, const Rest&...) {
+    compare(at(key), value);
+  }
   template <class T, class... Rest>
   void integer(const char* key, T& value, const Rest&...) {
     compare(at(key), value);

@@ -33,7 +33,7 @@ Scene lab_scene(double tilt) {
   panel.length = 0.245;
   panel.width = 0.213;
   panel.tilt = tilt;
-  panel.condition = Condition::slip;
+  panel.condition = Condition::separate;
   Slab& slab = scene.slab.emplace();
   slab.thickness = 0.02;  // its length stays 0: as long as the panel, also if that is changed
   slab.width = 0.142;

@@ -29,7 +29,8 @@ class Reader : public Checker {
   void version(const char* key, int number, const char*) {
     const json* value = take(key, Need::required, "the version " + std::to_string(number));
     if (value && *value != number)
-      throw InputError(at(key), shown(*value) + " is not the version this program reads (" +
+      throw InputError(at(key), shown(*value) + " is no version that this program reads (" +
+                                    std::to_string(oldest_scene_version) + " to " +
                                     std::to_string(number) + ")");
   }
 
@@ -40,6 +41,14 @@ class Reader : public Checker {
       value = to_number(*given, at(key), allowed);
       Checker::number(key, value, unit, range, doc);
     }
+  }
+
+  void number_instead(const char* key, std::optional<double>& value, const char* other,
+                      const char* unit, const Range& range, const char* doc) {
+    if (object_.contains(key) && object_.contains(other))
+      throw InputError(at(key), "takes the place of " + at(other) + "; give one of the two");
+    keys_.push_back(key);
+    if (object_.contains(key)) number(key, value.emplace(), unit, range, doc);
   }
 
   template <class Int>

@@ -18,7 +18,8 @@
 
 namespace snowshed {
 
-inline constexpr int scene_version = 1;
+inline constexpr int oldest_scene_version = 1;  // that is read, see earlier_version.hpp
+inline constexpr int scene_version = 2;
 
 /// A solid. `type` selects which of the other fields count.
 struct ShapeSpec {
@@ -71,7 +72,7 @@ struct Panel {
   double width = 0.0;      // m, 3D only
   double tilt = 40.0;      // degrees from horizontal
   double thickness = 0.0;  // m, below the sliding face
-  Condition condition = Condition::slip;
+  Condition condition = Condition::separate;
   double friction = 0.3;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "snowshed/scene/earlier_version.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/reader.hpp"
 #include "snowshed/scene/validation.hpp"
@@ -58,9 +59,12 @@ InputError naming_file(const InputError& error, const std::string& file) {
 
 }  // namespace
 
-Scene parse_scene(const std::string& text, const std::string& name) {
+Scene parse_scene(const std::string& text, const std::string& name,
+                  std::vector<std::string>* notes) {
   Scene scene;
   nlohmann::json json = parse_json(text, name);
+  const std::vector<std::string> changed = update_version(json);
+  if (notes) notes->insert(notes->end(), changed.begin(), changed.end());
   complete_snow(json);
   Reader::read(json, "", scene.dimension, scene);
   check_rules(scene);
@@ -76,9 +80,10 @@ Scene with_absolute_files(const std::filesystem::path& folder, Scene scene) {
   return scene;
 }
 
-Scene load_scene(const std::filesystem::path& file) {
+Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* notes) {
   try {
-    return with_absolute_files(file.parent_path(), parse_scene(read_text(file), file.string()));
+    return with_absolute_files(file.parent_path(),
+                               parse_scene(read_text(file), file.string(), notes));
   } catch (const InputError& error) {
     throw naming_file(error, file.string());
   }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "snowshed/scene/scene.hpp"
 
@@ -13,14 +14,16 @@ namespace snowshed {
 /// scene's. Throws InputError whose `where` is the JSON pointer of the
 /// offending value ("/snow/density", "/" for the whole), or "name:line:column" when the text
 /// is not JSON. The text need not be trusted: its size, depth and number of values are limited.
-Scene parse_scene(const std::string& text, const std::string& name = "scene");
+/// Of a scene of an earlier version, `notes` (if any) gets what has another name now.
+Scene parse_scene(const std::string& text, const std::string& name = "scene",
+                  std::vector<std::string>* notes = nullptr);
 
 /// The scene with absolute names of mesh and grid files; relative ones are taken to be in `folder`.
 Scene with_absolute_files(const std::filesystem::path& folder, Scene scene);
 
 /// `parse_scene` on a file; errors name it. Mesh and grid files given by a relative path are
 /// looked for beside the scene file, so the result does not depend on the working directory.
-Scene load_scene(const std::filesystem::path& file);
+Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
 
 /// The complete JSON of a valid scene, defaults included: parse_scene gives back the same scene.
 /// Of a shape only the fields its type uses are written, and in 2D only x and z of a vector.

@@ -39,6 +39,13 @@ class SchemaWriter {
     add(key, with_default(schema, value, range.need), doc, range.need);
   }
 
+  void number_instead(const char* key, std::optional<double>&, const char* other, const char* unit,
+                      const Range& range, const char* doc) {
+    json schema = limited("number", range, unit);
+    schema["x-instead-of"] = other;
+    add(key, schema, doc);
+  }
+
   template <class Int>
   void integer(const char* key, Int& value, const Range& range, const char* doc) {
     add(key, with_default(limited("integer", range), value, range.need), doc, range.need);

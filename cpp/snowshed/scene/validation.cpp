@@ -27,6 +27,7 @@ class SceneRules {
     for (const auto& body : scene_.bodies) check_body(body);
     check_snows();
     check_seeding(scene_.seeding);
+    check_damping(scene_.mpm());
     if (scene_.events.rest_time > scene_.events.max_time)
       fail(scene_.events.rest_time, show(scene_.events.rest_time) + " s is longer than an event (" +
                                         path_and_value(scene_.events.max_time) + " s)");
@@ -231,6 +232,12 @@ class SceneRules {
                                             ": give at least " + show(least) +
                                             ", 0 for the default, or set " +
                                             path_of(scene_, seeding.allow_sparse));
+  }
+
+  void check_damping(const MpmSettings& settings) const {
+    if (settings.damping_rate && settings.transfer != Transfer::flip)
+      fail(settings.damping_rate, "the transfer \"" + std::string(name_of(settings.transfer)) +
+                                      "\" has no PIC that damps; leave it out");
   }
 
   const Scene& scene_;

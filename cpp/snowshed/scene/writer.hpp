@@ -24,6 +24,12 @@ class Writer {
   void number(const char* key, double& value, const char*, const Range&, const char*) {
     json_[key] = value;
   }
+  void number_instead(const char* key, std::optional<double>& value, const char* other, const char*,
+                      const Range&, const char*) {
+    if (!value) return;
+    json_.erase(other);
+    json_[key] = *value;
+  }
   template <class Int>
   void integer(const char* key, Int& value, const Range&, const char*) {
     json_[key] = value;

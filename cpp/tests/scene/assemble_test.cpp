@@ -86,7 +86,7 @@ TEST(Assemble, PanelIsAPlateBelowItsFace) {
   EXPECT_EQ(panel.shape.normal, frame.normal);
   EXPECT_EQ(panel.shape.length, 2.0);
   EXPECT_EQ(panel.shape.width, 3.0);
-  EXPECT_EQ(panel.condition, Condition::slip);
+  EXPECT_EQ(panel.condition, Condition::separate);
   EXPECT_EQ(panel.friction, 0.25);
 }
 

@@ -22,7 +22,7 @@ void expect_snow(const Snow& snow, double slope, double pressure, double cohesio
 }
 
 void expect_conditions(const Scene& scene) {
-  EXPECT_EQ(scene.panel->condition, Condition::slip);
+  EXPECT_EQ(scene.panel->condition, Condition::separate);
   EXPECT_EQ(scene.ground->condition, Condition::sticky);
   EXPECT_EQ(scene.ground->tilt, 0.0);
   EXPECT_EQ(scene.mpm().dx, 0.01);

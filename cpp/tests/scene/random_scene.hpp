@@ -18,6 +18,10 @@ class Randomizer {
   void number(const char*, double& value, const char*, const Range& range, const char*) {
     value = draw(range);
   }
+  void number_instead(const char*, std::optional<double>& value, const char*, const char*,
+                      const Range& range, const char*) {
+    if (chance(0.5)) value = draw(range);
+  }
   void integer(const char*, int& value, const Range& range, const char*) {
     value = std::uniform_int_distribution<int>(int(range.min), int(range.max))(random_);
   }
@@ -146,6 +150,9 @@ inline Scene random_scene(std::uint64_t seed) {
       scene.slab->thickness = 0.1;
   }
   if (!scene.slab) describe(randomizer, scene.bodies.emplace_back());
+  MpmSettings& numerics = scene.mpm();
+  if (numerics.transfer != Transfer::flip) numerics.damping_rate.reset();
+  if (numerics.damping_rate) numerics.flip_ratio = MpmSettings{}.flip_ratio;
   for (auto& body : scene.bodies) body.event = std::min(body.event, scene.events.count);
   for (auto& obstacle : scene.obstacles)
     if (obstacle.motion)

@@ -67,8 +67,8 @@ inline auto tied(const Seeding& s) {
   return std::tie(a, b, c, d);
 }
 inline auto tied(const MpmSettings& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
+  auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
 inline auto tied(const Events& s) {
   auto& [a, b, c, d, e] = s;

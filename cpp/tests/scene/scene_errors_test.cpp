@@ -12,13 +12,13 @@ namespace snowshed {
 namespace {
 
 struct Bad {
-  const char* rest;  // what follows {"snowshed": 1, "bodies": [...]
+  const char* rest;  // what follows {"snowshed": 2, "bodies": [...]
   const char* where;
   const char* message;  // all of it, after the path
 };
 
 const std::string good =
-    R"({"snowshed": 1, "bodies": [{"shape": {"type": "sphere", "radius": 1}}])";
+    R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "radius": 1}}])";
 
 void expect_error(const std::string& text, const std::string& where, const std::string& message) {
   try {
@@ -77,6 +77,12 @@ INSTANTIATE_TEST_SUITE_P(
          "1.5 is outside the allowed range (0 <= value <= 1)"},
         {R"(, "method": "mps")", "/method",
          R"("mps" is none of "mpm", "slide"; did you mean "mpm"?)"},
+        {R"(, "numerics": {"flip_ratio": 0.9, "damping_rate": 5})", "/numerics/damping_rate",
+         "takes the place of /numerics/flip_ratio; give one of the two"},
+        {R"(, "numerics": {"damping_rate": -1})", "/numerics/damping_rate",
+         "-1 is outside the allowed range (0 <= value <= 1000000000 1/s)"},
+        {R"(, "numerics": {"damping_rate": 5, "transfer": "apic"})", "/numerics/damping_rate",
+         R"(the transfer "apic" has no PIC that damps; leave it out)"},
         {R"(, "numerics": {"courant_factor": 0.5, "step_factor": 0.5})", "/numerics/step_factor",
          "means the same as /numerics/courant_factor; give one of the two"},
         {R"(, "numerics": {"step_factr": 0.5})", "/numerics/step_factr",
@@ -228,10 +234,11 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(SceneErrorsText, WholeDocument) {
   expect_error("[]", "/", "an array is not an object");
   expect_error("null", "/", "null is not an object");
-  expect_error("{}", "/snowshed", "missing: the version 1 is required");
-  expect_error(R"({"snowshed": 2})", "/snowshed", "2 is not the version this program reads (1)");
-  expect_error(R"({"snowshed": "1"})", "/snowshed",
-               "\"1\" is not the version this program reads (1)");
+  expect_error("{}", "/snowshed", "missing: the version 2 is required");
+  expect_error(R"({"snowshed": 3})", "/snowshed",
+               "3 is no version that this program reads (1 to 2)");
+  expect_error(R"({"snowshed": "2"})", "/snowshed",
+               "\"2\" is no version that this program reads (1 to 2)");
 }
 
 std::string where_of(const std::string& text) {

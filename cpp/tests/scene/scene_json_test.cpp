@@ -12,7 +12,7 @@
 namespace snowshed {
 namespace {
 
-const char* const smallest = R"({"snowshed": 1, "bodies": [
+const char* const smallest = R"({"snowshed": 2, "bodies": [
   {"shape": {"type": "box", "center": [1, 2, 3], "size": [0.1, 0.2, 0.3]}}]})";
 
 TEST(SceneJson, RandomScenesComeBackExactly) {
@@ -35,7 +35,7 @@ TEST(SceneJson, MissingKeysTakeTheMembersDefaults) {
 }
 
 TEST(SceneJson, SnowOfAPartLeavesTheRestToTheScenes) {
-  const Scene scene = parse_scene(R"({"snowshed": 1,
+  const Scene scene = parse_scene(R"({"snowshed": 2,
     "slab": {"layers": [{"thickness": 0.1}, {"thickness": 0.2, "event": 1, "snow": {"density": 90}}]},
     "bodies": [{"shape": {"type": "sphere", "radius": 1}, "snow": {"model": "elastic"}}],
     "snow": {"cohesion": 0.3, "density": 300},
@@ -53,7 +53,7 @@ TEST(SceneJson, SnowOfAPartLeavesTheRestToTheScenes) {
 
 TEST(SceneJson, EveryFieldIsRead) {
   const Scene scene = parse_scene(R"({
-    "snowshed": 1, "dimension": 3, "title": "all", "gravity": 1.62,
+    "snowshed": 2, "dimension": 3, "title": "all", "gravity": 1.62,
     "snow": {"model": "elastic", "density": 300, "youngs_modulus": 2e6, "poissons_ratio": 0.2,
              "critical_state_slope": 0.6, "preconsolidation_pressure": 8000, "cohesion": 0.3,
              "hardening_factor": 1},
@@ -86,7 +86,7 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
   EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
   EXPECT_TRUE(scene.mpm() == (MpmSettings{0.02, Precision::float64, Transfer::apic, 0.5,
-                                          Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
+                                          std::nullopt, Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
   EXPECT_TRUE(scene.output == (Output{0.25, true, 30}));
 
@@ -111,7 +111,7 @@ TEST(SceneJson, EveryFieldIsRead) {
 }
 
 TEST(SceneJson, VectorsOfAPlaneSceneHaveTwoEntries) {
-  const Scene scene = parse_scene(R"({"snowshed": 1, "dimension": 2,
+  const Scene scene = parse_scene(R"({"snowshed": 2, "dimension": 2,
     "obstacles": [{"shape": {"type": "plane", "center": [1, 2], "normal": [3, 4]},
                    "motion": {"angular_velocity": 5}}],
     "bodies": [{"velocity": [6, 7], "shape": {"type": "sphere", "radius": 1}}]})");
@@ -123,12 +123,12 @@ TEST(SceneJson, VectorsOfAPlaneSceneHaveTwoEntries) {
 
 TEST(SceneJson, OrderOfKeysDoesNotMatter) {
   const Scene scene = parse_scene(R"({"bodies": [{"shape":
-    {"size": [1, 2], "center": [3, 4], "type": "box"}}], "dimension": 2, "snowshed": 1})");
+    {"size": [1, 2], "center": [3, 4], "type": "box"}}], "dimension": 2, "snowshed": 2})");
   EXPECT_EQ(scene.bodies[0].shape.size, Vec3(1, 0, 2));
 }
 
 TEST(SceneJson, WholeNumbersMayCarryAPoint) {
-  const Scene scene = parse_scene(R"({"snowshed": 1, "dimension": 2.0, "seeding": {"seed": 5.0},
+  const Scene scene = parse_scene(R"({"snowshed": 2, "dimension": 2.0, "seeding": {"seed": 5.0},
     "bodies": [{"shape": {"type": "sphere", "radius": 1}}]})");
   EXPECT_EQ(scene.dimension, 2);
   EXPECT_EQ(scene.seeding.seed, 5u);
@@ -200,7 +200,7 @@ TEST_F(SceneFile, LoadsWhatParses) {
 }
 
 TEST_F(SceneFile, MeshesLieBesideTheScene) {
-  const Scene scene = load_scene(save(R"({"snowshed": 1,
+  const Scene scene = load_scene(save(R"({"snowshed": 2,
     "bodies": [{"shape": {"type": "union", "shapes": [{"type": "mesh", "file": "a/b.stl"}]}}],
     "obstacles": [{"shape": {"type": "grid", "file": "/abs.npy", "spacing": 1}}]})"));
   EXPECT_EQ(scene.bodies[0].shape.shapes[0].file,
@@ -245,18 +245,55 @@ TEST_F(SceneFile, WhatCannotBeReadIsNamed) {
 
 TEST(SceneJson, TheMethodIsAChoiceAndTheDefaultGoesWithoutSaying) {
   const std::string base =
-      R"({"snowshed": 1, "bodies": [{"shape": {"type": "sphere", "radius": 1}}])";
+      R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "radius": 1}}])";
   const Scene scene = parse_scene(base + R"(, "numerics": {"dx": 0.02}, "method": "mpm"})");
   EXPECT_EQ(scene.mpm().dx, 0.02);
   EXPECT_EQ(write_scene(scene), write_scene(parse_scene(base + R"(, "numerics": {"dx": 0.02}})")));
   EXPECT_FALSE(nlohmann::json::parse(write_scene(scene)).contains("method"));
 }
 
+// What version 1 called slip is separate now: a scene of that version must go on as it did.
+TEST(SceneJson, SlipOfVersion1IsSeparate) {
+  const std::string rest = R"(, "ground": {"condition": "slip"}, "slab": {"thickness": 0.1},
+    "panel": {"height": 1, "length": 2, "width": 3, "condition": "slip"},
+    "obstacles": [{"shape": {"type": "plane"}, "condition": "sticky"},
+                  {"shape": {"type": "plane"}, "condition": "slip"}]})";
+  std::vector<std::string> notes;
+  const Scene old = parse_scene("{\"snowshed\": 1" + rest, "scene", &notes);
+  EXPECT_EQ(old.panel->condition, Condition::separate);
+  EXPECT_EQ(old.ground->condition, Condition::separate);
+  EXPECT_EQ(old.obstacles[0].condition, Condition::sticky);
+  EXPECT_EQ(old.obstacles[1].condition, Condition::separate);
+  ASSERT_EQ(notes.size(), 3u);
+  EXPECT_EQ(
+      notes[0],
+      "/panel/condition: \"slip\" of version 1 is read as \"separate\", its name since version "
+      "2; there \"slip\" lets no snow leave the surface but over its edge");
+  EXPECT_EQ(notes[2].rfind("/obstacles/1/condition: ", 0), 0u);
+  EXPECT_NE(write_scene(old).find("\"snowshed\": 2"), std::string::npos);
+
+  notes.clear();
+  const Scene present = parse_scene("{\"snowshed\": 2" + rest, "scene", &notes);
+  EXPECT_EQ(present.panel->condition, Condition::slip);
+  EXPECT_EQ(present.obstacles[1].condition, Condition::slip);
+  EXPECT_TRUE(notes.empty());
+}
+
+TEST(SceneJson, ADampingRateTakesThePlaceOfTheFlipRatio) {
+  const Scene scene = parse_scene(R"({"snowshed": 2, "numerics": {"damping_rate": 50},
+    "bodies": [{"shape": {"type": "sphere", "radius": 1}}]})");
+  EXPECT_EQ(scene.mpm().damping_rate, 50.0);
+  const auto written = nlohmann::json::parse(write_scene(scene));
+  EXPECT_EQ(written["numerics"]["damping_rate"], 50.0);
+  EXPECT_FALSE(written["numerics"].contains("flip_ratio"));
+  EXPECT_TRUE(parse_scene(write_scene(scene)) == scene);
+}
+
 TEST(SceneJson, OtherNamesOfAKeyAreRead) {
-  const Scene scene = parse_scene(R"({"snowshed": 1, "slab": {"thickness": 0.1},
+  const Scene scene = parse_scene(R"({"snowshed": 2, "slab": {"thickness": 0.1},
     "panel": {"lower_edge_height": 1, "slant_height": 2, "width": 3, "surface_tilt": 45},
     "numerics": {"step_factor": 0.5}})");
-  EXPECT_TRUE(*scene.panel == (Panel{1, 2, 3, 45, 0, Condition::slip, 0.3}));
+  EXPECT_TRUE(*scene.panel == (Panel{1, 2, 3, 45, 0, Condition::separate, 0.3}));
   EXPECT_EQ(scene.mpm().courant_factor, 0.5);
   const auto written = nlohmann::json::parse(write_scene(scene));
   EXPECT_EQ(written["numerics"]["courant_factor"], 0.5);

@@ -66,7 +66,7 @@ TEST(SceneSchema, HasEveryFieldThatScenesHaveAndNoOther) {
   for (std::uint64_t seed = 1; seed < 200; seed += 2)  // 3D
     collect_fields(json::parse(write_scene(random_scene(seed))), "", written);
   const Scene halfspace =
-      parse_scene(R"({"snowshed": 1, "obstacles": [{"shape": {"type": "plane"}}],
+      parse_scene(R"({"snowshed": 2, "obstacles": [{"shape": {"type": "plane"}}],
     "bodies": [{"shape": {"type": "sphere", "radius": 1}}],
     "domain": {"min": [-9, -9, -9], "max": [9, 9, 9]}})");
   collect_fields(json::parse(write_scene(halfspace)), "", written);
@@ -109,7 +109,7 @@ TEST(SceneSchema, CarriesUnitsLimitsDefaultsAndChoices) {
   EXPECT_FALSE(numerics["threads"].contains("x-accuracy"));
   EXPECT_EQ(numerics["courant_factor"]["x-aliases"], json::parse(R"(["step_factor"])"));
   EXPECT_EQ(properties["events"]["properties"]["count"]["type"], "integer");
-  EXPECT_EQ(properties["snowshed"]["const"], 1);
+  EXPECT_EQ(properties["snowshed"]["const"], 2);
   EXPECT_EQ(schema()["required"], json::parse(R"(["snowshed"])"));
   EXPECT_EQ(properties["panel"]["required"], json::parse(R"(["height", "length"])"));
   EXPECT_EQ(schema()["$defs"]["shape"]["oneOf"][1]["required"], json::parse(R"(["type", "size"])"));

@@ -12,7 +12,7 @@ namespace snowshed {
 namespace {
 
 Scene good_scene() {
-  return parse_scene(R"({"snowshed": 1,
+  return parse_scene(R"({"snowshed": 2,
     "panel": {"height": 1, "length": 2, "width": 3, "tilt": 45}, "slab": {"thickness": 0.1},
     "ground": {},
     "obstacles": [

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 from rich.console import Console
 from rich.table import Table
 
 from snowshed.analysis.dimension_ratio import RULE_OF_THUMB
 from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.io.json_file import read_object
+from snowshed.methods.registry import settings_of
+from snowshed.plot.caption import contact_text, mean_damping_rate
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,7 +40,24 @@ def print_events(table: pd.DataFrame, folder: Path) -> None:
     for row in table.to_dict("records"):
         shown.add_row(*(form.format(row[name]) for name, form in EVENT_TABLE.values()))
     wide_console(120).print(shown)
-    Console().print(f"results, stack.png and growth.png in {folder}", highlight=False)
+    scene = read_object(folder / "scene.json")
+    console = Console()
+    console.print(contacts_and_damping(scene, mean_damping_rate(table)), highlight=False)
+    console.print(f"results, stack.png and growth.png in {folder}", highlight=False)
+
+
+def contacts_and_damping(scene: dict[str, Any], damping_rate: Optional[float]) -> str:
+    """Return the conditions of panel and ground, and the damping of a run, in a line.
+
+    Examples
+    --------
+    >>> from snowshed import Scene
+    >>> contacts_and_damping(Scene.preset("lab-50").resolve().data, 188.0)
+    'panel: separate, friction 0.3; ground: sticky; damping 188 1/s (FLIP 0.99 a step)'
+    """
+    parts = [f"{k}: {contact_text(scene[k])}" for k in ("panel", "ground") if k in scene]
+    damping = settings_of(scene).damping_text(damping_rate)
+    return "; ".join([*parts, *([damping] if damping else [])])
 
 
 def print_slide(summary: SlideSummary, folder: Path) -> None:

@@ -11,8 +11,9 @@ line on stderr.
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
-from typing import Optional
+from typing import Optional, TextIO, Union
 
 import click
 
@@ -68,6 +69,12 @@ def main(
     name
         Name of the program in its help.
     """
+    with warnings.catch_warnings():
+        warnings.showwarning = _note
+        return _run(command, arguments, name)
+
+
+def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) -> int:
     try:
         settings = cli.context_settings
         return command.main(arguments, prog_name=name, standalone_mode=False, **settings) or 0
@@ -82,6 +89,18 @@ def main(
     except (KeyboardInterrupt, click.Abort):
         return _fail("interrupted", 130)
     return 0
+
+
+def _note(
+    message: Union[Warning, str],
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: Optional[TextIO] = None,
+    line: Optional[str] = None,
+) -> None:
+    """Print a warning for users, which needs no place in the code."""
+    print("note:", message, file=sys.stderr)
 
 
 def _fail(message: str, code: int) -> int:

@@ -7,10 +7,10 @@ are errors at once, wherever they are used.
 from __future__ import annotations
 
 import typing
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields
 from functools import cache
-from typing import TYPE_CHECKING, Optional, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Optional, TypeVar
 
 from snowshed._core import InputError
 from snowshed.io.field_type import alternatives_of, convert, is_record, shown
@@ -59,6 +59,7 @@ class _RecordClass(type):
                     raise cls._unknown(keyword)
             named = {keyword: names[keyword] for keyword in keywords}
             check_once(named, cls.__name__)
+            check_instead(cls, [named[k] for k, v in keywords.items() if v is not None])
             return super().__call__(*values, **{named[key]: keywords[key] for key in keywords})
 
 
@@ -74,6 +75,10 @@ class Record(metaclass=_RecordClass):
     Traceback (most recent call last):
     snowshed.io.record.UnknownFieldError: Panel.tlit: Panel has no such field; did you mean tilt?
     """
+
+    #: Fields, and those in whose place they stand: of the two one is given, and setting one of
+    #: them unsets the other.
+    INSTEAD_OF: ClassVar[Mapping[str, str]] = {}
 
     @classmethod
     def keys(cls) -> dict[str, str]:
@@ -100,6 +105,7 @@ class Record(metaclass=_RecordClass):
             raise InputError(f"{path[:100]}...: nested more than {DEEPEST} deep")
         record = cls()
         check_once({key: cls.field_of(key, path) for key in data}, path)
+        check_instead(cls, [cls.field_of(k, path) for k in data if data[k] is not None], path)
         for key, value in data.items():
             record.assign(key, value, path)
         return record
@@ -144,7 +150,12 @@ class Record(metaclass=_RecordClass):
         return _record_type(_hints(type(self))[self.field_of(key)])
 
     def _keep(self, name: str, value: object, where: str) -> None:
-        object.__setattr__(self, name, convert(value, _hints(type(self))[name], where))
+        converted = convert(value, _hints(type(self))[name], where)
+        object.__setattr__(self, name, converted)
+        if converted is not None:
+            for pair in self.INSTEAD_OF.items():
+                if name in pair:
+                    object.__setattr__(self, pair[1 - pair.index(name)], None)
 
     @classmethod
     def _unknown(cls, name: str) -> UnknownFieldError:
@@ -182,6 +193,22 @@ def check_once(fields_of: Mapping[str, str], where: str) -> None:
                 f"{where}/{name}: means the same as {name_of[field]}; give one of the two"
             )
         name_of[field] = name
+
+
+def check_instead(record: type[Record], given: Collection[str], where: str = "") -> None:
+    """Raise InputError if a field is given together with one in whose place it stands.
+
+    Examples
+    --------
+    >>> from snowshed.methods.mpm import MpmSettings
+    >>> check_instead(MpmSettings, ["dx", "damping_rate"], "/numerics")
+    """
+    for field, other in record.INSTEAD_OF.items():
+        if field in given and other in given:
+            raise InputError(
+                f"{where or record.__name__}/{field}: takes the place of {other}; "
+                "give one of the two"
+            )
 
 
 @cache

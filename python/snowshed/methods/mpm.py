@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Optional
 
@@ -26,7 +27,11 @@ class MpmSettings(MethodSettings):
     transfer : {"flip", "apic"}
         How velocities move between particles and grid. Default "flip".
     flip_ratio : float
-        Share of FLIP in FLIP/PIC; 0 is pure PIC. 0 <= value <= 1; default 0.99.
+        Share of FLIP in FLIP/PIC in each step, so that shorter steps damp more; 0 is pure PIC. 0
+        <= value <= 1; default 0.99.
+    damping_rate : float
+        In place of flip_ratio: rate of the damping by PIC, whatever the step [1/s]. 0 <= value <=
+        1e+09.
     basis : {"quadratic", "cubic"}
         B-spline of the grid. Default "quadratic".
     courant_factor : float
@@ -48,6 +53,7 @@ class MpmSettings(MethodSettings):
     precision: Optional[Precision] = None
     transfer: Optional[Transfer] = None
     flip_ratio: Optional[float] = None
+    damping_rate: Optional[float] = None
     basis: Optional[Basis] = None
     courant_factor: Optional[float] = None
     strain_limit: Optional[float] = None
@@ -56,5 +62,23 @@ class MpmSettings(MethodSettings):
     threads: Optional[int] = None
 
     RESOLUTION: ClassVar[str] = "dx"
+    INSTEAD_OF: ClassVar[Mapping[str, str]] = {"damping_rate": "flip_ratio"}
+
+    def damping_text(self, rate: Optional[float] = None) -> str:
+        """Return how PIC damps, for captions; the settings must be complete.
+
+        Examples
+        --------
+        >>> MpmSettings(transfer="flip", flip_ratio=0.99).damping_text(188.2)
+        'damping 188 1/s (FLIP 0.99 a step)'
+        >>> MpmSettings(transfer="flip", damping_rate=50).damping_text()
+        'damping 50 1/s'
+        """
+        if self.transfer == "apic":
+            return "APIC"
+        if self.damping_rate is not None:
+            return f"damping {self.damping_rate:g} 1/s"
+        share = f"FLIP {self.flip_ratio:g} a step"
+        return share if rate is None else f"damping {rate:.3g} 1/s ({share})"
 
     step_factor = Alias("courant_factor")  # its name up to version 0.1

@@ -20,3 +20,13 @@ class MethodSettings(Record):
         """The size of the smallest thing the method resolves, m."""
         size: Optional[float] = getattr(self, self.RESOLUTION)
         return size
+
+    def damping_text(self, rate: Optional[float] = None) -> str:
+        """Return how the method damps, for captions; empty where it does not.
+
+        Parameters
+        ----------
+        rate
+            The mean rate of a run, 1/s, where the settings do not give it.
+        """
+        return ""

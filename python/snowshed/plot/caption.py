@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
 
 from snowshed.methods.registry import settings_of
 from snowshed.plot.labels import label, settings
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: Parameters of the snow that are named.
 ELASTIC = ("youngs_modulus", "poissons_ratio")
@@ -13,34 +18,59 @@ PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "har
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
-def scene_caption(scene: dict[str, Any]) -> str:
+def scene_caption(scene: dict[str, Any], damping_rate: Optional[float] = None) -> str:
     """Return what tells one scene from another.
 
     Parameters
     ----------
     scene
         Complete scene data, as in scene.json.
+    damping_rate
+        Mean rate of the damping in a run of it, 1/s, as run.json has it.
 
     Examples
     --------
     >>> from snowshed.scene.scene import Scene
     >>> print(scene_caption(Scene.preset("lab-50").resolve().data))
-    3D · panel 0.245 m, tilt 50°, 0.33 m above ground, friction 0.3 · slab 0.02 m thick · dx 0.01 m
+    3D · panel 0.245 m, tilt 50°, 0.33 m above ground, separate, friction 0.3 · slab 0.02 m thick
     snow 210 kg/m³, E 1 MPa, nu 0.3, M 0.5, p₀ 7 kPa, β 0.2, ξ 0.1 · events carry
+    dx 0.01 m · FLIP 0.99 a step
     """
     parts = [f"{scene['dimension']}D"]
     if panel := scene.get("panel"):
         parts.append(
             f"panel {_shown('panel.length', panel)}, tilt {_shown('panel.tilt', panel)}, "
-            f"{_shown('panel.height', panel)} above ground, {_contact(panel)}"
+            f"{_shown('panel.height', panel)} above ground, {contact_text(panel)}"
         )
     if slab := scene.get("slab"):
         parts.append(_slab(slab))
     if (ground := scene.get("ground")) and ground.get("tilt"):
         parts.append(f"ground tilt {_shown('ground.tilt', ground)}")
-    method = settings_of(scene)
-    parts.append(f"{method.RESOLUTION} {method.resolution:g} m")
-    return " · ".join(parts) + f"\n{_snow(scene)} · events {scene['events']['between']}"
+    settings = settings_of(scene)
+    method = [f"{settings.RESOLUTION} {settings.resolution:g} m"]
+    if damping := settings.damping_text(damping_rate):
+        method.append(damping)
+    snow = [_snow(scene), f"events {scene['events']['between']}"]
+    return "\n".join(" · ".join(line) for line in (parts, snow, method))
+
+
+def mean_damping_rate(table: pd.DataFrame) -> Optional[float]:
+    """Return the mean rate of the damping over a table of events, 1/s; None where it has none."""
+    if "damping_rate_per_s" not in table or table["damping_rate_per_s"].isna().any():
+        return None
+    return float(np.average(table["damping_rate_per_s"], weights=table["sim_time_s"]))
+
+
+def contact_text(part: dict[str, Any]) -> str:
+    """Return the contact condition of a panel, ground or obstacle, with its friction.
+
+    Examples
+    --------
+    >>> contact_text({"condition": "slip", "friction": 0.3})
+    'slip, friction 0.3'
+    """
+    condition: str = part["condition"]
+    return condition if condition == "sticky" else f"{condition}, friction {part['friction']:g}"
 
 
 def _shown(path: str, section: dict[str, Any]) -> str:
@@ -57,10 +87,6 @@ def _slab(slab: dict[str, Any]) -> str:
         low, high = min(thicknesses, key=float), max(thicknesses, key=float)
         return f"{len(layers)} layers of {low} to {high} m"
     return f"layers {', '.join(thicknesses)} m"
-
-
-def _contact(panel: dict[str, Any]) -> str:
-    return "sticky" if panel["condition"] == "sticky" else f"friction {panel['friction']:g}"
 
 
 def _densities(scene: dict[str, Any]) -> str:

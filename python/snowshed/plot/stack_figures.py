@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 from matplotlib import colormaps
@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 import snowshed._core as _core
 from snowshed.io.arrays import Floats
 from snowshed.methods.registry import resolution_of
-from snowshed.plot.caption import scene_caption
+from snowshed.plot.caption import mean_damping_rate, scene_caption
 from snowshed.plot.figure_style import (
     BODY,
     FAINT,
@@ -75,7 +75,7 @@ def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
     title = f"Stack after event {simulation.event}, from the side"
     if _pictured(stack) is stack.body:
         title += f": its largest body; 97 % of the snow lies within {stack.length:.2f} m"
-    _caption(figure, simulation.scene, title)
+    _caption(figure, simulation.scene, title, simulation.damping_rate_per_s)
     return figure
 
 
@@ -105,12 +105,12 @@ def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
         axes.grid(color=GRID, linewidth=0.8)
         quiet(axes)
     figure.axes[0].legend(frameon=False, fontsize=9, loc="lower right")
-    _caption(figure, scene, "Growth of the stack")
+    _caption(figure, scene, "Growth of the stack", mean_damping_rate(table))
     return figure
 
 
-def _caption(figure: Figure, scene: str, title: str) -> None:
-    describe(figure, f"{title}\n{scene_caption(json.loads(scene))}")
+def _caption(figure: Figure, scene: str, title: str, damping_rate: Optional[float]) -> None:
+    describe(figure, f"{title}\n{scene_caption(json.loads(scene), damping_rate)}")
 
 
 def _shades(count: int) -> list[Any]:

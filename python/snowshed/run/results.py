@@ -67,6 +67,7 @@ EVENT_COLUMNS = (
     "crest_m",
     "body_head_m",
     "body_tail_m",
+    "damping_rate_per_s",
     "trimming",
     *(MEASURES[name].column(quantity) for name in TRIMMINGS for quantity in QUANTITIES),
 )

@@ -88,7 +88,8 @@ class Panel(Record):
     thickness : float
         Thickness, below the sliding face [m]. 0 <= value <= 1e+06; default 0.
     condition : {"sticky", "slip", "separate"}
-        What snow that touches it may do. Default "slip".
+        What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and
+        leave (separate). Default "separate".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
     """
@@ -158,7 +159,8 @@ class Ground(Record):
     tilt : float
         Tilt; positive falls in the slide direction [degrees]. -60 < value < 60; default 0.
     condition : {"sticky", "slip", "separate"}
-        What snow that touches it may do. Default "sticky".
+        What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and
+        leave (separate). Default "sticky".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
     """
@@ -285,7 +287,8 @@ class Obstacle(Record):
     shape : Shape
         The solid. Required.
     condition : {"sticky", "slip", "separate"}
-        What snow that touches it may do. Default "separate".
+        What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and
+        leave (separate). Default "separate".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
     motion : Motion

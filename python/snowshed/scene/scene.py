@@ -22,7 +22,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import JsonObject, JsonValue
 from snowshed.io.paths import PathLike
-from snowshed.io.record import DEEPEST, Record, check_once
+from snowshed.io.record import DEEPEST, Record, check_instead, check_once
 from snowshed.methods.mpm import MpmSettings
 from snowshed.methods.registry import NAME_KEY, SETTINGS_KEY, MethodName, settings_class
 from snowshed.methods.slide import SlideSettings
@@ -43,6 +43,11 @@ from snowshed.scene.components import (
 __all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 
 Holder = Union[Record, List[Record]]
+
+SLIP_CHANGED = (
+    'condition "slip" lets no snow leave the surface but over its edge; '
+    'what it did up to version 1 of scenes is "separate" now'
+)
 
 
 @dataclass
@@ -95,7 +100,7 @@ class Scene(Record):
     250.0
     """
 
-    snowshed: Optional[int] = 1
+    snowshed: Optional[int] = 2
     dimension: Optional[int] = None
     title: Optional[str] = None
     gravity: Optional[float] = None
@@ -136,7 +141,7 @@ class Scene(Record):
         try:
             _refuse_null(data, "")
             if isinstance(data, dict) and "snowshed" not in data:
-                raise InputError("/snowshed: missing: the version 1 is required")
+                raise InputError("/snowshed: missing: the version 2 is required")
             scene = cls.from_data(data)
             scene.to_data()
         except InputError as error:
@@ -240,9 +245,11 @@ class Scene(Record):
                 if isinstance(value, Mapping) and record.record_type(key):
                     self._update(value, names, f"{prefix}{path}.")
                 else:
-                    set_so_far = names.setdefault(id(record), {})
-                    set_so_far[key] = field
-                    check_once(set_so_far, where)
+                    if value is not None:
+                        set_so_far = names.setdefault(id(record), {})
+                        set_so_far[key] = field
+                        check_once(set_so_far, where)
+                        check_instead(type(record), list(set_so_far.values()), where)
                     record.assign(key, value, where)
 
     def resolve(self) -> ResolvedScene:
@@ -253,7 +260,14 @@ class Scene(Record):
         InputError
             Naming the JSON path, what is wrong with it, and what is allowed.
         """
+        self._warn_of_slip()
         return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
+
+    def _warn_of_slip(self) -> None:
+        """Say, for one version, that slip has another meaning; files tell it by their version."""
+        parts = [self.panel, self.ground, *(self.obstacles or ())]
+        if self.snowshed != 1 and any(part and part.condition == "slip" for part in parts):
+            warnings.warn(SLIP_CHANGED, FutureWarning, stacklevel=3)
 
     def initialise(self) -> ResolvedScene:
         """Do what `resolve` does, which is the name to use.

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Optional, cast
 
 from snowshed._core import scene_schema as schema_text
+from snowshed._core import update_version
 from snowshed.io.json_file import JsonObject, JsonValue
 from snowshed.methods.registry import DEFAULT, METHODS, SETTINGS_KEY
 
@@ -114,7 +115,9 @@ def with_current_names(scene: Mapping[str, JsonValue]) -> JsonObject:
     >>> with_current_names({"numerics": {"step_factor": 0.5}})
     {'numerics': {'courant_factor': 0.5}}
     """
-    renamed = dict(scene)
+    renamed: JsonObject = dict(scene)
+    if "snowshed" in scene:
+        renamed = json.loads(update_version(json.dumps(scene)))
     for alias, path in _path_of_alias().items():
         section, _, name = alias.rpartition(".")
         held = renamed.get(section)

@@ -126,7 +126,7 @@ class Study:
         seeds = [1]
         <BLANKLINE>
         [scene]
-        snowshed = 1
+        snowshed = 2
         dimension = 2
         panel.height = 1.5
         <BLANKLINE>

@@ -25,6 +25,8 @@ WITHOUT_EFFECT = ("title", "output")
 #: Settings keep the name that they had when they were first hashed, so that runs computed then are
 #: found; for the same reason a scene of the default method does not name it.
 HASHED_AS = {"courant_factor": "step_factor"}
+#: The same of contact conditions: what is now separate was called slip in version 1 of scenes.
+CONDITION_HASHED_AS = {"separate": "slip", "slip": "slip of version 2"}
 
 
 @dataclass(frozen=True)
@@ -76,12 +78,28 @@ def content_hash(scene: Mapping[str, Any]) -> str:
         If a file that the scene names cannot be read.
     """
     content = {key: value for key, value in scene.items() if key not in WITHOUT_EFFECT}
+    if scene.get("snowshed") != 1:
+        content = _as_version_1(content)
     content["numerics"] = {
         HASHED_AS.get(k, k): v for k, v in scene["numerics"].items() if k != "threads"
     }
     whole = {"snowshed": _core.version, "scene": _with_file_contents(content)}
     text = json.dumps(whole, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
+
+
+def _as_version_1(scene: dict[str, Any]) -> dict[str, Any]:
+    """Return a scene with the version and the conditions that version 1 had for the same."""
+    older = {**scene, "snowshed": 1}
+    for key in {"panel", "ground"} & scene.keys():
+        older[key] = _condition_of_version_1(scene[key])
+    older["obstacles"] = [_condition_of_version_1(one) for one in scene.get("obstacles", ())]
+    return older
+
+
+def _condition_of_version_1(part: dict[str, Any]) -> dict[str, Any]:
+    condition = part["condition"]
+    return {**part, "condition": CONDITION_HASHED_AS.get(condition, condition)}
 
 
 def _with_file_contents(value: Any) -> Any:

@@ -71,7 +71,9 @@ void Boundary<T, D>::find(BlockKey key, double time, bool moving,
         c.normal[d] = T(n[d]);
         c.velocity[d] = T(v[d]);
       }
-      c.bilateral = obstacle.law.condition == Condition::slip && n[D - 1] > 0.0;
+      c.release = obstacle.law.condition == Condition::slip ? Release::never
+                  : n[D - 1] > 0.0                          ? Release::after_push
+                                                            : Release::at_once;
       found.push_back(c);
     }
   }
@@ -134,7 +136,7 @@ std::vector<typename Contacts<T, D>::StoredImpulse> Contacts<T, D>::stored_impul
   std::vector<StoredImpulse> stored;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
-      if (contacts_[i].next_normal_impulse > T(0))
+      if (contacts_[i].next_normal_impulse != T(0))
         stored.push_back({blocks_[b], contacts_[i].node, contacts_[i].obstacle,
                           double(contacts_[i].next_normal_impulse)});
   return stored;

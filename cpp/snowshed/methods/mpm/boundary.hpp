@@ -3,9 +3,9 @@
 // The conditions are the thesis's (1.2.3). Two things are ours:
 // - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
 //   contacts have a memory that outlives a step.
-// - SLIP holds snow down only where gravity presses it on, and only against a pull that is
-//   shorter-lived than the push before it. On the underside of a panel it lets go, as SEPARATE
-//   does, so that snow never hangs from a panel's back.
+// - `separate` holds snow down where gravity presses it on, against a pull that is shorter-lived
+//   than the push before it, so that a slab that vibrates stays on its panel. Elsewhere it lets go
+//   at once, so that snow never hangs from a panel's back.
 #pragma once
 
 #include <vector>

@@ -108,6 +108,13 @@ struct CarriedMotion {
   double change[3] = {0.0, 0.0, 0.0};  // of its velocity in the step, by all forces, m/s
 };
 
+/// When a contact lets go of snow that is pulled off the obstacle.
+enum class Release : std::uint8_t {
+  never,       // slip
+  after_push,  // separate, where gravity presses snow on: once pull has used up the push before it
+  at_once      // separate elsewhere
+};
+
 /// A node that an obstacle constrains.
 template <class T>
 struct Contact {
@@ -115,9 +122,10 @@ struct Contact {
   std::int32_t obstacle;
   T normal[3];
   T velocity[3];          // of the obstacle at the node
-  T normal_impulse;       // stored normal impulse, N s, that friction has yet to be charged for
+  T normal_impulse;       // stored normal impulse, N s, that friction has yet to be charged for;
+                          // with slip, which holds against any pull, it may be negative
   T next_normal_impulse;  // the same after the step being tried
-  bool bilateral;         // SLIP: no separation here
+  Release release;
 };
 
 template <class T>

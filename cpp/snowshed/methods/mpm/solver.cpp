@@ -41,7 +41,7 @@ StepParameters<T> MpmSolver<T, D>::parameters(double dt) const {
   return {T(dt),
           T(n.dx),
           T(model_.options.gravity),
-          T(n.flip_ratio),
+          T(n.flip_share(dt)),
           T(std::min(1.0, dt / state_.friction_memory)),
           T(dt / (friction_reach * n.dx)),
           model_.constants.data()};

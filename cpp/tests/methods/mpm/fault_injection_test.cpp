@@ -76,7 +76,7 @@ class Story {
     o.numerics.sleep_time = 0.005;
     o.energy = true;
     std::vector<Obstacle> obstacles{
-        fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.4)};
+        fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.4)};
     if (c.moving) {
       Obstacle paddle = fixed(make_box(Vec3(-0.1, 0, 0.05), Vec3(0.0, 1, 0.08)), Condition::sticky);
       MotionSpec motion;

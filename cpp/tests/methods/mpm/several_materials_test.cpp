@@ -26,7 +26,7 @@ std::unique_ptr<Method> thrown_halves(const Way& way, std::vector<Snow> snows, i
   o.numerics.threads = threads;
   o.energy = energy_balance;
   auto solver = make_mpm(
-      o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::slip, 0.3)});
+      o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::separate, 0.3)});
   const double size = way.dimension == 2 ? 0.12 : 0.05;
   for (int half : {0, 1}) {
     const int material_id = half * upper;
@@ -143,8 +143,8 @@ TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
   };
   const auto solver =
       make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
-                   fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::slip),
-                   fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::slip)});
+                   fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
+                   fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
   for (int material_id : {0, 1}) {
     ParticleBatch layer =
         filled_box(2, Vec3(0, 0, material_id * half), Vec3(width, 0, (material_id + 1) * half),

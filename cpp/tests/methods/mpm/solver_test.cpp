@@ -218,8 +218,8 @@ TEST(Method, AColumnCarriesItsWeight) {
   const double weight = o.snows[0].density * o.gravity;
   const auto solver =
       make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
-                   fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::slip),
-                   fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::slip)});
+                   fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
+                   fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
   solver->add(filled_box(2, Vec3::Zero(), Vec3(width, 0, height), spacing));
   const ParticleState start = solver->state();
   const std::size_t n = start.positions.size();
@@ -256,7 +256,7 @@ std::unique_ptr<Method> thrown_snow(Way way, int threads, double size, bool ener
   o.numerics.threads = threads;
   o.energy = energy_balance;
   auto solver = make_mpm(
-      o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::slip, 0.3)});
+      o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::separate, 0.3)});
   ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 0.01), Vec3(size, size, size), 0.005);
   batch.velocity = Vec3(1, 0, -3);
   solver->add(batch);

@@ -123,6 +123,11 @@ inline Vec3 weighted_mean(const ParticleState& s, const std::vector<Vec3>& of) {
   return sum / total_mass(s);
 }
 
+inline Vec3 mean_velocity(const Method& solver) {
+  const ParticleState s = solver.state();
+  return weighted_mean(s, s.velocities);
+}
+
 inline void expect_same_bits(const ParticleState& a, const ParticleState& b) {
   EXPECT_TRUE(a.positions == b.positions);
   EXPECT_TRUE(a.velocities == b.velocities);

@@ -58,7 +58,7 @@ class Incline(NamedTuple):
         size: tuple[float, ...],
         friction: float,
         *,
-        condition: Condition = "slip",
+        condition: Condition = "separate",
         speed: float = 0.0,
     ) -> Scene:
         """Return a scene with a block of snow that lies on the plane.

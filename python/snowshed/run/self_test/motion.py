@@ -66,7 +66,7 @@ def column_scene() -> Scene:
     """Return an elastic column between frictionless walls on a sticky floor."""
     floor = Obstacle(shape=Shape.plane((0.0, 0.0), (0.0, 1.0)), condition="sticky")
     walls = [
-        Obstacle(shape=Shape.plane((x, 0.0), (side, 0.0)), condition="slip", friction=0.0)
+        Obstacle(shape=Shape.plane((x, 0.0), (side, 0.0)), condition="separate", friction=0.0)
         for x, side in ((0.0, 1.0), (WIDTH, -1.0))
     ]
     column = Body(shape=Shape.box((WIDTH / 2, HEIGHT / 2), (WIDTH, HEIGHT)))

@@ -65,7 +65,9 @@ def mesh_structure(
     return Scene(
         dimension=dimension,
         ground=Ground(tilt=ground_tilt),
-        obstacles=[Obstacle(name="structure", shape=solid, condition="slip", friction=friction)],
+        obstacles=[
+            Obstacle(name="structure", shape=solid, condition="separate", friction=friction)
+        ],
         bodies=[Body(shape=Shape.difference(Shape.union(*raised), solid), event=0)],
         numerics=MpmSettings(dx=dx),
     )

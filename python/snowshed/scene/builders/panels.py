@@ -209,7 +209,7 @@ def _board(
     name: str, slope: Slope, start: float, end: float, friction: float, dx: float
 ) -> Obstacle:
     board = slope.board(start, end, BOARD_CELLS * dx)
-    return Obstacle(name=name, shape=board, condition="slip", friction=friction)
+    return Obstacle(name=name, shape=board, condition="separate", friction=friction)
 
 
 def snow_layer(

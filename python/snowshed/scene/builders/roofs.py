@@ -113,7 +113,8 @@ def gable_roof(
     scene.append("obstacles", _house([slope, far], upper, length, overhang, dx))
     board = far.board(0.0, length, BOARD_CELLS * dx)
     scene.append(
-        "obstacles", Obstacle(name="far-slope", shape=board, condition="slip", friction=friction)
+        "obstacles",
+        Obstacle(name="far-slope", shape=board, condition="separate", friction=friction),
     )
     size = (guard_height, guard_thickness)
     rails, far_rails = (_rails(side, guards, length, size, dx) for side in (slope, far))

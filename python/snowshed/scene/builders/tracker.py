@@ -84,7 +84,7 @@ def tracker(
     board = Obstacle(
         name="tracker",
         shape=slope.board(0.0, length, BOARD_CELLS * dx),
-        condition="slip",
+        condition="separate",
         friction=friction,
         motion=motion,
     )

@@ -177,13 +177,21 @@ struct NodeKernels {
     return rate < step.friction_rate ? step.friction_rate : rate < T(1) ? rate : T(1);
   }
 
-  /// STICKY, SLIP, SEPARATE (thesis 1.2.3), with Coulomb friction on the running mean of the net
+  /// The pull that a contact cancels in a step, as a negative push (N s); more is let go. `stored`
+  /// is what is left of the push before.
+  static T least_push(const Contact<T>& c, T stored) {
+    if (c.release == Release::never) return std::numeric_limits<T>::lowest();
+    return c.release == Release::after_push ? -stored : T(0);
+  }
+
+  /// Sticky, slip, separate (thesis 1.2.3), with Coulomb friction on the running mean of the net
   /// normal impulse. Each contact has a store of normal impulse: what presses on the obstacle
   /// fills it, pull empties it, and it drains at the rate 1/(friction memory); friction is charged
   /// for what drains. Over time every newton-second of net push is charged once. Charging each
   /// step's push as it comes, the usual rule, overestimates the friction of a slab that vibrates
-  /// on its panel (SLIP cancels the pulls but forgets them), up to holding it where it should
-  /// slide. Pull beyond the store is let go, so that SLIP does not glue.
+  /// on its panel (slip cancels the pulls but forgets them), up to holding it where it should
+  /// slide. Slip cancels any pull: its store may become a debt, which draws no friction and which
+  /// later pushes must pay back. Separate lets go of pull beyond the store.
   ///
   /// The store stays at the node while the snow moves on, so fast snow must be charged before it
   /// has left: the store drains at least in the time that the snow takes to slide over a given part
@@ -208,10 +216,10 @@ struct NodeKernels {
     }
     const T drained = c.normal_impulse * drain_rate(step, c, normal_speed, free);
     const T left = c.normal_impulse - drained;
-    const T least_push = c.bilateral ? -left : T(0);
+    const T least = least_push(c, left);
     T push = -mass * normal_speed;
-    const bool lets_go = push < least_push;
-    if (lets_go) push = least_push;
+    const bool lets_go = push < least;
+    if (lets_go) push = least;
     c.next_normal_impulse = left + push;
 
     T slip[D], slip_squared = 0;
@@ -222,7 +230,7 @@ struct NodeKernels {
       slip_squared += slip[d] * slip[d];
     }
     const T slip_impulse = mass * std::sqrt(slip_squared);
-    const T friction = T(law.friction) * drained;
+    const T friction = T(law.friction) * (drained > T(0) ? drained : T(0));
     const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
     for (int d = 0; d < D; ++d) node[d] = after[d] = stored_impulses[d] - lost * slip[d];
     if constexpr (energy) {

@@ -1,0 +1,42 @@
+#include "snowshed/scene/earlier_version.hpp"
+
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+namespace {
+
+using nlohmann::json;
+
+/// The objects of a scene that have a contact condition, by their JSON pointers.
+std::vector<json::json_pointer> parts_with_condition(const json& scene) {
+  std::vector<json::json_pointer> parts{json::json_pointer("/panel"),
+                                        json::json_pointer("/ground")};
+  if (scene.contains("obstacles") && scene["obstacles"].is_array())
+    for (std::size_t i = 0; i < scene["obstacles"].size(); ++i)
+      parts.push_back(json::json_pointer("/obstacles") / i);
+  return parts;
+}
+
+/// What version 1 called slip let go of snow, as separate does now.
+void rename_slip(json& scene, std::vector<std::string>& notes) {
+  for (const json::json_pointer& part : parts_with_condition(scene)) {
+    const json::json_pointer place = part / "condition";
+    if (!scene.contains(place) || scene[place] != "slip") continue;
+    scene[place] = "separate";
+    notes.push_back(place.to_string() +
+                    ": \"slip\" of version 1 is read as \"separate\", its name since version 2; "
+                    "there \"slip\" lets no snow leave the surface but over its edge");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> update_version(json& scene) {
+  std::vector<std::string> notes;
+  if (!scene.is_object() || !scene.contains("snowshed") || scene["snowshed"] != 1) return notes;
+  rename_slip(scene, notes);
+  scene["snowshed"] = 2;
+  return notes;
+}
+
+}  // namespace snowshed

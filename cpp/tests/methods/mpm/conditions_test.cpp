@@ -1,0 +1,113 @@
+// What tells sticky, slip and separate from each other: snow that is pulled off an obstacle, and a
+// slab that reaches beyond an edge.
+#include <gtest/gtest.h>
+
+#include "methods/mpm/solver_testing.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double cell = 0.01;
+
+/// A block of elastic snow, 4 cells high, that rests on level ground.
+std::unique_ptr<Method> block_on(const ContactLaw& law, double gravity, const Vec3& velocity) {
+  MpmOptions o = options_for({2, Precision::float32}, cell);
+  o.gravity = gravity;
+  o.snows[0].model = SnowModel::elastic;
+  auto solver =
+      make_mpm(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), law.condition, law.friction)});
+  ParticleBatch block = filled_box(2, Vec3::Zero(), Vec3(0.08, 0, 0.04), cell / 2);
+  block.velocity = velocity;
+  solver->add(block);
+  return solver;
+}
+
+/// Mean position of the lowest layer, which are the particles that began below half a cell.
+Vec3 foot(const ParticleState& now, const ParticleState& start) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (std::size_t i = 0; i < start.positions.size(); ++i) {
+    if (start.positions[i].z() > cell / 2) continue;
+    sum += now.positions[i];
+    ++count;
+  }
+  return sum / count;
+}
+
+struct Pulled {
+  Vec3 foot, velocity;  // m, how far the lowest layer has come; m/s, mean of all
+};
+
+/// What becomes of snow that is thrown up and along the ground.
+Pulled pulled_off(Condition condition, double duration) {
+  const auto solver = block_on({condition, 0.0}, 0.0, Vec3(0.3, 0, 0.3));
+  const ParticleState start = solver->state();
+  run_until(*solver, duration);
+  return {foot(solver->state(), start) - foot(start, start), mean_velocity(*solver)};
+}
+
+TEST(Conditions, SnowThatIsPulledOffLeavesWithSeparateOnly) {
+  constexpr double t = 0.1;
+  const Pulled separate = pulled_off(Condition::separate, t);
+  EXPECT_NEAR(separate.foot.x(), 0.3 * t, 0.01 * t);
+  EXPECT_NEAR(separate.foot.z(), 0.3 * t, 0.01 * t);
+  EXPECT_NEAR(separate.velocity.z(), 0.3, 0.003);
+
+  const Pulled slip = pulled_off(Condition::slip, t);
+  EXPECT_NEAR(slip.foot.x(), 0.3 * t, 0.01 * t);
+  EXPECT_NEAR(slip.velocity.x(), 0.3, 0.003);
+  EXPECT_LT(std::abs(slip.foot.z()), 0.1 * cell);
+
+  const Pulled sticky = pulled_off(Condition::sticky, t);
+  EXPECT_LT(sticky.foot.norm(), 0.1 * cell);
+}
+
+// Friction acts on what presses: where slip holds snow against its weight, there is none.
+TEST(Conditions, SnowThatSlipHoldsUpFeelsNoFriction) {
+  for (const double gravity : {9.81, -9.81}) {
+    const auto solver = block_on({Condition::slip, 0.5}, gravity, Vec3(0.3, 0, 0));
+    run_until(*solver, 0.05);
+    EXPECT_NEAR(mean_velocity(*solver).x(), gravity > 0 ? 0.3 - 0.5 * 9.81 * 0.05 : 0.3, 0.02)
+        << gravity;
+  }
+}
+
+/// A slab of elastic snow, 20 cm long, that lies on a level shelf and reaches 12 cm beyond its
+/// edge, so that its weight turns it over the edge where nothing holds its rear. Returns how far
+/// its middle has sunk after a third of a second, m.
+double sunk_over_the_edge(Condition condition) {
+  MpmOptions o = options_for({2, Precision::float32}, cell);
+  o.snows[0].model = SnowModel::elastic;
+  const Shape shelf = make_box(Vec3(-0.5, 0, -0.05), Vec3(1, 1e9, 0.1));
+  const auto solver = make_mpm(o, {fixed(shelf, condition, 0.8)});
+  solver->add(filled_box(2, Vec3(-0.08, 0, 0), Vec3(0.12, 0, 0.04), cell / 2));
+  run_until(*solver, 0.33);
+  const ParticleState s = solver->state();
+  return 0.02 - weighted_mean(s, s.positions).z();
+}
+
+TEST(Conditions, ASlabTipsOverAnEdgeWithSeparateOnly) {
+  EXPECT_GT(sunk_over_the_edge(Condition::separate), 0.1);
+  EXPECT_LT(sunk_over_the_edge(Condition::slip), 0.01);  // it bends
+  EXPECT_LT(sunk_over_the_edge(Condition::sticky), 0.01);
+}
+
+// Nothing but its edge lets snow off a panel with slip; there it must not be caught.
+TEST(Conditions, WithSlipSnowLeavesAPanelOverItsEdge) {
+  const double tilt = radians(40), length = 0.2;
+  const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
+  const Shape panel = make_plate(-0.5 * length * slope, normal, length, infinity, 0.02);
+  const auto solver =
+      make_mpm(options_for({2, Precision::float32}, cell), {fixed(panel, Condition::slip, 0.3)});
+  ParticleBatch slab = filled_box(2, Vec3(-0.15, 0, 0), Vec3(-0.05, 0, 0.03), cell / 2);
+  for (Vec3& x : slab.positions) x = x.x() * slope + x.z() * normal;
+  solver->add(slab);
+  run_until(*solver, 0.5);
+  for (const Vec3& x : solver->state().positions) {
+    ASSERT_GT(x.dot(slope), 2 * cell);
+    ASSERT_LT(x.z(), -0.2);
+  }
+}
+
+}  // namespace
+}  // namespace snowshed
