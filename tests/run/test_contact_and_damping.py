@@ -8,6 +8,7 @@ import pytest
 from conftest import tiny_scene
 
 from snowshed import Body, Ground, Obstacle, Scene, Shape, Simulation, Snow, run_events
+from snowshed.run.self_test.incline import Incline
 
 CONDITIONS = ("sticky", "slip", "separate")
 
@@ -60,6 +61,22 @@ def test_only_separate_lets_a_slab_tip_over_an_edge():
     found = {condition: sunk(condition) for condition in CONDITIONS}
     assert found["separate"] > 0.1
     assert abs(found["slip"]) < 0.01 and abs(found["sticky"]) < 0.01
+
+
+@pytest.mark.filterwarnings("ignore:condition:FutureWarning")
+@pytest.mark.parametrize("condition", ["slip", "separate"])
+def test_a_slab_slides_as_coulomb_says_near_the_limit(condition):
+    """Pull that slip holds at some nodes must not add to the friction at others."""
+    incline = Incline(40.0, dimension=2)
+    scene = incline.scene((2.0, 0.05), 0.8, condition=condition)
+    scene.update({"numerics": {"dx": 0.01, "threads": 1, "sleep_speed": 0.0}})
+    sim = run(scene, 0.1)
+    begin, time = sim.velocities()[:, [0, -1]].mean(axis=0) @ incline.slope, sim.time
+    while sim.time < 0.3:
+        sim.step(20)
+    gained = sim.velocities()[:, [0, -1]].mean(axis=0) @ incline.slope - begin
+    felt = incline.coulomb(0.0) - gained / (sim.time - time)  # tan 40 is 0.84
+    assert felt == pytest.approx(incline.coulomb(0.0) - incline.coulomb(0.8), rel=0.005)
 
 
 def collapsed(**numerics: float) -> float:

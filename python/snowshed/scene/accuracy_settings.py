@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from snowshed.methods.registry import SETTINGS_KEY
 from snowshed.scene.schema import Parameter, scene_parameters
@@ -18,6 +18,11 @@ ACCURACY: Mapping[str, str] = {
     for p in sorted(scene_parameters(), key=_of_other_section)
     if p.accuracy
 }
+
+#: Those that are numbers; one that stands in another's place may be missing in a scene.
+NUMBERS: Sequence[str] = [
+    p.path.rpartition(".")[2] for p in scene_parameters() if p.accuracy and p.kind == "number"
+]
 
 #: Names that settings had in earlier versions, and thus in tables and records, to those of today.
 FORMER_NAMES: Mapping[str, str] = {

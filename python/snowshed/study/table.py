@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 from snowshed.io.json_file import is_number
 from snowshed.io.messages import shortened
 from snowshed.run.results import WORDS
-from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.scene.accuracy_settings import ACCURACY, NUMBERS
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
@@ -68,7 +68,8 @@ def read_table(
     columns = ["hash", *axes, "seed", "event", *MEASURED_TYPES, "error", "version", "dimension"]
     columns += [*ACCURACY, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
-    return with_trimming(table.astype(dict.fromkeys(COUNTS, "Int64")))
+    types = {**dict.fromkeys(COUNTS, "Int64"), **dict.fromkeys(NUMBERS, float)}
+    return with_trimming(table.astype(types))
 
 
 def with_trimming(table: pd.DataFrame) -> pd.DataFrame:
