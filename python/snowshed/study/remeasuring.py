@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: From the particles after an event to columns of the table.
-Measuring = Callable[[EventParticles], Mapping[str, Any]]
+Measuring = Callable[[EventParticles], Mapping[str, object]]
 
 
 def remeasure(
