@@ -80,9 +80,9 @@ def remeasure(
             for event, data in store.particles(hash_).items():
                 if (hash_, event) in rows:
                     particles = _unpacked(store, hash_, event, data)
+                    more = measure(particles) if measure else {}
                     columns = measured_columns(particles.measure(trimming))
-                    columns.update(measure(particles) if measure else {})
-                    found[rows[hash_, event]] = columns
+                    found[rows[hash_, event]] = {**columns, **more}
     if len(found) < len(rows):
         raise InputError(
             f"{folder}: no particles of {len(rows) - len(found)} of {len(rows)} stacks; their runs "
