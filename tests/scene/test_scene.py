@@ -34,10 +34,10 @@ def check_mirror(record: type[Record], node: dict, seen: set) -> None:
     if record is not MpmSettings:  # the schema has the settings of all methods there
         assert set(record.keys()) == set(inner), record
     seen.add(record)
-    for key, child in inner.items():
+    for key in record.keys():  # noqa: SIM118 (a class method, not a mapping's)
         kind = record().record_type(key)
-        full = resolve(SCHEMA, child)
-        child = full.get("items", child)
+        full = resolve(SCHEMA, inner[key])
+        child = full.get("items", inner[key])
         assert (kind is not None) == bool(properties(SCHEMA, child)), key
         if kind is not None and kind not in seen:
             check_mirror(kind, child, seen)

@@ -140,10 +140,10 @@ class Scene(Record):
             raise InputError(f"{path}: not JSON: {error}") from None
         try:
             _refuse_null(data, "")
-            if isinstance(data, dict) and "snowshed" not in data:
-                raise InputError("/snowshed: missing: the version 2 is required")
             scene = cls.from_data(data)
             scene.to_data()
+            if "snowshed" not in data:
+                raise InputError("/snowshed: missing: the version 2 is required")
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
         scene._base_dir = os.fspath(Path(path).parent)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: From the particles after an event to columns of the table.
-Measuring = Callable[[EventParticles], Mapping[str, Any]]
+Measuring = Callable[[EventParticles], Mapping[str, object]]
 
 
 def remeasure(
@@ -80,9 +80,9 @@ def remeasure(
             for event, data in store.particles(hash_).items():
                 if (hash_, event) in rows:
                     particles = _unpacked(store, hash_, event, data)
+                    more = measure(particles) if measure else {}
                     columns = measured_columns(particles.measure(trimming))
-                    columns.update(measure(particles) if measure else {})
-                    found[rows[hash_, event]] = columns
+                    found[rows[hash_, event]] = {**columns, **more}
     if len(found) < len(rows):
         raise InputError(
             f"{folder}: no particles of {len(rows) - len(found)} of {len(rows)} stacks; their runs "
