@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,6 +22,7 @@ TARGETS = ("snowshed_tests", "_core", "snowshed-run")
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return 0 if every fault was caught or is known to survive, 1 if not, 2 on errors."""
     options = _parser().parse_args(arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the copy, as Ctrl-C does
     try:
         faults = read_faults()
         check_places(faults, ROOT)
@@ -30,7 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print("\n".join(f"{fault.area}: {fault.name}: {fault.why}" for fault in chosen))
             return 0
         if not options.table:
-            _run(chosen, faults, results)
+            _run(chosen, faults)
+            results = Results.read()
         PAGE.write_text(
             with_table(PAGE.read_text(encoding="utf-8"), table(faults, results.caught_by)),
             encoding="utf-8",
@@ -68,7 +71,7 @@ def _chosen(faults: Sequence[Fault], options: argparse.Namespace, results: Resul
     ]
 
 
-def _run(chosen: Sequence[Fault], faults: Sequence[Fault], results: Results) -> None:
+def _run(chosen: Sequence[Fault], faults: Sequence[Fault]) -> None:
     """Try the faults; those that need no compiler and those with a switch come first."""
     copy = SourceCopy(ROOT, FOLDER / "source", faults)
     workshop = Workshop(FOLDER, FOLDER / "source")
@@ -80,8 +83,11 @@ def _run(chosen: Sequence[Fault], faults: Sequence[Fault], results: Results) -> 
     sound: set[str] = set()
     for number, fault in enumerate(ordered, 1):
         caught_by = _try(copy, workshop, fault)
-        if caught_by and fault.switch:
+        if fault.is_cpp and not fault.switch:
+            workshop.build(*TARGETS)  # the sound program again
+        if caught_by:
             _require_sound(workshop, caught_by, sound)
+        results = Results.read()  # anew, for another run may have gone on meanwhile
         results.enter(fault.name, caught_by)
         results.write(FILE, faults)
         print(f"{number}/{len(ordered)} {fault.name}: {caught_by or 'SURVIVES'}", flush=True)
