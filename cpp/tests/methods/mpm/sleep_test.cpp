@@ -157,6 +157,24 @@ TEST(Sleep, PressureWakes) {
   EXPECT_NEAR(gain[1], gain[0], 0.3 * gain[0]);
 }
 
+/// A grain that is put into a block of sleeping snow, without touching it, flies on.
+TEST(Sleep, ArrivalsWake) {
+  MpmOptions o = sleepy(two_d);
+  o.gravity = 0;
+  const auto solver = make_mpm(o, {});
+  solver->add(filled_box(2, Vec3(0.01, 0, 0.01), Vec3(0.03, 0, 0.08), 0.005));
+  run_until(*solver, 0.1);
+  EXPECT_GT(solver->counters().slept_updates, 0);
+  ParticleBatch grain;
+  grain.positions = {Vec3(0.065, 0, 0.02)};
+  grain.velocity = Vec3(0, 0, 0.1);
+  grain.mass = 0.005;
+  solver->add(grain);
+  const double start = solver->time();
+  run_until(*solver, start + 0.1);
+  EXPECT_NEAR(solver->state().positions.back().z(), 0.02 + 0.1 * (solver->time() - start), 1e-4);
+}
+
 TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
   // Speed is the same before and after the top of a throw, and when a blow takes one component
   // while gravity adds another.
