@@ -14,6 +14,7 @@ constexpr int steps_between_looks = 8;
 struct Look {
   double speed = 0, fastest = 0;
   CarriedMotion carried;
+  VecD<2> velocity = VecD<2>::Zero();
 };
 
 class TwoBlocks : public testing::Test {
@@ -23,7 +24,7 @@ class TwoBlocks : public testing::Test {
     Sleep<2>::BlockProbe probe;
     probe.fastest = [&](std::int32_t b) { return b == 0 ? 1.0 : look.fastest; };
     probe.speed = [&](std::int32_t b) { return b == 0 ? 1.0 : look.speed; };
-    probe.velocity = [](std::int32_t) { return VecD<2>(VecD<2>::Zero()); };
+    probe.velocity = [&](std::int32_t) { return look.velocity; };
     probe.carried = [&](std::int32_t) { return look.carried; };
     probe.obstacle_moves = [](std::int32_t) { return false; };
     probe.holds_its_snow = [](std::int32_t) { return true; };
@@ -32,6 +33,7 @@ class TwoBlocks : public testing::Test {
     return sleep_.states()[1].asleep;
   }
 
+  void wake_all() { sleep_.wake_all(layout_, now_); }
   void fall_asleep() {
     ASSERT_TRUE(look_for(2 * time_to_sleep, {0.5 * speed_limit, speed_limit, {}}));
   }
@@ -51,6 +53,28 @@ TEST_F(TwoBlocks, StayAwakeAboveTheLimitAndWithOneFastParticle) {
   EXPECT_FALSE(look_for(5 * time_to_sleep, {1.1 * speed_limit, speed_limit, {}}));
   EXPECT_FALSE(look_for(5 * time_to_sleep, {0.5 * speed_limit, 6 * speed_limit, {}}));
   EXPECT_TRUE(look_for(5 * time_to_sleep, {0.5 * speed_limit, 4 * speed_limit, {}}));
+}
+
+/// The mean velocity in the first half of the time to fall asleep, and in the second.
+TEST_F(TwoBlocks, StayAwakeWhileTheySetOff) {
+  for (const double second : {0.001, 0.009}) {
+    wake_all();
+    Look look{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, -0.002)};
+    look_for(0.5 * time_to_sleep, look);
+    look.velocity[1] = -second;
+    EXPECT_EQ(look_for(0.55 * time_to_sleep, look), second < 0.002) << second;
+  }
+}
+
+TEST_F(TwoBlocks, StayAwakeWhileTheyLoseTheSpeedThatGravityTakes) {
+  const double lost = 9.81 * 0.5 * time_to_sleep;  // from one half to the other
+  for (const double part : {0.3, 0.7}) {
+    wake_all();
+    Look look{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, lost)};
+    look_for(0.5 * time_to_sleep, look);
+    look.velocity[1] = (1 - part) * lost;
+    EXPECT_EQ(look_for(0.55 * time_to_sleep, look), part < 0.5) << part;
+  }
 }
 
 TEST_F(TwoBlocks, WakeWhereTheirNeighbourWouldCarryThemFasterThanTheLimit) {
