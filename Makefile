@@ -16,6 +16,7 @@ FUZZ_SECONDS ?= 60
 CLANG_FORMAT := 23.1.5
 VERIFY ?= --quick
 THESIS ?= --quick
+MUTANTS ?=
 
 # Several tools must find cmake and ninja, which may be only in .venv.
 export PATH := $(CURDIR)/$(BIN):$(PATH)
@@ -32,7 +33,7 @@ CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS = $(wildcard python validation thesis tests tools examples benchmarks lua_compat)
 
 .PHONY: help build demo verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
-  sanitize-thread fuzz bench docs format lint tidy clean
+  sanitize-thread fuzz mutants bench docs format lint tidy clean
 .NOTPARALLEL:
 
 help:
@@ -43,6 +44,7 @@ help:
 	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
 	@echo "make sanitize  the tests with AddressSanitizer, UBSan and ThreadSanitizer"
 	@echo "make fuzz      fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
+	@echo "make mutants   inject faults and see which the tests catch, an hour or two"
 	@echo "make bench     speed of the solver and of the laboratory events, kept in benchmarks/results"
 	@echo "make docs      the documentation as HTML"
 	@echo "make format    format all sources"
@@ -146,6 +148,11 @@ fuzz: $(VENV)/.build-tools
 	  -DCMAKE_CXX_COMPILER="$$(sh tools/provide_fuzzer.sh || echo $${CXX:-c++})"
 	cmake --build $(FUZZED)
 	sh tools/fuzz.sh $(FUZZED) $(FUZZ_SECONDS)
+
+# In a tree of its own, with one job, so that the machine can be used meanwhile.
+mutants: $(VENV)/.dev-tools
+	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
+	nice -n 10 $(BIN)/python -m tools.mutants $(MUTANTS)
 
 bench: build
 	@sh tools/provide_header.sh benchmark/benchmark.h libbenchmark-dev || echo "Fetching Google Benchmark instead."

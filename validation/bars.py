@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.verification.measurements import Settings
 from snowshed.analysis.verification.solutions import records, rows_of, solutions
-from validation.case import Case, Quantity
+from validation.case import Case, Quantity, Wanted
 from validation.convergence import convergences
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Bar:
     count: int
 
     @property
-    def meant(self) -> Settings:
+    def meant(self) -> Wanted:
         """The settings that the demand is for; an order is not for one size alone."""
         order_in = self.quantity.order_in if self.kind == "order" else None
         return {name: value for name, value in self.quantity.bar_for.items() if name != order_in}
@@ -89,5 +89,5 @@ def _order_bar(case: str, quantity: Quantity, demanded: float, rows: pd.DataFram
     return Bar(case, quantity, "order", demanded, order, settings, len(meant))
 
 
-def _matches(settings: Settings, wanted: Settings) -> bool:
+def _matches(settings: Settings, wanted: Wanted) -> bool:
     return all(settings.get(name) == value for name, value in wanted.items())

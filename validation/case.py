@@ -6,12 +6,15 @@ matrix of settings through `Case.measure`, in a process of its own, and the repo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Optional
 
-from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.analysis.verification.measurements import Measured, Settings, Value
 from snowshed.io.formatting import number, percent
+
+#: Settings that are asked for; None: not given.
+Wanted = Mapping[str, Optional[Value]]
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,8 @@ class Quantity:
     bar:
         Largest error allowed; `None` where nothing is demanded.
     bar_for:
-        The settings that the bar is for: every name given here must have this value.
+        The settings that the bar is for: every name given here must have this value; None: it must
+        not be given.
     order_in:
         The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
     least_order:
@@ -39,7 +43,7 @@ class Quantity:
     name: str
     title: str
     bar: Optional[float] = None
-    bar_for: Settings = field(default_factory=dict)
+    bar_for: Wanted = field(default_factory=dict)
     order_in: Optional[str] = None
     least_order: Optional[float] = None
     relative: bool = True

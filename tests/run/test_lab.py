@@ -31,12 +31,17 @@ def test_five_events_come_to_rest_off_the_panel(table):
     assert table.sim_time_s.between(0.4, 3).all()
 
 
+#: What an independent program gives for this scene, m; a stack's noise is 2 to 6 %, after the
+#: fifth event up to 16 %.
+HEIGHTS = [0.045, 0.072, 0.097, 0.122, 0.147]
+LENGTHS = [0.22, 0.31, 0.33, 0.38, 0.41]
+
+
 def test_stack_has_the_size_it_should(table):
-    """Heights within 0.03 to 0.25 m, lengths within 0.15 to 0.6 m (0.045-0.147, 0.22-0.41 m)."""
-    assert table.height_m.between(0.03, 0.25).all()
-    assert table.length_m.between(0.15, 0.6).all()
-    assert table.height_m.iloc[-1] > 1.5 * table.height_m.iloc[0]
-    assert table.length_m.iloc[-1] > 1.2 * table.length_m.iloc[0]
+    """Within a fifth of the independent program's; see also test_laboratory_stacks.py."""
+    for values, other in ((table.height_m, HEIGHTS), (table.length_m, LENGTHS)):
+        assert values[:4].to_numpy() == pytest.approx(other[:4], rel=0.2)
+        assert values[4] == pytest.approx(other[4], rel=0.3)
     assert (table.detached_kg < 0.05 * table.mass_kg).all()
     assert (table.body_length_m <= table.length_m * 1.05).all()
 
@@ -44,12 +49,13 @@ def test_stack_has_the_size_it_should(table):
 def test_mass_is_exact_and_snow_loosens_a_little(table):
     slabs = 0.245 * 0.02 * table.event
     assert table.mass_kg.to_numpy() == pytest.approx(210 * slabs.to_numpy(), rel=1e-6)
-    assert (table.volume_m3 / slabs).between(0.8, 1.5).all()
+    assert (table.volume_m3 / slabs).between(1.0, 1.25).all()
 
 
 def test_the_head_walks_toward_the_panel(table):
     """From 0.14 to 0.10 m in the independent program."""
-    assert table.head_m.between(0.0, 0.25).all()
+    assert table.head_m.iloc[0] == pytest.approx(0.14, abs=0.025)
+    assert table.head_m.iloc[-1] == pytest.approx(0.10, abs=0.04)
     assert table.head_m.iloc[-1] < table.head_m.iloc[0] - 0.01
     assert np.polyfit(table.event, table.head_m, 1)[0] < 0
 

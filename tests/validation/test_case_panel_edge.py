@@ -72,8 +72,15 @@ def test_a_coarse_throw():
     assert set(found) == {quantity.name for quantity in CASE.quantities}
     assert abs(found["landing"].error) < 0.01
     assert found["flight"].error < 1e-3
-    assert found["spin"].value > 0
-    assert abs(found["spin_kept"].error) < 1e-3  # APIC
+    for quantity in CASE.quantities:
+        assert abs(found[quantity.name].error) <= quantity.bar, quantity.name
+    assert found["spin"].error > 0.1  # too fast; see the remarks
+
+
+def test_flip_turns_a_slab_at_the_edge_as_fast_as_it_can():
+    found = {one.quantity: one for one in CASE.measure({**SLAB, "dx": 0.02}).measured}
+    assert found["spin"].error == pytest.approx(0.18, abs=0.12)
+    assert found["spin_kept"].value < 0.1  # the share of PIC damps it away
 
 
 def test_a_slab_that_stays_is_an_error():

@@ -159,3 +159,23 @@ def test_three_dimensions_are_compared_with_two(monkeypatch):
     ratio = outcome.measured[-1]
     assert ratio.quantity == "height_over_2d"
     assert ratio.value == pytest.approx(run.stacks[0].height / recorded(2, 0.02).mean("height", 1))
+
+
+def test_stacks_of_the_default_scheme_are_within_their_bar():
+    outcome = CASE.measure({**QUICK, "transfer": "flip", "seedings": 4, "events": 3})
+    bars = {one.name: one for one in CASE.quantities if one.bar is not None}
+    assert set(bars) == {"height_noise", "length_noise"}
+    for one in outcome.measured:
+        if one.quantity in bars:
+            assert abs(one.error) <= bars[one.quantity].bar, one
+
+
+@pytest.mark.parametrize("full", [True, False])
+def test_the_bars_are_for_the_scheme_of_the_recorded_runs(full):
+    meant = [
+        one
+        for one in CASE.matrix(full)
+        if all(one.get(key) == value for key, value in stack_convergence.DEFAULT_SCHEME.items())
+    ]
+    assert len(meant) >= 4
+    assert not any("flip_ratio" in one or one["transfer"] == "apic" for one in meant)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from snowshed.analysis.verification.measurements import Measured, Settings
-from validation.case import Case, Outcome, Quantity
+from validation.case import Case, Outcome, Quantity, Wanted
 from validation.driving import relative
 from validation.lab_stack import (
     COMPARED,
@@ -49,6 +49,18 @@ SCHEMES: Sequence[Settings] = (
     {"courant_factor": 0.3, "flip_ratio": 0.9967},
     {"courant_factor": 0.3, "transfer": "apic"},
 )
+
+#: The scheme of the recorded runs: a setting that is None is not given.
+DEFAULT_SCHEME: Wanted = {
+    "transfer": "flip",
+    "flip_ratio": None,
+    "basis": None,
+    "precision": None,
+    "particles_per_voxel": None,
+    "courant_factor": None,
+}
+#: Standard deviations between seedings by which a mean of stacks may differ from the recorded one.
+NOISE_BAR = 3.0
 
 #: Below which speed snow may sleep, m/s; 0: never.
 SLEEP_SPEEDS = (0.0, 0.002, 0.005, 0.02)
@@ -209,11 +221,15 @@ CASE = Case(
         Quantity(
             "height_noise",
             "Height less that of recorded runs, standard deviations",
+            bar=NOISE_BAR,
+            bar_for=DEFAULT_SCHEME,
             relative=False,
         ),
         Quantity(
             "length_noise",
             "Length less that of recorded runs, standard deviations",
+            bar=NOISE_BAR,
+            bar_for=DEFAULT_SCHEME,
             relative=False,
         ),
         Quantity("height_over_2d", "Height in 3D over height in 2D on the same grid"),

@@ -59,6 +59,20 @@ def test_scores_by_hand():
     assert table.loc["length_rmse_m"].tolist() == pytest.approx([0, 0.05, 0.025, 0.025])
 
 
+def test_errors_of_both_signs_do_not_cancel_in_the_rmse():
+    rows = [
+        {"hash": "a", "panel.tilt": 40.0, COHESION: beta, "seed": 1, "event": event,
+         "height_m": height, "length_m": 0.2, "head_m": 0.1, "tail_m": 0.3}
+        for beta, event, height in ((0.1, 1, 0.07), (0.1, 2, 0.14), (0.2, 1, 0.2), (0.2, 2, 0.2))
+    ]  # fmt: skip
+    measurements = [Measurement(40.0, event, 1, "height", 0.1, 0.01) for event in (1, 2)]
+    stacks = simulated(pd.DataFrame(rows))
+    ranked = rank(stacks, compare(stacks, measurements)).set_index(COHESION).loc[0.1]
+    assert ranked["height_rmse_m"] == pytest.approx((0.5 * (0.03**2 + 0.04**2)) ** 0.5)
+    assert ranked["height_mean_error_m"] == pytest.approx(0.035)
+    assert ranked["height_relative_error"] == pytest.approx(-0.05)
+
+
 def test_exact_measurements_find_their_triplet():
     stacks = simulated(table_of(thesis_triplets(), noise=0, seeds=(1,)))
     ranked = rank(stacks, compare(stacks, measured(TRUTH, uncertainty=1e-9, noise=0)))

@@ -123,6 +123,26 @@ TEST(MaterialPerParticle, TheStiffestThereIsLimitsTheStep) {
   EXPECT_DOUBLE_EQ(solver->time_step(), limit(o.snows[1]));
 }
 
+TEST(MaterialPerParticle, TheStiffestLimitsTheStepWhereverItStandsInTheList) {
+  MpmOptions o = options_for({2, Precision::float64});
+  o.gravity = 0;
+  double step[2];
+  for (const int stiffest : {0, 1}) {
+    o.snows = {soft_snow(), soft_snow()};
+    o.snows[std::size_t(stiffest)] = Snow();
+    const auto solver = make_mpm(o, {});
+    for (const int material_id : {0, 1}) {
+      const double x = 0.05 * material_id;
+      ParticleBatch batch = filled_box(2, Vec3(x, 0, 0), Vec3(x + 0.05, 0, 0.05), 0.005, 210);
+      batch.material_id = material_id;
+      solver->add(batch);
+    }
+    solver->step();
+    step[stiffest] = solver->time_step();
+  }
+  EXPECT_DOUBLE_EQ(step[0], step[1]);
+}
+
 TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
   // Confined between frictionless walls on a sticky floor, elastic: with s = lambda + 2 mu of each
   // layer, the lower one carries the upper: u' = g (rho_1 (h_1 - z) + rho_2 h_2)/s_1 below, and

@@ -113,6 +113,68 @@ TEST(Sleep, ASlabThatSetsOffSlowlyGoesOn) {
   }
 }
 
+/// Snow that drifts without weight has one speed, and nothing wakes it.
+TEST(Sleep, BeginsAtTheStatedSpeedAndAfterTheStatedTime) {
+  for (const double part : {0.9, 1.1}) {
+    MpmOptions o = sleepy(two_d);
+    o.gravity = 0;
+    const auto solver = make_mpm(o, {});
+    ParticleBatch drifting = wall(two_d);
+    drifting.velocity.x() = part * sleep_speed;
+    solver->add(drifting);
+    run_until(*solver, 0.9 * o.numerics.sleep_time);
+    EXPECT_EQ(solver->counters().slept_updates, 0) << part;
+    run_until(*solver, 4 * o.numerics.sleep_time);
+    EXPECT_EQ(solver->counters().slept_updates > 0, part < 1) << part;
+  }
+}
+
+/// A layer that is laid on snow without a blow hardly moves: its weight alone must wake the snow,
+/// which then carries it.
+TEST(Sleep, PressureWakes) {
+  double gain[2];
+  for (const double limit : {0.0, sleep_speed}) {
+    const auto solver = make_mpm(sleepy(two_d, limit), {floor()});
+    const double top = 0.085;  // where a block of particles ends
+    const ParticleBatch below = filled_box(2, Vec3::Zero(), Vec3(0.3, 0, top), 0.005);
+    solver->add(below);
+    const auto pressure = [&](double from) {  // mean over the tenth of a second after that
+      double sum = 0, count = 0;
+      run_until(*solver, from);
+      while (solver->time() < from + 0.1) {
+        run_steps(*solver, 8);
+        const ParticleState s = solver->state();
+        for (std::size_t i = 0; i < below.positions.size(); ++i) sum += s.pressures[i], ++count;
+      }
+      return sum / count;
+    };
+    const double before = pressure(0.2);
+    EXPECT_EQ(solver->counters().slept_updates > 0, limit > 0);
+    solver->add(filled_box(2, Vec3(0, 0, top), Vec3(0.3, 0, top + 0.01), 0.005));
+    gain[limit > 0] = pressure(0.4) - before;
+  }
+  EXPECT_GT(gain[0], 5);
+  EXPECT_NEAR(gain[1], gain[0], 0.3 * gain[0]);
+}
+
+/// A grain that is put into a block of sleeping snow, without touching it, flies on.
+TEST(Sleep, ArrivalsWake) {
+  MpmOptions o = sleepy(two_d);
+  o.gravity = 0;
+  const auto solver = make_mpm(o, {});
+  solver->add(filled_box(2, Vec3(0.01, 0, 0.01), Vec3(0.03, 0, 0.08), 0.005));
+  run_until(*solver, 0.1);
+  EXPECT_GT(solver->counters().slept_updates, 0);
+  ParticleBatch grain;
+  grain.positions = {Vec3(0.065, 0, 0.02)};
+  grain.velocity = Vec3(0, 0, 0.1);
+  grain.mass = 0.005;
+  solver->add(grain);
+  const double start = solver->time();
+  run_until(*solver, start + 0.1);
+  EXPECT_NEAR(solver->state().positions.back().z(), 0.02 + 0.1 * (solver->time() - start), 1e-4);
+}
+
 TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
   // Speed is the same before and after the top of a throw, and when a blow takes one component
   // while gravity adds another.

@@ -352,6 +352,17 @@ TEST(Method, RejectsStepsThatStrainTooMuch) {
   }
 }
 
+TEST(Method, FastSnowMovesLessThanHalfACellInEveryStep) {
+  const auto solver = make_mpm(options_for({2, Precision::float32}), {});
+  ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.03, 0, 0.03), 0.005);
+  batch.velocity.x() = 200;
+  solver->add(batch);
+  for (int step = 0; step < 30; ++step) {
+    solver->step();
+    EXPECT_LT(solver->time_step() * 200, 0.5 * 0.01) << step;
+  }
+}
+
 TEST(Method, GivesUpWithAClearErrorWhereNoStepIsSmallEnough) {
   MpmOptions o = options_for({2, Precision::float64});
   o.numerics.strain_limit = 1e-12;

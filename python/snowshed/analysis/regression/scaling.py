@@ -20,8 +20,8 @@ class Scaling:
 
     Examples
     --------
-    >>> scaling = Scaling.of(np.array([[1.0, 5.0], [3.0, 5.0]]))
-    >>> scaling.scaled(np.array([[2.0, 5.0], [3.0, 6.0]])).tolist()
+    >>> scaling = Scaling.of(np.array([[1.0, 5.0], [5.0, 5.0]]))
+    >>> scaling.scaled(np.array([[3.0, 5.0], [5.0, 6.0]])).tolist()
     [[0.0, 0.0], [1.0, 1.0]]
     """
 

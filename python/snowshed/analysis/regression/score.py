@@ -12,7 +12,7 @@ def median_absolute_error(errors: Floats) -> float:
 
     Examples
     --------
-    >>> median_absolute_error(np.array([-1.0, 3.0, 2.0]))
+    >>> median_absolute_error(np.array([-4.0, 1.0, 2.0]))
     2.0
     """
     return float(np.median(np.abs(errors)))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Optional
 
-from snowshed.analysis.verification.measurements import Settings, Value
+from snowshed.analysis.verification.measurements import Value
 from snowshed.io.formatting import NOTHING, number
 from snowshed.scene.accuracy_settings import ACCURACY
 
@@ -43,7 +43,7 @@ def unset(name: str) -> str:
     return "default" if name in ACCURACY else NOTHING
 
 
-def settings(chosen: Settings, names: Optional[Iterable[str]] = None) -> str:
+def settings(chosen: Mapping[str, Optional[Value]], names: Optional[Iterable[str]] = None) -> str:
     """Return settings in a line: all, or those with the given names.
 
     Examples

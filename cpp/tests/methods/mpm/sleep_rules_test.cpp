@@ -1,0 +1,100 @@
+// The rules by which blocks fall asleep and wake, without a solver: two neighbouring blocks, of
+// which one is always awake.
+#include <gtest/gtest.h>
+
+#include "snowshed/methods/mpm/sleep.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double speed_limit = 0.02, time_to_sleep = 0.04, step = 1e-4;
+constexpr int steps_between_looks = 8;
+
+/// What a look at the quiet block finds.
+struct Look {
+  double speed = 0, fastest = 0;
+  CarriedMotion carried;
+  VecD<2> velocity = VecD<2>::Zero();
+};
+
+class TwoBlocks : public testing::Test {
+ protected:
+  /// Looks every few steps for a time; returns whether the quiet block sleeps then.
+  bool look_for(double duration, const Look& look) {
+    Sleep<2>::BlockProbe probe;
+    probe.fastest = [&](std::int32_t b) { return b == 0 ? 1.0 : look.fastest; };
+    probe.speed = [&](std::int32_t b) { return b == 0 ? 1.0 : look.speed; };
+    probe.velocity = [&](std::int32_t) { return look.velocity; };
+    probe.carried = [&](std::int32_t) { return look.carried; };
+    probe.obstacle_moves = [](std::int32_t) { return false; };
+    probe.holds_its_snow = [](std::int32_t) { return true; };
+    for (const double end = now_ + duration; now_ < end; now_ += steps_between_looks * step)
+      sleep_.update(layout_, now_, steps_between_looks, step, probe);
+    return sleep_.states()[1].asleep;
+  }
+
+  void wake_all() { sleep_.wake_all(layout_, now_); }
+  void fall_asleep() {
+    ASSERT_TRUE(look_for(2 * time_to_sleep, {0.5 * speed_limit, speed_limit, {}}));
+  }
+
+  const BlockLayout<2> layout_ =
+      BlockLayout<2>::of({block_key<2>({0, 0}), block_key<2>({1, 0})}, {0, 50, 100}, 1);
+  double now_ = 0;
+  Sleep<2> sleep_ = Sleep<2>(speed_limit, time_to_sleep, 9.81).relocated(layout_, 0.0);
+};
+
+TEST_F(TwoBlocks, SleepBelowTheLimitAfterTheTime) {
+  EXPECT_FALSE(look_for(0.9 * time_to_sleep, {0.9 * speed_limit, speed_limit, {}}));
+  EXPECT_TRUE(look_for(0.3 * time_to_sleep, {0.9 * speed_limit, speed_limit, {}}));
+}
+
+TEST_F(TwoBlocks, StayAwakeAboveTheLimitAndWithOneFastParticle) {
+  EXPECT_FALSE(look_for(5 * time_to_sleep, {1.1 * speed_limit, speed_limit, {}}));
+  EXPECT_FALSE(look_for(5 * time_to_sleep, {0.5 * speed_limit, 6 * speed_limit, {}}));
+  EXPECT_TRUE(look_for(5 * time_to_sleep, {0.5 * speed_limit, 4 * speed_limit, {}}));
+}
+
+/// The mean velocity in the first half of the time to fall asleep, and in the second.
+TEST_F(TwoBlocks, StayAwakeWhileTheySetOff) {
+  for (const double second : {0.001, 0.009}) {
+    wake_all();
+    Look look{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, -0.002)};
+    look_for(0.5 * time_to_sleep, look);
+    look.velocity[1] = -second;
+    EXPECT_EQ(look_for(0.55 * time_to_sleep, look), second < 0.002) << second;
+  }
+}
+
+TEST_F(TwoBlocks, StayAwakeWhileTheyLoseTheSpeedThatGravityTakes) {
+  const double lost = 9.81 * 0.5 * time_to_sleep;  // from one half to the other
+  for (const double part : {0.3, 0.7}) {
+    wake_all();
+    Look look{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, lost)};
+    look_for(0.5 * time_to_sleep, look);
+    look.velocity[1] = (1 - part) * lost;
+    EXPECT_EQ(look_for(0.55 * time_to_sleep, look), part < 0.5) << part;
+  }
+}
+
+TEST_F(TwoBlocks, WakeWhereTheirNeighbourWouldCarryThemFasterThanTheLimit) {
+  for (const double part : {0.9, 1.1}) {
+    fall_asleep();
+    Look look{0, 0, {}};
+    look.carried.speed_squared = part * part * speed_limit * speed_limit;
+    EXPECT_EQ(look_for(4.5 * steps_between_looks * step, look), part < 1) << part;
+  }
+}
+
+/// A steady force gives within the time to fall asleep the velocity a t.
+TEST_F(TwoBlocks, WakeByForcesThatActForAsLongAsItTakesToFallAsleep) {
+  for (const double part : {0.8, 1.2}) {
+    fall_asleep();
+    Look look{1.0, 1.0, {}};  // once awake it stays so
+    look.carried.change[1] = part * speed_limit / time_to_sleep * step;
+    EXPECT_EQ(look_for(10 * time_to_sleep, look), part < 1) << part;
+  }
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,55 @@
+// When an event ends, seen from outside: snow that drifts without weight at a known speed.
+#include <gtest/gtest.h>
+
+#include "run/simulation_testing.hpp"
+
+namespace snowshed {
+namespace {
+
+BodySpec drifting_box(double x, double size, double speed, int event) {
+  BodySpec body;
+  body.shape.type = "box";
+  body.shape.center = Vec3(x, 0, 1);
+  body.shape.size = Vec3(size, 0, size);
+  body.velocity = Vec3(speed, 0, 0);
+  body.event = event;
+  return body;
+}
+
+Scene drift(std::vector<BodySpec> bodies) {
+  Scene scene;
+  scene.dimension = 2;
+  scene.gravity = 0;
+  scene.snow.youngs_modulus = 1e5;
+  scene.mpm().dx = 0.02;
+  scene.mpm().sleep_speed = 0;
+  scene.mpm().threads = 1;
+  scene.bodies = std::move(bodies);
+  scene.events.count = 2;
+  scene.events.rest_speed = 0.02;
+  scene.events.rest_time = 0.05;
+  scene.events.max_time = 0.2;
+  return scene;
+}
+
+RunEnd end_of_event(Simulation& sim) {
+  sim.begin_event();
+  return sim.run(go_on, never);
+}
+
+TEST(EventsEnd, AtTheStatedSpeedAndTime) {
+  for (const double speed : {0.018, 0.022}) {
+    Simulation sim(drift({drifting_box(0, 0.1, speed, 1), drifting_box(1, 0.1, 0, 2)}));
+    EXPECT_EQ(end_of_event(sim), speed < 0.02 ? RunEnd::rest : RunEnd::time_limit) << speed;
+    EXPECT_NEAR(sim.event_time(), speed < 0.02 ? 0.05 : 0.2, 0.006) << speed;
+  }
+}
+
+TEST(EventsEnd, NotBeforeASmallSlabRestsBesideALargeStack) {
+  Simulation sim(drift({drifting_box(0, 0.4, 0, 1), drifting_box(1, 0.1, 0.03, 2)}));
+  EXPECT_EQ(end_of_event(sim), RunEnd::rest);
+  EXPECT_EQ(end_of_event(sim), RunEnd::time_limit);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,42 @@
+#include "snowshed/run/reseeding.hpp"
+
+#include <gtest/gtest.h>
+
+#include "run/simulation_testing.hpp"
+#include "snowshed/scene/scene_json.hpp"
+
+namespace snowshed {
+namespace {
+
+/// A heap of one snow, with a grain of another that lies where a grain of the first does, so that
+/// no new particle is nearest to it.
+ParticleState heap_with_a_hidden_grain() {
+  ParticleState heap;
+  heap.positions = filled_box(2, Vec3(1, 0, 0), Vec3(1.1, 0, 0.1), 0.005).positions;
+  heap.material_ids.assign(heap.positions.size(), 0);
+  heap.positions.push_back(heap.positions.front());
+  heap.material_ids.push_back(1);
+  heap.masses.assign(heap.positions.size(), 0.005);
+  heap.events.assign(heap.positions.size(), 1);
+  return heap;
+}
+
+TEST(Reseeding, GivesTheMassOfASnowThatGotNoParticleToTheOthers) {
+  Scene scene = small_scene();
+  Snow light;
+  light.density = 120;
+  scene.slab->thickness = 0;
+  scene.slab->layers = {{0.01, light, 0}, {0.02, {}, 0}};
+  scene = resolve(scene);
+  const ParticleState heap = heap_with_a_hidden_grain();
+  const Reseeding found = reseed_stack(scene, PanelRegion(scene), heap, 1, 0.03);
+  double mass = 0;
+  for (const ParticleBatch& batch : found.batches) {
+    EXPECT_EQ(batch.material_id, 0);
+    mass += batch.mass * double(batch.positions.size());
+  }
+  EXPECT_NEAR(mass, 0.005 * double(heap.masses.size()), 1e-12);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,1 @@
+"""Injected faults: which of them the tests catch. See docs/verification.md."""

@@ -1,0 +1,109 @@
+"""What a run found, as a file, and as the table of docs/verification.md."""
+
+from __future__ import annotations
+
+import datetime
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tools.mutants.faults import Fault
+
+FILE = Path(__file__).with_name("results.json")
+BEGIN, END = "<!-- faults: begin -->", "<!-- faults: end -->"
+
+
+@dataclass
+class Results:
+    """Which test caught which fault.
+
+    Attributes
+    ----------
+    caught_by
+        The first test that failed, by the name of the fault; empty if none did.
+    date
+        On which day each fault was tried.
+    """
+
+    caught_by: dict[str, str] = field(default_factory=dict)
+    date: dict[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, path: Path = FILE) -> Results:
+        """Return what is in a file; nothing if there is none."""
+        if not path.is_file():
+            return cls()
+        data = json.loads(path.read_text(encoding="utf-8"))["faults"]
+        return cls(
+            {name: one["caught_by"] for name, one in data.items()},
+            {name: one["date"] for name, one in data.items()},
+        )
+
+    def write(self, path: Path, faults: Sequence[Fault]) -> None:
+        """Write the results of faults that still exist."""
+        names = [fault.name for fault in faults if fault.name in self.caught_by]
+        data = {n: {"caught_by": self.caught_by[n], "date": self.date[n]} for n in names}
+        text = json.dumps({"about": ABOUT, "faults": data}, indent=1)
+        path.write_text(text + "\n", encoding="utf-8")
+
+    def enter(self, name: str, caught_by: str) -> None:
+        """Enter the result of a fault."""
+        self.caught_by[name] = caught_by
+        self.date[name] = datetime.date.today().isoformat()
+
+
+ABOUT = "Made by `make mutants`: the first test that failed with each fault; empty if none did."
+
+
+def table(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
+    """Return the results as Markdown: how many were caught of each area, then every fault.
+
+    Parameters
+    ----------
+    faults
+        All faults.
+    caught_by
+        The results; a fault without one is left out.
+    """
+    tried = [fault for fault in faults if fault.name in caught_by]
+    caught = [fault for fault in tried if caught_by[fault.name]]
+    days = len(caught) / max(len(tried), 1)
+    lines = [
+        f"{len(tried)} faults were injected, and {len(caught)} ({days:.1%}) were caught.",
+        "",
+        "| area | faults | caught |",
+        "| --- | --- | --- |",
+    ]
+    for area in dict.fromkeys(fault.area for fault in tried):
+        of_area = [fault for fault in tried if fault.area == area]
+        lines.append(f"| {area} | {len(of_area)} | {sum(f in caught for f in of_area)} |")
+    lines += ["", "| area | fault | caught by |", "| --- | --- | --- |"]
+    for fault in tried:
+        test = caught_by[fault.name]
+        found = f"`{_short(test)}`" if test else f"survives. {fault.survives}".strip()
+        lines.append(f"| {fault.area} | {fault.why} | {found} |")
+    return "\n".join(lines)
+
+
+def with_table(page: str, text: str) -> str:
+    """Return a page with the table between its marks.
+
+    Raises
+    ------
+    ValueError
+        If the page has no marks.
+    """
+    before, begin, rest = page.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ValueError(f"the page lacks the marks {BEGIN} and {END}")
+    return f"{before}{BEGIN}\n\n{text}\n\n{END}{after}"
+
+
+def _short(test: str) -> str:
+    """Return a test without its folder and parameters."""
+    if test.startswith("cpp:"):
+        return test.removeprefix("cpp:")
+    path, _, name = test.partition("::")
+    return f"{path.rpartition('/')[2]}::{name.partition('[')[0]}" if name else path

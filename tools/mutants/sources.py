@@ -1,0 +1,147 @@
+"""A copy of the project's sources, in which faults are injected.
+
+The project's own files are never written. Whatever happens to a run, they are as they were.
+"""
+
+from __future__ import annotations
+
+import filecmp
+import shutil
+import subprocess
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from tools.mutants.faults import Fault, FaultError
+
+#: Included by every C++ source of the copy. The number of the fault that is on comes from the
+#: environment; without one no fault is on.
+SWITCH_HEADER = """#pragma once
+#include <cstdlib>
+inline int snowshed_fault_from_environment() {
+  const char* number = std::getenv("SNOWSHED_FAULT");
+  return number ? std::atoi(number) : 0;
+}
+inline const int snowshed_fault = snowshed_fault_from_environment();
+"""
+
+
+def with_faults(text: str, switched: Sequence[tuple[int, Fault]], one: Fault | None = None) -> str:
+    """Return a source with switched faults in it, which are off, and perhaps one that is not.
+
+    Parameters
+    ----------
+    text
+        The source.
+    switched
+        Faults of this source that have a switch, with their numbers from 1. Those that overlap
+        `one` are left out.
+    one
+        A fault whose new text stands for the old one.
+
+    Raises
+    ------
+    FaultError
+        If two faults overlap without being in the same place.
+    """
+    places: dict[tuple[int, int], list[tuple[int, Fault]]] = {}
+    taken = one.place(text) if one else (0, 0)
+    for number, fault in switched:
+        start, end = fault.place(text)
+        if end <= taken[0] or start >= taken[1]:
+            places.setdefault((start, end), []).append((number, fault))
+    edits = [(start, end, _switch(group)) for (start, end), group in places.items()]
+    if one:
+        edits.append((*taken, one.new))
+    edits.sort()
+    for before, after in zip(edits, edits[1:]):
+        if before[1] > after[0]:
+            names = [fault.name for group in places.values() for _, fault in group]
+            raise FaultError(f"faults overlap: {text[after[0] : after[1]]!r}; {', '.join(names)}")
+    parts, at = [], 0
+    for start, end, new in edits:
+        parts += [text[at:start], new]
+        at = end
+    return "".join([*parts, text[at:]])
+
+
+def _switch(group: Sequence[tuple[int, Fault]]) -> str:
+    choices = [f"snowshed_fault == {number} ? ({fault.new}) : " for number, fault in group]
+    return f"({''.join(choices)}({group[0][1].old}))"
+
+
+class SourceCopy:
+    """The copy.
+
+    Parameters
+    ----------
+    root
+        The project.
+    folder
+        Where the copy is made.
+    faults
+        All faults; those with a switch are in the copy from the beginning.
+    """
+
+    def __init__(self, root: Path, folder: Path, faults: Sequence[Fault]) -> None:
+        self.root, self.folder = root, folder
+        switched = [fault for fault in faults if fault.switch]
+        self.numbers = {fault.name: number for number, fault in enumerate(switched, 1)}
+        self._switched: dict[str, list[tuple[int, Fault]]] = {}
+        for fault in switched:
+            number = self.numbers[fault.name]
+            self._switched.setdefault(fault.file, []).append((number, fault))
+
+    def update(self, files: Sequence[str] | None = None) -> None:
+        """Make the copy that of the project as it is now; files that stay keep their times.
+
+        Parameters
+        ----------
+        files
+            What to copy, from the root; by default all that Git knows or would add.
+        """
+        wanted = set(self.project_files() if files is None else files)
+        for name in wanted:
+            if name in self._switched:
+                self._restore(name)
+            else:
+                self._copy(name)
+        for path in list(self.folder.rglob("*")):
+            name = path.relative_to(self.folder).as_posix()
+            if path.is_file() and not path.is_symlink() and name not in wanted:
+                path.unlink()
+
+    def project_files(self) -> list[str]:
+        """Return the project's files, from its root."""
+        command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+        listed = subprocess.run(command, cwd=self.root, check=True, capture_output=True).stdout
+        names = [name for name in listed.decode().split("\0") if name]
+        return [name for name in names if (self.root / name).is_file()]
+
+    @contextmanager
+    def changed(self, fault: Fault) -> Iterator[None]:
+        """Inject a fault without a switch, and take it out again, whatever happens meanwhile."""
+        try:
+            self._write(fault.file, fault)
+            yield
+        finally:
+            self._restore(fault.file)
+
+    def _copy(self, name: str) -> None:
+        source, target = self.root / name, self.folder / name
+        if not target.is_file() or not filecmp.cmp(source, target, shallow=False):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, target)
+            shutil.copymode(source, target)
+
+    def _restore(self, name: str) -> None:
+        self._write(name, None)
+
+    def _write(self, name: str, one: Fault | None) -> None:
+        original = (self.root / name).read_text(encoding="utf-8")
+        text = with_faults(original, self._switched.get(name, []), one)
+        target = self.folder / name
+        if not target.is_file() or target.read_text(encoding="utf-8") != text:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, encoding="utf-8")
+            shutil.copymode(self.root / name, target)
