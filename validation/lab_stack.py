@@ -30,6 +30,8 @@ from snowshed.snow.stack.quantities import MEASURES
 from validation.case import Outcome
 from validation.driving import absolute, apply_settings
 
+#: The reading of A.4.2 by which the recorded stacks were measured; others are compared with them.
+TRIMMING = "equal_pace"
 #: Columns of events.csv that are compared, by the names they have here.
 COMPARED: Mapping[str, str] = {
     f"{measure.prefix}{quantity}": measure.column(quantity)
@@ -237,7 +239,13 @@ class _Tape:
     ) -> StackMeasure:
         dimension = self._simulation.dimension
         return measure_stack(
-            positions, masses, density, dimension=dimension, dx=self._dx, exclude=on_panel
+            positions,
+            masses,
+            density,
+            dimension=dimension,
+            dx=self._dx,
+            exclude=on_panel,
+            trimming=TRIMMING,
         )
 
 

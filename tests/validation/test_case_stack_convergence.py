@@ -62,6 +62,11 @@ def test_finer_grids_come_nearer_to_the_reference():
         assert errors[1] < errors[0]
 
 
+def test_stacks_are_measured_as_the_recorded_ones_were():
+    run = run_lab({"dimension": 2, "dx": 0.02, "events": 1})
+    assert {stack.trimming for stack in run.stacks} == {"equal_pace"}
+
+
 def test_recording_reproduces_what_was_recorded(tmp_path):
     """Within four deviations: other processors round differently, and stacks are chaotic."""
     path = tmp_path / "stacks.json"

@@ -31,6 +31,8 @@ from snowshed.analysis.regression.spread import (
     unseen_panels,
 )
 from snowshed.analysis.regression.threads import one_thread
+from snowshed.cli.display.regression import print_prediction
+from snowshed.snow.stack.quantities import MEASURES
 
 NOISE = 0.003
 PARAMETERS = {"epsilon": 0.01, "C": 100.0, "gamma": 0.1}
@@ -115,10 +117,21 @@ def test_a_model_that_is_read_once_answers_alike(model, file):
 
 
 def test_what_the_data_have_in_common_is_kept(model, tmp_path):
-    told = replace(model, settings={"panel.friction": "0.8", "dx": "0.025"}, measure="body")
+    settings = {"panel.friction": "0.8", "dx": "0.025", "trimming": "outermost_first"}
+    told = replace(model, settings=settings, measure="body")
     save_model(told, tmp_path / "told.npz")
     found = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "told.npz")
     assert (found.settings, found.measure) == (told.settings, "body")
+
+
+def test_a_model_of_before_is_of_the_reading_there_was(capsys):
+    """That which comes with snowshed, too; any measure there is can be told."""
+    found = predict(height=2, length=2, tilt=40, events=1)
+    assert found.settings["trimming"] == "equal_pace"
+    for measure in MEASURES:
+        print_prediction(replace(found, measure=measure), "Stack")
+        shown = " ".join(capsys.readouterr().out.split())
+        assert MEASURES[measure].label in shown and "trimming equal_pace" in shown
 
 
 def test_no_answer_is_negative(model):

@@ -25,6 +25,7 @@ from snowshed.io.atomic import replacing
 from snowshed.scene.accuracy_settings import FORMER_NAMES
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import measure_named
+from snowshed.study.table import FORMER_TRIMMING
 
 FORMAT = "snowshed stack model"
 VERSION = 1
@@ -179,6 +180,7 @@ class _Reader:
         if not all(isinstance(value, str) for value in settings.values()):
             raise InputError("settings: not texts")
         settings = {FORMER_NAMES.get(key, key): value for key, value in settings.items()}
+        settings.setdefault("trimming", FORMER_TRIMMING)
         return StackModel(inputs, members, _entry(facts, "title", str), measure, settings)
 
     def _facts(self) -> dict[str, Any]:

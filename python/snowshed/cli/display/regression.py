@@ -13,11 +13,11 @@ from snowshed.analysis.regression.pipeline import TargetReport
 from snowshed.analysis.regression.rows import TARGETS
 from snowshed.analysis.regression.summary import QUARTILES
 from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.snow.stack.quantities import measure_named
 
 if TYPE_CHECKING:
     from snowshed.analysis.regression.predictor import Prediction
 
-MEASURE_WORDS = {"stack": "97 % of the snow", "body": "the largest connected body of snow"}
 TARGET_WORDS = {"ratio": "height / length", "height": "height", "length": "length"}
 
 
@@ -77,7 +77,7 @@ def print_prediction(prediction: Prediction, title: str) -> None:
     wide_console().print(shown)
     wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].", markup=False)
     wide_console().print(
-        f" The stack is {MEASURE_WORDS[prediction.measure]}; {_scene(prediction)}."
+        f" The stack is {measure_named(prediction.measure).label}; {_scene(prediction)}."
     )
 
 
@@ -85,7 +85,9 @@ def _scene(prediction: Prediction) -> str:
     """Return the simulated scene in words, without the settings of the method."""
     known = prediction.settings.items()
     told = [
-        f"{name} {value}" for name, value in known if "." in name or name in ("dimension", "dx")
+        f"{name} {value}"
+        for name, value in known
+        if "." in name or name in ("dimension", "dx", "trimming")
     ]
     return escape(", ".join(told))
 
