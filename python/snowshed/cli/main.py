@@ -99,8 +99,12 @@ def _note(
     file: Optional[TextIO] = None,
     line: Optional[str] = None,
 ) -> None:
-    """Print a warning for users, which needs no place in the code."""
-    print("note:", message, file=sys.stderr)
+    """Print a warning; one for users needs no place in the code."""
+    if issubclass(category, FutureWarning):
+        text = f"note: {message}\n"
+    else:
+        text = warnings.formatwarning(message, category, filename, lineno, line)
+    (file or sys.stderr).write(text)
 
 
 def _fail(message: str, code: int) -> int:
