@@ -101,7 +101,7 @@ void EventSequence::end_event(EventObserver& observer, RunEnd end) {
   facts.wall = std::max(wall() - wall_before_, 0.0);
   facts.ended = name_of(end);
   facts.laid_height = sim_->laid_height();
-  facts.damping_rate = sim_->scene().mpm().mean_damping_rate(facts.steps, facts.sim_time);
+  facts.damping_rate = mean_damping_rate(sim_->scene().numerics, facts.steps, facts.sim_time);
   if (sim_->scene().output.energy) facts.energy = named_energies(sim_->solver().energy());
   folder_.write_particles(*sim_);
   observer.event_ended(*sim_, facts);

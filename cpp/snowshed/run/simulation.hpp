@@ -96,9 +96,9 @@ class Simulation {
   /// The smallest length that is resolved, m.
   double resolution() const { return snowshed::resolution(scene_.numerics); }
 
-  /// Mean rate of the damping by PIC so far, 1/s; see MpmSettings::mean_damping_rate.
+  /// Mean rate of the damping by PIC so far, 1/s.
   std::optional<double> damping_rate() const {
-    return scene_.mpm().mean_damping_rate(solver_->counters().steps, solver_->time());
+    return mean_damping_rate(scene_.numerics, solver_->counters().steps, solver_->time());
   }
 
   /// How high all snow laid so far would lie on the panel had none of it left, m.

@@ -4,6 +4,8 @@
 // and a `describe` of its settings (describe.hpp).
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -86,6 +88,14 @@ inline double resolution(const MethodSettings& settings) {
 /// The threads that the method shall use; 0: all.
 inline int wanted_threads(const MethodSettings& settings) {
   return std::visit([](const auto& own) { return own.threads; }, settings);
+}
+
+/// The mean rate (1/s) at which PIC damped over so many steps in so much time (s), see
+/// MpmSettings::mean_damping_rate; nothing for methods without it.
+inline std::optional<double> mean_damping_rate(const MethodSettings& settings, std::int64_t steps,
+                                               double time) {
+  const auto* mpm = std::get_if<MpmSettings>(&settings);
+  return mpm ? mpm->mean_damping_rate(steps, time) : std::nullopt;
 }
 
 }  // namespace snowshed

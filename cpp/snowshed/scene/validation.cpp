@@ -27,7 +27,7 @@ class SceneRules {
     for (const auto& body : scene_.bodies) check_body(body);
     check_snows();
     check_seeding(scene_.seeding);
-    check_damping(scene_.mpm());
+    if (scene_.uses<MpmSettings>()) check_damping(scene_.mpm());
     if (scene_.events.rest_time > scene_.events.max_time)
       fail(scene_.events.rest_time, show(scene_.events.rest_time) + " s is longer than an event (" +
                                         path_and_value(scene_.events.max_time) + " s)");

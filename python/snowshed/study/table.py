@@ -68,7 +68,7 @@ def read_table(
     columns = ["hash", *axes, "seed", "event", *MEASURED_TYPES, "error", "version", "dimension"]
     columns += [*ACCURACY, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
-    types = {**dict.fromkeys(COUNTS, "Int64"), **dict.fromkeys(NUMBERS, float)}
+    types: dict[str, Any] = {**dict.fromkeys(COUNTS, "Int64"), **dict.fromkeys(NUMBERS, float)}
     return with_trimming(table.astype(types))
 
 
