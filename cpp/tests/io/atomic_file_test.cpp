@@ -52,7 +52,9 @@ TEST_F(AtomicFileTest, KeepsTheOrderOfSmallAndLargePieces) {
 }
 
 TEST_F(AtomicFileTest, LeavesNothingWithoutCommit) {
-  { AtomicFile(path("a")).write("lost"); }
+  {
+    AtomicFile(path("a")).write("lost");
+  }
   EXPECT_EQ(number_of_files(), 0u);
 }
 

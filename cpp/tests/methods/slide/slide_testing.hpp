@@ -56,7 +56,7 @@ inline double total_mass(const Method& method) {
 }
 
 /// The mean velocity of the snow, weighted by mass.
-inline Vec3 mean_velocity(const Method& method) {
+inline Vec3 mean_slide_velocity(const Method& method) {
   const ParticleState s = method.state();
   Vec3 momentum = Vec3::Zero();
   double mass = 0;
