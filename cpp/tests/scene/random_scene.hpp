@@ -116,6 +116,8 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   scene.ground.reset();
   scene.obstacles.clear();
   scene.bodies.clear();
+  scene.snow = {};
+  scene.seeding = {};
   if (!scene.terrain) describe(randomizer, scene.terrain.emplace());
   scene.events.count = 1;
   scene.output.energy = false;
