@@ -35,7 +35,14 @@ PUBLIC = sorted({*DOCUMENTED, *EXPORTED})
 
 def types_seen_by(thing):
     """Return the names of a thing's module, those included that are imported for types alone."""
-    module = sys.modules[thing.__module__]
+    names = {}
+    for base in reversed(getattr(thing, "__mro__", (thing,))):  # a class also has its bases' types
+        if base.__module__ in WRITTEN or base is thing:
+            names.update(names_of_module(sys.modules[base.__module__]))
+    return names
+
+
+def names_of_module(module):
     names = dict(vars(module))
     for node in ast.parse(inspect.getsource(module)).body:
         if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":

@@ -142,8 +142,6 @@ class Scene(Record):
             _refuse_null(data, "")
             scene = cls.from_data(data)
             scene.to_data()
-            if "snowshed" not in data:
-                raise InputError("/snowshed: missing: the version 2 is required")
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
         scene._base_dir = os.fspath(Path(path).parent)

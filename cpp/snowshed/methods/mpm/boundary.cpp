@@ -132,6 +132,20 @@ bool Contacts<T, D>::moves(std::size_t block) const {
 }
 
 template <class T, int D>
+void Contacts<T, D>::find_pushing_shares(PushingShares<T>& found) const {
+  std::fill(found.pushed.begin(), found.pushed.end(), T(0));
+  std::fill(found.shares.begin(), found.shares.end(), T(0));
+  for (const Contact<T>& c : contacts_) {
+    if (c.release != Release::never) continue;
+    found.pushed[c.obstacle] += std::max(c.next_normal_impulse, T(0));
+    found.shares[c.obstacle] += c.next_normal_impulse;
+  }
+  for (std::size_t i = 0; i < found.shares.size(); ++i)
+    found.shares[i] =
+        found.pushed[i] > 0 ? std::max(found.shares[i], T(0)) / found.pushed[i] : T(1);
+}
+
+template <class T, int D>
 std::vector<typename Contacts<T, D>::StoredImpulse> Contacts<T, D>::stored_impulses() const {
   std::vector<StoredImpulse> stored;
   for (std::size_t b = 0; b < blocks_.size(); ++b)

@@ -8,6 +8,7 @@
 //   at once, so that snow never hangs from a panel's back.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "snowshed/methods/mpm/block_layout.hpp"
@@ -27,6 +28,10 @@ class Boundary {
 
   const std::vector<ContactLaw>& laws() const { return laws_; }
   bool any_motion() const { return any_motion_; }
+  bool any_slip() const {
+    return std::any_of(laws_.begin(), laws_.end(),
+                       [](const ContactLaw& law) { return law.condition == Condition::slip; });
+  }
   bool is_moving(const Contact<T>& c) const { return obstacles_[c.obstacle].motion.has_value(); }
 
   /// Appends a block's contacts at a time: with the obstacles that move, or with those at rest.
@@ -37,6 +42,14 @@ class Boundary {
   std::vector<ContactLaw> laws_;
   double dx_;
   bool any_motion_ = false;
+};
+
+/// By obstacle, see Contacts::find_pushing_shares.
+template <class T>
+struct PushingShares {
+  explicit PushingShares(std::size_t obstacles) : shares(obstacles, T(1)), pushed(obstacles) {}
+
+  std::vector<T> shares, pushed;
 };
 
 /// All contacts of a layout's grid blocks, with their stored impulses.
@@ -67,6 +80,12 @@ class Contacts {
     for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
       contacts_[i].next_normal_impulse = contacts_[i].normal_impulse;
   }
+
+  /// Finds for each obstacle what its stored impulses are in sum over those of them that are
+  /// positive; 1 for obstacles that let go of snow. Slip holds some nodes of a body against pull
+  /// while others are pressed the more, all by internal forces that come and go as snow passes the
+  /// grid. Friction on the pushed nodes alone would be too large.
+  void find_pushing_shares(PushingShares<T>& found) const;
 
   /// A contact with stored impulse (N s), for checkpoints.
   struct StoredImpulse {

@@ -71,6 +71,8 @@ struct StepParameters {
   T friction_rate;                    // dt over the friction memory, see NodeKernels::apply
   T friction_rate_per_speed;          // s/m, the same for each m/s at which snow slides
   const MaterialConstants<T>* snows;  // by kind
+  const T* pushing;  // by obstacle: part of the friction of pushed nodes that remains, see
+                     // Contacts::find_pushing_shares
 };
 
 /// Largest norm of the elastic Hencky strain that single precision still resolves: compression to

@@ -33,7 +33,9 @@ bool reaches_into(int reach, int k) {
 
 template <class T, int D>
 MpmSolver<T, D>::MpmSolver(const MpmOptions& options, std::vector<Obstacle> obstacles)
-    : model_(options, std::move(obstacles)), state_(model_), work_(options.numerics.basis) {}
+    : model_(options, std::move(obstacles)),
+      state_(model_),
+      work_(options.numerics.basis, model_.boundary.laws().size()) {}
 
 template <class T, int D>
 StepParameters<T> MpmSolver<T, D>::parameters(double dt) const {
@@ -44,7 +46,8 @@ StepParameters<T> MpmSolver<T, D>::parameters(double dt) const {
           T(n.flip_share(dt)),
           T(std::min(1.0, dt / state_.friction_memory)),
           T(dt / (friction_reach * n.dx)),
-          model_.constants.data()};
+          model_.constants.data(),
+          work_.pushing.shares.data()};
 }
 
 template <class T, int D>
@@ -145,6 +148,7 @@ void MpmSolver<T, D>::scatter_block(const StepParameters<T>& step, const Particl
 template <class T, int D>
 void MpmSolver<T, D>::gather_and_update(double dt) {
   state_.contacts.follow(model_.boundary, time());
+  if (model_.boundary.any_slip()) state_.contacts.find_pushing_shares(work_.pushing);
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
   parallel_for(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {

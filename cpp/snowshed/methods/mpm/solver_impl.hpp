@@ -13,9 +13,10 @@ namespace snowshed {
 /// What can be computed from a state before any sort, and be thrown away then.
 template <class T, int D>
 struct Workspace {
-  explicit Workspace(Basis basis) : grid(basis) {}
+  Workspace(Basis basis, std::size_t obstacles) : grid(basis), pushing(obstacles) {}
 
   Grid<T, D> grid;
+  PushingShares<T> pushing;
   std::vector<double> block_strain;  // 1/s, of the step being tried
   bool tiles_valid = false;          // whether the tiles hold the sums of the particles
   int since_sort = 0;                // steps

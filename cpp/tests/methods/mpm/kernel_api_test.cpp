@@ -13,6 +13,10 @@
 namespace snowshed {
 namespace {
 
+/// Of up to four obstacles.
+template <class T>
+constexpr T all_pushing[] = {1, 1, 1, 1};
+
 /// Particles of one block with random state, and their scattered sums.
 template <class T, int D>
 void expect_exact_sums(const Way& way) {
@@ -46,7 +50,8 @@ void expect_exact_sums(const Way& way) {
   const int nodes = tile_nodes<D>(way.basis), edge = tile_edge<D>(way.basis);
   AlignedVector<T> tile(std::size_t(nodes) * node_values, T(7));  // scatter must clear it
   const auto snow = material_constants<T>(Snow(), D);
-  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99), T(0.02), T(0), &snow};
+  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99),
+                               T(0.02), T(0),    &snow,   all_pushing<T>};
   BlockStats stats;
   kernels.scatter(step, particles.view(), 0, n, tile.data(), stats);
   ASSERT_FALSE(stats.escaped);
@@ -95,7 +100,8 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
       select_kernels<float>({2, Transfer::flip, Basis::quadratic, SnowModel::cam_clay, false});
   AlignedVector<float> tile(std::size_t(tile_nodes<2>(Basis::quadratic)) * node_values);
   const auto snow = material_constants<float>(Snow(), 2);
-  const StepParameters<float> step{1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, 0.0f, &snow};
+  const StepParameters<float> step{1e-4f, 0.01f, 9.81f, 0.99f,
+                                   0.02f, 0.0f,  &snow, all_pushing<float>};
   for (float cell : {-1.01f, 9.0f, std::nanf("")}) {
     particles.cell[1][2] = cell;
     BlockStats stats;

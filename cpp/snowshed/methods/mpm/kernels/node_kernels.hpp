@@ -45,14 +45,11 @@ struct NodeKernels {
       low = now < low ? now : low;
       high = now > high ? now : high;
     }
-    T pushing = 1;
     for (int c = 0; c < contact_count; ++c) {
-      if (c == 0 || contacts[c].obstacle != contacts[c - 1].obstacle)
-        pushing = pushing_share(contacts + c, contact_count - c);
       const Node<T>& sum = in[contacts[c].node];
       if (sum[0] > least_mass) {
         Node<T> node = out[contacts[c].node];
-        apply(step, contacts[c], laws[contacts[c].obstacle], pushing, sum, node, stats);
+        apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
         out[contacts[c].node] = with_second_half(node, velocity(sum));
         low = node < low ? node : low;
         high = node > high ? node : high;
@@ -187,21 +184,6 @@ struct NodeKernels {
     return c.release == Release::after_push ? -stored : T(0);
   }
 
-  /// Of the first contacts of a list, all those with the same obstacle: their stored impulses in
-  /// sum over those of them that are positive; 1 where none is negative. Slip holds some nodes of a
-  /// body against pull while others are pressed the more, all by internal forces that come and go
-  /// as snow passes the grid. Friction on the pushed nodes alone would be too large.
-  static T pushing_share(const Contact<T>* contacts, int count) {
-    if (contacts->release != Release::never) return T(1);
-    T pushed = 0, net = 0;
-    for (int c = 0; c < count && contacts[c].obstacle == contacts->obstacle; ++c) {
-      const T stored = contacts[c].normal_impulse;
-      pushed += stored > T(0) ? stored : T(0);
-      net += stored;
-    }
-    return net > T(0) ? net / pushed : pushed > T(0) ? T(0) : T(1);
-  }
-
   /// Sticky, slip, separate (thesis 1.2.3), with Coulomb friction on the running mean of the net
   /// normal impulse. Each contact has a store of normal impulse: what presses on the obstacle
   /// fills it, pull empties it, and it drains at the rate 1/(friction memory); friction is charged
@@ -214,7 +196,7 @@ struct NodeKernels {
   /// The store stays at the node while the snow moves on, so fast snow must be charged before it
   /// has left: the store drains at least in the time that the snow takes to slide over a given part
   /// of a cell.
-  static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law, T pushing,
+  static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const Node<T>& sum, Node<T>& node, NodeStats& stats) {
     const T mass = sum[0];
     T before[D], free[D], stored_impulses[D], after[D];
@@ -248,7 +230,8 @@ struct NodeKernels {
       slip_squared += slip[d] * slip[d];
     }
     const T slip_impulse = mass * std::sqrt(slip_squared);
-    const T friction = T(law.friction) * pushing * (drained > T(0) ? drained : T(0));
+    const T friction =
+        T(law.friction) * step.pushing[c.obstacle] * (drained > T(0) ? drained : T(0));
     const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
     for (int d = 0; d < D; ++d) node[d] = after[d] = stored_impulses[d] - lost * slip[d];
     if constexpr (energy) {
