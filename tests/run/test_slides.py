@@ -1,0 +1,109 @@
+"""Runs of snow slides: figures, maps, resuming, and the particles after a step."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from snowshed import InputError
+from snowshed.io.raster import Raster, read_raster, write_ascii_grid
+from snowshed.run.interrupt import Interrupted
+from snowshed.run.slides import particles_at, run_slide
+from snowshed.scene import Area, Events, Scene, Terrain
+from snowshed.scene.builders import example_slide
+
+OUTLINE = [(20.3, 18.3), (44.3, 18.3), (44.3, 42.3), (20.3, 42.3)]
+
+
+@pytest.fixture
+def slope(tmp_path) -> Scene:
+    """A plane of 38 degrees, and a slab of half a metre on it."""
+    fall = math.tan(math.radians(38.0)) * np.arange(60) * 2.0
+    write_ascii_grid(tmp_path / "slope.asc", Raster(np.tile(300.0 - fall, (30, 1)), 1e5, 2e5, 2.0))
+    outline = [(x + 1e5, y + 2e5) for x, y in OUTLINE]
+    return Scene(
+        method="slide",
+        terrain=Terrain(file=tmp_path / "slope.asc", release=[Area("a", outline, thickness=0.5)]),
+        events=Events(max_time=2.0),
+    )
+
+
+def test_figures_and_maps_tell_the_same(slope, tmp_path):
+    summary = run_slide(slope, tmp_path / "out", pictures=False)
+    sloping = 24.0 * 24.0 / math.cos(math.radians(38.0))
+    assert summary.released_kg == pytest.approx(sloping * 0.5 * 300.0, rel=1e-9)
+    speed = read_raster(tmp_path / "out/peaks/pfv.asc")
+    assert speed.heights.max() == pytest.approx(summary.peak_speed_m_s, rel=1e-8)
+    assert (speed.east, speed.north, speed.cell) == (1e5, 2e5, 2.0)
+    pressure = read_raster(tmp_path / "out/peaks/ppr.asc").heights
+    assert pressure == pytest.approx(0.3 * speed.heights**2, rel=1e-6)
+    assert json.loads((tmp_path / "out/slide.json").read_text())["ended"] == "time_limit"
+    # As a block: gravity less Coulomb friction and Voellmy's drag at half a metre.
+    a = 9.81 * (math.sin(math.radians(38)) - 0.325 * math.cos(math.radians(38)))
+    b = 9.81 / (58 * 0.5)
+    block = math.sqrt(a / b) * math.tanh(math.sqrt(a * b) * 2.0)
+    assert summary.peak_speed_m_s == pytest.approx(block, rel=0.06)
+
+
+def test_an_interrupted_slide_goes_on_to_the_same_maps(slope, tmp_path):
+    run_slide(slope, tmp_path / "whole", pictures=False)
+
+    def stop(progress):
+        if progress.time > 0.2:
+            raise KeyboardInterrupt
+
+    with pytest.raises((Interrupted, KeyboardInterrupt)):
+        run_slide(slope, tmp_path / "two", progress=stop, pictures=False)
+    run_slide(slope, tmp_path / "two", resume=True, pictures=False)
+    for name in ("peaks/pfv.asc", "peaks/pft.asc", "flow/FT.asc"):
+        whole, two = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
+        assert whole == two
+
+
+def test_particles_after_some_steps(slope):
+    found = particles_at(slope, [0, 3])
+    assert list(found[0].columns) == ["ID", "x", "y", "z", "ux", "uy", "uz", "m", "h"]
+    assert (found[0][["ux", "uy", "uz"]] == 0).all(axis=None)
+    # From rest under gravity less friction, in three steps of a hundredth of a second.
+    a = 9.81 * (math.sin(math.radians(38)) - 0.325 * math.cos(math.radians(38)))
+    speed = np.linalg.norm(found[3][["ux", "uy", "uz"]], axis=1)
+    assert np.median(speed) == pytest.approx(a * 0.03, rel=0.05)
+
+
+def test_the_example_draws_its_map(tmp_path):
+    scene = example_slide(tmp_path).set("events.max_time", 1.0)
+    run_slide(scene, tmp_path / "out")
+    assert (tmp_path / "out/slide.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        ("events.count", 2, "/events/count: 2 events; a slide has 1"),
+        ("dimension", 2, "/dimension: a slide moves over ground in space"),
+        ("output.energy", True, "/output/energy: a slide keeps no energy balance yet"),
+        ("terrain.release.0.thickness", 0, "/terrain/release/0/thickness: 0 is outside"),
+        (
+            "terrain.release.0.outline",
+            [[0, 0], [5, 4], [4, 0], [1, 4]],
+            "crosses or touches itself",
+        ),
+        ("numerics.explicit_friction", True, "/numerics/explicit_friction: only in the mode"),
+        (
+            "panel",
+            {"height": 1, "length": 2, "width": 1},
+            '/panel: the method "slide" takes no such',
+        ),
+    ],
+)
+def test_bad_slides_are_named(slope, path, value, message):
+    with pytest.raises(InputError, match=message):
+        slope.set(path, value).resolve()
+
+
+def test_a_release_beyond_the_terrain_leaves_nothing_behind(slope, tmp_path):
+    slope.terrain.release[0].outline = [(0, 0), (9, 0), (9, 9)]
+    with pytest.raises(InputError, match="/terrain/release/0: reaches beyond the terrain"):
+        run_slide(slope, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
