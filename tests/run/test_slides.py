@@ -86,7 +86,7 @@ def test_the_example_draws_its_map(tmp_path):
         ("terrain.release.0.thickness", 0, "/terrain/release/0/thickness: 0 is outside"),
         (
             "terrain.release.0.outline",
-            [[0, 0], [5, 4], [4, 0], [1, 4]],
+            [[0, 0], [6, 4], [4, 0], [0, 5]],
             "crosses or touches itself",
         ),
         ("numerics.explicit_friction", True, "/numerics/explicit_friction: only in the mode"),
