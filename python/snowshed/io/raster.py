@@ -13,6 +13,7 @@ import numpy as np
 from snowshed._core import InputError, read_ascii_grid
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
+from snowshed.io.coordinate_systems import read_prj
 from snowshed.io.extras import require
 from snowshed.io.paths import PathLike
 
@@ -95,7 +96,8 @@ def read_raster(path: PathLike) -> Raster:
     Parameters
     ----------
     path
-        An ESRI ASCII grid (any name), or a GeoTIFF (.tif, .tiff), in metres on a projected map.
+        An ESRI ASCII grid (any name, its coordinate system in a .prj beside it), or a GeoTIFF
+        (.tif, .tiff), in metres on a projected map.
 
     Raises
     ------
@@ -111,7 +113,7 @@ def read_raster(path: PathLike) -> Raster:
 
 def _read_ascii(path: Path) -> Raster:
     heights, west, south, cell = read_ascii_grid(str(path))
-    return Raster(heights, west, south, cell, str(path))
+    return Raster(heights, west, south, cell, str(path), read_prj(path))
 
 
 def write_ascii_grid(path: PathLike, raster: Raster) -> None:

@@ -4,7 +4,7 @@ Beside what every run writes (``snowshed.run.results``), the folder holds
 
 ================== ==========================================================================
 peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s) and pressure
-                   (ppr, kPa), as ESRI ASCII grids
+                   (ppr, kPa), as ESRI ASCII grids; a .prj holds the coordinate system, if known
 flow/              thickness (FT) and speed (FV) at the end
 slide.json         the figures of `SlideSummary`
 slide.png          the map: terrain, peak speed, outline of the release
@@ -24,7 +24,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import write_ascii_grid
+from snowshed.io.raster_output import write_raster
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
@@ -150,7 +150,7 @@ def run_slide(
         (facts,) = sequence.finished_events
         maps = slide_maps(sequence.simulation)
         summary = _summary(sequence.simulation, facts, maps)
-        _write(Path(out_dir), maps, summary)
+        _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
         if pictures:
             from snowshed.plot.figure_style import save
             from snowshed.plot.slide_figure import slide_figure
@@ -285,7 +285,11 @@ def _summary(simulation: _core.Simulation, facts: dict[str, Any], maps: SlideMap
     )
 
 
-def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
+def _crs(simulation: _core.Simulation) -> str:
+    return str(json.loads(simulation.scene)["terrain"].get("crs", ""))
+
+
+def _write(folder: Path, maps: SlideMaps, summary: SlideSummary, crs: str) -> None:
     for name, values in (
         ("peaks/pft", maps.peak_thickness),
         ("peaks/pfv", maps.peak_speed),
@@ -295,5 +299,5 @@ def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
     ):
         file = folder / f"{name}.asc"
         file.parent.mkdir(exist_ok=True)
-        write_ascii_grid(file, maps.raster(values))
+        write_raster(file, maps.raster(values, crs))
     write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")

@@ -10,11 +10,13 @@ import click
 from snowshed._core import InputError
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
+from snowshed.cli.slide_project import run_project, write_particles
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.schema import Parameter, scene_parameters
 
 PATH = click.Path(path_type=Path)
 KINDS = {"number": float, "integer": int}
+WAYS = "give --terrain and --release, or --avaframe, or --example"
 
 
 def _slide_options(command: Any) -> Any:
@@ -78,21 +80,29 @@ def slide(
     given = {name: value for name, value in settings.items() if value is not None}
     if compatible:
         given["mode"] = "compatible"
+    if avaframe is not None:
+        if terrain is not None or release is not None or example:
+            raise InputError(WAYS)
+        if entrainment_areas is not None or resistance_areas is not None:
+            raise InputError("--avaframe: areas are those of the project, in ENT and RES")
+        run_project(
+            avaframe, folder, resume=resume, quiet=quiet, settings=given, thickness=thickness,
+            max_time=max_time, steps=steps,
+        )  # fmt: skip
+        return
     if resume:
         ready = ResolvedScene.load(folder / "scene.json")
     else:
         scene = _scene(
-            folder, terrain, release, thickness, entrainment_areas, resistance_areas, avaframe,
+            folder, terrain, release, thickness, entrainment_areas, resistance_areas,
             example=example, settings=given,
         )  # fmt: skip
         if max_time is not None:
             scene.set("events.max_time", max_time)
         ready = scene.resolve()
     run_scene(ready, folder, resume, quiet)
-    if avaframe is not None:
-        _write_as_avaframe(folder, avaframe)
     if steps:
-        _write_particles(ready, folder, steps)
+        write_particles(ready, folder, steps)
 
 
 def _scene(
@@ -102,23 +112,17 @@ def _scene(
     thickness: Optional[float],
     entrainment: Optional[Path],
     resistance: Optional[Path],
-    avaframe: Optional[Path],
     *,
     example: bool,
     settings: dict[str, object],
 ) -> Scene:
     """Return the scene that the options describe."""
     from snowshed.methods.slide import SlideSettings
-    from snowshed.scene.builders.avaframe import avaframe_scene
     from snowshed.scene.builders.slides import example_slide, slide_scene
 
-    ways = [terrain is not None or release is not None, avaframe is not None, example]
-    if sum(ways) != 1:
-        raise InputError("give --terrain and --release, or --avaframe, or --example")
+    if (terrain is not None or release is not None) == example:
+        raise InputError(WAYS)
     beside = folder.with_name(f"{folder.name}-terrain")
-    if avaframe is not None:
-        copy = beside.with_suffix(".asc")
-        return avaframe_scene(avaframe, settings=settings, thickness=thickness, ascii_copy=copy)
     if example:
         beside.mkdir(parents=True, exist_ok=True)
         return example_slide(beside).update({"numerics": settings})
@@ -146,30 +150,3 @@ def _steps(text: Optional[str]) -> list[int]:
     if min(steps) < 0:
         raise InputError(f"--particles-at: {min(steps)}; a number of steps is not negative")
     return steps
-
-
-def _write_particles(ready: ResolvedScene, folder: Path, steps: list[int]) -> None:
-    from snowshed.io.atomic import replacing
-    from snowshed.run.slides import particles_at
-
-    for step, table in particles_at(ready, steps).items():
-        name = "particles_initial" if step == 0 else f"particles_step{step:05d}"
-        with replacing(folder / f"{name}.csv") as beside:
-            table.to_csv(beside, index=False, float_format="%.10g")
-
-
-def _write_as_avaframe(folder: Path, project: Path) -> None:
-    """Write the peak maps under AvaFrame's names, so that its tools find them."""
-    import hashlib
-    import shutil
-
-    from snowshed.io.atomic import replacing
-
-    scene = (folder / "scene.json").read_bytes()
-    (release,) = sorted((project / "Inputs" / "REL").glob("*.shp"))[:1] or [Path("release")]
-    name = f"{release.stem}_{hashlib.sha256(scene).hexdigest()[:10]}_com5_C_L_null_ssl"
-    peaks = folder / "Outputs" / "com5SnowSlide" / "peakFiles"
-    peaks.mkdir(parents=True, exist_ok=True)
-    for kind in ("ppr", "pft", "pfv"):
-        with replacing(peaks / f"{name}_{kind}.asc") as beside:
-            shutil.copyfile(folder / "peaks" / f"{kind}.asc", beside)

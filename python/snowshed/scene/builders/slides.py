@@ -27,6 +27,7 @@ def slide_scene(
     *,
     thickness: Optional[float] = None,
     entrainment: Optional[PathLike] = None,
+    entrained_thickness: Optional[float] = None,
     resistance: Optional[PathLike] = None,
     settings: Optional[SlideSettings] = None,
     ascii_copy: Optional[PathLike] = None,
@@ -44,6 +45,8 @@ def slide_scene(
         Thickness of the snow, normal to the ground [m], in place of the file's.
     entrainment, resistance
         Polygons of areas where snow is taken up, and of forest.
+    entrained_thickness
+        Thickness of the snow that can be taken up [m], in place of the file's.
     settings
         Settings of the method; None: its defaults.
     ascii_copy
@@ -79,7 +82,7 @@ def slide_scene(
             file=file.resolve(),
             crs=crs,
             release=[_snow_area(area, thickness) for area in areas],
-            entrainment=[_snow_area(area, None) for area in eroded] or None,
+            entrainment=[_snow_area(area, entrained_thickness) for area in eroded] or None,
             resistance=[
                 ResistanceArea(name=area.name, outline=area.outline, holes=_holes(area))
                 for area in held
