@@ -9,6 +9,7 @@ from typing import Optional
 import click
 
 from snowshed.cli.run_scene import run_scene
+from snowshed.cli.slide_files import refuse_changed_areas, removing_copies, terrain_copy
 from snowshed.scene.scene import ResolvedScene
 
 
@@ -35,24 +36,26 @@ def run_project(
     )
     from snowshed.scene.builders.avaframe import avaframe_simulations
 
-    simulations = avaframe_simulations(
-        project,
-        settings=settings,
-        thickness=thickness,
-        ascii_copy=folder.with_name(f"{folder.name}-terrain.asc"),
-    )
-    for number, simulation in enumerate(simulations):
+    with removing_copies(folder):
+        simulations = avaframe_simulations(
+            project, settings=settings, thickness=thickness, ascii_copy=terrain_copy(folder)
+        )
         if max_time is not None:
-            simulation.scene.set("events.max_time", max_time)
-        results = folder if number == 0 else folder / simulation_name(simulation)
-        ready = simulation.scene.resolve()
-        if len(simulations) > 1 and not quiet:
-            click.echo(f"{simulation.release}, {simulation.sim_type}:")
-        run_scene(ready, results, resume and (results / "scene.json").exists(), quiet)
-        copy_inputs(project, folder)
-        write_avaframe_outputs(folder, simulation, results)
-        if steps:
-            write_particles(ready, results, steps)
+            for simulation in simulations:
+                simulation.scene.set("events.max_time", max_time)
+        for number, simulation in enumerate(simulations):
+            results = folder if number == 0 else folder / simulation_name(simulation)
+            ready = simulation.scene.resolve()
+            if len(simulations) > 1 and not quiet:
+                click.echo(f"{simulation.release}, {simulation.sim_type}:")
+            goes_on = resume and (number == 0 or (results / "scene.json").exists())
+            if goes_on:
+                refuse_changed_areas(ready, results, simulation.files)
+            run_scene(ready, results, goes_on, quiet)
+            copy_inputs(project, folder)
+            write_avaframe_outputs(folder, simulation, results)
+            if steps:
+                write_particles(ready, results, steps)
 
 
 def write_particles(ready: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:

@@ -10,13 +10,13 @@ import click
 from snowshed._core import InputError
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
+from snowshed.cli.slide_files import WAYS, SlideFiles, refuse_changed_areas, removing_copies
 from snowshed.cli.slide_project import run_project, write_particles
-from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.schema import Parameter, scene_parameters
 
 PATH = click.Path(path_type=Path)
 KINDS = {"number": float, "integer": int}
-WAYS = "give --terrain and --release, or --avaframe, or --example"
 
 
 def _slide_options(command: Any) -> Any:
@@ -44,6 +44,7 @@ def _option(parameter: Parameter, name: str) -> Any:
 @click.option("--terrain", type=PATH, help="Elevations: an ESRI ASCII grid or a GeoTIFF.")
 @click.option("--release", type=PATH, help="Polygons of the areas that break loose.")
 @click.option("--thickness", type=float, help="Thickness of the released snow [m].")
+@click.option("--thickness-raster", type=PATH, help="The same in the cells of a raster.")
 @click.option("--entrainment-areas", type=PATH, help="Polygons where snow is taken up.")
 @click.option("--resistance-areas", type=PATH, help="Polygons of forest.")
 @click.option("--avaframe", type=PATH, help="An AvaFrame project, run as AvaFrame 2.1 does.")
@@ -59,6 +60,7 @@ def slide(
     terrain: Optional[Path],
     release: Optional[Path],
     thickness: Optional[float],
+    thickness_raster: Optional[Path],
     entrainment_areas: Optional[Path],
     resistance_areas: Optional[Path],
     avaframe: Optional[Path],
@@ -81,7 +83,7 @@ def slide(
     if compatible:
         given["mode"] = "compatible"
     if avaframe is not None:
-        if terrain is not None or release is not None or example:
+        if terrain is not None or release is not None or thickness_raster is not None or example:
             raise InputError(WAYS)
         if entrainment_areas is not None or resistance_areas is not None:
             raise InputError("--avaframe: areas are those of the project, in ENT and RES")
@@ -90,54 +92,22 @@ def slide(
             max_time=max_time, steps=steps,
         )  # fmt: skip
         return
-    if resume:
-        ready = ResolvedScene.load(folder / "scene.json")
-    else:
-        scene = _scene(
-            folder, terrain, release, thickness, entrainment_areas, resistance_areas,
-            example=example, settings=given,
-        )  # fmt: skip
-        if max_time is not None:
-            scene.set("events.max_time", max_time)
-        ready = scene.resolve()
-    run_scene(ready, folder, resume, quiet)
+    files = SlideFiles(
+        terrain, release, thickness_raster, entrainment_areas, resistance_areas, thickness
+    )
+    with removing_copies(folder):
+        if resume and not files.any():
+            ready = ResolvedScene.load(folder / "scene.json")
+        else:
+            scene = files.scene(folder, example=example, settings=given)
+            if max_time is not None:
+                scene.set("events.max_time", max_time)
+            ready = scene.resolve()
+            if resume:
+                refuse_changed_areas(ready, folder, files.of_areas())
+        run_scene(ready, folder, resume, quiet)
     if steps:
         write_particles(ready, folder, steps)
-
-
-def _scene(
-    folder: Path,
-    terrain: Optional[Path],
-    release: Optional[Path],
-    thickness: Optional[float],
-    entrainment: Optional[Path],
-    resistance: Optional[Path],
-    *,
-    example: bool,
-    settings: dict[str, object],
-) -> Scene:
-    """Return the scene that the options describe."""
-    from snowshed.methods.slide import SlideSettings
-    from snowshed.scene.builders.slides import example_slide, slide_scene
-
-    if (terrain is not None or release is not None) == example:
-        raise InputError(WAYS)
-    beside = folder.with_name(f"{folder.name}-terrain")
-    if example:
-        beside.mkdir(parents=True, exist_ok=True)
-        return example_slide(beside).update({"numerics": settings})
-    if terrain is None or release is None:
-        raise InputError("give both --terrain and --release")
-    return slide_scene(
-        terrain,
-        release,
-        thickness=thickness,
-        entrainment=entrainment,
-        resistance=resistance,
-        settings=SlideSettings.from_data(settings),
-        ascii_copy=beside.with_suffix(".asc"),
-        title=f"Slide on {terrain.name}",
-    )
 
 
 def _steps(text: Optional[str]) -> list[int]:

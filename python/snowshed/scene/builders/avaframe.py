@@ -10,7 +10,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.io.map_areas import read_areas
 from snowshed.io.paths import PathLike
-from snowshed.io.raster import read_raster, write_ascii_grid
+from snowshed.io.raster import GEOTIFF, read_raster, write_ascii_grid
 from snowshed.io.raster_resampling import resampled_raster
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.builders.avaframe_ini import SIM_TYPES, ProjectSettings, read_ini
@@ -39,6 +39,8 @@ class AvaFrameSimulation:
         What the ini asks for.
     folder
         The project folder.
+    files
+        Files of the areas, by the part of a scene's terrain that they make; None without such.
     """
 
     scene: Scene
@@ -46,6 +48,7 @@ class AvaFrameSimulation:
     sim_type: str
     project: ProjectSettings
     folder: Path
+    files: Mapping[str, Optional[Path]]
 
 
 def avaframe_simulations(
@@ -102,6 +105,7 @@ def avaframe_simulations(
             sim_type,
             project,
             root,
+            {"release": release, "entrainment": areas["ent"], "resistance": areas["res"]},
         )
         for release in _releases(inputs / "REL", project)
         for sim_type in _sim_types(project, areas, inputs)
@@ -151,6 +155,9 @@ def _scene(
         for area in (*(scene.terrain.release or ()), *(scene.terrain.entrainment or ())):
             if area.holes:
                 raise InputError(f"{area.name}: has a hole, which AvaFrame does not allow")
+        # AvaFrame reads GeoTIFF in double precision, also one that it has resampled.
+        if _one(root / "Inputs", RASTERS, "terrain").suffix.lower() in GEOTIFF:
+            scene.terrain.single_precision = False
     return scene.set("events.max_time", project.max_time)
 
 
@@ -173,7 +180,7 @@ def _terrain(file: Path, project: ProjectSettings, ascii_copy: Optional[PathLike
         return file
     if ascii_copy is None:
         raise InputError(f"{file}: say where its copy on cells of {cell:g} m shall go (ascii_copy)")
-    write_ascii_grid(ascii_copy, resampled_raster(file, cell))
+    write_ascii_grid(ascii_copy, resampled_raster(file, cell), exact=True)
     return Path(ascii_copy)
 
 
