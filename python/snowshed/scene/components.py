@@ -235,8 +235,8 @@ class Terrain(Record):
     crs : str
         Coordinate system of the raster and the areas, handed on to the results.
     single_precision : bool
-        Whether the mode "compatible" rounds elevations to single precision, as AvaFrame reads text.
-        Default True.
+        Whether the mode "compatible" rounds elevations to single precision, as AvaFrame reads
+        text. Default True.
     thickness_file : str
         Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid;
         relative to the scene file.

@@ -164,6 +164,8 @@ def _release_areas(
     if depth is not None:
         if thickness is not None:
             raise InputError("give one of a thickness and a raster of thickness")
+        if not (depth.heights > 0).any():
+            raise InputError(f"{depth.name}: holds no thickness above 0")
         return areas_of_depth(depth) if release is None else read_areas(release)
     if release is None:
         raise InputError("give the release: polygons or a raster of thickness")
