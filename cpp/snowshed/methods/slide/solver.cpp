@@ -8,6 +8,7 @@
 #include "snowshed/methods/slide/advance.hpp"
 #include "snowshed/methods/slide/forces.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
+#include "snowshed/methods/slide/surface_pressure.hpp"
 #include "snowshed/particles/id_order.hpp"
 
 namespace snowshed {
@@ -154,7 +155,10 @@ void SlideSolver::step() {
   work_.make_room(model_, state_);
   // Nothing from here on allocates.
   apply_ground(model_, state_, work_);
-  add_pressure(model_, state_, work_);
+  if (model_.compatible())
+    add_pressure(model_, state_, work_);
+  else
+    add_surface_pressure(model_, state_, work_);
   add_bonds(model_, state_, work_);
   advance(model_, state_, work_);
   remove_marked(state_, work_);

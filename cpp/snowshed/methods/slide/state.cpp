@@ -63,6 +63,8 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   broken.resize(state.bonds.size());
   bond_lists.reserve(most, state.bonds.size());
   cells.reserve(most, model.terrain);
+  entry_z.reserve(most);
+  entry_nz.reserve(most);
   fields.reserve(model.terrain);
 }
 

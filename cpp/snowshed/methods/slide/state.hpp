@@ -75,6 +75,7 @@ struct SlideWork {
   std::vector<Vec3> normals;        // of the ground there
   AlignedVector<double> thickness;  // m, of the snow there
   CellLists cells;
+  AlignedVector<double> entry_z, entry_nz;  // height, and of the normal, in the order of the cells
   GridFields fields;
   BondLists bond_lists;
   std::vector<SlideLoad> loads;

@@ -1,0 +1,106 @@
+#include "snowshed/methods/slide/surface_pressure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snowshed {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// A particle as its neighbours see it.
+struct Seen {
+  double x, y, z;
+  double nz;  // of the ground's normal
+};
+
+Seen seen(const SlideWork& work, std::size_t e) {
+  return {work.cells.x()[e], work.cells.y()[e], work.entry_z[e], work.entry_nz[e]};
+}
+
+/// Calls f(entry, begin, end) for each particle and each of the three runs of entries in the cells
+/// around it; all of a row of cells are called by one thread.
+template <class F>
+void for_each_run(const CellLists& cells, int row, F f) {
+  for (int column = 1; column + 1 < cells.columns(); ++column)
+    for (std::uint32_t e = cells.begin(column, row); e < cells.begin(column + 1, row); ++e)
+      for (int k = row - 1; k <= row + 1; ++k)
+        f(e, cells.begin(column - 1, k), cells.begin(column + 2, k));
+}
+
+/// The sum over a run of m_l (n_k + n_l) / 2 (R - r)^2 / r times the way to each neighbour.
+Vec3 push_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uint32_t end,
+             double radius) {
+  const double *px = work.cells.x(), *py = work.cells.y(), *mass = work.cells.mass();
+  const double *pz = work.entry_z.data(), *nz = work.entry_nz.data();
+  const double least = 1e-3 * radius;
+  double sx = 0, sy = 0, sz = 0;
+#pragma omp simd reduction(+ : sx, sy, sz)
+  for (std::uint32_t e = begin; e < end; ++e) {
+    const double dx = px[e] - k.x, dy = py[e] - k.y, dz = pz[e] - k.z;
+    const double r = std::max(least, std::sqrt(dx * dx + dy * dy + dz * dz));
+    const double inside = std::max(0.0, radius - r);
+    const double w = mass[e] * 0.5 * (k.nz + nz[e]) * inside * inside / r;
+    sx += w * dx;
+    sy += w * dy;
+    sz += w * dz;
+  }
+  return {sx, sy, sz};
+}
+
+/// The sum over a run of m_l (R - r)^3.
+double cover_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uint32_t end,
+                double radius) {
+  double sum = 0;
+  for (std::uint32_t e = begin; e < end; ++e) {
+    const Seen l = seen(work, e);
+    const double inside = std::max(0.0, radius - std::hypot(l.x - k.x, l.y - k.y, l.z - k.z));
+    sum += work.cells.mass()[e] * inside * inside * inside;
+  }
+  return sum;
+}
+
+}  // namespace
+
+void add_surface_pressure(const SlideModel& model, const SlideState& state, SlideWork& work) {
+  if (!work.entrained.empty())  // new masses
+    work.cells.update(state.particles, work.places, model.threads);
+  const CellLists& cells = work.cells;
+  work.entry_z.resize(cells.size());
+  work.entry_nz.resize(cells.size());
+  parallel_pieces(std::ptrdiff_t(cells.size()), model.threads, particles_in_piece,
+                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    for (std::ptrdiff_t e = begin; e < end; ++e) {
+                      const std::uint32_t i = cells.particle(std::size_t(e));
+                      work.entry_z[e] = state.particles.z[i];
+                      work.entry_nz[e] = work.normals[i].z();
+                    }
+                  });
+  const double radius = model.terrain.cell();
+  const double slope = -30 / (pi * std::pow(radius, 5));  // of the kernel
+  const double factor = slope * model.gravity / model.settings.density;
+  parallel_pieces(cells.rows() - 2, model.threads, 1, [&](std::ptrdiff_t j, std::ptrdiff_t) {
+    for_each_run(cells, int(j) + 1, [&](std::uint32_t e, std::uint32_t begin, std::uint32_t end) {
+      const std::uint32_t i = cells.particle(e);
+      const Vec3 push = factor * push_of(work, seen(work, e), begin, end, radius);
+      const Vec3& n = work.normals[i];
+      work.loads[i].force += state.particles.mass[i] * (push - push.dot(n) * n);
+    });
+  });
+}
+
+double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
+  const CellLists& cells = work.cells;
+  const double radius = model.terrain.cell();
+  const double factor = 0.5 * model.gravity / model.settings.density * 10 / (pi * std::pow(radius, 5));
+  double sum = 0;
+  for (int row = 1; row + 1 < cells.rows(); ++row)
+    for_each_run(cells, row, [&](std::uint32_t e, std::uint32_t begin, std::uint32_t end) {
+      const std::uint32_t i = cells.particle(e);
+      sum += factor * state.particles.mass[i] * work.normals[i].z() *
+             cover_of(work, seen(work, e), begin, end, radius);
+    });
+  return sum;
+}
+
+}  // namespace snowshed
