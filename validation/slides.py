@@ -7,7 +7,6 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Optional
 
 import numpy as np
 
@@ -25,7 +24,6 @@ GRAVITY = 9.81  # m/s2
 
 #: Height of the ground, m, at points of the map.
 Height = Callable[[Floats, Floats], Floats]
-Corners = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -74,10 +72,8 @@ class Site:
         Of the ground, m.
     west, south, east, north
         The rectangle on the map, m.
-    outline
-        Corners of the release area.
-    thickness
-        Of the released snow, m, normal to the ground; None: no snow yet.
+    release
+        The areas of snow.
     """
 
     height: Height
@@ -85,13 +81,13 @@ class Site:
     south: float
     east: float
     north: float
-    outline: Corners
-    thickness: float = 1.0
+    release: list[Area]
 
 
-def rectangle(west: float, south: float, east: float, north: float) -> Corners:
-    """Return the corners of a rectangle."""
-    return [(west, south), (east, south), (east, north), (west, north)]
+def rectangle(west: float, south: float, east: float, north: float, thickness: float) -> Area:
+    """Return a rectangular area of snow, m."""
+    corners = [(west, south), (east, south), (east, north), (west, north)]
+    return Area(outline=corners, thickness=thickness)
 
 
 def slide_drive(site: Site, settings: Settings, own: Collection[str] = ()) -> Drive:
@@ -123,9 +119,7 @@ def slide_drive(site: Site, settings: Settings, own: Collection[str] = ()) -> Dr
         scene = Scene(
             method="slide",
             dimension=3,
-            terrain=Terrain(
-                file=file, release=[Area(outline=site.outline, thickness=site.thickness)]
-            ),
+            terrain=Terrain(file=file, release=site.release),
             numerics=bare,
             events=Events(max_time=400.0),
         )

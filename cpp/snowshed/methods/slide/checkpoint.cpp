@@ -21,6 +21,9 @@ void SlideSolver::save(BinaryWriter& out) const {
   const MassBalance& b = state_.balance;
   out.add("clock", std::vector<double>{state_.time, state_.dt, state_.kinetic_energy,
                                        state_.peak_kinetic, b.released, b.entrained, b.left});
+  std::vector<double> energies;
+  SlideEnergy::for_each_sum(state_.energy, [&](double sum) { energies.push_back(sum); });
+  out.add("energy", energies);
   const StepCounters& c = state_.counters;
   out.add("counters", std::vector<std::int64_t>{
                           c.steps, c.sorts, c.particle_updates, state_.bonds_made, b.particles_left,
@@ -69,6 +72,9 @@ void SlideSolver::load(const BinaryReader& in) {
   next.dt = clock[1];
   next.kinetic_energy = clock[2];
   next.peak_kinetic = clock[3];
+  const auto energies = in.get<double>("energy", 8);
+  std::size_t sum = 0;
+  SlideEnergy::for_each_sum(next.energy, [&](double& value) { value = energies[sum++]; });
   const auto counts = in.get<std::int64_t>("counters", 7);
   next.balance = {clock[4], clock[5], clock[6], counts[4]};
   next.counters.smallest_dt = model_.settings.time_step;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/slide/advance.hpp"
@@ -16,6 +17,12 @@ namespace {
 
 /// Between two times that particles are stored anew in the order of their cells.
 constexpr int steps_between_sorts = 32;
+
+std::string in_words(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
 
 void check_on_terrain(const Terrain& terrain, const std::vector<SlideArea>& areas,
                       const std::string& kind) {
@@ -37,7 +44,8 @@ std::unique_ptr<SlideMethod> make_slide(SlideOptions options) {
 }
 
 SlideSolver::SlideSolver(SlideOptions o)
-    : model_(o.settings, o.gravity, o.terrain, std::move(o.areas)), state_(model_) {
+    : model_(o.settings, o.gravity, o.terrain, std::move(o.areas), o.energy),
+      state_(model_) {
   check_on_terrain(model_.terrain, model_.areas.release, "release");
   state_.counters.smallest_dt = model_.settings.time_step;
 }
@@ -81,11 +89,35 @@ void SlideSolver::append(SlideState& state, const ParticleBatch& batch) const {
   state.bonds_made += std::int64_t(bonds.size());
 }
 
+/// Snow may pile up to four times its thickness before the bonds become too stiff for the step.
+void SlideSolver::require_short_step(const SlideState& next, const SlideWork& work) const {
+  const SlideSettings& s = model_.settings;
+  if (model_.compatible()) return;
+  const double longest =
+      0.5 * longest_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
+  if (s.time_step > longest)
+    throw InputError("/numerics/time_step",
+                     in_words(s.time_step) + " s; bonds with a modulus of " + in_words(s.bond_modulus) +
+                         " Pa need steps of at most " + in_words(longest) + " s");
+}
+
+/// What a change from outside brings, beyond what there is now.
+void SlideSolver::count_as_added(const SlideState& next, const SlideWork& work,
+                                 SlideEnergy& sums) const {
+  if (!model_.keeps_energy) return;
+  SlideEnergy before, after;
+  store_energy(model_, state_, work_, before);
+  store_energy(model_, next, work, after);
+  sums.added += after.stored() - before.stored();
+}
+
 /// Takes over a state whose workspace must follow.
 void SlideSolver::accept(SlideState next) {
   SlideWork work;
   refresh(model_, next, work);
+  require_short_step(next, work);
   work.fields.raise(next.peaks, model_.terrain);
+  count_as_added(next, work, next.energy);
   state_ = std::move(next);
   work_ = std::move(work);
   order_known_ = false;
@@ -108,6 +140,7 @@ void SlideSolver::replace(const std::vector<ParticleBatch>& batches) {
   next.next_id = state_.next_id;
   next.peaks = state_.peaks;
   next.erodible = state_.erodible;
+  next.energy = state_.energy;
   for (const ParticleBatch& batch : batches) append(next, batch);
   accept(std::move(next));
 }
@@ -154,13 +187,20 @@ void SlideSolver::step() {
   sort_now_and_then();
   work_.make_room(model_, state_);
   // Nothing from here on allocates.
+  const bool audited = model_.keeps_energy;
+  EnergyAudit& audit = work_.audit;
+  if (audited) audit.begin_step(state_);
   apply_ground(model_, state_, work_);
+  if (audited) audit.after_ground(model_, state_, work_, state_.energy);
   if (model_.compatible())
     add_pressure(model_, state_, work_);
   else
     add_surface_pressure(model_, state_, work_);
+  if (audited) audit.before_bonds(model_, state_, work_, state_.energy);
   add_bonds(model_, state_, work_);
+  if (audited) audit.before_motion(model_, state_, work_);
   advance(model_, state_, work_);
+  if (audited) audit.after_motion(model_, state_, work_, state_.energy);
   remove_marked(state_, work_);
   split_heavy(model_, state_, work_);
   refresh_fields(model_, state_, work_);

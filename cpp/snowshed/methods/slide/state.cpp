@@ -33,14 +33,16 @@ std::vector<double> erodible_at_nodes(const SlideModel& model) {
 
 }  // namespace
 
-SlideModel::SlideModel(const SlideSettings& s, double g, const HeightField& field, SlideAreas a)
+SlideModel::SlideModel(const SlideSettings& s, double g, const HeightField& field, SlideAreas a,
+                       bool keeps)
     : settings(s),
       gravity(g),
       terrain(field, border_slope(s)),
       areas(std::move(a)),
       friction(BasalFriction::from(s, g)),
       resistance(resistance_at_nodes(s, areas, terrain)),
-      threads(threads_to_use(s.threads)) {}
+      threads(threads_to_use(s.threads)),
+      keeps_energy(keeps) {}
 
 SlideState::SlideState(const SlideModel& model)
     : peaks(std::size_t(model.terrain.columns()) * std::size_t(model.terrain.rows())),
@@ -66,6 +68,7 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   entry_z.reserve(most);
   entry_nz.reserve(most);
   fields.reserve(model.terrain);
+  if (model.keeps_energy) audit.reserve(now);
 }
 
 void refresh(const SlideModel& model, const SlideState& state, SlideWork& work) {

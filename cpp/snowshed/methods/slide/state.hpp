@@ -7,11 +7,11 @@
 
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/core/parallel.hpp"
-#include "snowshed/methods/energy_balance.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/bonds.hpp"
 #include "snowshed/methods/slide/cells.hpp"
+#include "snowshed/methods/slide/energy.hpp"
 #include "snowshed/methods/slide/friction.hpp"
 #include "snowshed/methods/slide/grid_fields.hpp"
 #include "snowshed/methods/slide/particles.hpp"
@@ -21,7 +21,8 @@
 namespace snowshed {
 
 struct SlideModel {
-  SlideModel(const SlideSettings&, double gravity, const HeightField&, SlideAreas);
+  SlideModel(const SlideSettings&, double gravity, const HeightField&, SlideAreas,
+             bool keeps_energy);
 
   bool compatible() const { return settings.mode == SlideMode::compatible; }
 
@@ -32,6 +33,7 @@ struct SlideModel {
   BasalFriction friction;
   std::vector<double> resistance;  // coefficient at each node; empty without such areas
   int threads;
+  bool keeps_energy;
 };
 
 /// What left the terrain, and the snow it took up on its way.
@@ -54,6 +56,7 @@ struct SlideState {
   bool stopped = false;
   std::uint32_t next_id = 0;
   StepCounters counters;
+  SlideEnergy energy;  // its sums over steps
 };
 
 /// What acts on a particle during a step.
@@ -86,6 +89,7 @@ struct SlideWork {
   std::vector<char> broken;       // bonds
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
+  EnergyAudit audit;
 
   /// Makes room for all that a step of this state can need, so that nothing fails amid it.
   void make_room(const SlideModel&, SlideState&);
