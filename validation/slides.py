@@ -110,8 +110,8 @@ def slide_drive(site: Site, settings: Settings, own: Collection[str] = ()) -> Dr
         if name not in own:
             setattr(bare, name, value)
     cell = float(settings["cell"])
-    columns = int(round((site.east - site.west) / cell)) + 1
-    rows = int(round((site.north - site.south) / cell)) + 1
+    columns = round((site.east - site.west) / cell) + 1
+    rows = round((site.north - site.south) / cell) + 1
     x, y = np.meshgrid(site.west + cell * np.arange(columns), site.south + cell * np.arange(rows))
     with TemporaryDirectory() as folder:
         file = Path(folder) / "terrain.asc"
@@ -134,7 +134,8 @@ def maps_of(drive: Drive) -> SlideMaps:
 def node_axes(maps: SlideMaps) -> tuple[Floats, Floats]:
     """Return the coordinates of the columns and rows of nodes, m."""
     rows, columns = maps.terrain.shape
-    return maps.west + maps.cell * np.arange(columns), maps.south + maps.cell * np.arange(rows)
+    east, north = (maps.cell * np.arange(count, dtype=np.float64) for count in (columns, rows))
+    return maps.west + east, maps.south + north
 
 
 def strip_mean(maps: SlideMaps, values: Floats, half_width: float) -> tuple[Floats, Floats]:

@@ -108,8 +108,8 @@ CASE = Case(
         "numerical models, Pure and Applied Geophysics 157, 1081-1096"
     ),
     description="""
-    Snow 1 m thick behind a dam on a plane of 30 degrees, friction angle 20 degrees, is let go. After
-    3 s the thickness along the middle of a strip 28 m wide, which its sides and its upper end have
+    Snow 1 m thick behind a dam on a plane of 30 degrees, friction angle 20 degrees, is let go.
+    After 3 s the thickness along the middle of a strip 28 m wide, which its sides and its upper end have
     not reached, is compared. The error of the profile is the mean absolute difference over the way
     of the wave behind the dam, in parts of the dam's height. The front is where the thickness is a
     twentieth of the dam's; its error is in parts of the length of the fan. No bonds, no artificial
@@ -120,8 +120,12 @@ CASE = Case(
             "profile",
             "mean error of thickness over that of the dam",
             bar=0.08,
-            bar_for={"cell": 2.0, "layer_thickness": LAYERS[2], "time_step": 0.02,
-                     "artificial_viscosity": None},
+            bar_for={
+                "cell": 2.0,
+                "layer_thickness": LAYERS[2],
+                "time_step": 0.02,
+                "artificial_viscosity": None,
+            },
             order_in="layer_thickness",
             least_order=0.5,
         ),
@@ -129,8 +133,12 @@ CASE = Case(
             "front",
             "front over the length of the fan",
             bar=0.10,
-            bar_for={"cell": 2.0, "layer_thickness": LAYERS[2], "time_step": 0.02,
-                     "artificial_viscosity": None},
+            bar_for={
+                "cell": 2.0,
+                "layer_thickness": LAYERS[2],
+                "time_step": 0.02,
+                "artificial_viscosity": None,
+            },
             relative=False,
         ),
     ),

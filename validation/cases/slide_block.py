@@ -89,9 +89,7 @@ def matrix(full: bool) -> list[Settings]:
     for law in ("coulomb", "voellmy", "stop"):
         one: Settings = {**DEFAULTS, "law": law}
         listed += [{**one, "time_step": dt} for dt in steps]
-        listed += [
-            {**one, "layer_thickness": layer} for layer in particles if layer != 0.06
-        ]
+        listed += [{**one, "layer_thickness": layer} for layer in particles if layer != 0.06]
         listed += [{**one, "cell": 1.0}] if full else []
     return listed
 

@@ -36,8 +36,7 @@ Slowed slowed_explicitly(const SlideLoad& load, const Vec3& u, double dt) {
   return {Vec3::Zero(), load.speed > 0 ? speed / stress : 0.0};
 }
 
-Slowed slowed_by(const SlideModel& model, const SlideLoad& load, const Vec3& u) {
-  const double dt = model.settings.time_step;
+Slowed slowed_by(const SlideModel& model, const SlideLoad& load, const Vec3& u, double dt) {
   if (!model.compatible()) return slowed(load, u, dt);
   return model.settings.explicit_friction ? slowed_explicitly(load, u, dt)
                                           : slowed_implicitly(load, u, dt);
@@ -55,14 +54,14 @@ Vec3 along_ground(const Vec3& u, const Vec3& normal, double added_speed) {
 void advance(const SlideModel& model, SlideState& state, SlideWork& work) {
   SlideParticles& p = state.particles;
   const Terrain& terrain = model.terrain;
-  const double dt = model.settings.time_step;
+  const double dt = state.step;
   const double added_speed = model.compatible() ? least_speed : 0.0;
   std::fill(work.removed.begin(), work.removed.end(), 0);
   const auto move = [&](std::size_t i) {  // returns the kinetic energy, J
     const SlideLoad& load = work.loads[i];
     const Vec3 before{p.ux[i], p.uy[i], p.uz[i]};
     const Vec3 pushed = before + dt * (load.acceleration + load.force / p.mass[i]);
-    const Slowed s = slowed_by(model, load, pushed);
+    const Slowed s = slowed_by(model, load, pushed, dt);
     const Vec3 way = 0.5 * s.moving * (before + s.velocity);
     const Reprojection r = reproject(terrain, p.x[i] + way.x(), p.y[i] + way.y(), p.z[i] + way.z());
     if (!r.on_ground.inside() || !terrain.known(r.on_ground)) {

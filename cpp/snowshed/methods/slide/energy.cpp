@@ -98,12 +98,10 @@ void EnergyAudit::before_bonds(const SlideModel& model, const SlideState& state,
   }
 }
 
-void EnergyAudit::before_motion(const SlideModel& model, const SlideState& state,
-                                const SlideWork& work) {
+void EnergyAudit::before_motion(const SlideState& state, const SlideWork& work) {
   for (std::size_t i = 0; i < pushed_.size(); ++i) {
     const SlideLoad& load = work.loads[i];
-    pushed_[i] = before_[i] + model.settings.time_step *
-                                  (load.acceleration + load.force / state.particles.mass[i]);
+    pushed_[i] = before_[i] + state.step * (load.acceleration + load.force / state.particles.mass[i]);
   }
 }
 

@@ -64,7 +64,7 @@ class EnergyAudit {
   void after_ground(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&);
   /// Before bonds are removed.
   void before_bonds(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
-  void before_motion(const SlideModel&, const SlideState&, const SlideWork&);
+  void before_motion(const SlideState&, const SlideWork&);
   /// Before particles that left the terrain are removed.
   void after_motion(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
 

@@ -72,7 +72,7 @@ void apply_ground(const SlideModel& model, SlideState& state, SlideWork& work) {
   SlideParticles& p = state.particles;
   const SlideSettings& s = model.settings;
   const Terrain& terrain = model.terrain;
-  const double dt = s.time_step;
+  const double dt = state.step;
   for_each_particle(p, model.threads, [&](std::size_t i) {
     const GridPlace& place = work.places[i];
     const Vec3 here = work.normals[i];

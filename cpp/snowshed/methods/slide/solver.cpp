@@ -18,6 +18,9 @@ namespace {
 /// Between two times that particles are stored anew in the order of their cells.
 constexpr int steps_between_sorts = 32;
 
+/// Steps that stiff bonds may need in place of one.
+constexpr double most_parts = 100;
+
 std::string in_words(double value) {
   std::ostringstream text;
   text << value;
@@ -89,16 +92,22 @@ void SlideSolver::append(SlideState& state, const ParticleBatch& batch) const {
   state.bonds_made += std::int64_t(bonds.size());
 }
 
-/// Snow may pile up to four times its thickness before the bonds become too stiff for the step.
-void SlideSolver::require_short_step(const SlideState& next, const SlideWork& work) const {
+/// Shortens the steps to what the bonds need; snow may pile up to four times its thickness before
+/// they become too stiff even so. Compatible mode takes the step that was asked for.
+void SlideSolver::choose_step(SlideState& next, const SlideWork& work) const {
   const SlideSettings& s = model_.settings;
   if (model_.compatible()) return;
   const double longest =
       0.5 * longest_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
-  if (s.time_step > longest)
+  const double parts = std::ceil(s.time_step / longest);
+  if (parts > most_parts)
     throw InputError("/numerics/time_step",
-                     in_words(s.time_step) + " s; bonds with a modulus of " + in_words(s.bond_modulus) +
-                         " Pa need steps of at most " + in_words(longest) + " s");
+                     in_words(s.time_step) + " s; bonds with a modulus of " +
+                         in_words(s.bond_modulus) + " Pa need steps of at most " +
+                         in_words(longest) + " s; at most " + in_words(most_parts) +
+                         " are taken in place of one");
+  next.step = s.time_step / std::max(1.0, parts);
+  next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
 }
 
 /// What a change from outside brings, beyond what there is now.
@@ -115,7 +124,7 @@ void SlideSolver::count_as_added(const SlideState& next, const SlideWork& work,
 void SlideSolver::accept(SlideState next) {
   SlideWork work;
   refresh(model_, next, work);
-  require_short_step(next, work);
+  choose_step(next, work);
   work.fields.raise(next.peaks, model_.terrain);
   count_as_added(next, work, next.energy);
   state_ = std::move(next);
@@ -198,16 +207,17 @@ void SlideSolver::step() {
     add_surface_pressure(model_, state_, work_);
   if (audited) audit.before_bonds(model_, state_, work_, state_.energy);
   add_bonds(model_, state_, work_);
-  if (audited) audit.before_motion(model_, state_, work_);
+  if (audited) audit.before_motion(state_, work_);
   advance(model_, state_, work_);
   if (audited) audit.after_motion(model_, state_, work_, state_.energy);
   remove_marked(state_, work_);
   split_heavy(model_, state_, work_);
   refresh_fields(model_, state_, work_);
   work_.fields.raise(state_.peaks, model_.terrain);
-  state_.dt = model_.settings.time_step;
+  state_.dt = state_.step;
   ++state_.counters.steps;
-  state_.time = double(state_.counters.steps) * state_.dt;
+  const bool as_asked = state_.counters.smallest_dt == model_.settings.time_step;
+  state_.time = as_asked ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
   state_.counters.particle_updates += std::int64_t(size());
   order_known_ = false;
   if (size() == 0) state_.stopped = true;

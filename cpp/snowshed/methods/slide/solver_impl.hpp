@@ -56,7 +56,7 @@ class SlideSolver final : public SlideMethod {
   void append(SlideState&, const ParticleBatch&) const;
   void accept(SlideState);
   void sort_now_and_then();
-  void require_short_step(const SlideState& next, const SlideWork& work) const;
+  void choose_step(SlideState& next, const SlideWork& work) const;
   void count_as_added(const SlideState& next, const SlideWork& work, SlideEnergy& sums) const;
   void require_sound() const;
   double speed(std::size_t i) const;

@@ -46,7 +46,8 @@ SlideModel::SlideModel(const SlideSettings& s, double g, const HeightField& fiel
 
 SlideState::SlideState(const SlideModel& model)
     : peaks(std::size_t(model.terrain.columns()) * std::size_t(model.terrain.rows())),
-      erodible(erodible_at_nodes(model)) {}
+      erodible(erodible_at_nodes(model)),
+      step(model.settings.time_step) {}
 
 void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   // Each particle may split.

@@ -52,6 +52,7 @@ struct SlideState {
   std::vector<double> erodible;  // kg/m2 at each node that can still be entrained; may be empty
   MassBalance balance;
   double time = 0, dt = 0;                      // s
+  double step;                                  // s, the length of the steps to come
   double kinetic_energy = 0, peak_kinetic = 0;  // J
   bool stopped = false;
   std::uint32_t next_id = 0;

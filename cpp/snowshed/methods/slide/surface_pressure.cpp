@@ -48,14 +48,15 @@ Vec3 push_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uin
   return {sx, sy, sz};
 }
 
-/// The sum over a run of m_l (R - r)^3.
-double cover_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uint32_t end,
-                double radius) {
+/// The sum over a run of m_l (R - r)^3 around a particle.
+double cover_of(const SlideParticles& p, const CellLists& cells, std::uint32_t i,
+                std::uint32_t begin, std::uint32_t end, double radius) {
   double sum = 0;
   for (std::uint32_t e = begin; e < end; ++e) {
-    const Seen l = seen(work, e);
-    const double inside = std::max(0.0, radius - std::hypot(l.x - k.x, l.y - k.y, l.z - k.z));
-    sum += work.cells.mass()[e] * inside * inside * inside;
+    const std::uint32_t l = cells.particle(e);
+    const double distance = std::hypot(p.x[l] - p.x[i], p.y[l] - p.y[i], p.z[l] - p.z[i]);
+    const double inside = std::max(0.0, radius - distance);
+    sum += p.mass[l] * inside * inside * inside;
   }
   return sum;
 }
@@ -98,7 +99,7 @@ double pressure_energy(const SlideModel& model, const SlideState& state, const S
     for_each_run(cells, row, [&](std::uint32_t e, std::uint32_t begin, std::uint32_t end) {
       const std::uint32_t i = cells.particle(e);
       sum += factor * state.particles.mass[i] * work.normals[i].z() *
-             cover_of(work, seen(work, e), begin, end, radius);
+             cover_of(state.particles, cells, i, begin, end, radius);
     });
   return sum;
 }

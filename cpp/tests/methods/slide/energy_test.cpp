@@ -42,14 +42,15 @@ TEST(SlideEnergy, of_a_slide_with_all_that_takes_energy_closes) {
   o.areas.entrainment = {rectangle(60, 20, 90, 80, 0.2)};
   o.areas.resistance = {rectangle(90, 20, 120, 80)};
   o.settings.resistance = 0.05;
+  o.settings.max_strain = 0.02;  // so that bonds break
   const auto slide = released(o);
   const double before = energies(*slide).at("potential_j");
   EXPECT_NEAR(energies(*slide).at("residual_j") / before, 0, 1e-12);
   while (!*slide->at_rest() && slide->time() < 60) slide->step();
   const auto e = energies(*slide);
   EXPECT_LT(gap(e, before), 0.01);
-  for (const char* part : {"coulomb_j", "turbulent_j", "resistance_j", "viscosity_j",
-                           "entrainment_j", "broken_bonds_j"})
+  for (const char* part :
+       {"coulomb_j", "turbulent_j", "resistance_j", "entrainment_j", "broken_bonds_j"})
     EXPECT_GT(e.at(part), 0) << part;
 }
 
@@ -107,25 +108,25 @@ TEST_F(SlideEnergyCheckpoint, goes_on_where_it_was) {
   EXPECT_EQ(energies(*slide), energies(*resumed));
 }
 
-TEST(SlideEnergy, bonds_too_stiff_for_the_step_are_refused) {
+TEST(SlideEnergy, stiff_bonds_shorten_the_step_and_do_not_shake_the_slab) {
+  SlideOptions o = audited(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
+  o.settings.bond_modulus = 5e7;
+  const auto slide = released(o);
+  const double before = energies(*slide).at("potential_j");
+  while (slide->time() < 1.0) slide->step();
+  EXPECT_LT(slide->time_step(), 0.005);
+  EXPECT_EQ(slide->bonds().size(), std::size_t(slide->bonds_made()));
+  EXPECT_LT(gap(energies(*slide), before), 0.01);
+}
+
+TEST(SlideEnergy, bonds_far_too_stiff_for_the_step_are_refused) {
   SlideOptions o = slide_on(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
-  o.settings.bond_modulus = 1e9;
+  o.settings.bond_modulus = 1e12;
   const auto slide = make_slide(o);
   EXPECT_THROW(slide->add(slide->seed()), InputError);
   o.settings.mode = SlideMode::compatible;
   const auto compatible = make_slide(o);
   EXPECT_NO_THROW(compatible->add(compatible->seed()));
-}
-
-TEST(SlideEnergy, bonds_as_stiff_as_the_step_allows_do_not_shake_the_slab) {
-  SlideOptions o = audited(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
-  o.settings.time_step = 0.01;
-  o.settings.bond_modulus = 5e5;
-  const auto slide = released(o);
-  const double before = energies(*slide).at("potential_j");
-  step(*slide, 150);
-  EXPECT_EQ(slide->bonds().size(), std::size_t(slide->bonds_made()));
-  EXPECT_LT(gap(energies(*slide), before), 0.01);
 }
 
 }  // namespace
