@@ -109,11 +109,11 @@ CASE = Case(
     ),
     description="""
     Snow 1 m thick behind a dam on a plane of 30 degrees, friction angle 20 degrees, is let go.
-    After 3 s the thickness along the middle of a strip 28 m wide, which its sides and its upper end have
-    not reached, is compared. The error of the profile is the mean absolute difference over the way
-    of the wave behind the dam, in parts of the dam's height. The front is where the thickness is a
-    twentieth of the dam's; its error is in parts of the length of the fan. No bonds, no artificial
-    viscosity.
+    After 3 s the thickness along the middle of a strip 28 m wide, which its sides and its upper end
+    have not reached, is compared. The error of the profile is the mean absolute difference over the
+    way of the wave behind the dam, in parts of the dam's height. The front is where the thickness
+    is a twentieth of the dam's; its error is in parts of the length of the fan. No bonds, no
+    artificial viscosity.
     """,
     quantities=(
         Quantity(

@@ -57,6 +57,7 @@ EXTREMES: tuple[Settings, ...] = (
 def measure(settings: Settings) -> Outcome:
     """Run some steps, and look at mass, numbers and what must lie still."""
     height = GROUNDS[str(settings["ground"])]
+    settings = {"layer_thickness": float(settings["thickness"]) / 2, **settings}
     snow = rectangle(-12.3, -12.3, 12.3, 12.3, float(settings["thickness"]))
     drive = slide_drive(Site(height, -30.0, -30.0, 60.0, 30.0, [snow]), settings, OWN)
     released = drive.masses.sum()
@@ -95,8 +96,8 @@ CASE = Case(
     source="conservation of mass; Coulomb's law; all numbers are finite",
     description="""
     A slab slides over cliffs, steps, pits, a gully of one cell, level ground and a sharp ridge, 1
-    mm to 10 m thick; and on a slope with time steps, bonds, friction, viscosity and particles at the
-    extremes of what is allowed. No number may be other than finite, the mass on the terrain and
+    mm to 10 m thick; and on a slope with time steps, bonds, friction, viscosity and particles at
+    the extremes of what is allowed. No number may be other than finite, the mass on the terrain and
     beyond it stays what it was, and with μ = 2 snow on a slope of 38 degrees stays where it is.
     """,
     quantities=(

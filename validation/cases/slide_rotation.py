@@ -123,9 +123,9 @@ CASE = Case(
     description="""
     A slab 1 m thick breaks loose on a slope of 35 degrees that runs out onto level ground, a plane
     or a channel, with Voellmy's friction and artificial viscosity. Terrain and release are turned
-    by an angle. The peak fields, turned back, are compared with those of the slide that was not turned,
-    where its snow was at least 2 cm thick: the mean absolute difference, over the error of the
-    cell's interpolation, which is what a map loses that is turned and turned back bilinearly.
+    by an angle. The peak fields, turned back, are compared with those of the slide that was not
+    turned, where its snow was at least 2 cm thick: the mean absolute difference, over the error of
+    the cell's interpolation, which is what a map loses that is turned and turned back bilinearly.
     """,
     quantities=(
         Quantity(

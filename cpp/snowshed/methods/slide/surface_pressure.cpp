@@ -7,11 +7,12 @@ namespace snowshed {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
+constexpr double least_thickness = 1e-6;  // m
 
 /// A particle as its neighbours see it.
 struct Seen {
   double x, y, z;
-  double nz;  // of the ground's normal
+  double nz;  // of the ground's normal, times the factor for few neighbours
 };
 
 Seen seen(const SlideWork& work, std::size_t e) {
@@ -48,17 +49,11 @@ Vec3 push_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uin
   return {sx, sy, sz};
 }
 
-/// The sum over a run of m_l (R - r)^3 around a particle.
-double cover_of(const SlideParticles& p, const CellLists& cells, std::uint32_t i,
-                std::uint32_t begin, std::uint32_t end, double radius) {
-  double sum = 0;
-  for (std::uint32_t e = begin; e < end; ++e) {
-    const std::uint32_t l = cells.particle(e);
-    const double distance = std::hypot(p.x[l] - p.x[i], p.y[l] - p.y[i], p.z[l] - p.z[i]);
-    const double inside = std::max(0.0, radius - distance);
-    sum += p.mass[l] * inside * inside * inside;
-  }
-  return sum;
+/// By how much the kernel's sum over few neighbours falls short of the pressure of snow, inverted. In
+/// a triangular lattice with N particles within the kernel the sum is 1 - 5 N^-1.4 of the integral,
+/// to 1 % for N from 6 to 100.
+double few_neighbours(double particles_in_kernel) {
+  return 1 / std::max(0.5, 1 - 5 * std::pow(particles_in_kernel, -1.4));
 }
 
 }  // namespace
@@ -67,6 +62,8 @@ void add_surface_pressure(const SlideModel& model, const SlideState& state, Slid
   if (!work.entrained.empty())  // new masses
     work.cells.update(state.particles, work.places, model.threads);
   const CellLists& cells = work.cells;
+  const double radius = model.terrain.cell();
+  const double kernel_mass = pi * radius * radius * model.settings.density;  // kg per m of snow
   work.entry_z.resize(cells.size());
   work.entry_nz.resize(cells.size());
   parallel_pieces(std::ptrdiff_t(cells.size()), model.threads, particles_in_piece,
@@ -74,10 +71,11 @@ void add_surface_pressure(const SlideModel& model, const SlideState& state, Slid
                     for (std::ptrdiff_t e = begin; e < end; ++e) {
                       const std::uint32_t i = cells.particle(std::size_t(e));
                       work.entry_z[e] = state.particles.z[i];
-                      work.entry_nz[e] = work.normals[i].z();
+                      const double h = std::max(work.thickness[i], least_thickness);
+                      const double count = kernel_mass * h / state.particles.mass[i];
+                      work.entry_nz[e] = work.normals[i].z() * few_neighbours(count);
                     }
                   });
-  const double radius = model.terrain.cell();
   const double slope = -30 / (pi * std::pow(radius, 5));  // of the kernel
   const double factor = slope * model.gravity / model.settings.density;
   parallel_pieces(cells.rows() - 2, model.threads, 1, [&](std::ptrdiff_t j, std::ptrdiff_t) {
@@ -91,16 +89,9 @@ void add_surface_pressure(const SlideModel& model, const SlideState& state, Slid
 }
 
 double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
-  const CellLists& cells = work.cells;
-  const double radius = model.terrain.cell();
-  const double factor = 0.5 * model.gravity / model.settings.density * 10 / (pi * std::pow(radius, 5));
   double sum = 0;
-  for (int row = 1; row + 1 < cells.rows(); ++row)
-    for_each_run(cells, row, [&](std::uint32_t e, std::uint32_t begin, std::uint32_t end) {
-      const std::uint32_t i = cells.particle(e);
-      sum += factor * state.particles.mass[i] * work.normals[i].z() *
-             cover_of(state.particles, cells, i, begin, end, radius);
-    });
+  for (std::size_t i = 0; i < state.particles.size(); ++i)
+    sum += 0.5 * model.gravity * state.particles.mass[i] * work.normals[i].z() * work.thickness[i];
   return sum;
 }
 
