@@ -78,7 +78,7 @@ std::string run(Simulation& sim, const py::function& callback, double interval) 
 
 py::dict energy(const Simulation& sim) {
   py::dict d;
-  for (const auto& [name, joules] : named_energies(sim.solver().energy())) d[name.c_str()] = joules;
+  for (const auto& [name, joules] : sim.solver().energy_table()) d[name.c_str()] = joules;
   return d;
 }
 

@@ -1,5 +1,6 @@
 """Runs of snow slides: figures, maps, resuming, and the particles after a step."""
 
+import csv
 import json
 import math
 
@@ -71,6 +72,18 @@ def test_particles_after_some_steps(slope):
     assert np.median(speed) == pytest.approx(a * 0.03, rel=0.05)
 
 
+def test_the_energy_balance_is_written_and_closes(slope, tmp_path):
+    run_slide(slope.set("output.energy", True), tmp_path / "out", pictures=False)
+    (row,) = list(csv.DictReader((tmp_path / "out/energy.csv").open()))
+    energy = {name: float(value) for name, value in row.items() if name != "event"}
+    drop = energy["added_j"] - energy["potential_j"] - energy["left_terrain_j"]
+    assert drop > 0
+    assert energy["coulomb_j"] > 0.1 * drop
+    assert abs(energy["residual_j"]) < 0.01 * drop
+    (event,) = json.loads((tmp_path / "out/run.json").read_text())["finished_events"]
+    assert event["energy"] == pytest.approx(energy)
+
+
 def test_the_example_draws_its_map(tmp_path):
     scene = example_slide(tmp_path).set("events.max_time", 1.0)
     run_slide(scene, tmp_path / "out")
@@ -82,7 +95,6 @@ def test_the_example_draws_its_map(tmp_path):
     [
         ("events.count", 2, "/events/count: 2 events; a slide has 1"),
         ("dimension", 2, "/dimension: a slide moves over ground in space"),
-        ("output.energy", True, "/output/energy: a slide keeps no energy balance yet"),
         ("terrain.release.0.thickness", 0, "/terrain/release/0/thickness: 0 is outside"),
         (
             "terrain.release.0.outline",

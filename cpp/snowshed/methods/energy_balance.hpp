@@ -21,8 +21,11 @@ struct EnergyBalance {
   double residual() const { return stored() + spent() - added; }
 };
 
+/// Energies as tables have them: name with unit, J.
+using NamedEnergies = std::vector<std::pair<std::string, double>>;
+
 /// Returns the balance as tables have it, names with units.
-inline std::vector<std::pair<std::string, double>> named_energies(const EnergyBalance& e) {
+inline NamedEnergies named_energies(const EnergyBalance& e) {
   return {
       {"kinetic_j", e.kinetic}, {"gravitational_j", e.gravitational}, {"elastic_j", e.elastic},
       {"plastic_j", e.plastic}, {"friction_j", e.friction},           {"sticking_j", e.sticking},

@@ -129,6 +129,8 @@ class Method {
   virtual MotionSummary motion(double speed) const = 0;  ///< m/s, which counts as moving
   /// The energy balance; all zero unless the method was made to keep it.
   virtual EnergyBalance energy() const = 0;
+  /// The same as tables have it; a method may have parts of its own.
+  virtual NamedEnergies energy_table() const { return named_energies(energy()); }
   virtual std::size_t bytes() const = 0;  ///< held by the particles and what the steps need
 
   // --- checkpoints -----------------------------------------------------------------------------

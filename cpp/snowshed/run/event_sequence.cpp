@@ -102,7 +102,7 @@ void EventSequence::end_event(EventObserver& observer, RunEnd end) {
   facts.ended = name_of(end);
   facts.laid_height = sim_->laid_height();
   facts.damping_rate = mean_damping_rate(sim_->scene().numerics, facts.steps, facts.sim_time);
-  if (sim_->scene().output.energy) facts.energy = named_energies(sim_->solver().energy());
+  if (sim_->scene().output.energy) facts.energy = sim_->solver().energy_table();
   folder_.write_particles(*sim_);
   observer.event_ended(*sim_, facts);
   steps_before_ += facts.steps;

@@ -9,6 +9,7 @@
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/methods/slide/energy.hpp"
 #include "snowshed/scene/enum_names.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/json_value.hpp"
@@ -53,7 +54,10 @@ EventFacts event_facts(const json& j, const std::string& path) {
   const char* const damping = "damping_rate_per_s";
   if (j.contains(damping) && !j[damping].is_null()) facts.damping_rate = number(damping);
   if (!j.contains("energy")) return facts;
-  for (const auto& [name, _] : named_energies({}))  // in the order of tables
+  const bool of_slide = j["energy"].is_object() && j["energy"].contains("coulomb_j");
+  const NamedEnergies names =  // in the order of tables
+      of_slide ? named_energies(SlideEnergy{}) : named_energies(EnergyBalance{});
+  for (const auto& [name, _] : names)
     facts.energy.emplace_back(name, to_number(require(j["energy"], name.c_str(), path + "/energy"),
                                               path + "/energy/" + name, "a number"));
   return facts;

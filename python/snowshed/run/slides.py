@@ -8,6 +8,7 @@ peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s
 flow/              thickness (FT) and speed (FV) at the end
 slide.json         the figures of `SlideSummary`
 slide.png          the map: terrain, peak speed, outline of the release
+energy.csv         energy balance at the end (only with output.energy)
 ================== ==========================================================================
 """
 
@@ -25,6 +26,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import Table
 from snowshed.io.raster_output import write_raster
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
@@ -160,6 +162,9 @@ def run_slide(
         maps = slide_maps(sequence.simulation)
         summary = _summary(sequence.simulation, facts, maps)
         _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
+        if facts["energy"]:
+            energies = Table(Path(out_dir) / "energy.csv")
+            energies.add([{"event": 1, **facts["energy"]}])
         if pictures:
             from snowshed.plot.figure_style import save
             from snowshed.plot.slide_figure import slide_figure

@@ -132,6 +132,21 @@ Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double s
   return bonds;
 }
 
+double longest_bond_step(const Bonds& bonds, const SlideParticles& particles,
+                         const AlignedVector<double>& thickness, double modulus) {
+  std::vector<double> stiffness(particles.size(), 0.0);
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    const std::uint32_t k = bonds.first[b], l = bonds.second[b];
+    const double each = modulus * 0.5 * (thickness[k] + thickness[l]) / std::sqrt(3.0);
+    stiffness[k] += each;
+    stiffness[l] += each;
+  }
+  double square = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    square = std::max(square, 2 * stiffness[i] / particles.mass[i]);
+  return std::sqrt(2 / square);
+}
+
 void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place) {
   std::size_t kept = 0;
   for (std::size_t b = 0; b < bonds.size(); ++b) {

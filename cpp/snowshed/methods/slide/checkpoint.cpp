@@ -20,7 +20,11 @@ void SlideSolver::save(BinaryWriter& out) const {
   out.add("erodible", state_.erodible);
   const MassBalance& b = state_.balance;
   out.add("clock", std::vector<double>{state_.time, state_.dt, state_.kinetic_energy,
-                                       state_.peak_kinetic, b.released, b.entrained, b.left});
+                                       state_.peak_kinetic, b.released, b.entrained, b.left,
+                                       state_.step});
+  std::vector<double> energies;
+  SlideEnergy::for_each_sum(state_.energy, [&](double sum) { energies.push_back(sum); });
+  out.add("energy", std::move(energies));
   const StepCounters& c = state_.counters;
   out.add("counters", std::vector<std::int64_t>{
                           c.steps, c.sorts, c.particle_updates, state_.bonds_made, b.particles_left,
@@ -64,14 +68,19 @@ void SlideSolver::load(const BinaryReader& in) {
   next.peaks.thickness = in.get<double>("peaks/thickness", next.peaks.thickness.size());
   next.peaks.speed = in.get<double>("peaks/speed", next.peaks.speed.size());
   next.erodible = in.get<double>("erodible", next.erodible.size());
-  const auto clock = in.get<double>("clock", 7);
+  const auto clock = in.get<double>("clock", 8);
   next.time = clock[0];
   next.dt = clock[1];
   next.kinetic_energy = clock[2];
   next.peak_kinetic = clock[3];
+  const auto energies = in.get<double>("energy", 8);
+  std::size_t sum = 0;
+  SlideEnergy::for_each_sum(next.energy, [&](double& value) { value = energies[sum++]; });
   const auto counts = in.get<std::int64_t>("counters", 7);
+  next.step = clock[7];
   next.balance = {clock[4], clock[5], clock[6], counts[4]};
-  next.counters.smallest_dt = model_.settings.time_step;
+  if (!(next.step > 0)) throw InputError(in.path().string(), "the time step is not sound");
+  next.counters.smallest_dt = next.step;
   next.counters.steps = counts[0];
   next.counters.sorts = counts[1];
   next.counters.particle_updates = counts[2];

@@ -69,6 +69,12 @@ ParticleState SlideSolver::state() const {
   return s;
 }
 
+NamedEnergies SlideSolver::energy_table() const {
+  SlideEnergy energy = state_.energy;
+  if (model_.keeps_energy) store_energy(model_, state_, work_, energy);
+  return named_energies(energy);
+}
+
 MotionSummary SlideSolver::motion(double limit) const {
   MotionSummary m;
   double twice_kinetic = 0;

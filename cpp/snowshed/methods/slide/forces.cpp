@@ -42,7 +42,7 @@ namespace {
 /// Entrainment by one particle; returns the mass that it takes up, kg.
 double entrain_by(const SlideModel& model, const SlideState& state, SlideView& v, SlideParticles& p,
                   std::size_t i, std::size_t node) {
-  const double density = model.settings.density, dt = model.settings.time_step;
+  const double density = model.settings.density, dt = state.step;
   const double h = std::max(v.thickness[i], least_thickness), speed = v.speed[i];
   const double pressing = model.friction.friction > 0 ? v.yield[i] / model.friction.friction : 0.0;
   const double stress =
@@ -94,15 +94,33 @@ void apply_ground(const SlideModel& model, SlideState& state, SlideWork& work) {
   if (!state.erodible.empty() || !model.resistance.empty()) sweep(model, state, work);
 }
 
+namespace {
+
+template <class Kernel>
+void for_each_row(const CellLists& cells, int threads, Kernel kernel) {
+  parallel_pieces(cells.rows() - 2, threads, 1,
+                  [&](std::ptrdiff_t j, std::ptrdiff_t) { kernel(int(j) + 1); });
+}
+
+}  // namespace
+
 void add_pressure(const SlideModel& model, SlideState& state, SlideWork& work) {
   const Places& places = work.places;
   const std::size_t n = state.particles.size();
   if (!work.entrained.empty())  // new masses
     work.cells.update(state.particles, places.column, places.row, model.threads_for(n));
   const SlideView view = view_of(model, state, work);
-  parallel_pieces(
-      work.cells.rows() - 2, model.threads_for(n), 1,
-      [&](std::ptrdiff_t j, std::ptrdiff_t) { slide_kernels().pressure(view, int(j) + 1); });
+  const SlideKernels& kernels = slide_kernels();
+  if (model.compatible()) {
+    for_each_row(work.cells, model.threads_for(n), [&](int row) { kernels.map_pressure(view, row); });
+    return;
+  }
+  parallel_pieces(std::ptrdiff_t(n), model.threads_for(n), particles_in_piece,
+                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    kernels.show_neighbours(view, begin, end);
+                  });
+  for_each_row(work.cells, model.threads_for(n),
+               [&](int row) { kernels.surface_pressure(view, row); });
 }
 
 void add_bonds(const SlideModel& model, SlideState& state, SlideWork& work) {

@@ -49,6 +49,7 @@ struct SlideView {
 
   // Particles in the order of their cells.
   const double *sorted_x, *sorted_y, *sorted_mass;
+  double *sorted_z, *sorted_pressing;  // default mode: m; the normal's z, raised at few neighbours
   const std::uint32_t* sorted_particle;
   const std::uint32_t* cell_begin;  // of the cells of a rectangle with a margin, row by row
   int cell_columns;
@@ -75,8 +76,12 @@ struct SlideKernels {
   void (*locate)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Mixes velocities with those of the snow around and finds how the ground acts.
   void (*ground)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Adds the acceleration by the gradient of thickness to the particles of a row of cells.
-  void (*pressure)(const SlideView&, int row);
+  /// Fills in what neighbours see of the particles in the order of their cells.
+  void (*show_neighbours)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Adds the acceleration by the snow's pressure to the particles of a row of cells: along the
+  /// ground, or along the map as AvaFrame does it.
+  void (*surface_pressure)(const SlideView&, int row);
+  void (*map_pressure)(const SlideView&, int row);
   /// Finds the forces of bonds; returns whether one breaks.
   bool (*stretch_bonds)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Adds them to the particles.

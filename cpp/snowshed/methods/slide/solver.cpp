@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <sstream>
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/slide/advance.hpp"
@@ -46,6 +47,15 @@ void check_no_hole(const Terrain& terrain, const Polygon& area, const std::strin
     }
 }
 
+/// Steps that stiff bonds may need in place of one.
+constexpr double most_parts = 100;
+
+std::string in_words(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 void check_on_terrain(const Terrain& terrain, const std::vector<SlideArea>& areas,
                       const std::string& kind) {
   for (std::size_t i = 0; i < areas.size(); ++i) {
@@ -67,7 +77,8 @@ std::unique_ptr<SlideMethod> make_slide(SlideOptions options) {
 }
 
 SlideSolver::SlideSolver(SlideOptions o)
-    : model_(o.settings, o.gravity, o.terrain, std::move(o.areas)), state_(model_) {
+    : model_(o.settings, o.gravity, o.terrain, std::move(o.areas), o.energy),
+      state_(model_) {
   check_on_terrain(model_.terrain, model_.areas.release, "release");
   state_.counters.smallest_dt = model_.settings.time_step;
 }
@@ -111,11 +122,41 @@ void SlideSolver::append(SlideState& state, const ParticleBatch& batch) const {
   state.bonds_made += std::int64_t(bonds.size());
 }
 
+/// Shortens the steps to what the bonds need; snow may pile up to four times its thickness before
+/// they become too stiff even so. Compatible mode takes the step that was asked for.
+void SlideSolver::choose_step(SlideState& next, const SlideWork& work) const {
+  const SlideSettings& s = model_.settings;
+  if (model_.compatible()) return;
+  const double longest =
+      0.5 * longest_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
+  const double parts = std::ceil(s.time_step / longest);
+  if (parts > most_parts)
+    throw InputError("/numerics/time_step",
+                     in_words(s.time_step) + " s; bonds with a modulus of " +
+                         in_words(s.bond_modulus) + " Pa need steps of at most " +
+                         in_words(longest) + " s; at most " + in_words(most_parts) +
+                         " are taken in place of one");
+  next.step = s.time_step / std::max(1.0, parts);
+  next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
+}
+
+/// What a change from outside brings, beyond what there is now.
+void SlideSolver::count_as_added(const SlideState& next, const SlideWork& work,
+                                 SlideEnergy& sums) const {
+  if (!model_.keeps_energy) return;
+  SlideEnergy before, after;
+  store_energy(model_, state_, work_, before);
+  store_energy(model_, next, work, after);
+  sums.added += after.stored() - before.stored();
+}
+
 /// Takes over a state whose workspace must follow.
 void SlideSolver::accept(SlideState next) {
   SlideWork work;
   refresh(model_, next, work);
+  choose_step(next, work);
   work.fields.raise(next.peaks, model_.terrain);
+  count_as_added(next, work, next.energy);
   state_ = std::move(next);
   work_ = std::move(work);
   order_known_ = false;
@@ -138,6 +179,7 @@ void SlideSolver::replace(const std::vector<ParticleBatch>& batches) {
   next.next_id = state_.next_id;
   next.peaks = state_.peaks;
   next.erodible = state_.erodible;
+  next.energy = state_.energy;
   for (const ParticleBatch& batch : batches) append(next, batch);
   accept(std::move(next));
 }
@@ -184,17 +226,25 @@ void SlideSolver::step() {
   sort_now_and_then();
   work_.make_room(model_, state_);
   // Nothing from here on allocates.
+  const bool audited = model_.keeps_energy;
+  EnergyAudit& audit = work_.audit;
+  if (audited) audit.begin_step(state_);
   apply_ground(model_, state_, work_);
+  if (audited) audit.after_ground(model_, state_, work_, state_.energy);
   add_pressure(model_, state_, work_);
+  if (audited) audit.before_bonds(model_, state_, work_, state_.energy);
   add_bonds(model_, state_, work_);
+  if (audited) audit.before_motion(state_, work_);
   advance(model_, state_, work_);
+  if (audited) audit.after_motion(model_, state_, work_, state_.energy);
   remove_marked(state_, work_);
   split_heavy(model_, state_, work_);
   refresh_fields(model_, state_, work_);
   work_.fields.raise(state_.peaks, model_.terrain);
-  state_.dt = model_.settings.time_step;
+  state_.dt = state_.step;
   ++state_.counters.steps;
-  state_.time = double(state_.counters.steps) * state_.dt;
+  const bool as_asked = state_.counters.smallest_dt == model_.settings.time_step;
+  state_.time = as_asked ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
   state_.counters.particle_updates += std::int64_t(size());
   order_known_ = false;
   if (size() == 0) state_.stopped = true;

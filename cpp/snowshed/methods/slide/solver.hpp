@@ -18,6 +18,7 @@ struct SlideOptions {
   double gravity = 9.81;  // m/s2, along -z
   HeightField terrain;    // on the computing grid
   SlideAreas areas;       // from the terrain's south-west node
+  bool energy = false;    // whether to keep the energy balance
 };
 
 /// A slide as a method, and what only a slide has.

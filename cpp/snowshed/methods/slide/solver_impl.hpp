@@ -31,6 +31,7 @@ class SlideSolver final : public SlideMethod {
   ParticleState state() const override;
   MotionSummary motion(double speed) const override;
   EnergyBalance energy() const override { return {}; }
+  NamedEnergies energy_table() const override;
   std::size_t bytes() const override;
 
   void save(BinaryWriter&) const override;
@@ -55,6 +56,8 @@ class SlideSolver final : public SlideMethod {
   void append(SlideState&, const ParticleBatch&) const;
   void accept(SlideState);
   void sort_now_and_then();
+  void choose_step(SlideState& next, const SlideWork& work) const;
+  void count_as_added(const SlideState& next, const SlideWork& work, SlideEnergy& sums) const;
   void require_sound() const;
   double speed(std::size_t i) const;
   template <class Visit>

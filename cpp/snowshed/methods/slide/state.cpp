@@ -33,18 +33,21 @@ std::vector<double> erodible_at_nodes(const SlideModel& model) {
 
 }  // namespace
 
-SlideModel::SlideModel(const SlideSettings& s, double g, const HeightField& field, SlideAreas a)
+SlideModel::SlideModel(const SlideSettings& s, double g, const HeightField& field, SlideAreas a,
+                       bool keeps)
     : settings(s),
       gravity(g),
       terrain(field, border_slope(s)),
       areas(std::move(a)),
       friction(BasalFriction::from(s, g)),
       resistance(resistance_at_nodes(s, areas, terrain)),
-      threads(threads_to_use(s.threads)) {}
+      threads(threads_to_use(s.threads)),
+      keeps_energy(keeps) {}
 
 SlideState::SlideState(const SlideModel& model)
     : peaks(std::size_t(model.terrain.columns()) * std::size_t(model.terrain.rows())),
-      erodible(erodible_at_nodes(model)) {}
+      erodible(erodible_at_nodes(model)),
+      step(model.settings.time_step) {}
 
 void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   // Each particle may split.
@@ -62,7 +65,12 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   broken.resize(state.bonds.size());
   bond_lists.reserve(most, state.bonds.size());
   cells.reserve(most, model.terrain);
+  if (!model.compatible()) {
+    sorted_z.resize(now + sorted_padding);
+    sorted_pressing.resize(now + sorted_padding);
+  }
   fields.reserve(model.terrain);
+  if (model.keeps_energy) audit.reserve(now);
 }
 
 namespace {
@@ -82,7 +90,6 @@ void view_model(const SlideModel& model, SlideView& v) {
   v.rows = t.rows();
   v.cell = t.cell();
   v.per_cell = 1 / t.cell();
-  v.time_step = s.time_step;
   v.gravity = model.gravity;
   v.density = s.density;
   v.friction = model.friction.friction;
@@ -152,6 +159,9 @@ SlideView view_of(const SlideModel& model, SlideState& state, SlideWork& work) {
   v.bond_force = work.bond_force.data();
   v.bond_begin = work.bond_lists.begins();
   v.bond_entry = work.bond_lists.entries();
+  v.sorted_z = work.sorted_z.data();
+  v.sorted_pressing = work.sorted_pressing.data();
+  v.time_step = state.step;
   return v;
 }
 

@@ -8,11 +8,11 @@
 
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/core/parallel.hpp"
-#include "snowshed/methods/energy_balance.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/bonds.hpp"
 #include "snowshed/methods/slide/cells.hpp"
+#include "snowshed/methods/slide/energy.hpp"
 #include "snowshed/methods/slide/friction.hpp"
 #include "snowshed/methods/slide/grid_fields.hpp"
 #include "snowshed/methods/slide/kernel_api.hpp"
@@ -26,7 +26,8 @@ namespace snowshed {
 inline constexpr std::size_t particles_per_thread = 1000;
 
 struct SlideModel {
-  SlideModel(const SlideSettings&, double gravity, const HeightField&, SlideAreas);
+  SlideModel(const SlideSettings&, double gravity, const HeightField&, SlideAreas,
+             bool keeps_energy);
 
   bool compatible() const { return settings.mode == SlideMode::compatible; }
   /// Threads for a step of so many particles. A thread that has little to do costs more time than
@@ -42,6 +43,7 @@ struct SlideModel {
   BasalFriction friction;
   std::vector<double> resistance;  // coefficient at each node; empty without such areas
   int threads;
+  bool keeps_energy;
 };
 
 /// What left the terrain, and the snow it took up on its way.
@@ -60,10 +62,12 @@ struct SlideState {
   std::vector<double> erodible;  // kg/m2 at each node that can still be entrained; may be empty
   MassBalance balance;
   double time = 0, dt = 0;                      // s
+  double step;                                  // s, the length of the steps to come
   double kinetic_energy = 0, peak_kinetic = 0;  // J
   bool stopped = false;
   std::uint32_t next_id = 0;
   StepCounters counters;
+  SlideEnergy energy;  // its sums over steps
 };
 
 /// Where particles lie in the grid, and the normal of the ground there.
@@ -104,6 +108,7 @@ struct SlideWork {
   Places places;
   AlignedVector<double> thickness;  // m, of the snow at the particles
   CellLists cells;
+  AlignedVector<double> sorted_z, sorted_pressing;  // in the order of the cells, see SlideView
   GridFields fields;
   BondLists bond_lists;
   SlideLoads loads;
@@ -114,6 +119,7 @@ struct SlideWork {
   std::vector<char> broken;          // bonds
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
+  EnergyAudit audit;
 
   /// Makes room for all that a step of this state can need, so that nothing fails amid it.
   void make_room(const SlideModel&, SlideState&);

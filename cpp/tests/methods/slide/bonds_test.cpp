@@ -106,5 +106,45 @@ TEST(SlideBonds, a_strained_bond_pulls_with_its_modulus_times_contact_area_times
   EXPECT_NEAR(measured / expected, 1, 0.02);
 }
 
+/// A slab half on rough ground and half on a steeper slope, that the roll between them pulls apart.
+struct Roll {
+  explicit Roll(double modulus, double max_strain) {
+    SlideOptions o = slide_on(terrain_of(80, 30, 2,
+                                         [](double x, double) {
+                                           const double bend = std::max(x - 50, 0.0);
+                                           return 200 - 0.5 * x - 0.6 * bend;
+                                         }),
+                              rectangle(30.3, 18.3, 70.3, 42.3));
+    o.settings.friction_law = SlideFriction::coulomb;
+    o.settings.friction = 0.45;
+    o.settings.artificial_viscosity = 0;
+    o.settings.bond_modulus = modulus;
+    o.settings.max_strain = max_strain;
+    slide = released(o);
+    while (slide->time() < 1.5) slide->step();
+  }
+  /// Of the speeds, over their mean.
+  double spread() const {
+    double mean = 0, square = 0;
+    const ParticleState s = slide->state();
+    const double share = 1 / double(s.velocities.size());
+    for (const Vec3& u : s.velocities) mean += share * u.norm();
+    for (const Vec3& u : s.velocities) square += share * (u.norm() - mean) * (u.norm() - mean);
+    return std::sqrt(square) / mean;
+  }
+  double broken() const {
+    return 1 - double(slide->bonds().size()) / double(slide->bonds_made());
+  }
+  std::unique_ptr<SlideMethod> slide;
+};
+
+TEST(SlideBonds, a_slab_with_strong_bonds_moves_as_one_and_with_weak_ones_tears) {
+  const Roll strong(5e6, 0.5), weak(5e4, 0.05);
+  EXPECT_LT(strong.spread(), 0.05);
+  EXPECT_GT(weak.spread(), 0.3);
+  EXPECT_EQ(strong.broken(), 0);
+  EXPECT_GT(weak.broken(), 0.03);
+}
+
 }  // namespace
 }  // namespace snowshed

@@ -1,7 +1,9 @@
 // The slide's kernels for one instruction set.
+#include "snowshed/methods/slide/kernels/bond_forces.hpp"
 #include "snowshed/methods/slide/kernels/ground.hpp"
-#include "snowshed/methods/slide/kernels/interaction.hpp"
+#include "snowshed/methods/slide/kernels/map_pressure.hpp"
 #include "snowshed/methods/slide/kernels/motion.hpp"
+#include "snowshed/methods/slide/kernels/surface_pressure.hpp"
 
 SNOWSHED_VARIANT_BEGIN
 namespace {
@@ -18,7 +20,13 @@ void ground(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_lanes(begin, end, [&](const Lanes& l) { ground_lanes(s, l); });
 }
 
-void pressure(const SlideView& s, int row) { pressure_row(s, row); }
+void show_neighbours(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  show_entries(s, begin, end);
+}
+
+void surface_pressure(const SlideView& s, int row) { surface_pressure_row(s, row); }
+
+void map_pressure(const SlideView& s, int row) { map_pressure_row(s, row); }
 
 bool stretch_bonds(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   QuadMask broken{};
@@ -44,7 +52,8 @@ void thickness(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
 }  // namespace
 
 extern const SlideKernels slide_kernel_table;
-const SlideKernels slide_kernel_table{&locate, &ground,  &pressure, &stretch_bonds,
-                                      &pull,   &advance, &thickness};
+const SlideKernels slide_kernel_table{&locate,        &ground, &show_neighbours, &surface_pressure,
+                                      &map_pressure,  &stretch_bonds, &pull, &advance,
+                                      &thickness};
 
 SNOWSHED_VARIANT_END

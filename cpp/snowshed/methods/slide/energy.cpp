@@ -1,0 +1,140 @@
+#include "snowshed/methods/slide/energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/methods/slide/state.hpp"
+
+namespace snowshed {
+namespace {
+
+Vec3 velocity_at(const SlideState& state, std::size_t i) {
+  const SlideParticles& p = state.particles;
+  return {p.ux[i], p.uy[i], p.uz[i]};
+}
+
+/// The integral over length of a bond's force E h L/sqrt(3) (L/L0 - 1).
+double bond_energy(double modulus, double thickness, double length, double rest) {
+  const double strain = length / rest - 1;
+  return modulus * thickness / std::sqrt(3.0) * rest * rest * strain * strain *
+         (0.5 + strain / 3);
+}
+
+/// The parts of a particle's friction that grow with the square of its speed, 1/m.
+struct Drag {
+  double turbulent, resistance;
+};
+Drag drag_parts(const SlideModel& model, const SlideWork& work, std::size_t i) {
+  const double h = std::max(work.thickness[i], 1e-6);
+  const double all = work.loads.drag[i];
+  const double turbulent = std::min(all, model.friction.drag / (model.settings.density * h));
+  return model.resistance.empty() ? Drag{all, 0.0} : Drag{turbulent, all - turbulent};
+}
+
+/// The energy sum_k m_k g n_z h_k / 2 with the thickness at the particles, J: that by which the snow's
+/// centre of mass lies above the ground.
+double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
+  double sum = 0;
+  for (std::size_t i = 0; i < state.particles.size(); ++i)
+    sum += 0.5 * model.gravity * state.particles.mass[i] * work.places.nz[i] * work.thickness[i];
+  return sum;
+}
+
+}  // namespace
+
+NamedEnergies named_energies(const SlideEnergy& e) {
+  return {{"kinetic_j", e.kinetic},         {"potential_j", e.potential},
+          {"bonds_j", e.bonds},             {"coulomb_j", e.coulomb},
+          {"turbulent_j", e.turbulent},     {"resistance_j", e.resistance},
+          {"viscosity_j", e.viscosity},     {"entrainment_j", e.entrainment},
+          {"broken_bonds_j", e.broken},     {"left_terrain_j", e.left},
+          {"added_j", e.added},             {"residual_j", e.residual()}};
+}
+
+void store_energy(const SlideModel& model, const SlideState& state, const SlideWork& work,
+                  SlideEnergy& e) {
+  const SlideParticles& p = state.particles;
+  e.kinetic = e.bonds = 0;
+  e.potential = pressure_energy(model, state, work);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    e.kinetic += 0.5 * p.mass[i] * velocity_at(state, i).squaredNorm();
+    e.potential += p.mass[i] * model.gravity * p.z[i];
+  }
+  const Bonds& bonds = state.bonds;
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    const std::uint32_t k = bonds.first[b], l = bonds.second[b];
+    const Vec3 way{p.x[l] - p.x[k], p.y[l] - p.y[k], p.z[l] - p.z[k]};
+    const double thickness = 0.5 * (work.thickness[k] + work.thickness[l]);
+    e.bonds +=
+        bond_energy(model.settings.bond_modulus, thickness, way.norm(), bonds.rest_length[b]);
+  }
+}
+
+void EnergyAudit::begin_step(const SlideState& state) {
+  const std::size_t n = state.particles.size();
+  before_.resize(n);
+  pushed_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) before_[i] = velocity_at(state, i);
+  masses_.assign(state.particles.mass.begin(), state.particles.mass.end());
+  heights_.assign(state.particles.z.begin(), state.particles.z.end());
+}
+
+void EnergyAudit::after_ground(const SlideModel& model, const SlideState& state,
+                               const SlideWork& work, SlideEnergy& e) {
+  for (std::size_t i = 0; i < before_.size(); ++i) {
+    const double mixed = work.loads.speed[i] * work.loads.speed[i];
+    const Vec3 u = velocity_at(state, i);
+    const double mass = state.particles.mass[i];
+    e.viscosity += 0.5 * masses_[i] * (before_[i].squaredNorm() - mixed);
+    e.entrainment += 0.5 * (masses_[i] * mixed - mass * u.squaredNorm());
+    e.added += (mass - masses_[i]) * model.gravity * heights_[i];
+    before_[i] = u;
+  }
+}
+
+void EnergyAudit::before_bonds(const SlideModel& model, const SlideState& state,
+                               const SlideWork& work, SlideEnergy& e) const {
+  const Bonds& bonds = state.bonds;
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
+    const double* l = &work.predicted[4 * std::size_t(bonds.second[b])];
+    const double length = Vec3(l[0] - k[0], l[1] - k[1], l[2] - k[2]).norm();
+    const bool breaks = length > model.settings.min_bond_length &&
+                        std::abs(length / bonds.rest_length[b] - 1) > model.settings.max_strain;
+    if (breaks)
+      e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]),
+                              length, bonds.rest_length[b]);
+  }
+}
+
+void EnergyAudit::before_motion(const SlideState& state, const SlideWork& work) {
+  for (std::size_t i = 0; i < pushed_.size(); ++i) {
+    const SlideLoads& l = work.loads;
+    pushed_[i] = before_[i] + state.step * Vec3(l.ax[i], l.ay[i], l.az[i]);
+  }
+}
+
+void EnergyAudit::after_motion(const SlideModel& model, const SlideState& state,
+                               const SlideWork& work, SlideEnergy& e) const {
+  for (std::size_t i = 0; i < pushed_.size(); ++i) {
+    const double mass = state.particles.mass[i];
+    if (work.removed[i]) {
+      e.left += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
+      continue;
+    }
+    // Friction shortens the velocity; afterwards the ground turns it.
+    const double after = velocity_at(state, i).norm(), pushed = pushed_[i].norm();
+    const Vec3 slowed = pushed > 0 ? Vec3(pushed_[i] * (after / pushed)) : pushed_[i];
+    const double work_of_friction = 0.5 * mass * (pushed_[i] - slowed).dot(before_[i] + slowed);
+    const Drag drag = drag_parts(model, work, i);
+    const double turbulent = drag.turbulent * after * after;
+    const double resistance = drag.resistance * after * after;
+    const double all = work.loads.yield[i] + turbulent + resistance;
+    if (!(all > 0)) continue;
+    e.turbulent += work_of_friction * turbulent / all;
+    e.resistance += work_of_friction * resistance / all;
+    e.coulomb += work_of_friction * work.loads.yield[i] / all;
+  }
+}
+
+}  // namespace snowshed

@@ -1,0 +1,76 @@
+// Where the energy of a slide went.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/core/vec.hpp"
+#include "snowshed/methods/energy_balance.hpp"
+
+namespace snowshed {
+
+struct SlideModel;
+struct SlideState;
+struct SlideWork;
+
+/// The energy of a slide, J. The first three are the present store; the others are sums over all
+/// steps of what left it. The balance closes when `residual` is small beside the drop of potential
+/// energy.
+struct SlideEnergy {
+  double kinetic = 0, potential = 0;  // the latter with that of the snow's thickness
+  double bonds = 0;                   // elastic
+  double coulomb = 0, turbulent = 0;  // friction with the ground: mu sigma, and rho g u^2 / xi
+  double resistance = 0;              // of forest and the like
+  double viscosity = 0;               // artificial
+  double entrainment = 0;             // to bring snow up to speed, and to break it loose
+  double broken = 0;                  // that bonds held as they broke
+  double left = 0;                    // carried beyond the terrain
+  double added = 0;                   // brought by snow that was released or taken up
+
+  double stored() const { return kinetic + potential + bonds; }
+  double spent() const {
+    return coulomb + turbulent + resistance + viscosity + entrainment + broken + left;
+  }
+  double residual() const { return stored() + spent() - added; }
+
+  /// Calls visit(value) for each of the sums over steps.
+  template <class Self, class Visit>
+  static void for_each_sum(Self& e, const Visit& visit) {
+    for (auto* sum : {&e.coulomb, &e.turbulent, &e.resistance, &e.viscosity, &e.entrainment,
+                      &e.broken, &e.left, &e.added})
+      visit(*sum);
+  }
+};
+
+/// Returns the balance as tables have it, names with units.
+NamedEnergies named_energies(const SlideEnergy&);
+
+/// Fills in what is stored now.
+void store_energy(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&);
+
+/// Follows the energy through a step: called between its parts, it looks at velocities and loads and
+/// changes nothing. What acts on a particle does the work of its force times the particle's way, and
+/// all of these works add up to the change of kinetic energy, whatever the length of the step.
+class EnergyAudit {
+ public:
+  void reserve(std::size_t particles) {
+    before_.reserve(particles);
+    pushed_.reserve(particles);
+    masses_.reserve(particles);
+    heights_.reserve(particles);
+  }
+
+  void begin_step(const SlideState&);
+  /// After friction, viscosity and entrainment are known.
+  void after_ground(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&);
+  /// Before bonds are removed.
+  void before_bonds(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
+  void before_motion(const SlideState&, const SlideWork&);
+  /// Before particles that left the terrain are removed.
+  void after_motion(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
+
+ private:
+  std::vector<Vec3> before_, pushed_;  // m/s
+  std::vector<double> masses_, heights_;
+};
+
+}  // namespace snowshed

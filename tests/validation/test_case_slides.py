@@ -1,0 +1,51 @@
+"""Closed forms of the snow slide's cases, and what their measures would miss."""
+
+import numpy as np
+import pytest
+from validation.cases import dam_break, parabolic_cap, slide_block, slide_rotation
+from validation.slides import Plane, Site, maps_of, rectangle, slide_drive
+
+
+def test_the_dam_keeps_its_snow():
+    time = 2.0
+    s = np.linspace(-20.0, 40.0, 6001)
+    thickness = dam_break.exact_thickness(s, time)
+    assert np.trapezoid(thickness, s) == pytest.approx(20.0, rel=1e-4)
+    at_front = dam_break.exact_thickness(np.array(dam_break.exact_front(time)), time)
+    assert at_front == pytest.approx(dam_break.SEEN)
+
+
+@pytest.mark.parametrize(("shape", "mass"), [("ridge", 2 / 3 * 20 * 28), ("cap", np.pi * 100 / 2)])
+def test_terraces_hold_the_snow_of_the_parabola(shape, mass):
+    plane = parabolic_cap.PLANE
+    site = Site(plane.height, -20.0, -28.0, 44.0, 28.0, parabolic_cap.terraces(shape))
+    settings = {"cell": 2.0, "layer_thickness": 0.1, "density": 300.0}
+    drive = slide_drive(site, settings)
+    assert drive.masses.sum() == pytest.approx(300.0 * mass, rel=1e-6)
+    assert parabolic_cap._half_length(drive, shape) == pytest.approx(10.0, rel=0.03)
+
+
+def test_voellmys_block_follows_its_equation():
+    step = 1e-4
+    now, then = (slide_block.block_motion("voellmy", t) for t in (1.0, 1.0 + step))
+    drag = 9.81 / (slide_block.TURBULENCE * slide_block.THICKNESS)
+    rate = slide_block.PLANE.coulomb(slide_block.FRICTION) - drag * now.speed**2
+    assert (then.speed - now.speed) / step == pytest.approx(rate, rel=1e-3)
+    assert (then.way - now.way) / step == pytest.approx(now.speed, rel=1e-3)
+
+
+def test_a_map_turned_four_times_is_the_same():
+    plane = Plane(20.0)
+    site = Site(plane.height, -70.0, -70.0, 70.0, 70.0, [rectangle(-20, -5, 0, 15, 1.0)])
+    maps = maps_of(slide_drive(site, {"cell": 2.0}))
+    turned = maps.peak_thickness
+    for _ in range(4):
+        turned = slide_rotation._turned(maps, turned, 90.0)
+    assert turned[1:-1, 1:-1] == pytest.approx(maps.peak_thickness[1:-1, 1:-1], abs=1e-9)
+
+
+def test_too_much_friction_in_the_block_is_seen():
+    settings = {**slide_block.DEFAULTS, "layer_thickness": 0.25, "law": "coulomb"}
+    right = slide_block.measure(settings).measured[1]
+    wrong = slide_block.measure({**settings, "friction": 1.02 * slide_block.FRICTION}).measured[1]
+    assert abs(right.error) < 0.005 < abs(wrong.error)
