@@ -51,7 +51,7 @@ Vec3 push_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uin
 
 /// By how much the kernel's sum over few neighbours falls short of the pressure of snow, inverted. In
 /// a triangular lattice with N particles within the kernel the sum is 1 - 5 N^-1.4 of the integral,
-/// to 1 % for N from 6 to 100.
+/// within a few percent for N above 10.
 double few_neighbours(double particles_in_kernel) {
   return 1 / std::max(0.5, 1 - 5 * std::pow(particles_in_kernel, -1.4));
 }
