@@ -174,6 +174,9 @@ class SceneRules {
     if (!in_3d()) fail(scene_.dimension, "a slide moves over ground in space; allowed: 3");
     if (scene_.events.count != 1)
       fail(scene_.events.count, show(scene_.events.count) + " events; a slide has 1");
+    if (scene_.terrain && !scene_.terrain->thickness_file.empty() &&
+        s.mode == SlideMode::compatible)
+      fail(scene_.terrain->thickness_file, "AvaFrame's com5SnowSlide takes no such raster");
     if (s.explicit_friction && s.mode != SlideMode::compatible)
       fail(s.explicit_friction, "only in the mode \"compatible\"");
   }

@@ -27,7 +27,7 @@ struct Drag {
 };
 Drag drag_parts(const SlideModel& model, const SlideWork& work, std::size_t i) {
   const double h = std::max(work.thickness[i], 1e-6);
-  const double all = work.loads[i].drag;
+  const double all = work.loads.drag[i];
   const double turbulent = std::min(all, model.friction.drag / (model.settings.density * h));
   return model.resistance.empty() ? Drag{all, 0.0} : Drag{turbulent, all - turbulent};
 }
@@ -74,7 +74,7 @@ void EnergyAudit::begin_step(const SlideState& state) {
 void EnergyAudit::after_ground(const SlideModel& model, const SlideState& state,
                                const SlideWork& work, SlideEnergy& e) {
   for (std::size_t i = 0; i < before_.size(); ++i) {
-    const double mixed = work.loads[i].speed * work.loads[i].speed;
+    const double mixed = work.loads.speed[i] * work.loads.speed[i];
     const Vec3 u = velocity_at(state, i);
     const double mass = state.particles.mass[i];
     e.viscosity += 0.5 * masses_[i] * (before_[i].squaredNorm() - mixed);
@@ -88,20 +88,21 @@ void EnergyAudit::before_bonds(const SlideModel& model, const SlideState& state,
                                const SlideWork& work, SlideEnergy& e) const {
   const Bonds& bonds = state.bonds;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
-    const PredictedPoint &k = work.predicted[bonds.first[b]], &l = work.predicted[bonds.second[b]];
-    const double length = Vec3(l.x - k.x, l.y - k.y, l.z - k.z).norm();
+    const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
+    const double* l = &work.predicted[4 * std::size_t(bonds.second[b])];
+    const double length = Vec3(l[0] - k[0], l[1] - k[1], l[2] - k[2]).norm();
     const bool breaks = length > model.settings.min_bond_length &&
                         std::abs(length / bonds.rest_length[b] - 1) > model.settings.max_strain;
     if (breaks)
-      e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k.thickness + l.thickness),
+      e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]),
                               length, bonds.rest_length[b]);
   }
 }
 
 void EnergyAudit::before_motion(const SlideState& state, const SlideWork& work) {
   for (std::size_t i = 0; i < pushed_.size(); ++i) {
-    const SlideLoad& load = work.loads[i];
-    pushed_[i] = before_[i] + state.step * (load.acceleration + load.force / state.particles.mass[i]);
+    const SlideLoads& a = work.loads;
+    pushed_[i] = before_[i] + state.step * Vec3(a.ax[i], a.ay[i], a.az[i]);
   }
 }
 
@@ -120,11 +121,11 @@ void EnergyAudit::after_motion(const SlideModel& model, const SlideState& state,
     const Drag drag = drag_parts(model, work, i);
     const double turbulent = drag.turbulent * after * after;
     const double resistance = drag.resistance * after * after;
-    const double all = work.loads[i].yield + turbulent + resistance;
+    const double all = work.loads.yield[i] + turbulent + resistance;
     if (!(all > 0)) continue;
     e.turbulent += work_of_friction * turbulent / all;
     e.resistance += work_of_friction * resistance / all;
-    e.coulomb += work_of_friction * work.loads[i].yield / all;
+    e.coulomb += work_of_friction * work.loads.yield[i] / all;
   }
 }
 

@@ -12,11 +12,11 @@ constexpr double least_thickness = 1e-6;  // m
 /// A particle as its neighbours see it.
 struct Seen {
   double x, y, z;
-  double nz;  // of the ground's normal, times the factor for few neighbours
+  double weight;  // of its pressure: n_z times the factor for few neighbours
 };
 
 Seen seen(const SlideWork& work, std::size_t e) {
-  return {work.cells.x()[e], work.cells.y()[e], work.entry_z[e], work.entry_nz[e]};
+  return {work.cells.x()[e], work.cells.y()[e], work.entry_z[e], work.entry_weight[e]};
 }
 
 /// Calls f(entry, begin, end) for each particle and each of the three runs of entries in the cells
@@ -29,11 +29,11 @@ void for_each_run(const CellLists& cells, int row, F f) {
         f(e, cells.begin(column - 1, k), cells.begin(column + 2, k));
 }
 
-/// The sum over a run of m_l (n_k + n_l) / 2 (R - r)^2 / r times the way to each neighbour.
+/// The sum over a run of m_l (w_k + w_l) / 2 (R - r)^2 / r times the way to each neighbour.
 Vec3 push_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uint32_t end,
              double radius) {
   const double *px = work.cells.x(), *py = work.cells.y(), *mass = work.cells.mass();
-  const double *pz = work.entry_z.data(), *nz = work.entry_nz.data();
+  const double *pz = work.entry_z.data(), *weight = work.entry_weight.data();
   const double least = 1e-3 * radius;
   double sx = 0, sy = 0, sz = 0;
 #pragma omp simd reduction(+ : sx, sy, sz)
@@ -41,7 +41,7 @@ Vec3 push_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uin
     const double dx = px[e] - k.x, dy = py[e] - k.y, dz = pz[e] - k.z;
     const double r = std::max(least, std::sqrt(dx * dx + dy * dy + dz * dz));
     const double inside = std::max(0.0, radius - r);
-    const double w = mass[e] * 0.5 * (k.nz + nz[e]) * inside * inside / r;
+    const double w = mass[e] * 0.5 * (k.weight + weight[e]) * inside * inside / r;
     sx += w * dx;
     sy += w * dy;
     sz += w * dz;
@@ -60,30 +60,32 @@ double few_neighbours(double particles_in_kernel) {
 
 void add_surface_pressure(const SlideModel& model, const SlideState& state, SlideWork& work) {
   if (!work.entrained.empty())  // new masses
-    work.cells.update(state.particles, work.places, model.threads);
+    work.cells.update(state.particles, work.places.column, work.places.row, model.threads);
   const CellLists& cells = work.cells;
   const double radius = model.terrain.cell();
   const double kernel_mass = pi * radius * radius * model.settings.density;  // kg per m of snow
   work.entry_z.resize(cells.size());
-  work.entry_nz.resize(cells.size());
-  parallel_pieces(std::ptrdiff_t(cells.size()), model.threads, particles_in_piece,
+  work.entry_weight.resize(cells.size());
+  parallel_pieces(std::ptrdiff_t(cells.size()), model.threads_for(cells.size()), particles_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::ptrdiff_t e = begin; e < end; ++e) {
                       const std::uint32_t i = cells.particle(std::size_t(e));
                       work.entry_z[e] = state.particles.z[i];
                       const double h = std::max(work.thickness[i], least_thickness);
                       const double count = kernel_mass * h / state.particles.mass[i];
-                      work.entry_nz[e] = work.normals[i].z() * few_neighbours(count);
+                      work.entry_weight[e] = work.places.nz[i] * few_neighbours(count);
                     }
                   });
   const double slope = -30 / (pi * std::pow(radius, 5));  // of the kernel
   const double factor = slope * model.gravity / model.settings.density;
-  parallel_pieces(cells.rows() - 2, model.threads, 1, [&](std::ptrdiff_t j, std::ptrdiff_t) {
+  parallel_pieces(cells.rows() - 2, model.threads_for(cells.size()), 1, [&](std::ptrdiff_t j, std::ptrdiff_t) {
     for_each_run(cells, int(j) + 1, [&](std::uint32_t e, std::uint32_t begin, std::uint32_t end) {
       const std::uint32_t i = cells.particle(e);
       const Vec3 push = factor * push_of(work, seen(work, e), begin, end, radius);
-      const Vec3& n = work.normals[i];
-      work.loads[i].force += state.particles.mass[i] * (push - push.dot(n) * n);
+      const Vec3 n = work.places.normal(i), along = push - push.dot(n) * n;
+      work.loads.ax[i] += along.x();
+      work.loads.ay[i] += along.y();
+      work.loads.az[i] += along.z();
     });
   });
 }
@@ -91,7 +93,7 @@ void add_surface_pressure(const SlideModel& model, const SlideState& state, Slid
 double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
   double sum = 0;
   for (std::size_t i = 0; i < state.particles.size(); ++i)
-    sum += 0.5 * model.gravity * state.particles.mass[i] * work.normals[i].z() * work.thickness[i];
+    sum += 0.5 * model.gravity * state.particles.mass[i] * work.places.nz[i] * work.thickness[i];
   return sum;
 }
 
