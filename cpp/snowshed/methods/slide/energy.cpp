@@ -17,8 +17,7 @@ Vec3 velocity_at(const SlideState& state, std::size_t i) {
 /// The integral over length of a bond's force E h L/sqrt(3) (L/L0 - 1).
 double bond_energy(double modulus, double thickness, double length, double rest) {
   const double strain = length / rest - 1;
-  return modulus * thickness / std::sqrt(3.0) * rest * rest * strain * strain *
-         (0.5 + strain / 3);
+  return modulus * thickness / std::sqrt(3.0) * rest * rest * strain * strain * (0.5 + strain / 3);
 }
 
 /// The parts of a particle's friction that grow with the square of its speed, 1/m.
@@ -35,12 +34,12 @@ Drag drag_parts(const SlideModel& model, const SlideWork& work, std::size_t i) {
 }  // namespace
 
 NamedEnergies named_energies(const SlideEnergy& e) {
-  return {{"kinetic_j", e.kinetic},         {"potential_j", e.potential},
-          {"bonds_j", e.bonds},             {"coulomb_j", e.coulomb},
-          {"turbulent_j", e.turbulent},     {"resistance_j", e.resistance},
-          {"viscosity_j", e.viscosity},     {"entrainment_j", e.entrainment},
-          {"broken_bonds_j", e.broken},     {"left_terrain_j", e.left},
-          {"added_j", e.added},             {"residual_j", e.residual()}};
+  return {{"kinetic_j", e.kinetic},     {"potential_j", e.potential},
+          {"bonds_j", e.bonds},         {"coulomb_j", e.coulomb},
+          {"turbulent_j", e.turbulent}, {"resistance_j", e.resistance},
+          {"viscosity_j", e.viscosity}, {"entrainment_j", e.entrainment},
+          {"broken_bonds_j", e.broken}, {"left_terrain_j", e.left},
+          {"added_j", e.added},         {"residual_j", e.residual()}};
 }
 
 void store_energy(const SlideModel& model, const SlideState& state, const SlideWork& work,
@@ -94,8 +93,8 @@ void EnergyAudit::before_bonds(const SlideModel& model, const SlideState& state,
     const bool breaks = length > model.settings.min_bond_length &&
                         std::abs(length / bonds.rest_length[b] - 1) > model.settings.max_strain;
     if (breaks)
-      e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]),
-                              length, bonds.rest_length[b]);
+      e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]), length,
+                              bonds.rest_length[b]);
   }
 }
 

@@ -49,9 +49,9 @@ Vec3 push_of(const SlideWork& work, const Seen& k, std::uint32_t begin, std::uin
   return {sx, sy, sz};
 }
 
-/// By how much the kernel's sum over few neighbours falls short of the pressure of snow, inverted. In
-/// a triangular lattice with N particles within the kernel the sum is 1 - 5 N^-1.4 of the integral,
-/// within a few percent for N above 10.
+/// By how much the kernel's sum over few neighbours falls short of the pressure of snow, inverted.
+/// In a triangular lattice with N particles within the kernel the sum is 1 - 5 N^-1.4 of the
+/// integral, within a few percent for N above 10.
 double few_neighbours(double particles_in_kernel) {
   return 1 / std::max(0.5, 1 - 5 * std::pow(particles_in_kernel, -1.4));
 }
@@ -78,16 +78,18 @@ void add_surface_pressure(const SlideModel& model, const SlideState& state, Slid
                   });
   const double slope = -30 / (pi * std::pow(radius, 5));  // of the kernel
   const double factor = slope * model.gravity / model.settings.density;
-  parallel_pieces(cells.rows() - 2, model.threads_for(cells.size()), 1, [&](std::ptrdiff_t j, std::ptrdiff_t) {
-    for_each_run(cells, int(j) + 1, [&](std::uint32_t e, std::uint32_t begin, std::uint32_t end) {
-      const std::uint32_t i = cells.particle(e);
-      const Vec3 push = factor * push_of(work, seen(work, e), begin, end, radius);
-      const Vec3 n = work.places.normal(i), along = push - push.dot(n) * n;
-      work.loads.ax[i] += along.x();
-      work.loads.ay[i] += along.y();
-      work.loads.az[i] += along.z();
-    });
-  });
+  parallel_pieces(
+      cells.rows() - 2, model.threads_for(cells.size()), 1, [&](std::ptrdiff_t j, std::ptrdiff_t) {
+        for_each_run(cells, int(j) + 1,
+                     [&](std::uint32_t e, std::uint32_t begin, std::uint32_t end) {
+                       const std::uint32_t i = cells.particle(e);
+                       const Vec3 push = factor * push_of(work, seen(work, e), begin, end, radius);
+                       const Vec3 n = work.places.normal(i), along = push - push.dot(n) * n;
+                       work.loads.ax[i] += along.x();
+                       work.loads.ay[i] += along.y();
+                       work.loads.az[i] += along.z();
+                     });
+      });
 }
 
 double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
