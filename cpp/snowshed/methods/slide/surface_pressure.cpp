@@ -56,6 +56,19 @@ double few_neighbours(double particles_in_kernel) {
   return 1 / std::max(0.5, 1 - 5 * std::pow(particles_in_kernel, -1.4));
 }
 
+/// The sum over a run of m_l (R - r)^3 around a particle.
+double cover_of(const SlideParticles& p, const CellLists& cells, std::uint32_t i,
+                std::uint32_t begin, std::uint32_t end, double radius) {
+  double sum = 0;
+  for (std::uint32_t e = begin; e < end; ++e) {
+    const std::uint32_t l = cells.particle(e);
+    const double distance = std::hypot(p.x[l] - p.x[i], p.y[l] - p.y[i], p.z[l] - p.z[i]);
+    const double inside = std::max(0.0, radius - distance);
+    sum += p.mass[l] * inside * inside * inside;
+  }
+  return sum;
+}
+
 }  // namespace
 
 void add_surface_pressure(const SlideModel& model, const SlideState& state, SlideWork& work) {
@@ -93,9 +106,17 @@ void add_surface_pressure(const SlideModel& model, const SlideState& state, Slid
 }
 
 double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
+  const CellLists& cells = work.cells;
+  const double radius = model.terrain.cell();
+  const double kernel = 10 / (pi * std::pow(radius, 5));
+  const double factor = 0.5 * kernel * model.gravity / model.settings.density;
   double sum = 0;
-  for (std::size_t i = 0; i < state.particles.size(); ++i)
-    sum += 0.5 * model.gravity * state.particles.mass[i] * work.places.nz[i] * work.thickness[i];
+  for (int row = 1; row + 1 < cells.rows(); ++row)
+    for_each_run(cells, row, [&](std::uint32_t e, std::uint32_t begin, std::uint32_t end) {
+      const std::uint32_t i = cells.particle(e);
+      sum += factor * state.particles.mass[i] * work.places.nz[i] *
+             cover_of(state.particles, cells, i, begin, end, radius);
+    });
   return sum;
 }
 

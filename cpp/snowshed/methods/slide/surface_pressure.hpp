@@ -15,8 +15,8 @@ namespace snowshed {
 /// sum falls short of the integral, its pressure is raised by what is missing, at most twofold.
 void add_surface_pressure(const SlideModel&, const SlideState&, SlideWork&);
 
-/// The energy sum_k m_k g n_z h_k / 2 with the thickness of the nodes around, J: that by which the
-/// snow's centre of mass lies above the ground.
+/// The energy sum_k m_k g n_z h_k / 2, J: that by which the snow's centre of mass lies above the
+/// ground.
 double pressure_energy(const SlideModel&, const SlideState&, const SlideWork&);
 
 }  // namespace snowshed
