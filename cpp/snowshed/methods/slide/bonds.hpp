@@ -35,8 +35,8 @@ inline constexpr std::uint32_t gone = 0xffffffff;
 void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place);
 
 /// Returns the longest step in which bonds do not vibrate ever more, s; infinite without bonds.
-/// A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the stiffness K
-/// in all vibrates with omega^2 <= 2 K / m (Gershgorin), and forces at the end points of the
+/// A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the stiffness
+/// K in all vibrates with omega^2 <= 2 K / m (Gershgorin), and forces at the end points of the
 /// velocities before are stable where omega dt <= sqrt(2).
 double longest_bond_step(const Bonds& bonds, const SlideParticles& particles,
                          const AlignedVector<double>& thickness, double modulus);

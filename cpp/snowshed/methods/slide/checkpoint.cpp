@@ -19,9 +19,9 @@ void SlideSolver::save(BinaryWriter& out) const {
   out.add("peaks/speed", state_.peaks.speed);
   out.add("erodible", state_.erodible);
   const MassBalance& b = state_.balance;
-  out.add("clock", std::vector<double>{state_.time, state_.dt, state_.kinetic_energy,
-                                       state_.peak_kinetic, b.released, b.entrained, b.left,
-                                       state_.step});
+  out.add("clock",
+          std::vector<double>{state_.time, state_.dt, state_.kinetic_energy, state_.peak_kinetic,
+                              b.released, b.entrained, b.left, state_.step});
   std::vector<double> energies;
   SlideEnergy::for_each_sum(state_.energy, [&](double sum) { energies.push_back(sum); });
   out.add("energy", std::move(energies));

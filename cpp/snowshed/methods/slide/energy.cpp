@@ -31,12 +31,32 @@ Drag drag_parts(const SlideModel& model, const SlideWork& work, std::size_t i) {
   return model.resistance.empty() ? Drag{all, 0.0} : Drag{turbulent, all - turbulent};
 }
 
-/// The energy sum_k m_k g n_z h_k / 2 with the thickness at the particles, J: that by which the snow's
-/// centre of mass lies above the ground.
-double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
+/// The sum over the neighbours of a particle of m_l (R - r)^3; R is the width of a cell.
+double cover_of(const SlideParticles& p, const CellLists& cells, const Places& places,
+                std::uint32_t i, double radius) {
+  const int column = places.column[i] - cells.first_column();
+  const int row = places.row[i] - cells.first_row();
   double sum = 0;
-  for (std::size_t i = 0; i < state.particles.size(); ++i)
-    sum += 0.5 * model.gravity * state.particles.mass[i] * work.places.nz[i] * work.thickness[i];
+  for (int k = row - 1; k <= row + 1; ++k)
+    for (std::uint32_t e = cells.begin(column - 1, k); e < cells.begin(column + 2, k); ++e) {
+      const std::uint32_t l = cells.particle(e);
+      const double distance = std::hypot(p.x[l] - p.x[i], p.y[l] - p.y[i], p.z[l] - p.z[i]);
+      const double inside = std::max(0.0, radius - distance);
+      sum += p.mass[l] * inside * inside * inside;
+    }
+  return sum;
+}
+
+/// The energy sum_k m_k g n_z h_k / 2 with the kernel's thickness (kernels/surface_pressure.hpp), J:
+/// that by which the snow's centre of mass lies above the ground.
+double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
+  const double radius = model.terrain.cell();
+  const double kernel = 10 / (3.14159265358979323846 * std::pow(radius, 5));
+  const double factor = 0.5 * kernel * model.gravity / model.settings.density;
+  double sum = 0;
+  for (std::uint32_t i = 0; i < state.particles.size(); ++i)
+    sum += factor * state.particles.mass[i] * work.places.nz[i] *
+           cover_of(state.particles, work.cells, work.places, i, radius);
   return sum;
 }
 

@@ -47,9 +47,10 @@ NamedEnergies named_energies(const SlideEnergy&);
 /// Fills in what is stored now.
 void store_energy(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&);
 
-/// Follows the energy through a step: called between its parts, it looks at velocities and loads and
-/// changes nothing. What acts on a particle does the work of its force times the particle's way, and
-/// all of these works add up to the change of kinetic energy, whatever the length of the step.
+/// Follows the energy through a step: called between its parts, it looks at velocities and loads
+/// and changes nothing. What acts on a particle does the work of its force times the particle's
+/// way, and all of these works add up to the change of kinetic energy, whatever the length of the
+/// step.
 class EnergyAudit {
  public:
   void reserve(std::size_t particles) {

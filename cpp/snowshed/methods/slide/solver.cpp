@@ -77,8 +77,7 @@ std::unique_ptr<SlideMethod> make_slide(SlideOptions options) {
 }
 
 SlideSolver::SlideSolver(SlideOptions o)
-    : model_(o.settings, o.gravity, o.terrain, std::move(o.areas), o.energy),
-      state_(model_) {
+    : model_(o.settings, o.gravity, o.terrain, std::move(o.areas), o.energy), state_(model_) {
   check_on_terrain(model_.terrain, model_.areas.release, "release");
   state_.counters.smallest_dt = model_.settings.time_step;
 }
@@ -131,11 +130,11 @@ void SlideSolver::choose_step(SlideState& next, const SlideWork& work) const {
       0.5 * longest_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
   const double parts = std::ceil(s.time_step / longest);
   if (parts > most_parts)
-    throw InputError("/numerics/time_step",
-                     in_words(s.time_step) + " s; bonds with a modulus of " +
-                         in_words(s.bond_modulus) + " Pa need steps of at most " +
-                         in_words(longest) + " s; at most " + in_words(most_parts) +
-                         " are taken in place of one");
+    throw InputError("/numerics/time_step", in_words(s.time_step) + " s; bonds with a modulus of " +
+                                                in_words(s.bond_modulus) +
+                                                " Pa need steps of at most " + in_words(longest) +
+                                                " s; at most " + in_words(most_parts) +
+                                                " are taken in place of one");
   next.step = s.time_step / std::max(1.0, parts);
   next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
 }

@@ -132,9 +132,7 @@ struct Roll {
     for (const Vec3& u : s.velocities) square += share * (u.norm() - mean) * (u.norm() - mean);
     return std::sqrt(square) / mean;
   }
-  double broken() const {
-    return 1 - double(slide->bonds().size()) / double(slide->bonds_made());
-  }
+  double broken() const { return 1 - double(slide->bonds().size()) / double(slide->bonds_made()); }
   std::unique_ptr<SlideMethod> slide;
 };
 

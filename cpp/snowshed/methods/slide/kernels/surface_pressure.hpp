@@ -16,7 +16,7 @@ SNOWSHED_VARIANT_BEGIN
 
 /// By how much the kernel's sum over few neighbours falls short of the pressure of snow, inverted. In
 /// a triangular lattice with N particles within the kernel the sum is 1 - 5 N^-1.4 of the integral,
-/// to 1 % for N from 6 to 100.
+/// within a few percent for N above 10.
 template <class V>
 SNOWSHED_INLINE V few_neighbours(const V& particles_in_kernel) {
   const V power = 1.0 + expm1(V(-1.4 * log1p(V(particles_in_kernel - 1.0))));
