@@ -57,7 +57,8 @@ class PeakMaps:
         window = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         cut = (np.asarray(one)[window].astype(np.float32) for one in (thickness, speed, pressure))
         height, width = snow.shape
-        return cls(*cut, int(rows[0]), int(columns[0]), (height, width))
+        h, v, p = cut
+        return cls(h, v, p, int(rows[0]), int(columns[0]), (height, width))
 
     def window(self, name: str, begin: int, end: int) -> Singles:
         """Return the rows from `begin` to before `end` of a whole map, zero where no snow was."""
@@ -95,7 +96,7 @@ class PeakMaps:
         try:
             with np.load(io.BytesIO(data), allow_pickle=False) as archive:
                 row, column, rows, columns = archive["place"].tolist()
-                fields = (archive[name] for name in ("thickness", "speed", "pressure"))
-                return cls(*fields, row, column, (rows, columns))
+                h, v, p = (archive[name] for name in ("thickness", "speed", "pressure"))
+                return cls(h, v, p, row, column, (rows, columns))
         except DAMAGED as error:
             raise InputError(f"not maps that snowshed kept: {error}") from None

@@ -30,15 +30,11 @@ ROW_KEYS = ("event", "wall_s")
 
 
 class MethodRuns(Protocol):
-    """Runs scenes of a method.
+    """Runs scenes of a method."""
 
-    Attributes
-    ----------
-    columns
-        Names of what is measured after an event, in the order of a table.
-    """
-
-    columns: Sequence[str]
+    @property
+    def columns(self) -> Sequence[str]:
+        """Names of what is measured after an event, in the order of a table."""
 
     def run(
         self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
@@ -55,7 +51,7 @@ class MethodRuns(Protocol):
 class _StackRuns:
     """Events whose snow makes a stack."""
 
-    columns = tuple(name for name in EVENT_COLUMNS if name not in ROW_KEYS)
+    columns: Sequence[str] = tuple(name for name in EVENT_COLUMNS if name not in ROW_KEYS)
 
     def run(
         self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
@@ -83,7 +79,7 @@ _FIGURES: Mapping[str, str] = {
 class _SlideRuns:
     """Slides, which leave maps."""
 
-    columns = ("steps", *_FIGURES.values())
+    columns: Sequence[str] = ("steps", *_FIGURES.values())
 
     def run(
         self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
@@ -24,7 +24,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import write_ascii_grid
+from snowshed.io.raster import Raster, write_ascii_grid
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
@@ -90,6 +90,22 @@ def slide_maps(simulation: _core.Simulation) -> SlideMaps:
     """
     density = json.loads(simulation.scene)["numerics"]["density"]
     return SlideMaps(**simulation.slide_maps(), density=density)
+
+
+def slide_terrain(scene: SceneLike) -> Raster:
+    """Return the elevations at the nodes of a slide's grid.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, or its method is another.
+    OSError
+        If the terrain cannot be read.
+    """
+    ready = resolve_scene(scene)
+    found = _core.Simulation(ready.json, ready.base_dir).slide_maps()
+    crs = ready.data["terrain"]["crs"]
+    return Raster(found["terrain"], found["west"], found["south"], found["cell"], crs=crs)
 
 
 def run_slide(
@@ -254,8 +270,13 @@ class _Recorder:
             )
 
 
+def release_outlines(scene: Mapping[str, Any]) -> list[Outline]:
+    """Return the corners of the release areas of a complete scene's data, map coordinates, m."""
+    return [area["outline"] for area in scene["terrain"]["release"]]
+
+
 def _release_outlines(simulation: _core.Simulation) -> list[Outline]:
-    return [area["outline"] for area in json.loads(simulation.scene)["terrain"]["release"]]
+    return release_outlines(json.loads(simulation.scene))
 
 
 def _summary(simulation: _core.Simulation, facts: dict[str, Any], maps: SlideMaps) -> SlideSummary:

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed.io.json_file import is_number
 from snowshed.io.messages import shortened
-from snowshed.run.method_runs import runs_of
+from snowshed.run.method_runs import COUNTS, runs_of
 from snowshed.run.results import WORDS
 from snowshed.scene.accuracy_settings import NUMBERS, accuracy_of
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
-from snowshed.study.database import COUNTS, STORED_TYPES, TIMING
+from snowshed.study.database import STORED_TYPES, TIMING
 from snowshed.study.factors import SEED
 from snowshed.study.store import Store, StoredRun
 

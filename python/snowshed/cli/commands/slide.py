@@ -9,6 +9,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.commands.run import run_options
+from snowshed.cli.commands.slide_ranges import RangeOptions, range_options, run_ranges
 from snowshed.cli.run_scene import run_scene
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.schema import Parameter, scene_parameters
@@ -49,6 +50,7 @@ def _option(parameter: Parameter, name: str) -> Any:
 @click.option("--compatible", is_flag=True, help="Do step by step what AvaFrame 2.1 does.")
 @click.option("--max-time", type=float, help="Longest duration of the slide [s].")
 @click.option("--particles-at", metavar="STEPS", help="Write the particles after these steps.")
+@range_options
 @_slide_options
 def slide(
     folder: Path,
@@ -73,12 +75,14 @@ def slide(
       snowshed slide --example -o slide
       snowshed slide --terrain dem.tif --release release.shp --thickness 0.5 -o slide
       snowshed slide --avaframe project -o slide
+      snowshed slide --example --range mu=0.3:0.5 --range max_strain=0.1:0.4 --runs 50 -o maps
     """  # noqa: D301 - click wants the control character
+    ranges = RangeOptions.taken_from(settings)
     steps = _steps(particles_at)
     given = {name: value for name, value in settings.items() if value is not None}
     if compatible:
         given["mode"] = "compatible"
-    if resume:
+    if resume and not ranges.ranges:
         ready = ResolvedScene.load(folder / "scene.json")
     else:
         scene = _scene(
@@ -87,6 +91,9 @@ def slide(
         )  # fmt: skip
         if max_time is not None:
             scene.set("events.max_time", max_time)
+        if ranges.ranges:
+            run_ranges(scene, folder, ranges, quiet=quiet)
+            return
         ready = scene.resolve()
     run_scene(ready, folder, resume, quiet)
     if avaframe is not None:
