@@ -21,17 +21,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from snowshed.analysis.hazard_maps import (
+    LEVELS,
     PRESSURES,
     QUANTITIES,
     REACHED,
     HazardMaps,
     hazard_facts,
     hazard_maps,
+    uncertainty,
 )
+from snowshed.io.arrays import Floats
 from snowshed.io.atomic import write_text
 from snowshed.io.raster import write_ascii_grid
+from snowshed.methods.registry import SETTINGS_KEY
+from snowshed.methods.slide_validity import AS_ONE, release_areas, validity_warnings
 from snowshed.plot.figure_style import save
 from snowshed.plot.hazard_figure import part_shown, probability_figure
+from snowshed.plot.hazard_page import HazardPage
+from snowshed.plot.html_page import Grid
 from snowshed.run.slides import release_outlines
 from snowshed.scene.scene import PathLike
 from snowshed.study.formats import export
@@ -73,16 +80,75 @@ def write_hazard(
     with Store.open(store) as opened:
         scene = json.loads(opened.runs(study)[0].scene)
         axes = opened.axes(study)
-    facts = {**hazard_facts(maps), "ranges": _ends(table, axes), "figures": _figures(table)}
+    facts = {
+        **hazard_facts(maps),
+        "ranges": _ends(table, axes),
+        "figures": _figures(table),
+        "warnings": _warnings(maps, scene, table),
+    }
     write_text(place / "hazard.json", json.dumps(facts, indent=2) + "\n")
     export(store, place / "table.csv", study=study)
-    outlines = release_outlines(scene)
-    first = maps.exceedances[0]
-    part = part_shown(maps.terrain, first.probability, outlines)
-    label = f"{first.label}, of {maps.runs} slides"
-    figure = probability_figure(maps.terrain, first.probability, outlines, part, label=label)
+    page = _page(maps, scene, facts)
+    first, probability = next(iter(page.probabilities.items()))
+    part = part_shown(maps.terrain, probability, page.outlines)
+    label = f"{first}, of {maps.runs} slides"
+    figure = probability_figure(maps.terrain, probability, page.outlines, part, label=label)
     save(figure, place / "hazard.png")
+    page.write(place / "hazard.html")
     return maps
+
+
+def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) -> HazardPage:
+    reached = maps.exceedances[0]
+    likely, possible = (maps.area(reached, level) for level in (0.5, 0.05))
+    speed = facts["largest_values"]["speed_p95"]
+    pressure = facts["largest_values"]["pressure_p95"]
+    percentiles: dict[int, dict[str, Floats]] = {}
+    for (quantity, percentile), values in maps.percentiles.items():
+        percentiles.setdefault(percentile, {})[quantity] = values
+    head = ("area, m², with a probability of", *(f"at least {100 * one:.0f} %" for one in LEVELS))
+    rows = [
+        (one.label, *(f"{maps.area(one, level):,.0f}" for level in LEVELS))
+        for one in maps.exceedances
+    ]
+    return HazardPage(
+        title=scene.get("title") or "Snow slides",
+        sentence=(
+            f"Of {maps.runs} slides at least half reach {likely:,.0f} m², and at least one in "
+            f"twenty {possible:,.0f} m²; 95 % stay everywhere below {speed:.1f} m/s and "
+            f"{pressure:.1f} kPa."
+        ),
+        uncertainty=uncertainty(maps.runs),
+        ground=maps.terrain,
+        outlines=release_outlines(scene),
+        probabilities={one.label: one.probability for one in maps.exceedances},
+        percentiles=percentiles,
+        areas=Grid(head, rows, "l" + "r" * len(LEVELS)),
+        ranges=facts["ranges"],
+        figures=facts["figures"],
+        runs=maps.runs,
+        failed=maps.failed,
+        warnings=facts["warnings"],
+    )
+
+
+def _warnings(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> list[str]:
+    """Return where most slides leave what the method was made for, by their median figures."""
+    areas = release_areas(maps.terrain, scene["terrain"]["release"])
+    numbers = table.select_dtypes("number").median().to_dict()
+    figures = {**numbers, "ended": "rest", "bonds_broken": 0.0}
+    found = validity_warnings(areas, scene[SETTINGS_KEY], figures)
+    counts = {
+        "more than a tenth of the bonds broke: they did not move as a unit": (
+            table["bonds_broken"] > AS_ONE * table["bonds_made"]
+        ),
+        "the slide had not come to rest at the time limit": table["ended"] == "time_limit",
+    }
+    return found + [
+        f"In {slides.sum()} of {maps.runs} runs {what}."
+        for what, slides in counts.items()
+        if slides.any()
+    ]
 
 
 def _write(file: Path, maps: HazardMaps, values: Any) -> None:

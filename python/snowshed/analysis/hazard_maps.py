@@ -261,3 +261,19 @@ def hazard_facts(maps: HazardMaps) -> dict[str, Any]:
             "of_half": [float(end) for end in wilson_interval(maps.runs / 2, maps.runs)],
         },
     }
+
+
+def uncertainty(runs: int) -> str:
+    """Return in a sentence how sure probabilities from a number of runs are.
+
+    Examples
+    --------
+    >>> uncertainty(50)[:60]
+    'With 50 runs a probability of 50 % is 37 to 63 % (95 % inter'
+    """
+    low, high = (100.0 * float(end) for end in wilson_interval(runs / 2, runs))
+    rare = 100.0 * float(wilson_interval(0, runs)[1])
+    return (
+        f"With {runs} runs a probability of 50 % is {low:.0f} to {high:.0f} % (95 % interval, "
+        f"Wilson), and a place that no run reached is reached with at most {rare:.1f} %."
+    )

@@ -24,6 +24,7 @@ from snowshed.plot.terrain_map import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+ACROSS = 11.5  # inches, of maps side by side
 LEVELS = (0.05, 0.5, 0.95)  # probabilities whose lines are drawn
 VALUES = {"thickness": "YlGnBu", "speed": "YlOrRd", "pressure": "PuRd"}
 
@@ -104,20 +105,17 @@ def percentiles_figure(
     """
     from matplotlib import rc_context
 
-    width, height = panel_size(part, 12.0)
+    ratio = (part[1] - part[0]) / (part[3] - part[2])
+    width = (ACROSS - len(values)) / len(values)  # an inch for each bar of colours
     with rc_context(STYLE):
-        across = width / height < 1.6
-        shape = (1, len(values)) if across else (len(values), 1)
-        if not across:
-            width, height = panel_size(part, 26.0)
-        figure = blank((width + 1.0) * shape[1], (height + 0.6) * shape[0])
-        panels = np.atleast_1d(figure.subplots(*shape, squeeze=False).ravel())
+        figure = blank(ACROSS, width / ratio + 0.5)
+        panels = figure.subplots(1, len(values), squeeze=False).ravel()
         for axes, (quantity, found) in zip(panels, values.items()):
             draw_terrain(axes, ground, part, labels=False)
             shown = np.where(found > 0.0, found, np.nan)
             drawn = draw_values(axes, ground, shown, cmap=VALUES[quantity], vmin=0.0)
             draw_outlines(axes, outlines)
-            figure.colorbar(drawn, ax=axes, shrink=0.9, pad=0.02)
+            figure.colorbar(drawn, ax=axes, shrink=0.8, pad=0.02)
             axes.set_title(titles[quantity])
             axes.set(xticks=[], yticks=[])
     return figure

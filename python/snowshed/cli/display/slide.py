@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
-from snowshed.analysis.hazard_maps import LEVELS, HazardMaps, wilson_interval
+from snowshed.analysis.hazard_maps import LEVELS, HazardMaps, uncertainty
 from snowshed.run.slides import SlideSummary
 
 
@@ -31,7 +32,10 @@ def print_slide(summary: SlideSummary, folder: Path) -> None:
     }.items():
         shown.add_row(name, value)
     Console().print(shown, highlight=False)
-    Console().print(f"results, maps and slide.png in {folder}", highlight=False)
+    console = Console(highlight=False, soft_wrap=True)
+    for warning in summary.warnings:
+        console.print(f"[bold yellow]note:[/] {escape(warning)}")
+    console.print(f"results, maps, slide.html and slide.png in {folder}")
 
 
 def print_hazard(maps: HazardMaps, folder: Path) -> None:
@@ -44,12 +48,7 @@ def print_hazard(maps: HazardMaps, folder: Path) -> None:
         shown.add_row(one.label, *(f"{maps.area(one, level):,.0f}" for level in LEVELS))
     console = Console(highlight=False, soft_wrap=True)
     console.print(shown)
-    low, high = (100.0 * end for end in wilson_interval(maps.runs / 2, maps.runs))
-    rare = 100.0 * float(wilson_interval(0, maps.runs)[1])
-    console.print(
-        f"95 % intervals: a probability of 50 % is {low:.0f} to {high:.0f} %; a place that no run"
-        f" reached is reached with at most {rare:.1f} %"
-    )
+    console.print(uncertainty(maps.runs))
     if maps.failed:
         console.print(f"note: {maps.failed} further runs failed and are left out")
     console.print(f"maps, hazard.html and hazard.png in {folder}")

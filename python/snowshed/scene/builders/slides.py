@@ -94,8 +94,8 @@ def slide_scene(
 def example_slide(folder: PathLike) -> Scene:
     """Write an example's terrain to a folder, and return the scene of a slide on it.
 
-    A slope of 36 degrees with a shallow gully runs out onto flat ground; a slab of half a metre
-    breaks loose near its top.
+    A hillside of up to 38 degrees with a winding gully, spurs and hummocks runs out onto a gentle
+    meadow; a slab of half a metre breaks loose near its top. All of it is made of formulas.
 
     Examples
     --------
@@ -105,16 +105,9 @@ def example_slide(folder: PathLike) -> Scene:
     >>> scene.terrain.release[0].thickness
     0.5
     """
-    cell, columns, rows = 2.0, 121, 61
-    x, y = np.meshgrid(np.arange(columns) * cell, np.arange(rows) * cell)
-    slope = math.tan(math.radians(36.0))
-    begin, end = 110.0, 150.0  # of the bend
-    bend = np.clip(x, begin, end) - begin
-    fall = slope * (np.minimum(x, begin) + bend - bend**2 / (2.0 * (end - begin)))
-    gully = 3.0 * np.exp(-(((y - 60.0) / 14.0) ** 2)) * np.clip((x - 40.0) / 40.0, 0.0, 1.0)
     file = Path(folder) / "terrain.asc"
-    write_ascii_grid(file, Raster(1500.0 - fall - gully, 0.0, 0.0, cell))
-    outline = [(24.0, 36.0), (50.0, 32.0), (56.0, 60.0), (48.0, 86.0), (26.0, 82.0)]
+    write_ascii_grid(file, _hillside())
+    outline = [(24.0, 36.0), (50.0, 32.0), (56.0, 60.0), (48.0, 86.0), (26.0, 82.0), (20.0, 60.0)]
     return Scene(
         method="slide",
         dimension=3,
@@ -122,6 +115,26 @@ def example_slide(folder: PathLike) -> Scene:
         terrain=Terrain(file=file, release=[Area(name="slab", outline=outline, thickness=0.5)]),
         events=Events(max_time=MAX_TIME),
     )
+
+
+def _hillside() -> Raster:
+    cell, columns, rows = 2.0, 106, 66
+    x, y = np.meshgrid(np.arange(columns) * cell, np.arange(rows) * cell)
+    steep, gentle = math.tan(math.radians(38.0)), math.tan(math.radians(6.0))
+    begin, end = 70.0, 150.0  # of the bend between slope and meadow
+    bend = np.clip(x, begin, end) - begin
+    eased = (steep - gentle) * (np.minimum(x, begin) + bend - bend**2 / (2.0 * (end - begin)))
+    upper = np.exp(-((np.maximum(x - 60.0, 0.0) / 70.0) ** 2))  # fades out towards the meadow
+    middle = 62.0 + 9.0 * np.sin(x / 26.0) * np.clip(x / 80.0, 0.0, 1.0)
+    gully = 4.5 * np.exp(-(((y - middle) / 15.0) ** 2)) * np.clip((x - 30.0) / 45.0, 0.0, 1.0)
+    spurs = 2.2 * np.cos(y / 9.0 + 0.5 * np.sin(x / 30.0)) * np.clip(np.abs(y - 60.0) / 40.0, 0, 1)
+    hummocks = (
+        0.35 * np.sin(x / 5.1 + 0.8 * np.sin(y / 11.0))
+        + 0.3 * np.sin(y / 4.3 + 1.1 * np.sin(x / 13.0))
+        + 0.25 * np.sin((x + y) / 6.7) * np.cos((x - 2.0 * y) / 9.1)
+    )
+    height = 1450.0 - gentle * x - eased - upper * gully + upper * spurs + 0.7 * hummocks
+    return Raster(height, 0.0, 0.0, cell)
 
 
 def _check_elevations(terrain: Raster) -> None:
