@@ -135,8 +135,12 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
 def _warnings(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> list[str]:
     """Return where most slides leave what the method was made for, by their median figures."""
     areas = release_areas(maps.terrain, scene["terrain"]["release"])
-    numbers = table.select_dtypes("number").median().to_dict()
-    figures = {**numbers, "ended": "rest", "bonds_broken": 0.0}
+    medians = table.select_dtypes("number").median()
+    figures = {
+        **{str(name): value for name, value in medians.items()},
+        "ended": "rest",
+        "bonds_broken": 0.0,
+    }
     found = validity_warnings(areas, scene[SETTINGS_KEY], figures)
     counts = {
         "more than a tenth of the bonds broke: they did not move as a unit": (

@@ -113,7 +113,7 @@ def slide_terrain(scene: SceneLike) -> Raster:
     """
     ready = resolve_scene(scene)
     found = _core.Simulation(ready.json, ready.base_dir).slide_maps()
-    crs = ready.data["terrain"]["crs"]
+    crs = str(json.loads(ready.json)["terrain"]["crs"])
     return Raster(found["terrain"], found["west"], found["south"], found["cell"], crs=crs)
 
 

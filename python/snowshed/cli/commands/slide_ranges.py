@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
@@ -29,21 +30,33 @@ THICKNESS = "thickness"
 
 @dataclass(frozen=True)
 class RangeOptions:
-    """What the options of a range of slides say; see `range_options`."""
+    """What the options of many slides say; see `range_options`."""
 
-    ranges: Sequence[str]
+    spans: Mapping[str, Span]
+    pressures: Sequence[float]
     runs: int
     sampling: str
     sample_seed: int
     reached_above: float
-    pressures: str
     plan_only: bool
     jobs: Optional[int]
 
     @classmethod
     def taken_from(cls, options: dict[str, Any]) -> RangeOptions:
-        """Return the options of ranges, which are removed from those given."""
-        return cls(**{name: options.pop(name) for name in cls.__dataclass_fields__})
+        """Return the options of many slides, which are removed from those given.
+
+        Raises
+        ------
+        InputError
+            If a range or a list of pressures is wrong.
+        """
+        ranges = options.pop("ranges")
+        spans = dict(map(_span, ranges))
+        if len(spans) < len(ranges):
+            raise InputError("--range: a name is given twice")
+        pressures = _pressures(options.pop("pressures"))
+        others = [name for name in cls.__dataclass_fields__ if name not in ("spans", "pressures")]
+        return cls(spans, pressures, **{name: options.pop(name) for name in others})
 
 
 def range_options(command: Any) -> Any:
@@ -86,7 +99,6 @@ def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool
     from snowshed.analysis.hazard_folder import write_hazard
     from snowshed.cli.display.slide import print_hazard
 
-    pressures = _pressures(options.pressures)
     study = _study(scene, options)
     if options.plan_only:
         print_plan(study, options.jobs)
@@ -99,7 +111,7 @@ def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool
     except Failed as failed:  # the maps are of the others, and say so
         failure = failed
     maps = write_hazard(
-        folder, folder / RUNS, STUDY, reached=options.reached_above, pressures=pressures
+        folder, folder / RUNS, STUDY, reached=options.reached_above, pressures=options.pressures
     )
     if not quiet:
         print_hazard(maps, folder)
@@ -108,11 +120,8 @@ def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:
-    spans = dict(map(_span, options.ranges))
-    if len(spans) < len(options.ranges):
-        raise InputError("--range: a name is given twice")
-    sample = SAMPLINGS[options.sampling](spans, options.runs, seed=options.sample_seed)
-    areas = scene.resolve().data["terrain"]["release"]
+    sample = SAMPLINGS[options.sampling](options.spans, options.runs, seed=options.sample_seed)
+    areas = json.loads(scene.resolve().json)["terrain"]["release"]
     columns: dict[str, Sequence[object]] = {}
     for name, values in sample.columns.items():
         for path in _paths(name, len(areas)):
