@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -70,6 +71,7 @@ def panel_size(part: Extent, area: float = 45.0) -> tuple[float, float]:
 
 def draw_terrain(axes: Axes, ground: Raster, part: Extent, *, labels: bool = True) -> None:
     """Draw a light hillshade, on which colours stay readable, and contours."""
+    ground = _cropped(ground, part)
     shade = sum(
         share * LightSource(azimuth, 40.0).hillshade(
             ground.heights[::-1], vert_exag=1.0, dx=ground.cell, dy=ground.cell
@@ -80,7 +82,7 @@ def draw_terrain(axes: Axes, ground: Raster, part: Extent, *, labels: bool = Tru
         0.55 + 0.45 * np.asarray(shade)[::-1], origin="lower", extent=extent(ground), cmap="gray",
         vmin=0.0, vmax=1.0, interpolation="bilinear",
     )  # fmt: skip
-    interval, levels = _levels(ground, part)
+    interval, levels = _levels(ground)
     strong = np.isclose(levels % (5.0 * interval), 0.0)
     lines = axes.contour(
         *coordinates(ground), ground.heights, levels=levels, colors=["#5b6b78"],
@@ -112,12 +114,24 @@ def _column(outline: Outline, axis: int) -> Floats:
     return column
 
 
-def _levels(ground: Raster, part: Extent) -> tuple[float, Floats]:
-    """Return a round interval and the contours at it that a part of the terrain shows."""
-    east, north = coordinates(ground)
-    inside = np.ix_((north >= part[2]) & (north <= part[3]), (east >= part[0]) & (east <= part[1]))
-    known = ground.heights[inside]
-    known = known[~np.isnan(known)]
+def _cropped(ground: Raster, part: Extent) -> Raster:
+    """Return the part of a terrain, and a cell around it where there is one."""
+    rows, columns = ground.heights.shape
+    left = max(0, int((part[0] - ground.east) / ground.cell) - 1)
+    bottom = max(0, int((part[2] - ground.north) / ground.cell) - 1)
+    right = min(columns, int((part[1] - ground.east) / ground.cell) + 3)
+    top = min(rows, int((part[3] - ground.north) / ground.cell) + 3)
+    return replace(
+        ground,
+        heights=ground.heights[bottom:top, left:right],
+        east=ground.east + left * ground.cell,
+        north=ground.north + bottom * ground.cell,
+    )
+
+
+def _levels(ground: Raster) -> tuple[float, Floats]:
+    """Return a round interval and the contours at it that a terrain shows."""
+    known = ground.heights[~np.isnan(ground.heights)]
     low, high = float(known.min()), float(known.max())
     rounded = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0)
     interval = next((one for one in rounded if (high - low) / one <= CONTOURS), 1000.0)

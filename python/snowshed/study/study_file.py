@@ -17,7 +17,7 @@ from snowshed.io.messages import shortened
 from snowshed.io.record import check_once
 from snowshed.io.toml import toml_lines, toml_value
 from snowshed.methods.registry import resolution_path
-from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
+from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES, accuracy_of
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.study.factors import (
@@ -238,9 +238,10 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
             scene.set(path, _typed(data[key], int, key, "a whole number"))
     accuracy = _table(data.get("accuracy", {}), "accuracy")
     names = {key: FORMER_NAMES.get(key, key) for key in accuracy}
-    _check_keys(names.values(), tuple(ACCURACY), "accuracy.")
+    settings = accuracy_of(scene.to_data())
+    _check_keys(names.values(), tuple(settings), "accuracy.")
     _named("accuracy", check_once, names, "")
-    return scene.update({ACCURACY[names[key]]: value for key, value in accuracy.items()})
+    return scene.update({settings[names[key]]: value for key, value in accuracy.items()})
 
 
 def _scene_file(file: Path) -> dict[str, Any]:
