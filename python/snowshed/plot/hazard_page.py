@@ -118,7 +118,7 @@ class HazardPage:
 
     def _range_table(self) -> Grid:
         rows = [(name, f"{ends[0]:.4g}", f"{ends[-1]:.4g}") for name, ends in self.ranges.items()]
-        return Grid(("setting", "from", "to"), rows, "lrr")
+        return Grid(("setting", "smallest value", "largest value"), rows, "lrr")
 
     def _figure_table(self) -> Grid:
         rows = [
