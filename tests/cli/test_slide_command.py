@@ -45,11 +45,19 @@ def test_ranges_give_maps_a_page_and_numbers_and_go_on(tmp_path, capsys):
         ("mu=0.3", "not of the form friction=LOW:HIGH"),
         ("mu=0.5:0.3", "must rise"),
         ("mode=0:1", "'mode' is none of"),
+        ("cell=1:4", "'cell' is none of"),
     ],
 )
 def test_wrong_ranges_are_refused_before_anything_is_written(tmp_path, capsys, option, said):
     assert snowshed("slide", "--example", "--range", option, "-o", tmp_path / "maps") == 2
     assert said in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_sample_that_cannot_be_drawn_is_refused_before_anything_is_written(tmp_path, capsys):
+    command = ("slide", "--example", "--range", "mu=0.3:0.5", "--sampling", "sobol", "--runs", 5)
+    assert snowshed(*command, "-o", tmp_path / "maps") == 2
+    assert "5 is not a power of two" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

@@ -82,7 +82,7 @@ def slide(
     given = {name: value for name, value in settings.items() if value is not None}
     if compatible:
         given["mode"] = "compatible"
-    if resume and not ranges.spans:
+    if resume and ranges.sample is None:
         ready = ResolvedScene.load(folder / "scene.json")
     else:
         scene = _scene(
@@ -91,7 +91,7 @@ def slide(
         )  # fmt: skip
         if max_time is not None:
             scene.set("events.max_time", max_time)
-        if ranges.spans:
+        if ranges.sample is not None:
             run_ranges(scene, folder, ranges, quiet=quiet)
             return
         ready = scene.resolve()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
@@ -14,6 +14,7 @@ from snowshed._core import InputError
 from snowshed.cli.commands.study import compute_study, print_plan
 from snowshed.cli.exit_codes import Failed
 from snowshed.io.messages import suggestion
+from snowshed.methods.slide import SlideSettings
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import scene_parameters
 from snowshed.study.definition import Study
@@ -32,11 +33,8 @@ THICKNESS = "thickness"
 class RangeOptions:
     """What the options of many slides say; see `range_options`."""
 
-    spans: Mapping[str, Span]
+    sample: Optional[Factor]
     pressures: Sequence[float]
-    runs: int
-    sampling: str
-    sample_seed: int
     reached_above: float
     plan_only: bool
     jobs: Optional[int]
@@ -48,15 +46,19 @@ class RangeOptions:
         Raises
         ------
         InputError
-            If a range or a list of pressures is wrong.
+            If a range, the number of runs or a list of pressures is wrong.
         """
         ranges = options.pop("ranges")
         spans = dict(map(_span, ranges))
         if len(spans) < len(ranges):
             raise InputError("--range: a name is given twice")
-        pressures = _pressures(options.pop("pressures"))
-        others = [name for name in cls.__dataclass_fields__ if name not in ("spans", "pressures")]
-        return cls(spans, pressures, **{name: options.pop(name) for name in others})
+        draw = SAMPLINGS[options.pop("sampling")]
+        runs, seed = options.pop("runs"), options.pop("sample_seed")
+        return cls(
+            draw(spans, runs, seed=seed) if spans else None,
+            _pressures(options.pop("pressures")),
+            **{name: options.pop(name) for name in ("reached_above", "plan_only", "jobs")},
+        )
 
 
 def range_options(command: Any) -> Any:
@@ -120,10 +122,10 @@ def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:
-    sample = SAMPLINGS[options.sampling](options.spans, options.runs, seed=options.sample_seed)
     areas = json.loads(scene.resolve().json)["terrain"]["release"]
     columns: dict[str, Sequence[object]] = {}
-    for name, values in sample.columns.items():
+    sample = {} if options.sample is None else options.sample.columns
+    for name, values in sample.items():
         for path in _paths(name, len(areas)):
             columns[path] = values
     return Study(scene, [[Factor(columns)]], STUDY)
@@ -148,9 +150,10 @@ def _span(text: str) -> tuple[str, Span]:
 
 
 def _numbers() -> list[str]:
-    """Return the names of the settings that are numbers."""
+    """Return the names of the settings that are numbers and leave the grid as it is."""
     settings = (one for one in scene_parameters("slide") if one.path.startswith("numerics."))
-    return [one.path.partition(".")[2] for one in settings if one.kind == "number"]
+    names = [one.path.partition(".")[2] for one in settings if one.kind == "number"]
+    return [name for name in names if name != SlideSettings.RESOLUTION]
 
 
 def _paths(name: str, areas: int) -> list[str]:
