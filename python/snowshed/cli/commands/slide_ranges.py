@@ -12,7 +12,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.commands.study import compute_study, print_plan
-from snowshed.cli.exit_codes import Failed
+from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.io.messages import suggestion
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.scene import Scene
@@ -112,6 +112,8 @@ def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool
         compute_study(study, folder / RUNS, quiet=quiet, jobs=options.jobs, keep_particles=True)
     except Failed as failed:  # the maps are of the others, and say so
         failure = failed
+    except Stopped:
+        raise Stopped("interrupted; the same command goes on") from None
     maps = write_hazard(
         folder, folder / RUNS, STUDY, reached=options.reached_above, pressures=options.pressures
     )
