@@ -35,6 +35,15 @@ def test_a_release_on_a_plane_is_measured_exactly():
     assert area(36.0, holes=[hole]).area == pytest.approx(500.0)
 
 
+def test_the_slope_of_a_hole_is_not_that_of_the_release():
+    ground = plane(36.0)
+    ground.heights[13:17, 13:17] += 4.0  # a block in the middle
+    hole = {"outline": [(21.5, 21.5), (38.5, 21.5), (38.5, 38.5), (21.5, 38.5)]}
+    release = {"name": "ring", "outline": OUTLINE, "thickness": 0.5}
+    assert release_areas(ground, [release])[0].steepest > 50.0
+    assert release_areas(ground, [{**release, "holes": [hole]}])[0].steepest < 37.0
+
+
 def test_a_slide_within_the_stated_range_has_no_warning():
     assert validity_warnings([area(36.0)], SETTINGS, GOOD) == []
 

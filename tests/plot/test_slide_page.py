@@ -35,7 +35,9 @@ def test_the_film_shows_the_snow_where_the_outline_is(maps):
     """The outline is that of the cells of the first frame: its corners are theirs in percent."""
     x0, y0 = WEST + 9.5 * CELL, SOUTH + 19.5 * CELL
     x1, y1 = x0 + 2 * CELL, y0 + 3 * CELL
-    film = _film(maps, [[(x0, y0), (x1, y0), (x1, y1), (x0, y1)]], [frame(0, 10), frame(5, 28)])
+    south = [(x0, SOUTH + 5.0), (x1, SOUTH + 5.0), (x1, SOUTH + 10.0)]  # so that it is askew
+    cells = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+    film = _film(maps, [cells, south], [frame(0, 10), frame(5, 28)])
     corners = np.array([pair.split(",") for pair in film.outlines[0].split()], dtype=float) / 100
     pixels = imread(io.BytesIO(base64.b64decode(film.frames[0][1])))
     down, across = np.nonzero(pixels[..., 3])
