@@ -13,14 +13,12 @@ from types import MappingProxyType
 from typing import Optional, Protocol, Union
 
 from snowshed.io.json_file import JsonValue, read_object
-from snowshed.io.raster import read_raster
-from snowshed.methods.peak_maps import PeakMaps
 from snowshed.methods.registry import DEFAULT, NAME_KEY
 from snowshed.run.event_particles import read_event_particles
 from snowshed.run.events import run_events
 from snowshed.run.progress import Reporter
 from snowshed.run.results import EVENT_COLUMNS, WORDS, RunFolder
-from snowshed.run.slides import SlideSummary, run_slide
+from snowshed.run.slides import PACKED, SlideSummary, run_slide
 from snowshed.scene.scene import ResolvedScene
 
 Cell = Union[int, float, str, None]
@@ -84,7 +82,8 @@ class _SlideRuns:
     def run(
         self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
     ) -> None:
-        run_slide(scene, folder, resume=resume, progress=progress, pictures=False)
+        options = {"pictures": False, "rasters": False}
+        run_slide(scene, folder, resume=resume, progress=progress, **options)
 
     def rows(self, folder: Path) -> list[dict[str, Cell]]:
         if not (folder / "slide.json").is_file():
@@ -96,9 +95,7 @@ class _SlideRuns:
 
     def kept(self, folder: Path) -> Iterable[tuple[int, bytes]]:
         if (folder / "slide.json").is_file():
-            names = ("pft", "pfv", "ppr")
-            maps = (read_raster(folder / "peaks" / f"{name}.asc").heights for name in names)
-            yield 1, PeakMaps.cropped(*maps).packed()
+            yield 1, (folder / PACKED).read_bytes()
 
 
 _RUNS: Mapping[str, MethodRuns] = MappingProxyType({"mpm": _StackRuns(), "slide": _SlideRuns()})

@@ -26,8 +26,9 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 import snowshed._core as _core
-from snowshed.io.atomic import write_text
+from snowshed.io.atomic import replacing, write_text
 from snowshed.io.raster import Raster, write_ascii_grid
+from snowshed.methods.peak_maps import PeakMaps
 from snowshed.methods.slide_frames import FrameSeries
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.methods.slide_validity import ReleaseArea, release_areas, validity_warnings
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 REPORT_INTERVAL = 0.5  # s of wall time
+PACKED = "peaks.npz"  # the peak maps, where no rasters are wanted
 FRAMES = "frames.npz"  # the slide over time, while it is interrupted
 
 
@@ -124,6 +126,7 @@ def run_slide(
     resume: bool = False,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
+    rasters: bool = True,
 ) -> SlideSummary:
     """Run a slide into a results folder, and return its figures.
 
@@ -139,6 +142,9 @@ def run_slide(
         Called with a `Progress` about twice a second.
     pictures
         Whether to draw ``slide.png`` and write ``slide.html``.
+    rasters
+        Whether to write the maps as rasters; else ``peaks.npz`` holds the peak maps
+        (`snowshed.methods.peak_maps.PeakMaps`), which is quicker and smaller.
 
     Raises
     ------
@@ -179,7 +185,8 @@ def run_slide(
         maps = slide_maps(sequence.simulation)
         areas = release_areas(maps.raster(maps.terrain), _release(sequence.simulation))
         summary = _summary(sequence.simulation, facts, maps, areas)
-        _write(Path(out_dir), maps, summary)
+        write = _write if rasters else _write_packed
+        write(Path(out_dir), maps, summary)
         if frames is not None:
             _draw(Path(out_dir), sequence.simulation, maps, areas, summary, frames)
     return summary
@@ -368,6 +375,13 @@ def _summary(
     settings = json.loads(simulation.scene)["numerics"]
     warnings = validity_warnings(areas, settings, asdict(summary))
     return replace(summary, warnings=tuple(warnings))
+
+
+def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
+    peaks = PeakMaps.cropped(maps.peak_thickness, maps.peak_speed, maps.peak_pressure)
+    with replacing(folder / PACKED) as beside:
+        beside.write_bytes(peaks.packed())
+    write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")
 
 
 def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
