@@ -34,7 +34,7 @@ from snowshed.io.arrays import Floats
 from snowshed.io.atomic import write_text
 from snowshed.io.raster import write_ascii_grid
 from snowshed.methods.registry import SETTINGS_KEY
-from snowshed.methods.slide_validity import AS_ONE, release_areas, validity_warnings
+from snowshed.methods.slide_validity import AS_ONE, release_areas, validity_notes
 from snowshed.plot.figure_style import save
 from snowshed.plot.hazard_figure import part_shown, probability_figure
 from snowshed.plot.hazard_page import HazardPage
@@ -84,7 +84,7 @@ def write_hazard(
         **hazard_facts(maps),
         "ranges": _ends(table, axes),
         "figures": _figures(table),
-        "warnings": _warnings(maps, scene, table),
+        "notes": _notes(maps, scene, table),
     }
     write_text(place / "hazard.json", json.dumps(facts, indent=2) + "\n")
     export(store, place / "table.csv", study=study)
@@ -128,11 +128,11 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
         figures=facts["figures"],
         runs=maps.runs,
         failed=maps.failed,
-        warnings=facts["warnings"],
+        notes=facts["notes"],
     )
 
 
-def _warnings(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> list[str]:
+def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> list[str]:
     """Return where most slides leave what the method was made for, by their median figures."""
     areas = release_areas(maps.terrain, scene["terrain"]["release"])
     medians = table.select_dtypes("number").median()
@@ -141,7 +141,7 @@ def _warnings(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -
         "ended": "rest",
         "bonds_broken": 0.0,
     }
-    found = validity_warnings(areas, scene[SETTINGS_KEY], figures)
+    found = validity_notes(areas, scene[SETTINGS_KEY], figures)
     counts = {
         "more than a tenth of the bonds broke: they did not move as a unit": (
             table["bonds_broken"] > AS_ONE * table["bonds_made"]

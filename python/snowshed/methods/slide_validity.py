@@ -74,7 +74,7 @@ def release_areas(ground: Raster, areas: Sequence[Mapping[str, Any]]) -> list[Re
     return [_described(ground, inclination, area) for area in areas]
 
 
-def validity_warnings(
+def validity_notes(
     areas: Sequence[ReleaseArea], settings: Mapping[str, Any], figures: Mapping[str, Any]
 ) -> list[str]:
     """Return where a slide leaves the stated validity, a sentence each; none where it does not.
@@ -90,7 +90,7 @@ def validity_warnings(
 
     Examples
     --------
-    >>> validity_warnings([], {"bonds": False}, {"drop_m": 50.0, "ended": "rest"})
+    >>> validity_notes([], {"bonds": False}, {"drop_m": 50.0, "ended": "rest"})
     ['Without bonds this is a plain avalanche; the validity is stated for slabs with bonds.']
     """
     found = [text for area in areas for text in _of_release(area, settings)]
@@ -108,12 +108,6 @@ def validity_warnings(
         found.append(
             f"{100.0 * broken / made:.0f} % of the bonds broke: the slide does not move as a unit, "
             "for which the method was made."
-        )
-    left, released = figures.get("left_terrain_kg", 0.0), figures.get("released_kg", 0.0)
-    if left > 0.0 and released > 0.0:
-        found.append(
-            f"{100.0 * left / released:.2g} % of the snow left the terrain; the run-out is longer "
-            "than told. Give a larger terrain."
         )
     if figures.get("ended") == "time_limit":
         found.append("The slide had not come to rest at the time limit; it may go farther.")

@@ -45,7 +45,7 @@ class HazardPage:
         What varied, from where to where; and the 5th, 50th and 95th percentile of figures.
     runs, failed
         How many slides, and how many more failed.
-    warnings
+    notes
         Where slides leave what the method was made for.
     """
 
@@ -61,7 +61,7 @@ class HazardPage:
     figures: Mapping[str, Mapping[str, float]]
     runs: int
     failed: int
-    warnings: Sequence[str]
+    notes: Sequence[str]
 
     def write(self, file: Path) -> None:
         """Write the page, a single file that needs no network; whole or not at all."""
@@ -70,7 +70,7 @@ class HazardPage:
             title=self.title,
             sentence=self.sentence,
             uncertainty=self.uncertainty,
-            warnings=self.warnings,
+            notes=self.notes,
             ranges=self._range_table(),
             runs=self.runs,
             failed=self.failed,

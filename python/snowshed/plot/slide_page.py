@@ -101,7 +101,7 @@ def write_slide_page(
     text = page.render(
         title=scene.get("title") or "Snow slide",
         sentence=headline(figures),
-        warnings=figures.get("warnings", ()),
+        notes=figures.get("notes", ()),
         facts=_facts(figures),
         areas=_area_table(areas),
         mass=_mass_table(figures),

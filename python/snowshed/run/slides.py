@@ -31,7 +31,7 @@ from snowshed.io.raster import Raster, write_ascii_grid
 from snowshed.methods.peak_maps import PeakMaps
 from snowshed.methods.slide_frames import FrameSeries
 from snowshed.methods.slide_maps import SlideMaps
-from snowshed.methods.slide_validity import ReleaseArea, release_areas, validity_warnings
+from snowshed.methods.slide_validity import ReleaseArea, release_areas, validity_notes
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
@@ -70,8 +70,8 @@ class SlideSummary:
         Farthest way on the map from the middle of the release to where snow lies at the end.
     drop_m
         Height between the highest node of the release and the lowest where snow lies.
-    warnings
-        Where the slide leaves what the method was made for, in sentences.
+    notes
+        What should be known of these figures.
     """
 
     ended: str
@@ -88,7 +88,7 @@ class SlideSummary:
     reached_m2: float
     run_out_m: float
     drop_m: float
-    warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def slide_maps(simulation: _core.Simulation) -> SlideMaps:
@@ -371,10 +371,11 @@ def _summary(
         reached_m2=float(reached.sum()) * maps.cell**2,
         run_out_m=float(way.max(initial=0.0)),
         drop_m=float(maps.terrain[reached].max() - lies.min()) if lies.size else 0.0,
+        notes=_notes(slide["left_terrain_kg"], maps),
     )
     settings = json.loads(simulation.scene)["numerics"]
-    warnings = validity_warnings(areas, settings, asdict(summary))
-    return replace(summary, warnings=tuple(warnings))
+    left = validity_notes(areas, settings, asdict(summary))
+    return replace(summary, notes=(*summary.notes, *left))
 
 
 def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
@@ -382,6 +383,17 @@ def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
     with replacing(folder / PACKED) as beside:
         beside.write_bytes(peaks.packed())
     write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")
+
+
+def _notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
+    if left == 0.0:
+        return ()
+    holes = np.isnan(maps.terrain).any()
+    where = "or went where the raster has no elevation" if holes else "at its border"
+    return (
+        f"{left:,.0f} kg of snow left the terrain {where}; what lies beyond is not part of these "
+        "figures",
+    )
 
 
 def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:

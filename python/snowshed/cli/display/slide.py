@@ -33,8 +33,8 @@ def print_slide(summary: SlideSummary, folder: Path) -> None:
         shown.add_row(name, value)
     Console().print(shown, highlight=False)
     console = Console(highlight=False, soft_wrap=True)
-    for warning in summary.warnings:
-        console.print(f"[bold yellow]note:[/] {escape(warning)}")
+    for note in summary.notes:
+        console.print(f"[bold yellow]note:[/] {escape(note)}")
     console.print(f"results, maps, slide.html and slide.png in {folder}")
 
 
