@@ -2,7 +2,8 @@
 
 ================ ============================================================================
 probability/     share of the runs in which a value is exceeded, and the ends of its 95 % interval
-                 (``_low``, ``_high``), as ESRI ASCII grids
+                 (``_low``, ``_high``), as ESRI ASCII grids,
+                 with their coordinate system in a .prj where it is known
 percentiles/     percentiles of peak thickness (pft, m), speed (pfv, m/s), pressure (ppr, kPa)
 hazard.json      runs, areas by probability, intervals, percentiles of the figures of the slides
 hazard.png       the probability of being reached, on the terrain
@@ -32,7 +33,7 @@ from snowshed.analysis.hazard_maps import (
 )
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import write_ascii_grid
+from snowshed.io.raster_output import write_raster
 from snowshed.methods.registry import SETTINGS_KEY
 from snowshed.methods.slide_validity import AS_ONE, release_areas, validity_notes
 from snowshed.plot.figure_style import save
@@ -157,7 +158,7 @@ def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> l
 
 def _write(file: Path, maps: HazardMaps, values: Any) -> None:
     file.parent.mkdir(exist_ok=True)
-    write_ascii_grid(file, maps.raster(values))
+    write_raster(file, maps.raster(values))
 
 
 def _ends(table: pd.DataFrame, axes: Sequence[str]) -> dict[str, list[float]]:

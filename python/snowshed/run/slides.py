@@ -4,7 +4,7 @@ Beside what every run writes (``snowshed.run.results``), the folder holds
 
 ================== ==========================================================================
 peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s) and pressure
-                   (ppr, kPa), as ESRI ASCII grids
+                   (ppr, kPa), as ESRI ASCII grids; a .prj holds the coordinate system, if known
 flow/              thickness (FT) and speed (FV) at the end
 slide.json         the figures of `SlideSummary`
 slide.png          the map: terrain, peak speed, outline of the release
@@ -27,7 +27,8 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed.io.atomic import replacing, write_text
-from snowshed.io.raster import Raster, write_ascii_grid
+from snowshed.io.raster import Raster
+from snowshed.io.raster_output import write_raster
 from snowshed.methods.peak_maps import PeakMaps
 from snowshed.methods.slide_frames import FrameSeries
 from snowshed.methods.slide_maps import SlideMaps
@@ -58,8 +59,11 @@ class SlideSummary:
         Of the slide.
     particles
         At the end.
-    released_kg, entrained_kg, left_terrain_kg
-        Mass that was released, taken up, and carried off the terrain.
+    released_kg, entrained_kg
+        Mass that was released and taken up.
+    left_terrain_kg, detrained_kg, on_terrain_kg
+        Where it went: off the terrain or into its holes, left behind in forest (none is), and
+        still on the terrain at the end; at rest, if the slide ended so.
     bonds_made, bonds_broken
         Bonds between particles, and how many of them broke or left the terrain.
     peak_speed_m_s, peak_thickness_m, peak_pressure_kpa
@@ -80,6 +84,8 @@ class SlideSummary:
     released_kg: float
     entrained_kg: float
     left_terrain_kg: float
+    detrained_kg: float
+    on_terrain_kg: float
     bonds_made: int
     bonds_broken: int
     peak_speed_m_s: float
@@ -185,8 +191,10 @@ def run_slide(
         maps = slide_maps(sequence.simulation)
         areas = release_areas(maps.raster(maps.terrain), _release(sequence.simulation))
         summary = _summary(sequence.simulation, facts, maps, areas)
-        write = _write if rasters else _write_packed
-        write(Path(out_dir), maps, summary)
+        if rasters:
+            _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
+        else:
+            _write_packed(Path(out_dir), maps, summary)
         if frames is not None:
             _draw(Path(out_dir), sequence.simulation, maps, areas, summary, frames)
     return summary
@@ -363,6 +371,8 @@ def _summary(
         released_kg=slide["released_kg"],
         entrained_kg=slide["entrained_kg"],
         left_terrain_kg=slide["left_terrain_kg"],
+        detrained_kg=0.0,
+        on_terrain_kg=math.fsum(simulation.masses()),
         bonds_made=slide["bonds_made"],
         bonds_broken=slide["bonds_made"] - slide["bonds"],
         peak_speed_m_s=float(maps.peak_speed.max()),
@@ -396,7 +406,11 @@ def _notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
     )
 
 
-def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
+def _crs(simulation: _core.Simulation) -> str:
+    return str(json.loads(simulation.scene)["terrain"].get("crs", ""))
+
+
+def _write(folder: Path, maps: SlideMaps, summary: SlideSummary, crs: str) -> None:
     for name, values in (
         ("peaks/pft", maps.peak_thickness),
         ("peaks/pfv", maps.peak_speed),
@@ -406,5 +420,5 @@ def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
     ):
         file = folder / f"{name}.asc"
         file.parent.mkdir(exist_ok=True)
-        write_ascii_grid(file, maps.raster(values))
+        write_raster(file, maps.raster(values, crs))
     write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")

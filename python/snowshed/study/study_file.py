@@ -32,6 +32,7 @@ from snowshed.study.factors import (
     logarithmic,
     sobol,
 )
+from snowshed.study.scene_hash import FILES
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -250,14 +251,14 @@ def _scene_file(file: Path) -> dict[str, Any]:
 
 
 def _with_absolute_files(value: Any, folder: Path) -> Any:
-    """Make the path under every key "file" absolute, since a study's scenes are in no folder."""
+    """Make the path under every key of a file absolute, since a study's scenes are in no folder."""
     if isinstance(value, list):
         return [_with_absolute_files(item, folder) for item in value]
     if not isinstance(value, dict):
         return value
     return {
         key: _absolute(inner, folder)
-        if key.rpartition(".")[2] == "file"
+        if key.rpartition(".")[2] in FILES
         else _with_absolute_files(inner, folder)
         for key, inner in value.items()
     }

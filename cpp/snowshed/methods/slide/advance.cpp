@@ -136,6 +136,22 @@ void remove_marked(SlideState& state, SlideWork& work) {
   work.bond_lists.update(state.bonds, p.size());
 }
 
+namespace {
+
+/// Gives the particles from `begin` on, which have the ids of those they split from, ids of their
+/// own, in the order of these: the order in which particles are stored must not tell.
+void number_new(SlideState& state, SlideWork& work, std::size_t begin) {
+  SlideParticles& p = state.particles;
+  std::vector<std::uint32_t>& order = work.new_places;
+  order.resize(p.size() - begin);
+  std::iota(order.begin(), order.end(), std::uint32_t(begin));
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return p.id[a] < p.id[b]; });
+  for (const std::uint32_t i : order) p.id[i] = state.next_id++;
+}
+
+}  // namespace
+
 void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
   SlideParticles& p = state.particles;
   if (state.erodible.empty() && !model.compatible()) return;  // nothing makes them heavier
@@ -155,7 +171,6 @@ void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
       continue;
     p.for_each_array([i](const char*, auto& array) { array.push_back(array[i]); });
     p.mass[i] = p.mass.back() = 0.5 * p.mass[i];
-    p.id.back() = state.next_id++;
     const auto put = [&](std::size_t at, const Vec3& to, const GridPlace& place) {
       p.x[at] = to.x();
       p.y[at] = to.y();
@@ -169,7 +184,9 @@ void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
     put(i, x - along, behind);
     put(p.size() - 1, x + along, ahead);
   }
-  if (p.size() != before) work.bond_lists.update(state.bonds, p.size());
+  if (p.size() == before) return;
+  number_new(state, work, before);
+  work.bond_lists.update(state.bonds, p.size());
 }
 
 void sort_by_cell(SlideState& state, const std::vector<std::uint32_t>& order) {

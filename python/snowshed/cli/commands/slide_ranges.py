@@ -124,11 +124,13 @@ def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:
-    areas = json.loads(scene.resolve().json)["terrain"]["release"]
+    terrain = json.loads(scene.resolve().json)["terrain"]
     columns: dict[str, Sequence[object]] = {}
     sample = {} if options.sample is None else options.sample.columns
+    if THICKNESS in sample and terrain.get("thickness_file"):
+        raise InputError("--range thickness: the thickness is that of a raster, cell by cell")
     for name, values in sample.items():
-        for path in _paths(name, len(areas)):
+        for path in _paths(name, len(terrain["release"])):
             columns[path] = values
     return Study(scene, [[Factor(columns)]], STUDY)
 
