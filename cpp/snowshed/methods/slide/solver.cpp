@@ -151,7 +151,7 @@ void SlideSolver::add_velocity(const std::vector<Vec3>& changes) {
   const std::vector<std::uint32_t>& at = order_by_id();
   for (std::size_t k = 0; k < at.size(); ++k) {
     if (!changes[k].allFinite()) throw InputError("velocity_changes", "not finite");
-    const Vec3& n = work_.normals[at[k]];
+    const Vec3 n = work_.places.normal(at[k]);
     const Vec3 along = changes[k] - changes[k].dot(n) * n;  // snow stays on the ground
     next.particles.ux[at[k]] += along.x();
     next.particles.uy[at[k]] += along.y();
