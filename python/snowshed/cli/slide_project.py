@@ -8,7 +8,6 @@ from typing import Optional
 
 import click
 
-from snowshed.cli.commands.slide_ranges import RangeOptions, run_ranges
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.slide_files import refuse_changed_areas, removing_copies, terrain_copy
 from snowshed.scene.scene import ResolvedScene
@@ -57,30 +56,6 @@ def run_project(
             write_avaframe_outputs(folder, simulation, results)
             if steps:
                 write_particles(ready, results, steps)
-
-
-def run_project_ranges(
-    project: Path,
-    folder: Path,
-    ranges: RangeOptions,
-    *,
-    quiet: bool,
-    settings: Mapping[str, object],
-    thickness: Optional[float],
-    max_time: Optional[float],
-) -> None:
-    """Run many slides of the first simulation of an AvaFrame project, and map probabilities."""
-    from snowshed.scene.builders.avaframe import avaframe_simulations
-
-    with removing_copies(folder):
-        first, *others = avaframe_simulations(
-            project, settings=settings, thickness=thickness, ascii_copy=terrain_copy(folder)
-        )
-        if max_time is not None:
-            first.scene.set("events.max_time", max_time)
-        if others and not quiet:
-            click.echo(f"{first.release}, {first.sim_type}; {len(others)} others are left out")
-        run_ranges(first.scene, folder, ranges, quiet=quiet)
 
 
 def write_particles(ready: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:

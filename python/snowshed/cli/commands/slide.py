@@ -9,10 +9,15 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.commands.run import run_options
-from snowshed.cli.commands.slide_ranges import RangeOptions, range_options, run_ranges
+from snowshed.cli.commands.slide_ranges import (
+    RangeOptions,
+    range_options,
+    run_project_ranges,
+    run_ranges,
+)
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.slide_files import WAYS, SlideFiles, refuse_changed_areas, removing_copies
-from snowshed.cli.slide_project import run_project, run_project_ranges, write_particles
+from snowshed.cli.slide_project import run_project, write_particles
 from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.schema import Parameter, scene_parameters
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
@@ -13,6 +13,7 @@ import click
 from snowshed._core import InputError
 from snowshed.cli.commands.study import compute_study, print_plan
 from snowshed.cli.exit_codes import Failed, Stopped
+from snowshed.cli.slide_files import removing_copies, terrain_copy
 from snowshed.io.messages import suggestion
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.scene import Scene
@@ -121,6 +122,30 @@ def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool
         print_hazard(maps, folder)
     if failure is not None:
         raise failure
+
+
+def run_project_ranges(
+    project: Path,
+    folder: Path,
+    options: RangeOptions,
+    *,
+    quiet: bool,
+    settings: Mapping[str, object],
+    thickness: Optional[float],
+    max_time: Optional[float],
+) -> None:
+    """Run many slides of the first simulation of an AvaFrame project, and map probabilities."""
+    from snowshed.scene.builders.avaframe import avaframe_simulations
+
+    with removing_copies(folder):
+        first, *others = avaframe_simulations(
+            project, settings=settings, thickness=thickness, ascii_copy=terrain_copy(folder)
+        )
+        if max_time is not None:
+            first.scene.set("events.max_time", max_time)
+        if others and not quiet:
+            click.echo(f"{first.release}, {first.sim_type}; {len(others)} others are left out")
+        run_ranges(first.scene, folder, options, quiet=quiet)
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:
