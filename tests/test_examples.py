@@ -16,6 +16,7 @@ ARGUMENTS = {
     "in_memory.py": ["out", "0.02"],
     "panel_2d.py": ["out", "0.02"],
     "resume.py": ["out", "0.02"],
+    "slab_and_bonds.py": ["out", "1.0"],
 }
 
 

@@ -119,3 +119,27 @@ def test_a_release_beyond_the_terrain_leaves_nothing_behind(slope, tmp_path):
     with pytest.raises(InputError, match="/terrain/release/0: reaches beyond the terrain"):
         run_slide(slope, tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
+    from xml.etree import ElementTree
+
+    from snowshed.io.vtp import APPENDED, read_particles
+    from snowshed.run.slide_states import slide_states
+
+    slope.update({"numerics.max_strain": 0.02, "output.snapshot_interval": 0.5})
+    run_slide(slope, tmp_path / "out", pictures=False)
+    files = sorted((tmp_path / "out/snapshots").glob("*.vtp"))
+    assert len(files) == 5  # at 0, 0.5, ..., 2 s
+    (state,) = slide_states(slope, [1.0])
+    found = read_particles(files[2])
+    places, count = np.unique(state.bonds, return_counts=True)
+    assert len(state.bonds) > 0 and (found["bonds"][places] == count).all()
+    assert found["bonds"].sum() == 2 * len(state.bonds)
+    assert found["thickness"] == pytest.approx(state.thickness, rel=1e-6)
+    assert found["speed"] == pytest.approx(np.linalg.norm(found["velocity"], axis=1), rel=1e-5)
+    head, _, data = files[2].read_bytes().partition(APPENDED)
+    lines = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece/Lines")
+    offset = int(lines[0].attrib["offset"]) + 8
+    ends = np.frombuffer(data, "<i4", 2 * len(state.bonds), offset).reshape(-1, 2)
+    assert (ends == state.bonds).all()

@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from snowshed import Scene
+from snowshed.run.results import WORDS
 from snowshed.study import Study, session
-from snowshed.study.database import FILE, MEASURED_TYPES, WORDS
+from snowshed.study.database import FILE, MEASURED_TYPES
 from snowshed.study.outcome import Outcome
 
 ALONE = {"jobs": 1, "threads": 1}

@@ -10,7 +10,7 @@ from study_helpers import contents, outcome, tiny_study
 
 from snowshed import InputError, _core
 from snowshed.study import StudyError, database
-from snowshed.study.database import FILE, MEASURED_TYPES
+from snowshed.study.database import FILE, STORED_TYPES
 from snowshed.study.owner import is_alive, ownership, release_dead
 from snowshed.study.store import Store
 from snowshed.study.table import read_table
@@ -206,7 +206,7 @@ def test_runs_are_found_by_the_beginning_of_their_hash(opened):
 def test_measures_that_came_later_are_added_to_an_older_store(opened, monkeypatch):
     opened.record(outcome(HASHES[0]))
     opened.close()
-    monkeypatch.setattr(database, "MEASURED_TYPES", {**MEASURED_TYPES, "wetness": "REAL"})
+    monkeypatch.setattr(database, "STORED_TYPES", {**STORED_TYPES, "wetness": "REAL"})
     with Store.open(opened.folder) as newer:
         assert newer.read("SELECT height_m, wetness FROM event WHERE event = 1") == [(10.0, None)]
 

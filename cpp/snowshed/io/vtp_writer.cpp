@@ -74,10 +74,16 @@ std::string point_data(const std::vector<PointArray>& arrays, std::size_t points
 /// particles.
 template <class Index, class Real>
 void write(const std::filesystem::path& path, const std::vector<std::array<Real, 3>>& points,
-           const std::vector<PointArray>& arrays) {
+           const std::vector<PointArray>& arrays, const PointPairs& lines) {
   const std::size_t count = points.size();
   std::vector<Index> index(count + 1);  // 0, 1, …: connectivity; from 1 on: ends of the cells
   std::iota(index.begin(), index.end(), Index{0});
+
+  std::vector<Index> line_points, line_ends;
+  for (const auto& line : lines) {
+    line_points.insert(line_points.end(), {Index(line[0]), Index(line[1])});
+    line_ends.push_back(Index(line_points.size()));
+  }
 
   AppendedData appended;
   const std::string n = std::to_string(count);
@@ -88,13 +94,17 @@ void write(const std::filesystem::path& path, const std::vector<std::array<Real,
       "header_type=\"UInt64\">\n"
       "  <PolyData>\n"
       "    <Piece NumberOfPoints=\"" +
-      n + "\" NumberOfVerts=\"" + n +
-      "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
+      n + "\" NumberOfVerts=\"" + n + "\" NumberOfLines=\"" + std::to_string(lines.size()) +
+      "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
   xml += "      <Points>\n" + appended.add("position", 3, coordinates, 3 * count) +
          "      </Points>\n";
   xml += "      <PointData>\n" + point_data(arrays, count, appended) + "      </PointData>\n";
   xml += "      <Verts>\n" + appended.add("connectivity", 1, index.data(), count) +
          appended.add("offsets", 1, index.data() + 1, count) + "      </Verts>\n";
+  if (!lines.empty())
+    xml += "      <Lines>\n" +
+           appended.add("connectivity", 1, line_points.data(), line_points.size()) +
+           appended.add("offsets", 1, line_ends.data(), line_ends.size()) + "      </Lines>\n";
   xml +=
       "    </Piece>\n"
       "  </PolyData>\n"
@@ -110,18 +120,19 @@ void write(const std::filesystem::path& path, const std::vector<std::array<Real,
 template <class Real>
 void write_with_smallest_index(const std::filesystem::path& path,
                                const std::vector<std::array<Real, 3>>& points,
-                               const std::vector<PointArray>& arrays) {
+                               const std::vector<PointArray>& arrays,
+                               const PointPairs& lines = {}) {
   if (points.size() < std::size_t(std::numeric_limits<std::int32_t>::max()))
-    write<std::int32_t>(path, points, arrays);
+    write<std::int32_t>(path, points, arrays, lines);
   else
-    write<std::int64_t>(path, points, arrays);
+    write<std::int64_t>(path, points, arrays, lines);
 }
 
 }  // namespace
 
 void write_vtp(const std::filesystem::path& path, const std::vector<std::array<float, 3>>& points,
-               const std::vector<PointArray>& arrays) {
-  write_with_smallest_index(path, points, arrays);
+               const std::vector<PointArray>& arrays, const PointPairs& lines) {
+  write_with_smallest_index(path, points, arrays, lines);
 }
 
 void write_vtp(const std::filesystem::path& path, const std::vector<std::array<double, 3>>& points,

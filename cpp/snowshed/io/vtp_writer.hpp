@@ -19,10 +19,13 @@ struct PointArray {
       values;
 };
 
-/// Writes each point (metres) as a vertex, atomically. Throws FileError if that fails, and
-/// std::invalid_argument if an array's length is not `components` times the number of points.
+/// Lines between two points each, by their places.
+using PointPairs = std::vector<std::array<std::uint32_t, 2>>;
+
+/// Writes each point (metres) as a vertex, and lines, atomically. Throws FileError if that fails,
+/// and std::invalid_argument if an array's length is not `components` times the number of points.
 void write_vtp(const std::filesystem::path& path, const std::vector<std::array<float, 3>>& points,
-               const std::vector<PointArray>& arrays);
+               const std::vector<PointArray>& arrays, const PointPairs& lines = {});
 void write_vtp(const std::filesystem::path& path, const std::vector<std::array<double, 3>>& points,
                const std::vector<PointArray>& arrays);
 

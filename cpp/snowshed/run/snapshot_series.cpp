@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "snowshed/io/vtp_writer.hpp"
+#include "snowshed/methods/slide/solver.hpp"
 
 namespace snowshed {
 namespace {
@@ -11,6 +12,32 @@ namespace {
 template <class To, class From>
 std::vector<To> converted(const std::vector<From>& from) {
   return std::vector<To>(from.begin(), from.end());
+}
+
+/// What is told of a slide's snow: thickness, speed, and how many bonds hold a particle. Returns
+/// the bonds, by the particles' places.
+PointPairs add_slide(const SlideMethod& slide, const ParticleState& s,
+                     std::vector<PointArray>& arrays) {
+  const FieldView view = slide.field("thickness");
+  const std::vector<std::uint32_t>& order = slide.order_by_id();
+  std::vector<std::uint32_t> place(order.size());
+  std::vector<float> thickness, speed;
+  for (std::uint32_t k = 0; k < order.size(); ++k) {
+    place[order[k]] = k;
+    thickness.push_back(float(*view.at<double>(order[k])));
+    speed.push_back(float(s.velocities[k].norm()));
+  }
+  PointPairs pairs;
+  std::vector<std::int32_t> count(order.size(), 0);
+  const Bonds& bonds = slide.bonds();
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    pairs.push_back({place[bonds.first[b]], place[bonds.second[b]]});
+    for (const std::uint32_t particle : pairs.back()) ++count[particle];
+  }
+  arrays.push_back({"thickness", 1, std::move(thickness)});
+  arrays.push_back({"speed", 1, std::move(speed)});
+  arrays.push_back({"bonds", 1, std::move(count)});
+  return pairs;
 }
 
 }  // namespace
@@ -34,7 +61,10 @@ void write_particles(const std::filesystem::path& file, const Method& solver) {
       {"volumetric_plastic_strain", 1, converted<float>(s.plastic_strains)},
       {"id", 1, converted<std::int32_t>(s.ids)}};
   if (!s.material_ids.empty()) arrays.push_back({"snow", 1, s.material_ids});
-  write_vtp(file, points, arrays);
+  PointPairs lines;
+  if (const auto* slide = dynamic_cast<const SlideMethod*>(&solver))
+    lines = add_slide(*slide, s, arrays);
+  write_vtp(file, points, arrays, lines);
 }
 
 SnapshotSeries::SnapshotSeries(std::filesystem::path folder, double interval, double time)

@@ -17,7 +17,6 @@ from snowshed.plot.caption import contact_text, mean_damping_rate
 if TYPE_CHECKING:
     import pandas as pd
 
-    from snowshed.run.slides import SlideSummary
 
 EVENT_TABLE = {
     "event": ("event", "{:.0f}"),
@@ -58,31 +57,6 @@ def contacts_and_damping(scene: dict[str, Any], damping_rate: Optional[float]) -
     parts = [f"{k}: {contact_text(scene[k])}" for k in ("panel", "ground") if k in scene]
     damping = settings_of(scene).damping_text(damping_rate)
     return "; ".join([*parts, *([damping] if damping else [])])
-
-
-def print_slide(summary: SlideSummary, folder: Path) -> None:
-    """Print the figures of a slide."""
-    shown = Table(title="Snow slide", show_header=False, box=None, title_justify="left")
-    shown.add_column(style="bold")
-    broken = f"{summary.bonds_broken:,} of {summary.bonds_made:,}"
-    for name, value in {
-        "ended": f"{summary.ended} after {summary.duration_s:.2f} s",
-        "released": f"{summary.released_kg:,.0f} kg",
-        "entrained": f"{summary.entrained_kg:,.0f} kg",
-        "left the terrain": f"{summary.left_terrain_kg:,.0f} kg",
-        "bonds broken": broken if summary.bonds_made else "no bonds",
-        "peak speed": f"{summary.peak_speed_m_s:.2f} m/s",
-        "peak thickness": f"{summary.peak_thickness_m:.2f} m",
-        "peak pressure": f"{summary.peak_pressure_kpa:.2f} kPa",
-        "area reached": f"{summary.reached_m2:,.0f} m2",
-        "run-out": f"{summary.run_out_m:.1f} m from the middle of the release",
-        "drop": f"{summary.drop_m:.1f} m",
-    }.items():
-        shown.add_row(name, value)
-    Console().print(shown, highlight=False)
-    for note in summary.notes:
-        Console().print(f"note: {note}", highlight=False)
-    Console().print(f"results, maps and slide.png in {folder}", highlight=False)
 
 
 def print_plan(plan: dict[str, Any]) -> None:

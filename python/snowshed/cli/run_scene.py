@@ -31,11 +31,11 @@ def _run_events(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -
 
 
 def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
-    from snowshed.cli import console
+    from snowshed.cli.display.slide import print_slide
     from snowshed.cli.progress import progress_bar
     from snowshed.run.slides import run_slide
 
     with progress_bar(quiet=quiet) as progress:
         summary = run_slide(ready, folder, resume=resume, progress=progress)
     if not quiet:
-        console.print_slide(summary, folder)
+        print_slide(summary, folder)

@@ -7,7 +7,10 @@ from types import MappingProxyType
 UNITS = MappingProxyType(
     {
         "m": "m",
+        "m2": "m2",
         "m3": "m3",
+        "m_s": "m/s",
+        "kpa": "kPa",
         "kg": "kg",
         "kg_m3": "kg/m3",
         "s": "s",

@@ -8,6 +8,7 @@ peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s
 flow/              thickness (FT) and speed (FV) at the end
 slide.json         the figures of `SlideSummary`
 slide.png          the map: terrain, peak speed, outline of the release
+slide.html         the page: maps, the slide over time, release, mass and settings
 energy.csv         energy balance at the end (only with output.energy)
 ================== ==========================================================================
 """
@@ -17,18 +18,23 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
 import snowshed._core as _core
-from snowshed.io.atomic import write_text
+from snowshed.io.atomic import replacing, write_text
 from snowshed.io.csv_table import Table
+from snowshed.io.raster import Raster
 from snowshed.io.raster_output import write_raster
+from snowshed.methods.peak_maps import PeakMaps
+from snowshed.methods.slide_frames import FrameSeries
 from snowshed.methods.slide_maps import SlideMaps
+from snowshed.methods.slide_validity import ReleaseArea, release_areas, validity_notes
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
@@ -39,6 +45,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 REPORT_INTERVAL = 0.5  # s of wall time
+PACKED = "peaks.npz"  # the peak maps, where no rasters are wanted
+FRAMES = "frames.npz"  # the slide over time, while it is interrupted
 
 
 @dataclass(frozen=True)
@@ -103,6 +111,22 @@ def slide_maps(simulation: _core.Simulation) -> SlideMaps:
     return SlideMaps(**simulation.slide_maps(), density=density)
 
 
+def slide_terrain(scene: SceneLike) -> Raster:
+    """Return the elevations at the nodes of a slide's grid.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, or its method is another.
+    OSError
+        If the terrain cannot be read.
+    """
+    ready = resolve_scene(scene)
+    found = _core.Simulation(ready.json, ready.base_dir).slide_maps()
+    crs = str(json.loads(ready.json)["terrain"]["crs"])
+    return Raster(found["terrain"], found["west"], found["south"], found["cell"], crs=crs)
+
+
 def run_slide(
     scene: SceneLike,
     out_dir: PathLike,
@@ -110,6 +134,7 @@ def run_slide(
     resume: bool = False,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
+    rasters: bool = True,
 ) -> SlideSummary:
     """Run a slide into a results folder, and return its figures.
 
@@ -124,7 +149,10 @@ def run_slide(
     progress
         Called with a `Progress` about twice a second.
     pictures
-        Whether to draw ``slide.png``.
+        Whether to draw ``slide.png`` and write ``slide.html``.
+    rasters
+        Whether to write the maps as rasters; else ``peaks.npz`` holds the peak maps
+        (`snowshed.methods.peak_maps.PeakMaps`), which is quicker and smaller.
 
     Raises
     ------
@@ -150,27 +178,30 @@ def run_slide(
     sequence = open_folder(ready.json, ready.base_dir, os.fspath(out_dir))
     with sequence, deferred_interrupts() as interrupt:
         sequence.describe_machine(machine_facts())
-        recorder = _Recorder(interrupt, progress)
+        frames = _frames(sequence.simulation, Path(out_dir)) if pictures else None
+        recorder = _Recorder(sequence.simulation, interrupt, progress, frames)
         try:
-            finished = sequence.run(recorder, REPORT_INTERVAL)
+            finished = sequence.run(recorder, REPORT_INTERVAL if frames is None else 0.0)
         except (_core.SimulationError, _core.InputError) as error:
             sequence.record_failure(str(error))
             raise
         if not finished:
+            if frames is not None:
+                frames.save(Path(out_dir) / FRAMES)
             raise Interrupted(Path(out_dir))
         (facts,) = sequence.finished_events
         maps = slide_maps(sequence.simulation)
-        summary = _summary(sequence.simulation, facts, maps)
-        _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
+        areas = release_areas(maps.raster(maps.terrain), _release(sequence.simulation))
+        summary = _summary(sequence.simulation, facts, maps, areas)
+        if rasters:
+            _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
+        else:
+            _write_packed(Path(out_dir), maps, summary)
         if facts["energy"]:
             energies = Table(Path(out_dir) / "energy.csv")
             energies.add([{"event": 1, **facts["energy"]}])
-        if pictures:
-            from snowshed.plot.figure_style import save
-            from snowshed.plot.slide_figure import slide_figure
-
-            outlines = _release_outlines(sequence.simulation)
-            save(slide_figure(maps, outlines), Path(out_dir) / "slide.png")
+        if frames is not None:
+            _draw(Path(out_dir), sequence.simulation, maps, areas, summary, frames)
     return summary
 
 
@@ -229,28 +260,47 @@ def _particle_table(simulation: _core.Simulation) -> pd.DataFrame:
 class _Recorder:
     """Passes on how far the run has come."""
 
-    def __init__(self, interrupt: InterruptRequest, report: Optional[Reporter]) -> None:
+    def __init__(
+        self,
+        simulation: _core.Simulation,
+        interrupt: InterruptRequest,
+        report: Optional[Reporter],
+        frames: Optional[FrameSeries],
+    ) -> None:
+        self.simulation = simulation
         self.interrupt = interrupt
         self.report = report
+        self.frames = frames
+        self.told = -math.inf
 
     def between_events(self) -> None:
         """Do nothing: a slide has one event."""
 
     def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
         """Report the beginning."""
+        self._look(self.simulation.time_s)
         self._tell(0.0, 0.0, 0.0)
 
     def progress(self, report: dict[str, Any]) -> None:
-        """Pass on how far the slide has come."""
-        self._tell(report["time_s"], report["progress"], report["updates_per_s"])
+        """Pass on how far the slide has come, and look at the snow."""
+        self._look(report["time_s"])
+        if time.monotonic() >= self.told + REPORT_INTERVAL:
+            self.told = time.monotonic()
+            self._tell(report["time_s"], report["progress"], report["updates_per_s"])
 
     def event_ended(self, facts: dict[str, Any]) -> None:
         """Report the end."""
+        if self.frames is not None:
+            self.frames.add(facts["sim_time_s"], self.simulation.slide_maps()["thickness"])
         self._tell(facts["sim_time_s"], 1.0, 0.0)
 
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
         return self.interrupt.requested
+
+    def _look(self, time_s: float) -> None:
+        if self.frames is not None and self.frames.due(time_s):
+            self.frames.add(time_s, self.simulation.slide_maps()["thickness"])
 
     def _tell(self, time_s: float, fraction: float, updates_per_s: float) -> None:
         if self.report is not None:
@@ -268,11 +318,49 @@ class _Recorder:
             )
 
 
+def release_outlines(scene: Mapping[str, Any]) -> list[Outline]:
+    """Return the corners of the release areas of a complete scene's data, map coordinates, m."""
+    return [area["outline"] for area in scene["terrain"]["release"]]
+
+
 def _release_outlines(simulation: _core.Simulation) -> list[Outline]:
-    return [area["outline"] for area in json.loads(simulation.scene)["terrain"]["release"]]
+    return release_outlines(json.loads(simulation.scene))
 
 
-def _summary(simulation: _core.Simulation, facts: dict[str, Any], maps: SlideMaps) -> SlideSummary:
+def _release(simulation: _core.Simulation) -> list[dict[str, Any]]:
+    areas: list[dict[str, Any]] = json.loads(simulation.scene)["terrain"]["release"]
+    return areas
+
+
+def _frames(simulation: _core.Simulation, folder: Path) -> FrameSeries:
+    """Return the frames of the part of a slide that is done; a finished one has all."""
+    return FrameSeries.load(folder / FRAMES, simulation.time_s)
+
+
+def _draw(
+    folder: Path,
+    simulation: _core.Simulation,
+    maps: SlideMaps,
+    areas: Sequence[ReleaseArea],
+    summary: SlideSummary,
+    frames: FrameSeries,
+) -> None:
+    from snowshed.plot.figure_style import save
+    from snowshed.plot.slide_figure import slide_figure
+    from snowshed.plot.slide_page import write_slide_page
+
+    save(slide_figure(maps, _release_outlines(simulation)), folder / "slide.png")
+    scene = json.loads(simulation.scene)
+    write_slide_page(folder / "slide.html", maps, scene, areas, asdict(summary), frames.frames)
+    (folder / FRAMES).unlink(missing_ok=True)
+
+
+def _summary(
+    simulation: _core.Simulation,
+    facts: dict[str, Any],
+    maps: SlideMaps,
+    areas: Sequence[ReleaseArea],
+) -> SlideSummary:
     slide = simulation.slide_facts()
     corners = np.concatenate(_release_outlines(simulation))
     middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
@@ -281,7 +369,7 @@ def _summary(simulation: _core.Simulation, facts: dict[str, Any], maps: SlideMap
     way = np.hypot(x - middle[0], y - middle[1])
     reached = maps.peak_thickness > 0.0
     lies = maps.terrain[rows, columns]
-    return SlideSummary(
+    summary = SlideSummary(
         ended=facts["ended"],
         duration_s=facts["sim_time_s"],
         particles=simulation.particle_count,
@@ -300,6 +388,16 @@ def _summary(simulation: _core.Simulation, facts: dict[str, Any], maps: SlideMap
         drop_m=float(maps.terrain[reached].max() - lies.min()) if lies.size else 0.0,
         notes=_notes(slide["left_terrain_kg"], maps),
     )
+    settings = json.loads(simulation.scene)["numerics"]
+    left = validity_notes(areas, settings, asdict(summary))
+    return replace(summary, notes=(*summary.notes, *left))
+
+
+def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
+    peaks = PeakMaps.cropped(maps.peak_thickness, maps.peak_speed, maps.peak_pressure)
+    with replacing(folder / PACKED) as beside:
+        beside.write_bytes(peaks.packed())
+    write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")
 
 
 def _notes(left: float, maps: SlideMaps) -> tuple[str, ...]:

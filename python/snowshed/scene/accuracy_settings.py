@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from snowshed.methods.registry import SETTINGS_KEY
+from snowshed.io.json_file import JsonValue
+from snowshed.methods.registry import DEFAULT, METHODS, NAME_KEY, SETTINGS_KEY
 from snowshed.scene.schema import Parameter, scene_parameters
 
 
@@ -12,16 +13,25 @@ def _of_other_section(parameter: Parameter) -> bool:
     return not parameter.path.startswith(f"{SETTINGS_KEY}.")
 
 
-#: Where in a scene each setting stands: those that the schema marks, the method's own first.
-ACCURACY: Mapping[str, str] = {
-    p.path.rpartition(".")[2]: p.path
-    for p in sorted(scene_parameters(), key=_of_other_section)
-    if p.accuracy
+_OF_METHODS: Mapping[str, Mapping[str, str]] = {
+    method: {
+        p.path.rpartition(".")[2]: p.path
+        for p in sorted(scene_parameters(method), key=_of_other_section)
+        if p.accuracy
+    }
+    for method in METHODS
 }
 
-#: Those that are numbers; one that stands in another's place may be missing in a scene.
+#: Where in a scene of the default method each setting stands: those that the schema marks, the
+#: method's own first.
+ACCURACY: Mapping[str, str] = _OF_METHODS[DEFAULT]
+
+#: Those that are numbers, of any method; one that stands in another's place may be missing.
 NUMBERS: Sequence[str] = [
-    p.path.rpartition(".")[2] for p in scene_parameters() if p.accuracy and p.kind == "number"
+    p.path.rpartition(".")[2]
+    for method in METHODS
+    for p in scene_parameters(method)
+    if p.accuracy and p.kind == "number"
 ]
 
 #: Names that settings had in earlier versions, and thus in tables and records, to those of today.
@@ -31,3 +41,14 @@ FORMER_NAMES: Mapping[str, str] = {
     for alias in p.aliases
     if p.accuracy
 }
+
+
+def accuracy_of(scene: Mapping[str, JsonValue]) -> Mapping[str, str]:
+    """Return where each of these settings stands in a scene, by the scene's method.
+
+    Examples
+    --------
+    >>> list(accuracy_of({"method": "slide"}))
+    ['cell', 'time_step', 'layer_thickness']
+    """
+    return _OF_METHODS[str(scene.get(NAME_KEY) or DEFAULT)]

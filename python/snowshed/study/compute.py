@@ -14,13 +14,11 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.run.event_particles import read_event_particles
-from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.method_runs import runs_of
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.results import WORDS, RunFolder
+from snowshed.run.results import RunFolder
 from snowshed.scene.scene import ResolvedScene
-from snowshed.study.database import COUNTS
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome, Task
 from snowshed.study.scene_hash import content_hash
@@ -81,39 +79,26 @@ def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None
     if (folder / "scene.json").is_file():
         try:
             scene = ResolvedScene.load(folder / "scene.json")  # with the threads it had
-            run_events(scene, folder, resume=True, progress=report, pictures=False)
+            runs_of(scene.data).run(scene, folder, resume=True, progress=report)
             return
         except InputError:
             pass
     shutil.rmtree(folder, ignore_errors=True)
     data = json.loads(task.scene)
     data["numerics"]["threads"] = task.threads
-    run_events(ResolvedScene.parse(json.dumps(data)), folder, progress=report, pictures=False)
+    scene = ResolvedScene.parse(json.dumps(data))
+    runs_of(data).run(scene, folder, resume=False, progress=report)
 
 
 def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
     """Return the outcome that the results folder records."""
     results = RunFolder(folder)
-    events = [{name: _value(name, cell) for name, cell in row.items()}
-              for row in results.events.rows]  # fmt: skip
+    runs = runs_of(task.scene)
+    events = runs.rows(folder)
     status = "done" if error is None else "failed"
-    particles = _particles(folder) if task.keep_particles else {}
+    begun = (folder / "scene.json").is_file()  # else it failed before there was anything
+    particles = dict(runs.kept(folder)) if task.keep_particles and begun else {}
     return Outcome(task.hash, status, events, _timing(results.read_run()), error, particles)
-
-
-def _particles(folder: Path) -> dict[int, bytes]:
-    if not (folder / "scene.json").is_file():  # it failed before there was anything
-        return {}
-    return {event: found.packed() for event, found in read_event_particles(folder)}
-
-
-def _value(name: str, cell: str) -> Any:
-    """Return the value of a cell of events.csv, exactly."""
-    if name in WORDS:
-        return cell
-    if name == "event" or name in COUNTS:
-        return int(cell)
-    return float(cell) if cell else None
 
 
 def _timing(facts: dict[str, Any]) -> dict[str, Any]:

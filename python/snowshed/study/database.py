@@ -7,9 +7,9 @@ study           name, and its axes (JSON list of dotted paths)
 study_run       the runs of each study, in order; studies may share runs
 run             content hash, version, complete scene (JSON), status, error, who computes it, and
                 whether its particles are kept
-event           what was measured after each event of a run: the columns of events.csv
+event           what was measured after each event of a run: the columns of all methods
 event_timing    wall time of each event, apart, since it differs whenever a run is repeated
-event_particles the particles after each event, packed, of runs that keep them
+event_particles what each event left, packed, of runs that keep it: particles, or maps of slides
 run_timing      wall time of each run, and what computed it
 =============== ========================================================================
 """
@@ -22,7 +22,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.run.results import EVENT_COLUMNS, WORDS
+from snowshed.run.method_runs import column_types, runs_of
 from snowshed.study.errors import StudyError
 
 FILE = "store.sqlite"
@@ -31,13 +31,10 @@ APPLICATION = 0x534E4F57  # "SNOW": tells our databases from others
 VERSION = 1
 BUSY_S = 60.0  # s to wait for another process that is writing
 
-COUNTS = ("steps",)
-#: What is measured after an event, with the type it has in the store.
-MEASURED_TYPES: Mapping[str, str] = {
-    name: "INTEGER" if name in COUNTS else "TEXT" if name in WORDS else "REAL"
-    for name in EVENT_COLUMNS
-    if name not in ("event", "wall_s")
-}
+#: What is measured after an event, by any method, with the type it has in the store.
+STORED_TYPES: Mapping[str, str] = column_types()
+#: Of these, what the default method measures.
+MEASURED_TYPES: Mapping[str, str] = {name: STORED_TYPES[name] for name in runs_of({}).columns}
 #: Facts about the computing of a run.
 TIMING: Mapping[str, str] = {
     "run_wall_s": "REAL",
@@ -68,7 +65,7 @@ TABLES = (
     "CREATE TABLE study_run (study TEXT NOT NULL REFERENCES study, position INTEGER NOT NULL,"
     " hash TEXT NOT NULL REFERENCES run, PRIMARY KEY (study, position)) WITHOUT ROWID",
     f"CREATE TABLE event (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
-    f" {_columns(MEASURED_TYPES)}, PRIMARY KEY (hash, event)) WITHOUT ROWID",
+    f" {_columns(STORED_TYPES)}, PRIMARY KEY (hash, event)) WITHOUT ROWID",
     "CREATE TABLE event_timing (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
     " wall_s REAL, PRIMARY KEY (hash, event)) WITHOUT ROWID",
     PARTICLES_TABLE,
@@ -133,8 +130,8 @@ def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
 def _add_what_is_new(connection: sqlite3.Connection) -> None:
     """Give a store of earlier days the columns that events.csv has gained since, and particles."""
     present = {row[1] for row in connection.execute("PRAGMA table_info(event)")}
-    for name in MEASURED_TYPES.keys() - present:
-        connection.execute(f"ALTER TABLE event ADD COLUMN {name} {MEASURED_TYPES[name]}")
+    for name in STORED_TYPES.keys() - present:
+        connection.execute(f"ALTER TABLE event ADD COLUMN {name} {STORED_TYPES[name]}")
     connection.execute(PARTICLES_TABLE)
     if "keep_particles" not in {row[1] for row in connection.execute("PRAGMA table_info(run)")}:
         kept = "keep_particles INTEGER NOT NULL DEFAULT 0"

@@ -12,7 +12,7 @@ from snowshed.io.extras import require
 from snowshed.io.units import unit_of_column
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import parameter_units
-from snowshed.study.database import MEASURED_TYPES
+from snowshed.study.database import STORED_TYPES
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     library = require("xarray", "study", "the NetCDF form")
     if table.empty:
         raise InputError("no run is done yet, and NetCDF needs one")
-    per_event = [*MEASURED_TYPES, "error", *(["wall_s"] if "wall_s" in table else [])]
+    per_event = [name for name in (*STORED_TYPES, "error", "wall_s") if name in table]
     grids = table.set_index(["hash", "event"])[per_event].unstack("event")
     runs = table.drop(columns=["event", *per_event]).drop_duplicates("hash")
     grids = grids.reindex(runs["hash"])
@@ -140,7 +140,7 @@ def _filled(columns: Any) -> Any:
 def _units() -> dict[str, str]:
     """Return the units of parameters, from the core's schema, and of measures, from their names."""
     units = dict(parameter_units())
-    for name in (*MEASURED_TYPES, "wall_s", "run_wall_s", "peak_memory_mb"):
+    for name in (*STORED_TYPES, "wall_s", "run_wall_s", "peak_memory_mb"):
         if unit := unit_of_column(name):
             units[name] = unit
     return units

@@ -69,6 +69,8 @@ def remeasure(
     """
     check_trimming(trimming)
     table = read_table(folder, study)
+    if "trimming" not in table:
+        raise InputError(f"{folder}: the runs of this study make no stacks that could be measured")
     rows = {
         (row["hash"], int(row["event"])): index
         for index, row in table.iterrows()

@@ -22,6 +22,8 @@ from snowshed.scene.scene import ResolvedScene
 
 HASH_DIGITS = 32  # hexadecimal: 128 bits
 WITHOUT_EFFECT = ("title", "output")
+#: Keys of a scene under which the path of a file stands.
+FILES = ("file", "thickness_file")
 #: Settings keep the name that they had when they were first hashed, so that runs computed then are
 #: found; for the same reason a scene of the default method does not name it.
 HASHED_AS = {"courant_factor": "step_factor"}
@@ -103,13 +105,13 @@ def _condition_of_version_1(part: dict[str, Any]) -> dict[str, Any]:
 
 
 def _with_file_contents(value: Any) -> Any:
-    """Replace the path under every key "file" by a digest of the file."""
+    """Replace the path under every key of a file by a digest of the file."""
     if isinstance(value, list):
         return [_with_file_contents(item) for item in value]
     if not isinstance(value, dict):
         return value
     return {
-        key: _digest_of(inner) if key == "file" and inner else _with_file_contents(inner)
+        key: _digest_of(inner) if key in FILES and inner else _with_file_contents(inner)
         for key, inner in value.items()
     }
 

@@ -22,8 +22,8 @@ from snowshed.io.json_file import check_values, parse_object
 from snowshed.scene.scene import PathLike
 from snowshed.study.database import (
     FILE,
-    MEASURED_TYPES,
     RUNNING,
+    STORED_TYPES,
     connect,
     connect_read_only,
     transaction,
@@ -50,7 +50,7 @@ class StoredRun:
 
 
 #: What tells a complete scene from anything else that a damaged store may hold.
-WHOLE_SCENE = {"dimension": float, "seeding": dict, "numerics": dict, "events": dict}
+WHOLE_SCENE = {"dimension": float, "numerics": dict, "events": dict}
 
 
 class Store:
@@ -257,7 +257,7 @@ class Store:
                 return
             for row in outcome.events:
                 key = {"hash": outcome.hash, "event": row["event"]}
-                _insert(write, "event", {**key, **{name: row[name] for name in MEASURED_TYPES}})
+                _insert(write, "event", {**key, **{name: row.get(name) for name in STORED_TYPES}})
                 _insert(write, "event_timing", {**key, "wall_s": row["wall_s"]})
             for event, data in outcome.particles.items():
                 key = {"hash": outcome.hash, "event": event}

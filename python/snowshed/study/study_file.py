@@ -17,7 +17,7 @@ from snowshed.io.messages import shortened
 from snowshed.io.record import check_once
 from snowshed.io.toml import toml_lines, toml_value
 from snowshed.methods.registry import resolution_path
-from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
+from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES, accuracy_of
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.study.factors import (
@@ -32,6 +32,7 @@ from snowshed.study.factors import (
     logarithmic,
     sobol,
 )
+from snowshed.study.scene_hash import FILES
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -238,9 +239,10 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
             scene.set(path, _typed(data[key], int, key, "a whole number"))
     accuracy = _table(data.get("accuracy", {}), "accuracy")
     names = {key: FORMER_NAMES.get(key, key) for key in accuracy}
-    _check_keys(names.values(), tuple(ACCURACY), "accuracy.")
+    settings = accuracy_of(scene.to_data())
+    _check_keys(names.values(), tuple(settings), "accuracy.")
     _named("accuracy", check_once, names, "")
-    return scene.update({ACCURACY[names[key]]: value for key, value in accuracy.items()})
+    return scene.update({settings[names[key]]: value for key, value in accuracy.items()})
 
 
 def _scene_file(file: Path) -> dict[str, Any]:
@@ -249,14 +251,14 @@ def _scene_file(file: Path) -> dict[str, Any]:
 
 
 def _with_absolute_files(value: Any, folder: Path) -> Any:
-    """Make the path under every key "file" absolute, since a study's scenes are in no folder."""
+    """Make the path under every key of a file absolute, since a study's scenes are in no folder."""
     if isinstance(value, list):
         return [_with_absolute_files(item, folder) for item in value]
     if not isinstance(value, dict):
         return value
     return {
         key: _absolute(inner, folder)
-        if key.rpartition(".")[2] == "file"
+        if key.rpartition(".")[2] in FILES
         else _with_absolute_files(inner, folder)
         for key, inner in value.items()
     }

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed.io.json_file import is_number
 from snowshed.io.messages import shortened
+from snowshed.run.method_runs import COUNTS, runs_of
 from snowshed.run.results import WORDS
-from snowshed.scene.accuracy_settings import ACCURACY, NUMBERS
+from snowshed.scene.accuracy_settings import NUMBERS, accuracy_of
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
-from snowshed.study.database import COUNTS, MEASURED_TYPES, TIMING
+from snowshed.study.database import STORED_TYPES, TIMING
 from snowshed.study.factors import SEED
 from snowshed.study.store import Store, StoredRun
 
@@ -49,7 +50,8 @@ def read_table(
     -------
     pandas.DataFrame
         One row per run and event, runs in the study's order: ``hash`` of the run; the parameters
-        that vary, by their dotted paths; ``seed``; ``event``; the columns of events.csv; ``error``;
+        that vary, by their dotted paths; ``seed``; ``event``; what the method measures, such as the
+        columns of events.csv or the figures of a slide; ``error``;
         ``version`` of snowshed; ``dimension``; and the accuracy settings (``dx``, ``precision``,
         ...). A run that failed has, after its completed events, a row without measures whose
         ``ended`` is "failed" and whose ``error`` says why.
@@ -65,11 +67,14 @@ def read_table(
         name = store.named(study)
         rows = list(_rows(store, name))
         axes = store.axes(name)
-    columns = ["hash", *axes, "seed", "event", *MEASURED_TYPES, "error", "version", "dimension"]
-    columns += [*ACCURACY, *(("wall_s", *RUN_TIMING) if timing else ())]
+        scenes = [json.loads(run.scene) for run in store.runs(name)] or [{}]
+    measured = [column for scene in scenes for column in runs_of(scene).columns]
+    settings = [column for scene in scenes for column in accuracy_of(scene)]
+    columns = ["hash", *axes, "seed", "event", *measured, "error", "version", "dimension"]
+    columns += [*settings, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
     types: dict[str, Any] = {**dict.fromkeys(COUNTS, "Int64"), **dict.fromkeys(NUMBERS, float)}
-    return with_trimming(table.astype(types))
+    return with_trimming(table.astype({k: v for k, v in types.items() if k in table}))
 
 
 def with_trimming(table: pd.DataFrame) -> pd.DataFrame:
@@ -126,14 +131,14 @@ def scene_columns(scene: Mapping[str, Any], axes: Sequence[str]) -> dict[str, An
         **{path: _cell(value_at(scene, path)) for path in axes},
         "seed": value_at(scene, SEED),
         "dimension": scene["dimension"],
-        **{name: value_at(scene, path) for name, path in ACCURACY.items()},
+        **{name: value_at(scene, path) for name, path in accuracy_of(scene).items()},
     }
 
 
 def _events(store: Store, study: str) -> dict[str, list[dict[str, Any]]]:
-    names = ("event", *MEASURED_TYPES, "wall_s")
+    names = ("event", *STORED_TYPES, "wall_s")
     present = store.columns("event")
-    measures = [name if name in present else f"NULL AS {name}" for name in MEASURED_TYPES]
+    measures = [name if name in present else f"NULL AS {name}" for name in STORED_TYPES]
     rows = store.read(
         f"SELECT event.hash, event.event, {', '.join(measures)}, wall_s"
         " FROM study_run JOIN event USING (hash) JOIN event_timing USING (hash, event)"

@@ -8,8 +8,9 @@ import pytest
 from snowshed import Scene
 from snowshed.analysis.sensitivity import read_stored
 from snowshed.cli.main import main
+from snowshed.run.results import WORDS
 from snowshed.study import Study
-from snowshed.study.database import MEASURED_TYPES, WORDS
+from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.outcome import Outcome
 from snowshed.study.store import Store
 

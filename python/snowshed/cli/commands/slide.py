@@ -9,6 +9,12 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.commands.run import run_options
+from snowshed.cli.commands.slide_ranges import (
+    RangeOptions,
+    range_options,
+    run_project_ranges,
+    run_ranges,
+)
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.slide_files import WAYS, SlideFiles, refuse_changed_areas, removing_copies
 from snowshed.cli.slide_project import run_project, write_particles
@@ -52,6 +58,7 @@ def _option(parameter: Parameter, name: str) -> Any:
 @click.option("--compatible", is_flag=True, help="Do step by step what AvaFrame 2.1 does.")
 @click.option("--max-time", type=float, help="Longest duration of the slide [s].")
 @click.option("--particles-at", metavar="STEPS", help="Write the particles after these steps.")
+@range_options
 @_slide_options
 def slide(
     folder: Path,
@@ -77,7 +84,9 @@ def slide(
       snowshed slide --example -o slide
       snowshed slide --terrain dem.tif --release release.shp --thickness 0.5 -o slide
       snowshed slide --avaframe project -o slide
+      snowshed slide --example --range mu=0.3:0.5 --range max_strain=0.1:0.4 --runs 50 -o maps
     """  # noqa: D301 - click wants the control character
+    ranges = RangeOptions.taken_from(settings)
     steps = _steps(particles_at)
     given = {name: value for name, value in settings.items() if value is not None}
     if compatible:
@@ -87,6 +96,12 @@ def slide(
             raise InputError(WAYS)
         if entrainment_areas is not None or resistance_areas is not None:
             raise InputError("--avaframe: areas are those of the project, in ENT and RES")
+        if ranges.sample is not None:
+            run_project_ranges(
+                avaframe, folder, ranges, quiet=quiet, settings=given, thickness=thickness,
+                max_time=max_time,
+            )  # fmt: skip
+            return
         run_project(
             avaframe, folder, resume=resume, quiet=quiet, settings=given, thickness=thickness,
             max_time=max_time, steps=steps,
@@ -96,12 +111,15 @@ def slide(
         terrain, release, thickness_raster, entrainment_areas, resistance_areas, thickness
     )
     with removing_copies(folder):
-        if resume and not files.any():
+        if resume and not files.any() and ranges.sample is None:
             ready = ResolvedScene.load(folder / "scene.json")
         else:
             scene = files.scene(folder, example=example, settings=given)
             if max_time is not None:
                 scene.set("events.max_time", max_time)
+            if ranges.sample is not None:
+                run_ranges(scene, folder, ranges, quiet=quiet)
+                return
             ready = scene.resolve()
             if resume:
                 refuse_changed_areas(ready, folder, files.of_areas())

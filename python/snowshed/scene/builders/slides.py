@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Optional
 
@@ -14,6 +13,7 @@ from snowshed.io.paths import PathLike
 from snowshed.io.raster import GEOTIFF, Raster, is_single, read_raster, write_ascii_grid
 from snowshed.io.release_raster import areas_of_depth
 from snowshed.methods.slide import SlideSettings
+from snowshed.scene.builders.hillside import hillside
 from snowshed.scene.builders.terrain_checks import (
     check_apart,
     check_place,
@@ -118,8 +118,8 @@ def slide_scene(
 def example_slide(folder: PathLike) -> Scene:
     """Write an example's terrain to a folder, and return the scene of a slide on it.
 
-    A slope of 36 degrees with a shallow gully runs out onto flat ground; a slab of half a metre
-    breaks loose near its top.
+    A hillside of up to 38 degrees with a winding gully, spurs and hummocks runs out onto a gentle
+    meadow; a slab of half a metre breaks loose near its top. All of it is made of formulas.
 
     Examples
     --------
@@ -129,16 +129,9 @@ def example_slide(folder: PathLike) -> Scene:
     >>> scene.terrain.release[0].thickness
     0.5
     """
-    cell, columns, rows = 2.0, 121, 61
-    x, y = np.meshgrid(np.arange(columns) * cell, np.arange(rows) * cell)
-    slope = math.tan(math.radians(36.0))
-    begin, end = 110.0, 150.0  # of the bend
-    bend = np.clip(x, begin, end) - begin
-    fall = slope * (np.minimum(x, begin) + bend - bend**2 / (2.0 * (end - begin)))
-    gully = 3.0 * np.exp(-(((y - 60.0) / 14.0) ** 2)) * np.clip((x - 40.0) / 40.0, 0.0, 1.0)
     file = Path(folder) / "terrain.asc"
-    write_ascii_grid(file, Raster(1500.0 - fall - gully, 0.0, 0.0, cell))
-    outline = [(24.0, 36.0), (50.0, 32.0), (56.0, 60.0), (48.0, 86.0), (26.0, 82.0)]
+    write_ascii_grid(file, hillside())
+    outline = [(24.0, 36.0), (50.0, 32.0), (56.0, 60.0), (48.0, 86.0), (26.0, 82.0), (20.0, 60.0)]
     return Scene(
         method="slide",
         dimension=3,

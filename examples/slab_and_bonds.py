@@ -1,0 +1,70 @@
+"""The same slab with strong and with weak bonds: one moves as a unit, the other tears.
+
+usage: python slab_and_bonds.py [FOLDER] [SECONDS]
+
+Draws ``slab_and_bonds.png`` into the folder: particles and bonds at some times, on terrain that is
+made for it.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.collections import LineCollection
+
+from snowshed.io.raster import Raster
+from snowshed.plot.figure_style import INK, STACK, STYLE, blank, save
+from snowshed.plot.terrain_map import draw_outlines, draw_terrain, focus
+from snowshed.run.slide_states import slide_states
+from snowshed.run.slides import slide_terrain
+from snowshed.scene.builders import example_slide
+
+STRAINS = {"strong bonds": 0.2, "weak bonds": 0.03}  # at which a bond breaks
+SHARES = (0.15, 0.4, 1.0)  # of the time that is shown
+
+
+def main(folder: Path, seconds: float) -> None:
+    """Simulate both slabs, draw them and print how many bonds are left."""
+    folder.mkdir(parents=True, exist_ok=True)
+    times = [share * seconds for share in SHARES]
+    scene = example_slide(folder)
+    ground = slide_terrain(scene)
+    outlines = [area.outline for area in scene.terrain.release]
+    slabs = {
+        name: slide_states(scene.set("numerics.max_strain", strain), times)
+        for name, strain in STRAINS.items()
+    }
+    for name, states in slabs.items():
+        counts = ", ".join(f"{len(one.bonds)} at {one.time:.1f} s" for one in states)
+        print(f"bonds in the event with {name}: {counts}")
+    draw(ground, outlines, slabs, folder / "slab_and_bonds.png")
+
+
+def draw(ground: Raster, outlines: list, slabs: dict, file: Path) -> None:
+    """Draw a row for each slab and a column for each time."""
+    origin = (ground.east, ground.north)
+    snow = [one.positions[:, :2] + origin for states in slabs.values() for one in states]
+    part = focus(ground, np.zeros(ground.heights.shape, dtype=bool), [*outlines, *snow])
+    with rc_context(STYLE):
+        ratio = (part[3] - part[2]) / (part[1] - part[0])
+        figure = blank(11.0, 11.0 / len(SHARES) * ratio * len(slabs) + 0.9)
+        panels = figure.subplots(len(slabs), len(SHARES), squeeze=False)
+        for row, (name, states) in zip(panels, slabs.items()):
+            for axes, state in zip(row, states):
+                places = state.positions[:, :2] + origin
+                draw_terrain(axes, ground, part, labels=False)
+                bonds = LineCollection(places[state.bonds], colors=STACK, lw=0.8, zorder=4)
+                axes.add_collection(bonds)
+                axes.plot(*places.T, ".", ms=2.4, mew=0, color=INK, zorder=5)
+                draw_outlines(axes, outlines)
+                axes.set(xticks=[], yticks=[])
+                axes.set_title(f"{name}, {state.time:.0f} s: {len(state.bonds):,} bonds")
+    save(figure, file)
+
+
+if __name__ == "__main__":
+    main(
+        Path(sys.argv[1] if len(sys.argv) > 1 else "slab_and_bonds"),
+        float(sys.argv[2]) if len(sys.argv) > 2 else 30.0,
+    )

@@ -1,0 +1,199 @@
+"""Snow slides whose parameters are not known well: many runs, and maps of probability."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional
+
+import click
+
+from snowshed._core import InputError
+from snowshed.cli.commands.study import compute_study, print_plan
+from snowshed.cli.exit_codes import Failed, Stopped
+from snowshed.cli.slide_files import removing_copies, terrain_copy
+from snowshed.io.messages import suggestion
+from snowshed.methods.slide import SlideSettings
+from snowshed.scene.scene import Scene
+from snowshed.scene.schema import scene_parameters
+from snowshed.study.definition import Study
+from snowshed.study.factors import Factor, Span, latin_hypercube, sobol
+
+RUNS = "runs"
+STUDY = "slides"
+SAMPLINGS = {"latin-hypercube": latin_hypercube, "sobol": sobol}
+#: Symbols of the literature, for the names of settings.
+SYMBOLS = {"mu": "friction", "xi": "turbulence", "E": "bond_modulus"}
+#: Stands for the thickness of all release areas.
+THICKNESS = "thickness"
+
+
+@dataclass(frozen=True)
+class RangeOptions:
+    """What the options of many slides say; see `range_options`."""
+
+    sample: Optional[Factor]
+    pressures: Sequence[float]
+    reached_above: float
+    plan_only: bool
+    jobs: Optional[int]
+
+    @classmethod
+    def taken_from(cls, options: dict[str, Any]) -> RangeOptions:
+        """Return the options of many slides, which are removed from those given.
+
+        Raises
+        ------
+        InputError
+            If a range, the number of runs or a list of pressures is wrong.
+        """
+        ranges = options.pop("ranges")
+        spans = dict(map(_span, ranges))
+        if len(spans) < len(ranges):
+            raise InputError("--range: a name is given twice")
+        draw = SAMPLINGS[options.pop("sampling")]
+        runs, seed = options.pop("runs"), options.pop("sample_seed")
+        return cls(
+            draw(spans, runs, seed=seed) if spans else None,
+            _pressures(options.pop("pressures")),
+            **{name: options.pop(name) for name in ("reached_above", "plan_only", "jobs")},
+        )
+
+
+def range_options(command: Any) -> Any:
+    """Add the options of many slides."""
+    for option in (
+        click.option("--jobs", type=int, help="With --range: runs at once.  [default: the cores]"),
+        click.option(
+            "--plan", "plan_only", is_flag=True, help="With --range: only say how long it takes."
+        ),
+        click.option(
+            "--pressures", default="1,3,10", show_default=True, metavar="KPA,...",
+            help="With --range: pressures whose exceedance is mapped.",
+        ),
+        click.option(
+            "--reached-above", type=float, default=0.1, show_default=True,
+            help="With --range: thickness above which a cell is reached [m].",
+        ),
+        click.option("--sample-seed", type=int, default=1, help="With --range: another sample."),
+        click.option(
+            "--sampling", type=click.Choice(list(SAMPLINGS)), default="latin-hypercube",
+            show_default=True, help="With --range: how the ranges are sampled.",
+        ),
+        click.option(
+            "--runs", type=int, default=50, show_default=True, help="With --range: how many runs."
+        ),
+        click.option(
+            "--range", "ranges", multiple=True, metavar="NAME=LOW:HIGH",
+            help="Vary a setting, mu, xi, E or thickness, and map probabilities; may be repeated.",
+        ),
+    ):  # fmt: skip
+        command = option(command)
+    return command
+
+
+def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool) -> None:
+    """Compute the slides of a sample of the ranges, and write their maps of probability.
+
+    After an interruption the same command goes on.
+    """
+    from snowshed.analysis.hazard_folder import write_hazard
+    from snowshed.cli.display.slide import print_hazard
+
+    study = _study(scene, options)
+    if options.plan_only:
+        print_plan(study, options.jobs)
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    study.save(folder / "study.toml")
+    failure: Optional[Failed] = None
+    try:
+        compute_study(study, folder / RUNS, quiet=quiet, jobs=options.jobs, keep_particles=True)
+    except Failed as failed:  # the maps are of the others, and say so
+        failure = failed
+    except Stopped:
+        raise Stopped("interrupted; the same command goes on") from None
+    maps = write_hazard(
+        folder, folder / RUNS, STUDY, reached=options.reached_above, pressures=options.pressures
+    )
+    if not quiet:
+        print_hazard(maps, folder)
+    if failure is not None:
+        raise failure
+
+
+def run_project_ranges(
+    project: Path,
+    folder: Path,
+    options: RangeOptions,
+    *,
+    quiet: bool,
+    settings: Mapping[str, object],
+    thickness: Optional[float],
+    max_time: Optional[float],
+) -> None:
+    """Run many slides of the first simulation of an AvaFrame project, and map probabilities."""
+    from snowshed.scene.builders.avaframe import avaframe_simulations
+
+    with removing_copies(folder):
+        first, *others = avaframe_simulations(
+            project, settings=settings, thickness=thickness, ascii_copy=terrain_copy(folder)
+        )
+        if max_time is not None:
+            first.scene.set("events.max_time", max_time)
+        if others and not quiet:
+            click.echo(f"{first.release}, {first.sim_type}; {len(others)} others are left out")
+        run_ranges(first.scene, folder, options, quiet=quiet)
+
+
+def _study(scene: Scene, options: RangeOptions) -> Study:
+    terrain = json.loads(scene.resolve().json)["terrain"]
+    columns: dict[str, Sequence[object]] = {}
+    sample = {} if options.sample is None else options.sample.columns
+    if THICKNESS in sample and terrain.get("thickness_file"):
+        raise InputError("--range thickness: the thickness is that of a raster, cell by cell")
+    for name, values in sample.items():
+        for path in _paths(name, len(terrain["release"])):
+            columns[path] = values
+    return Study(scene, [[Factor(columns)]], STUDY)
+
+
+def _span(text: str) -> tuple[str, Span]:
+    """Return the name and the interval of a text such as "mu=0.3:0.5"."""
+    name, _, ends = text.partition("=")
+    name = SYMBOLS.get(name, name)
+    names = [THICKNESS, *_numbers()]
+    if name not in names:
+        allowed = ", ".join([*SYMBOLS, *names])
+        raise InputError(f"--range: {name!r} is none of {allowed}{suggestion(name, names)}")
+    try:
+        low, high = (float(end) for end in ends.split(":"))
+    except ValueError:
+        raise InputError(f"--range: {text!r} is not of the form {name}=LOW:HIGH") from None
+    try:
+        return name, Span(low, high)
+    except InputError as error:
+        raise InputError(f"--range {name}: {error}") from None
+
+
+def _numbers() -> list[str]:
+    """Return the names of the settings that are numbers and leave the grid as it is."""
+    settings = (one for one in scene_parameters("slide") if one.path.startswith("numerics."))
+    names = [one.path.partition(".")[2] for one in settings if one.kind == "number"]
+    return [name for name in names if name != SlideSettings.RESOLUTION]
+
+
+def _paths(name: str, areas: int) -> list[str]:
+    """Return where a parameter stands in a scene; the thickness in every release area."""
+    if name == THICKNESS:
+        return [f"terrain.release.{area}.thickness" for area in range(areas)]
+    return [f"numerics.{name}"]
+
+
+def _pressures(text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"--pressures: {text!r} is no list of numbers such as 1,3,10") from None

@@ -1,0 +1,335 @@
+"""The page of a slide: what it came to, maps, the slide over time, and what it was made with."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.colors import Normalize
+from matplotlib.image import imsave
+
+from snowshed.io.atomic import write_text
+from snowshed.io.raster import Raster
+from snowshed.methods.slide_frames import Frame
+from snowshed.methods.slide_maps import SlideMaps
+from snowshed.methods.slide_validity import ReleaseArea
+from snowshed.plot.figure_style import STYLE, blank
+from snowshed.plot.html_page import Grid, Picture, template
+from snowshed.plot.slide_figure import LEAST_SHOWN, PEAKS, slide_figure
+from snowshed.plot.terrain_map import (
+    Extent,
+    Outline,
+    draw_outlines,
+    draw_terrain,
+    draw_values,
+    extent,
+    focus,
+    panel_size,
+)
+from snowshed.scene.schema import scene_parameters
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SMALL_MULTIPLES = 6
+COLOURS = "YlGnBu"
+BASE_DPI = 130
+
+
+@dataclass(frozen=True)
+class Film:
+    """Pictures of the snow at some times, to be laid over a picture of the ground.
+
+    Attributes
+    ----------
+    ground
+        PNG, in base64.
+    frames
+        PNG, in base64, with the times, s.
+    width, ratio
+        Of the picture: CSS pixels, and width over height.
+    largest
+        Thickness that has the last colour, m.
+    colours
+        CSS colours of the scale, from nothing to `largest`.
+    outlines
+        Corners of the release areas, as shares of width and height of the picture, in percent.
+    """
+
+    ground: str
+    frames: Sequence[tuple[float, str]]
+    width: int
+    ratio: float
+    largest: float
+    colours: Sequence[str]
+    outlines: Sequence[str]
+
+
+def write_slide_page(
+    file: Path,
+    maps: SlideMaps,
+    scene: Mapping[str, Any],
+    areas: Sequence[ReleaseArea],
+    figures: Mapping[str, Any],
+    frames: Sequence[Frame],
+) -> None:
+    """Write the page of a slide, a single file that needs no network.
+
+    Parameters
+    ----------
+    file
+        The HTML file; it appears whole or not at all.
+    maps
+        The maps at the end.
+    scene
+        The complete scene's data.
+    areas
+        The release areas.
+    figures
+        What the slide came to, as ``slide.json`` has it.
+    frames
+        The snow over time.
+    """
+    outlines = [area["outline"] for area in scene["terrain"]["release"]]
+    page = template("snowshed.plot", "slide.html.j2")
+    text = page.render(
+        title=scene.get("title") or "Snow slide",
+        sentence=headline(figures),
+        notes=figures.get("notes", ()),
+        facts=_facts(figures),
+        areas=_area_table(areas),
+        mass=_mass_table(figures),
+        settings=_settings_table(scene),
+        peaks=[_peak(maps, outlines, quantity) for quantity in PEAKS],
+        film=_film(maps, outlines, frames) if len(frames) > 1 else None,
+        multiples=_multiples(maps, outlines, frames) if len(frames) > 1 else None,
+        crs=scene["terrain"].get("crs") or "not given",
+        cell=maps.cell,
+    )
+    write_text(file, text)
+
+
+def headline(figures: Mapping[str, Any]) -> str:
+    """Return in one sentence how far, how fast and how hard a slide went.
+
+    Examples
+    --------
+    >>> headline({"run_out_m": 106.0, "drop_m": 75.2, "duration_s": 44.2, "peak_speed_m_s": 3.49,
+    ...           "peak_pressure_kpa": 3.65, "peak_thickness_m": 1.2, "reached_m2": 6900.0,
+    ...           "ended": "rest"})[:54]
+    'The snow came 106 m from the middle of the release and'
+    """
+    ended = "and rested" if figures["ended"] == "rest" else "and still moved"
+    speed = figures["peak_speed_m_s"]
+    return (
+        f"The snow came {figures['run_out_m']:.0f} m from the middle of the release and "
+        f"{figures['drop_m']:.0f} m down {ended} after {figures['duration_s']:.0f} s; at most it "
+        f"was {speed:.1f} m/s fast ({3.6 * speed:.0f} km/h), {figures['peak_thickness_m']:.1f} m "
+        f"thick, and pressed with {figures['peak_pressure_kpa']:.1f} kPa."
+    )
+
+
+def _facts(figures: Mapping[str, Any]) -> list[tuple[str, str]]:
+    made = figures["bonds_made"]
+    broken = f"{figures['bonds_broken']:,} of {made:,}" if made else "no bonds"
+    return [
+        ("run-out", f"{figures['run_out_m']:.1f} m from the middle of the release"),
+        ("drop", f"{figures['drop_m']:.1f} m"),
+        ("duration", f"{figures['duration_s']:.1f} s, until {figures['ended'].replace('_', ' ')}"),
+        ("peak speed", f"{figures['peak_speed_m_s']:.2f} m/s"),
+        ("peak pressure", f"{figures['peak_pressure_kpa']:.2f} kPa"),
+        ("peak thickness", f"{figures['peak_thickness_m']:.2f} m"),
+        ("area reached", f"{figures['reached_m2']:,.0f} m²"),
+        ("bonds broken", broken),
+    ]
+
+
+def _area_table(areas: Sequence[ReleaseArea]) -> Grid:
+    head = ("area", "thickness, m", "on the map, m²", "along the ground, m²", "volume, m³",
+            "slope, °", "altitude, m")  # fmt: skip
+    rows = [
+        (
+            one.name,
+            f"{one.thickness:g}",
+            f"{one.area:,.0f}",
+            f"{one.sloping_area:,.0f}",
+            f"{one.volume:,.0f}",
+            f"{one.slope:.0f} ({one.flattest:.0f} to {one.steepest:.0f})",
+            f"{one.lowest:.0f} to {one.highest:.0f}",
+        )
+        for one in areas
+    ]
+    return Grid(head, rows, "lrrrrrr")
+
+
+def _mass_table(figures: Mapping[str, Any]) -> Grid:
+    released, entrained = figures["released_kg"], figures["entrained_kg"]
+    left = figures["left_terrain_kg"]
+    rows = [
+        ("released", released),
+        ("taken up on the way", entrained),
+        ("left the terrain", 0.0 - left),
+        ("on the terrain at the end", released + entrained - left),
+    ]
+    return Grid(("mass", "t"), [(name, f"{1e-3 * value + 0.0:,.3f}") for name, value in rows], "lr")
+
+
+def _settings_table(scene: Mapping[str, Any]) -> Grid:
+    found = scene["numerics"]
+    rows = [
+        (name, _shown(found[name]), one.unit, one.description)
+        for one in scene_parameters("slide")
+        for section, _, name in [one.path.partition(".")]
+        if section == "numerics" and name in found and name != "threads"
+    ]
+    return Grid(("setting", "value", "unit", "meaning"), rows, "lrll")
+
+
+def _shown(value: Any) -> str:
+    return str(value).lower() if isinstance(value, (bool, str)) else f"{value:g}"
+
+
+def _peak(maps: SlideMaps, outlines: Sequence[Outline], quantity: str) -> Picture:
+    figure = slide_figure(maps, outlines, quantity, area=38.0)
+    name = PEAKS[quantity][0].partition(",")[0]
+    caption = "Largest value over time at every node; the dashed line holds the snow at the end."
+    return Picture.drawn(figure, quantity, name.capitalize(), caption)
+
+
+def _window(maps: SlideMaps, outlines: Sequence[Outline]) -> tuple[slice, slice, Extent]:
+    """Return the rows and columns to show, and the map coordinates of their outer edges."""
+    ground = maps.raster(maps.terrain)
+    west, east, south, north = focus(ground, maps.peak_thickness > LEAST_SHOWN, outlines)
+    edges = extent(ground)
+    c0, c1 = (round((x - edges[0]) / maps.cell) for x in (west, east))
+    r0, r1 = (round((y - edges[2]) / maps.cell) for y in (south, north))
+    part = (
+        edges[0] + c0 * maps.cell,
+        edges[0] + c1 * maps.cell,
+        edges[2] + r0 * maps.cell,
+        edges[2] + r1 * maps.cell,
+    )
+    return slice(r0, r1), slice(c0, c1), part
+
+
+def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame]) -> Film:
+    rows, columns, part = _window(maps, outlines)
+    ground = maps.raster(maps.terrain)
+    width, height = panel_size(part, 38.0)
+    figure = blank(width, height)
+    figure.set_layout_engine("none")
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    draw_terrain(axes, ground, part)
+    axes.set_axis_off()
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=BASE_DPI)
+    largest = _largest(frames)
+    colours = mpl.colormaps[COLOURS]
+    scale = [mpl.colors.to_hex(colours(share)) for share in np.linspace(0.15, 1.0, 8)]
+    shown = [(one.time, _overlay(one.window(rows, columns), largest)) for one in frames]
+    encoded = base64.b64encode(file.getvalue()).decode()
+    rings = [_in_percent(outline, part) for outline in outlines]
+    return Film(encoded, shown, round(96 * width), width / height, largest, scale, rings)
+
+
+def _in_percent(outline: Outline, part: Extent) -> str:
+    """Return the corners of an outline in a picture of a part of the map, as SVG has them."""
+    west, east, south, north = part
+    return " ".join(
+        f"{100.0 * (x - west) / (east - west):.3f},{100.0 * (north - y) / (north - south):.3f}"
+        for x, y in outline
+    )
+
+
+def _largest(frames: Sequence[Frame]) -> float:
+    """Return the thickness that hardly any snow exceeds, m."""
+    values = np.concatenate([one.thickness[one.thickness > LEAST_SHOWN] for one in frames])
+    return float(np.quantile(values, 0.995)) if values.size else 1.0
+
+
+def _overlay(thickness: Any, largest: float) -> str:
+    """Return the snow as a PNG of one pixel a cell, clear where there is none."""
+    share = 0.15 + 0.85 * np.clip(thickness / largest, 0.0, 1.0)
+    pixels = np.asarray(mpl.colormaps[COLOURS](share, bytes=True))
+    pixels[..., 3] = np.where(thickness > LEAST_SHOWN, 225, 0)
+    file = io.BytesIO()
+    imsave(file, np.ascontiguousarray(pixels[::-1]), format="png")
+    return base64.b64encode(file.getvalue()).decode()
+
+
+def _multiples(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame]) -> Picture:
+    title = "The slide over time"
+    caption = "Thickness of the snow, and the release."
+    figure = multiples_figure(maps, outlines, frames)
+    return Picture.drawn(figure, "over_time", title, caption)
+
+
+def multiples_figure(
+    maps: SlideMaps,
+    outlines: Sequence[Outline],
+    frames: Sequence[Frame],
+    count: int = SMALL_MULTIPLES,
+) -> Figure:
+    """Return small maps of the thickness of the snow at even times.
+
+    Parameters
+    ----------
+    maps
+        Their terrain and place.
+    outlines
+        Corners of the release areas, in map coordinates, m.
+    frames
+        The snow over time; `count` of them are shown.
+    count
+        How many.
+    """
+    chosen = _moving(frames, count)
+    rows, columns, part = _window(maps, outlines)
+    ground: Raster = maps.raster(maps.terrain)
+    across = 3 if (part[1] - part[0]) < 2.2 * (part[3] - part[2]) else 2
+    down = -(-len(chosen) // across)
+    width, height = panel_size(part, 9.0 if across == 3 else 14.0)
+    norm = Normalize(0.0, _largest(frames))
+    with mpl.rc_context(STYLE):
+        figure = blank(width * across, (height + 0.3) * down + 0.5)
+        panels = figure.subplots(down, across, squeeze=False).ravel()
+        for axes, frame in zip(panels, chosen):
+            draw_terrain(axes, ground, part, labels=False)
+            whole = np.full(ground.heights.shape, np.nan)
+            cut = frame.window(rows, columns)
+            whole[rows, columns] = np.where(cut > LEAST_SHOWN, cut, np.nan)
+            drawn = draw_values(axes, ground, whole, cmap=COLOURS, norm=norm)
+            draw_outlines(axes, outlines)
+            axes.set_title(f"{frame.time:.0f} s" if frame.time >= 10 else f"{frame.time:.1f} s")
+            axes.set(xticks=[], yticks=[])
+        for axes in panels[len(chosen) :]:
+            axes.set_axis_off()
+        figure.colorbar(drawn, ax=list(panels), label="thickness, m", shrink=0.6, pad=0.01)
+    return figure
+
+
+def _moving(frames: Sequence[Frame], count: int) -> list[Frame]:
+    """Return frames from the first to the last, closer together where the snow moves most.
+
+    Their times follow the way of the snow's middle, since a slide creeps for long at its end.
+    """
+    middles = np.array([_middle(one) for one in frames])
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(middles, axis=0).T))])
+    if way[-1] <= 0.0:
+        return [frames[0], frames[-1]]
+    wanted = np.linspace(0.0, 0.999 * way[-1], count)
+    places = list(dict.fromkeys(np.searchsorted(way, wanted).tolist()))
+    return [frames[place] for place in [*places[:-1], len(frames) - 1]]
+
+
+def _middle(frame: Frame) -> tuple[float, float]:
+    total = float(frame.thickness.sum()) or 1.0
+    rows, columns = np.indices(frame.thickness.shape)
+    row = frame.first_row + float((rows * frame.thickness).sum()) / total
+    return row, frame.first_column + float((columns * frame.thickness).sum()) / total

@@ -1,0 +1,143 @@
+"""How the scenes of each method are run into a results folder, and what is measured of them.
+
+Whoever runs scenes of any method, such as a study, asks `runs_of` and knows no method by name.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+from types import MappingProxyType
+from typing import Optional, Protocol, Union
+
+from snowshed.io.json_file import JsonValue, read_object
+from snowshed.methods.registry import DEFAULT, NAME_KEY
+from snowshed.run.event_particles import read_event_particles
+from snowshed.run.events import run_events
+from snowshed.run.progress import Reporter
+from snowshed.run.results import EVENT_COLUMNS, WORDS, RunFolder
+from snowshed.run.slides import PACKED, SlideSummary, run_slide
+from snowshed.scene.scene import ResolvedScene
+
+Cell = Union[int, float, str, None]
+COUNTS = ("steps", "bonds_made", "bonds_broken", "final_particles")
+#: Columns that say which event a row is of, and how long its computing took.
+ROW_KEYS = ("event", "wall_s")
+
+
+class MethodRuns(Protocol):
+    """Runs scenes of a method."""
+
+    @property
+    def columns(self) -> Sequence[str]:
+        """Names of what is measured after an event, in the order of a table."""
+
+    def run(
+        self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
+    ) -> None:
+        """Run a scene into a folder, without pictures, or go on with it."""
+
+    def rows(self, folder: Path) -> list[dict[str, Cell]]:
+        """Return a row for each event that is done: ``event``, ``wall_s`` and `columns`."""
+
+    def kept(self, folder: Path) -> Iterable[tuple[int, bytes]]:
+        """Yield each event with what it left, packed, so that it can be evaluated anew."""
+
+
+class _StackRuns:
+    """Events whose snow makes a stack."""
+
+    columns: Sequence[str] = tuple(name for name in EVENT_COLUMNS if name not in ROW_KEYS)
+
+    def run(
+        self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
+    ) -> None:
+        run_events(scene, folder, resume=resume, progress=progress, pictures=False)
+
+    def rows(self, folder: Path) -> list[dict[str, Cell]]:
+        table = RunFolder(folder).events.rows
+        return [{name: _value(name, cell) for name, cell in row.items()} for row in table]
+
+    def kept(self, folder: Path) -> Iterable[tuple[int, bytes]]:
+        return ((event, found.packed()) for event, found in read_event_particles(folder))
+
+
+#: What a table calls differently from slide.json: what other methods measure too, or mean by it.
+_RENAMED = {"duration_s": "sim_time_s", "particles": "final_particles"}
+#: The figures of a slide that are single values, with their columns.
+_FIGURES: Mapping[str, str] = {
+    field.name: _RENAMED.get(field.name, field.name)
+    for field in fields(SlideSummary)
+    if field.type in ("int", "float", "str")
+}
+
+
+class _SlideRuns:
+    """Slides, which leave maps."""
+
+    columns: Sequence[str] = ("steps", *_FIGURES.values())
+
+    def run(
+        self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
+    ) -> None:
+        options = {"pictures": False, "rasters": False}
+        run_slide(scene, folder, resume=resume, progress=progress, **options)
+
+    def rows(self, folder: Path) -> list[dict[str, Cell]]:
+        if not (folder / "slide.json").is_file():
+            return []
+        found = read_object(folder / "slide.json")
+        figures = {column: found.get(name) for name, column in _FIGURES.items()}
+        (event,) = RunFolder(folder).read_run()["finished_events"]
+        return [{"event": 1, "wall_s": event["wall_s"], "steps": event["steps"], **figures}]
+
+    def kept(self, folder: Path) -> Iterable[tuple[int, bytes]]:
+        if (folder / "slide.json").is_file():
+            yield 1, (folder / PACKED).read_bytes()
+
+
+_RUNS: Mapping[str, MethodRuns] = MappingProxyType({"mpm": _StackRuns(), "slide": _SlideRuns()})
+
+
+def runs_of(scene: Union[str, Mapping[str, JsonValue]]) -> MethodRuns:
+    """Return how a complete scene is run, by its method.
+
+    Parameters
+    ----------
+    scene
+        JSON data or text.
+
+    Examples
+    --------
+    >>> "run_out_m" in runs_of({"method": "slide"}).columns
+    True
+    """
+    data = json.loads(scene) if isinstance(scene, str) else scene
+    return _RUNS[str(data.get(NAME_KEY) or DEFAULT)]
+
+
+def column_types() -> dict[str, str]:
+    """Return what any method measures after an event, with its type in a database.
+
+    Examples
+    --------
+    >>> column_types()["ended"], column_types()["height_m"]
+    ('TEXT', 'REAL')
+    """
+    names = dict.fromkeys(name for runs in _RUNS.values() for name in runs.columns)
+    return {name: _type(name) for name in names}
+
+
+def _type(name: str) -> str:
+    return "INTEGER" if name in COUNTS else "TEXT" if name in WORDS else "REAL"
+
+
+def _value(name: str, cell: str) -> Cell:
+    """Return the value of a cell of events.csv, exactly."""
+    if name in WORDS:
+        return cell
+    if name == "event" or name in COUNTS:
+        return int(cell)
+    return float(cell) if cell else None

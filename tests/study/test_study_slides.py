@@ -1,0 +1,99 @@
+"""Studies of snow slides: the same figures as of slides run alone, and the maps that are kept."""
+
+import json
+
+import numpy as np
+import pytest
+
+from snowshed import InputError
+from snowshed.analysis.hazard_maps import hazard_maps, wilson_interval
+from snowshed.io.raster import read_raster
+from snowshed.methods.peak_maps import PeakMaps
+from snowshed.run.slides import run_slide
+from snowshed.scene.builders import example_slide
+from snowshed.study import Study, read_table
+from snowshed.study.store import Store
+
+AXES = {"numerics.friction": [0.3, 0.5], "terrain.release.0.thickness": [0.4, 0.6]}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    scene = example_slide(tmp_path_factory.mktemp("terrain")).set("events.max_time", 1.5)
+    return Study.product(scene, AXES, name="slides")
+
+
+@pytest.fixture(scope="module")
+def computed(study, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("store") / "runs"
+    study.compute(folder, jobs=1, threads=1, keep_particles=True)
+    return folder
+
+
+def test_the_table_tells_what_a_slide_alone_tells(study, computed, tmp_path):
+    table = read_table(computed)
+    assert table["ended"].tolist() == ["time_limit"] * 4
+    assert table["numerics.friction"].tolist() == [0.3, 0.3, 0.5, 0.5]
+    assert not {"height_m", "dx", "trimming"} & set(table)  # of the other method
+    assert (table["time_step"] == 0.01).all() and (table["steps"] == 150).all()
+    last = json.loads(study.runs()[-1].scene)
+    run_slide(last, tmp_path / "out", pictures=False)
+    alone = json.loads((tmp_path / "out/slide.json").read_text())
+    row = table.iloc[-1]
+    for name in ("run_out_m", "peak_speed_m_s", "released_kg", "bonds_broken", "reached_m2"):
+        assert row[name] == alone[name]
+
+
+def test_the_cost_of_a_study_of_slides_is_known_before(study):
+    seconds, at_once = study.expected_duration(jobs=1)
+    assert 0.0 < seconds < 600.0 and at_once == 1
+
+
+def test_probabilities_and_percentiles_are_those_of_the_single_slides(study, computed, tmp_path):
+    single = []
+    for run in study.runs():
+        run_slide(json.loads(run.scene), tmp_path / run.hash, pictures=False)
+        names = ("pft", "pfv", "ppr")
+        single.append([read_raster(tmp_path / run.hash / f"peaks/{n}.asc").heights for n in names])
+    thickness, speed, pressure = np.moveaxis(np.array(single), 1, 0)
+    maps = hazard_maps(computed, reached=0.1, pressures=[1.0])
+    reached, hit = maps.exceedances
+    assert reached.probability == pytest.approx((thickness > 0.1).mean(axis=0))
+    assert hit.probability == pytest.approx((pressure > 1.0).mean(axis=0))
+    assert hit.probability.max() > 0.0 and (hit.probability < 1.0).any()
+    assert maps.percentiles["speed", 95] == pytest.approx(
+        np.percentile(speed, 95, axis=0), abs=1e-6
+    )
+    assert maps.terrain.heights.shape == thickness.shape[1:]
+
+
+def test_bands_of_the_terrain_join_to_the_same_maps(computed, monkeypatch):
+    whole = hazard_maps(computed)
+    monkeypatch.setattr("snowshed.analysis.hazard_maps.BAND_BYTES", 40_000)
+    parts = hazard_maps(computed)
+    for one, other in zip(whole.exceedances, parts.exceedances):
+        assert (one.probability == other.probability).all()
+    assert all((whole.percentiles[k] == parts.percentiles[k]).all() for k in whole.percentiles)
+
+
+def test_a_study_that_kept_no_maps_says_so(study, tmp_path):
+    one = Study.product(study.scene.set("events.max_time", 0.1), {"numerics.friction": [0.3]})
+    one.compute(tmp_path / "runs", jobs=1, threads=1)
+    with pytest.raises(InputError, match=r"kept no maps.*--keep-particles"):
+        hazard_maps(tmp_path / "runs")
+
+
+def test_damaged_maps_are_told(computed):
+    with Store.open(computed) as store:
+        (data,) = store.particles(store.runs("slides")[0].hash).values()
+    with pytest.raises(InputError, match="not maps that snowshed kept"):
+        PeakMaps.unpacked(data[:-40])
+
+
+def test_the_interval_is_wilsons():
+    from scipy.stats import binomtest
+
+    for count, runs in ((0, 50), (7, 50), (25, 50), (50, 50), (1, 3)):
+        expected = binomtest(count, runs).proportion_ci(0.95, method="wilson")
+        low, high = wilson_interval(count, runs)
+        assert (float(low), float(high)) == pytest.approx(tuple(expected), abs=1e-12)
