@@ -310,7 +310,7 @@ TEST_P(SameBits, FromACheckpoint) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Method, SameBits, testing::Bool(), [](const auto& info) {
-  return info.param ? "with_books" : "without_books";
+  return info.param ? "with_energy_balance" : "without_energy_balance";
 });
 
 // --- steps that are too much ------------------------------------------------------------------
