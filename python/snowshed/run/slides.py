@@ -14,7 +14,6 @@ slide.png          the map: terrain, peak speed, outline of the release
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -26,16 +25,15 @@ import snowshed._core as _core
 from snowshed.io.atomic import write_text
 from snowshed.io.raster import write_ascii_grid
 from snowshed.methods.slide_maps import SlideMaps
-from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
+from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
+from snowshed.run.sequence import open_sequence, run_sequence
 from snowshed.scene.components import Outline
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
 if TYPE_CHECKING:
     import pandas as pd
-
-REPORT_INTERVAL = 0.5  # s of wall time
 
 
 @dataclass(frozen=True)
@@ -135,18 +133,11 @@ def run_slide(
     'time_limit'
     """
     ready = resolve_scene(scene)
-    open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
-    sequence = open_folder(ready.json, ready.base_dir, os.fspath(out_dir))
+    sequence = open_sequence(ready, out_dir, resume=resume)
     with sequence, deferred_interrupts() as interrupt:
         sequence.describe_machine(machine_facts())
         recorder = _Recorder(interrupt, progress)
-        try:
-            finished = sequence.run(recorder, REPORT_INTERVAL)
-        except (_core.SimulationError, _core.InputError) as error:
-            sequence.record_failure(str(error))
-            raise
-        if not finished:
-            raise Interrupted(Path(out_dir))
+        run_sequence(sequence, recorder, out_dir)
         (facts,) = sequence.finished_events
         maps = slide_maps(sequence.simulation)
         summary = _summary(sequence.simulation, facts, maps)
