@@ -1,4 +1,4 @@
-// The snow as the nodes of the terrain see it: thickness, velocity, and their peaks so far.
+// The snow at the nodes of the terrain: thickness, velocity, and their peaks so far.
 #pragma once
 
 #include <vector>
@@ -35,7 +35,7 @@ class GridFields {
               const std::vector<GridPlace>& places, const CellLists& cells, double density,
               int threads);
 
-  /// Takes the fields into account in the peaks.
+  /// Raises the peaks to the fields where these are larger.
   void raise(PeakFields& peaks, const Terrain& terrain) const;
 
   /// Bilinear between the nodes.
