@@ -9,8 +9,8 @@
 
 namespace snowshed {
 
-/// Returns the largest mass of a fresh particle, kg: that of a layer of the given thickness over one
-/// cell.
+/// Returns the largest mass of a fresh particle, kg: that of a layer of the given thickness over
+/// one cell.
 double mass_per_particle(const SlideSettings& settings, double cell);
 
 /// Returns the distance on the map between neighbouring particles of a batch, m: the median over a
@@ -21,10 +21,10 @@ double lattice_spacing(const ParticleBatch& batch);
 ///
 /// Improved mode: the lattice of each area begins at its centre and follows its mean slope, so the
 /// result does not depend on the position of the grid. A layer thinner than that of a particle has
-/// one particle per cell. The mass is exactly the thickness times the sloping area times the density.
+/// one particle per cell. The mass is exactly that of the thickness over the sloping area.
 ///
-/// Compatible mode: one lattice begins at the grid's origin. The mean slope of all areas decides the
-/// number of particles per cell. The particles of a cell share its mass. All are in one batch.
+/// Compatible mode: one lattice begins at the grid's origin. The mean slope of all areas decides
+/// the number of particles per cell. The particles of a cell share its mass. All are in one batch.
 ///
 /// Throws InputError where an area holds no particle, or, in compatible mode, is too thin for one.
 std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,
