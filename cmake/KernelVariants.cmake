@@ -1,4 +1,4 @@
-# The kernels (cpp/snowshed/methods/mpm/kernels/*.cpp) are compiled once for each instruction set. The
+# The kernels (cpp/snowshed/methods/*/kernels/*.cpp) are compiled once for each instruction set. The
 # best variant is chosen at run time, so one build runs on any machine and is fast on each.
 set(SNOWSHED_KERNEL_FLAGS_baseline "")
 set(SNOWSHED_KERNEL_FLAGS_avx2 -mavx2 -mfma -mf16c -mbmi -mbmi2)
@@ -16,7 +16,7 @@ endif()
 set(SNOWSHED_KERNEL_VARIANTS ${snowshed_default_variants} CACHE STRING "instruction sets to build the kernels for")
 
 function(snowshed_add_kernels target)
-  file(GLOB kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cpp/snowshed/methods/mpm/kernels/*.cpp)
+  file(GLOB kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cpp/snowshed/methods/*/kernels/*.cpp)
   foreach(variant IN LISTS SNOWSHED_KERNEL_VARIANTS)
     set(kernels ${target}_kernels_${variant})
     add_library(${kernels} OBJECT ${kernel_sources})

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "bare_kernel.hpp"
+#include "slide_bench.hpp"
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
@@ -203,6 +204,7 @@ int main(int argc, char** argv) {
   snowshed::add_slabs();
   snowshed::add_prices();
   snowshed::add_scaling();
+  snowshed::add_slides();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -59,6 +59,16 @@ const char* const rich_scene = R"({"snowshed": 2, "dimension": %D, "title": "see
   "events": {"count": 2, "between": "reseed", "max_time": 3, "rest_speed": 0.02, "rest_time": 0.1},
   "output": {"snapshot_interval": 0.1, "energy": true, "checkpoint_interval": 60}})";
 
+/// A slide on terrain, with everything that it takes.
+const char* const slide_scene = R"({"snowshed": 2, "method": "slide", "dimension": 3,
+  "terrain": {"file": "dem.asc", "crs": "EPSG:31287", "thickness_file": "depth.asc",
+    "release": [{"name": "slab", "outline": [[10, 10], [30, 10], [30, 30]], "thickness": 0.5,
+                 "holes": [{"outline": [[20, 12], [24, 12], [24, 15]]}]}],
+    "entrainment": [{"outline": [[40, 10], [60, 10], [60, 30]], "thickness": 0.2}],
+    "resistance": [{"outline": [[50, 10], [60, 10], [60, 30]]}]},
+  "numerics": {"cell": 2, "time_step": 0.01, "friction_law": "coulomb", "bonds": true},
+  "events": {"max_time": 10}})";
+
 std::string rich_scene_in(int dimension) {
   const std::string scene =
       std::regex_replace(rich_scene, std::regex("%D"), std::to_string(dimension));
@@ -71,6 +81,7 @@ void write_scenes(const fs::path& folder) {
   for (const int dimension : {2, 3})
     write(folder / ("rich-" + std::to_string(dimension) + "d.json"),
           write_scene(parse_scene(rich_scene_in(dimension))));
+  write(folder / "slide.json", write_scene(parse_scene(slide_scene)));
   write(folder / "least.json", R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere",)"
                                R"( "center": [0, 0, 1], "radius": 1e-1}}]})");
 }

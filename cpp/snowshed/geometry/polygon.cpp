@@ -133,4 +133,30 @@ bool crosses_itself(const Ring& ring) {
   return false;
 }
 
+double area_within(const Ring& ring, const MapPoint& low, const MapPoint& high) {
+  Ring inside = ring, clipped;
+  for (const int axis : {0, 1})
+    for (const bool upper : {false, true}) {
+      const double limit = upper ? high[axis] : low[axis];
+      const auto keeps = [&](const MapPoint& p) {
+        return upper ? p[axis] <= limit : p[axis] >= limit;
+      };
+      clipped.clear();
+      for (std::size_t i = 0; i < inside.size(); ++i) {
+        const MapPoint &a = inside[i], &b = inside[(i + 1) % inside.size()];
+        if (keeps(a)) clipped.push_back(a);
+        if (keeps(a) != keeps(b))
+          clipped.push_back(between(a, b, (limit - a[axis]) / (b[axis] - a[axis])));
+      }
+      inside.swap(clipped);
+    }
+  return inside.size() < 3 ? 0.0 : 0.5 * std::abs(twice_signed_area(inside));
+}
+
+double area_within(const Polygon& polygon, const MapPoint& low, const MapPoint& high) {
+  double area = area_within(polygon.outline, low, high);
+  for (const Ring& hole : polygon.holes) area -= area_within(hole, low, high);
+  return std::max(area, 0.0);
+}
+
 }  // namespace snowshed

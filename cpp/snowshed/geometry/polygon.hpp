@@ -24,6 +24,12 @@ bool contains(const Polygon& polygon, const MapPoint& point);
 /// Twice the area that a ring encloses, positive where it runs counterclockwise, m2.
 double twice_signed_area(const Ring& ring);
 
+/// The area of a ring within a rectangle, m2 (clipped edge by edge: Sutherland and Hodgman 1974).
+double area_within(const Ring& ring, const MapPoint& low, const MapPoint& high);
+
+/// The same of a polygon, without its holes.
+double area_within(const Polygon& polygon, const MapPoint& low, const MapPoint& high);
+
 /// The ring with every edge moved outward by a distance (> 0, m) and the corners mitred; where a
 /// mitre would reach farther than four distances it is cut off.
 Ring widened(const Ring& ring, double distance);

@@ -32,7 +32,7 @@ Surroundings build_surroundings(const Scene& scene, const std::filesystem::path&
   if (scene.terrain && scene.uses<SlideSettings>()) {
     s.terrain =
         build_height_field(*scene.terrain, std::get<SlideSettings>(scene.numerics), base_dir);
-    s.areas = build_areas(*scene.terrain, s.terrain);
+    s.areas = build_areas(*scene.terrain, s.terrain, base_dir);
   }
   return s;
 }

@@ -35,7 +35,7 @@ std::vector<SlideArea> areas_of(const std::vector<AreaSpec>& specs, const Height
 HeightField build_height_field(const TerrainSpec& terrain, const SlideSettings& settings,
                                const std::filesystem::path& base_dir) {
   HeightField field = read_ascii_grid(base_dir / terrain.file);
-  if (settings.mode == SlideMode::compatible)
+  if (settings.mode == SlideMode::compatible && terrain.single_precision)
     for (double& height : field.heights) height = double(float(height));
   const double cell = settings.cell > 0 ? settings.cell : field.cell;
   try {
@@ -45,9 +45,17 @@ HeightField build_height_field(const TerrainSpec& terrain, const SlideSettings& 
   }
 }
 
-SlideAreas build_areas(const TerrainSpec& terrain, const HeightField& field) {
+SlideAreas build_areas(const TerrainSpec& terrain, const HeightField& field,
+                       const std::filesystem::path& base_dir) {
   SlideAreas areas;
   areas.release = areas_of(terrain.release, field);
+  if (!terrain.thickness_file.empty()) {
+    HeightField map = read_ascii_grid(base_dir / terrain.thickness_file);
+    map.west -= field.west;
+    map.south -= field.south;
+    const auto shared = std::make_shared<const HeightField>(std::move(map));
+    for (SlideArea& area : areas.release) area.map = shared;
+  }
   areas.entrainment = areas_of(terrain.entrainment, field);
   for (const ResistanceSpec& spec : terrain.resistance)
     areas.resistance.push_back(area_of(spec, field));

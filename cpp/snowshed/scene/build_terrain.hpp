@@ -14,7 +14,9 @@ namespace snowshed {
 HeightField build_height_field(const TerrainSpec& terrain, const SlideSettings& settings,
                                const std::filesystem::path& base_dir);
 
-/// The areas, from the south-west node of the grid.
-SlideAreas build_areas(const TerrainSpec& terrain, const HeightField& field);
+/// The areas, from the south-west node of the grid. Throws InputError where the raster of thickness
+/// is none.
+SlideAreas build_areas(const TerrainSpec& terrain, const HeightField& field,
+                       const std::filesystem::path& base_dir);
 
 }  // namespace snowshed

@@ -229,6 +229,12 @@ template <class V>
 void describe(V& v, TerrainSpec& t) {
   v.file("file", t.file, "Elevations, m: an ESRI ASCII grid; relative to the scene file");
   v.text("crs", t.crs, "Coordinate system of the raster and the areas, handed on to the results");
+  v.flag("single_precision", t.single_precision,
+         "Whether the mode \"compatible\" rounds elevations to single precision, as AvaFrame reads "
+         "text");
+  v.text("thickness_file", t.thickness_file,
+         "Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid; "
+         "relative to the scene file");
   v.list("release", t.release, between(1, 10000).required(), "Where snow is released");
   v.list("entrainment", t.entrainment, between(0, 10000), "Where the slide takes up snow");
   v.list("resistance", t.resistance, between(0, 10000), "Where forest or the like holds it back");

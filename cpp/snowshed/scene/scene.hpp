@@ -120,8 +120,10 @@ struct ResistanceSpec {
 
 /// Ground from a raster of elevations, and what lies on it.
 struct TerrainSpec {
-  std::string file;  // ESRI ASCII grid
-  std::string crs;   // of the raster and the areas, in words; handed on to the results
+  std::string file;              // ESRI ASCII grid
+  std::string crs;               // of the raster and the areas, in words; handed on to the results
+  bool single_precision = true;  // of elevations in compatible mode
+  std::string thickness_file;    // of the release, in place of the areas' thickness; an ASCII grid
   std::vector<AreaSpec> release, entrainment;
   std::vector<ResistanceSpec> resistance;
 };

@@ -76,7 +76,8 @@ Scene with_absolute_files(const std::filesystem::path& folder, Scene scene) {
   for (auto& obstacle : scene.obstacles) with_absolute_files(absolute, obstacle.shape);
   for (auto& body : scene.bodies) with_absolute_files(absolute, body.shape);
   if (scene.terrain)
-    scene.terrain->file = (absolute / scene.terrain->file).lexically_normal().string();
+    for (std::string* file : {&scene.terrain->file, &scene.terrain->thickness_file})
+      if (!file->empty()) *file = (absolute / *file).lexically_normal().string();
   return scene;
 }
 

@@ -176,6 +176,9 @@ class SceneRules {
       fail(scene_.events.count, show(scene_.events.count) + " events; a slide has 1");
     if (scene_.output.energy)
       fail(scene_.output.energy, "a slide keeps no energy balance yet; allowed: false");
+    if (scene_.terrain && !scene_.terrain->thickness_file.empty() &&
+        s.mode == SlideMode::compatible)
+      fail(scene_.terrain->thickness_file, "AvaFrame's com5SnowSlide takes no such raster");
     if (s.explicit_friction && s.mode != SlideMode::compatible)
       fail(s.explicit_friction, "only in the mode \"compatible\"");
   }

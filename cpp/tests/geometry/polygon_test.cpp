@@ -29,6 +29,17 @@ TEST(Polygon, area_has_the_sign_of_the_direction) {
   EXPECT_DOUBLE_EQ(twice_signed_area(clockwise), -32);
 }
 
+TEST(Polygon, area_within_rectangles_adds_up) {
+  const Polygon u{{{0.3, 0.2}, {6.1, 0}, {6, 5}, {4, 5.5}, {4, 2}, {2, 2}, {2, 5}, {0, 5}},
+                  {{{0.5, 0.5}, {0.5, 1.5}, {5.5, 1.5}, {5.5, 0.5}}}};
+  double sum = 0;
+  for (int j = -1; j < 7; ++j)
+    for (int i = -1; i < 7; ++i) sum += area_within(u, {double(i), double(j)}, {i + 1.0, j + 1.0});
+  EXPECT_NEAR(sum, std::abs(twice_signed_area(u.outline)) / 2 - 5.0, 1e-12);
+  // Between the arms there is none, though their ends lie on either side.
+  EXPECT_EQ(area_within(u, {2.5, 3}, {3.5, 4}), 0.0);
+}
+
 TEST(Polygon, widened_by_its_distance_whatever_the_direction) {
   for (const Ring& ring : {square, clockwise}) {
     const Ring wide = widened(ring, 0.5);

@@ -121,7 +121,9 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   if (!scene.terrain) describe(randomizer, scene.terrain.emplace());
   scene.events.count = 1;
   scene.output.energy = false;
-  std::get<SlideSettings>(scene.numerics).explicit_friction = false;
+  SlideSettings& settings = std::get<SlideSettings>(scene.numerics);
+  settings.explicit_friction = false;
+  if (settings.mode == SlideMode::compatible) scene.terrain->thickness_file.clear();
 }
 
 /// Its fields are independent of each other, so what the rules between them demand is mended.

@@ -80,6 +80,8 @@ def print_slide(summary: SlideSummary, folder: Path) -> None:
     }.items():
         shown.add_row(name, value)
     Console().print(shown, highlight=False)
+    for note in summary.notes:
+        Console().print(f"note: {note}", highlight=False)
     Console().print(f"results, maps and slide.png in {folder}", highlight=False)
 
 

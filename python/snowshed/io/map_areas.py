@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.io.coordinate_systems import is_in_degrees
 from snowshed.io.extras import require
 from snowshed.io.paths import PathLike
 
@@ -38,6 +39,8 @@ class MapArea:
         Thickness of the snow, m; None where the file does not say it.
     crs
         Coordinate system of the file in words, such as "EPSG:31287"; empty where it has none.
+    file
+        Where it was read.
     """
 
     name: str
@@ -45,6 +48,7 @@ class MapArea:
     holes: tuple[Ring, ...] = ()
     thickness: Optional[float] = None
     crs: str = ""
+    file: str = ""
 
 
 def read_areas(path: PathLike) -> list[MapArea]:
@@ -83,7 +87,7 @@ def read_areas(path: PathLike) -> list[MapArea]:
 
 
 def _check_projected(crs: str, path: Path, pyogrio: Any) -> None:
-    if crs.upper() in ("EPSG:4326", "OGC:CRS84"):
+    if is_in_degrees(crs):
         raise InputError(f"{path}: its coordinates are in degrees ({crs}); project it to metres")
 
 
@@ -102,7 +106,7 @@ def _areas_of(
         if part.is_empty:
             continue
         holes = tuple(_ring(hole) for hole in part.interiors)
-        yield MapArea(name, _ring(part.exterior), holes, thickness, crs)
+        yield MapArea(name, _ring(part.exterior), holes, thickness, crs, str(path))
 
 
 def _ring(ring: Any) -> Ring:

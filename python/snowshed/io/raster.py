@@ -13,6 +13,7 @@ import numpy as np
 from snowshed._core import InputError, read_ascii_grid
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
+from snowshed.io.coordinate_systems import read_prj
 from snowshed.io.extras import require
 from snowshed.io.paths import PathLike
 
@@ -95,7 +96,8 @@ def read_raster(path: PathLike) -> Raster:
     Parameters
     ----------
     path
-        An ESRI ASCII grid (any name), or a GeoTIFF (.tif, .tiff), in metres on a projected map.
+        An ESRI ASCII grid (any name, its coordinate system in a .prj beside it), or a GeoTIFF
+        (.tif, .tiff), in metres on a projected map.
 
     Raises
     ------
@@ -111,11 +113,26 @@ def read_raster(path: PathLike) -> Raster:
 
 def _read_ascii(path: Path) -> Raster:
     heights, west, south, cell = read_ascii_grid(str(path))
-    return Raster(heights, west, south, cell, str(path))
+    return Raster(heights, west, south, cell, str(path), read_prj(path))
 
 
-def write_ascii_grid(path: PathLike, raster: Raster) -> None:
+def is_single(raster: Raster) -> bool:
+    """Return whether single precision holds all heights of a raster.
+
+    Examples
+    --------
+    >>> is_single(Raster(np.array([[0.5, 0.1]]), 0.0, 0.0, 1.0))
+    False
+    """
+    known = raster.heights[~np.isnan(raster.heights)]
+    return bool((known == known.astype(np.float32)).all())
+
+
+def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> None:
     """Write a raster as an ESRI ASCII grid, whole or not at all; NaN becomes -9999.
+
+    Values have nine digits, which keep single precision; with `exact` as many as double precision
+    needs.
 
     Examples
     --------
@@ -128,13 +145,14 @@ def write_ascii_grid(path: PathLike, raster: Raster) -> None:
     """
     rows, columns = raster.heights.shape
     header = (
-        f"ncols {columns}\nnrows {rows}\nxllcenter {raster.east:.10g}\n"
-        f"yllcenter {raster.north:.10g}\ncellsize {raster.cell:.10g}\nnodata_value -9999\n"
+        f"ncols {columns}\nnrows {rows}\nxllcenter {raster.east:.15g}\n"
+        f"yllcenter {raster.north:.15g}\ncellsize {raster.cell:.15g}\nnodata_value -9999\n"
     )
     known = np.where(np.isnan(raster.heights), -9999.0, raster.heights)
+    single = not exact or is_single(raster)
     with replacing(path) as beside, beside.open("w", encoding="ascii") as file:
         file.write(header)
-        np.savetxt(file, known[::-1], fmt="%.9g")
+        np.savetxt(file, known[::-1], fmt="%.9g" if single else "%.17g")
 
 
 def _check_band(source: Any, path: Path) -> None:

@@ -44,6 +44,6 @@ class SlideMaps:
         pressure: Floats = 1e-3 * self.density * self.peak_speed**2
         return pressure
 
-    def raster(self, values: Floats) -> Raster:
-        """Return one of the maps with its place."""
-        return Raster(values, self.west, self.south, self.cell)
+    def raster(self, values: Floats, crs: str = "") -> Raster:
+        """Return one of the maps with its place, and its coordinate system in words."""
+        return Raster(values, self.west, self.south, self.cell, crs=crs)

@@ -4,7 +4,7 @@ Beside what every run writes (``snowshed.run.results``), the folder holds
 
 ================== ==========================================================================
 peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s) and pressure
-                   (ppr, kPa), as ESRI ASCII grids
+                   (ppr, kPa), as ESRI ASCII grids; a .prj holds the coordinate system, if known
 flow/              thickness (FT) and speed (FV) at the end
 slide.json         the figures of `SlideSummary`
 slide.png          the map: terrain, peak speed, outline of the release
@@ -14,6 +14,7 @@ slide.png          the map: terrain, peak speed, outline of the release
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -23,7 +24,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import write_ascii_grid
+from snowshed.io.raster_output import write_raster
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
@@ -48,8 +49,11 @@ class SlideSummary:
         Of the slide.
     particles
         At the end.
-    released_kg, entrained_kg, left_terrain_kg
-        Mass that was released, taken up, and carried off the terrain.
+    released_kg, entrained_kg
+        Mass that was released and taken up.
+    left_terrain_kg, detrained_kg, on_terrain_kg
+        Where it went: off the terrain or into its holes, left behind in forest (none is), and
+        still on the terrain at the end; at rest, if the slide ended so.
     bonds_made, bonds_broken
         Bonds between particles, and how many of them broke or left the terrain.
     peak_speed_m_s, peak_thickness_m, peak_pressure_kpa
@@ -60,6 +64,8 @@ class SlideSummary:
         Farthest way on the map from the middle of the release to where snow lies at the end.
     drop_m
         Height between the highest node of the release and the lowest where snow lies.
+    notes
+        What should be known of these figures.
     """
 
     ended: str
@@ -68,6 +74,8 @@ class SlideSummary:
     released_kg: float
     entrained_kg: float
     left_terrain_kg: float
+    detrained_kg: float
+    on_terrain_kg: float
     bonds_made: int
     bonds_broken: int
     peak_speed_m_s: float
@@ -76,6 +84,7 @@ class SlideSummary:
     reached_m2: float
     run_out_m: float
     drop_m: float
+    notes: tuple[str, ...] = ()
 
 
 def slide_maps(simulation: _core.Simulation) -> SlideMaps:
@@ -141,7 +150,7 @@ def run_slide(
         (facts,) = sequence.finished_events
         maps = slide_maps(sequence.simulation)
         summary = _summary(sequence.simulation, facts, maps)
-        _write(Path(out_dir), maps, summary)
+        _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
         if pictures:
             from snowshed.plot.figure_style import save
             from snowshed.plot.slide_figure import slide_figure
@@ -265,6 +274,8 @@ def _summary(simulation: _core.Simulation, facts: dict[str, Any], maps: SlideMap
         released_kg=slide["released_kg"],
         entrained_kg=slide["entrained_kg"],
         left_terrain_kg=slide["left_terrain_kg"],
+        detrained_kg=0.0,
+        on_terrain_kg=math.fsum(simulation.masses()),
         bonds_made=slide["bonds_made"],
         bonds_broken=slide["bonds_made"] - slide["bonds"],
         peak_speed_m_s=float(maps.peak_speed.max()),
@@ -273,10 +284,26 @@ def _summary(simulation: _core.Simulation, facts: dict[str, Any], maps: SlideMap
         reached_m2=float(reached.sum()) * maps.cell**2,
         run_out_m=float(way.max(initial=0.0)),
         drop_m=float(maps.terrain[reached].max() - lies.min()) if lies.size else 0.0,
+        notes=_notes(slide["left_terrain_kg"], maps),
     )
 
 
-def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
+def _notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
+    if left == 0.0:
+        return ()
+    holes = np.isnan(maps.terrain).any()
+    where = "or went where the raster has no elevation" if holes else "at its border"
+    return (
+        f"{left:,.0f} kg of snow left the terrain {where}; what lies beyond is not part of these "
+        "figures",
+    )
+
+
+def _crs(simulation: _core.Simulation) -> str:
+    return str(json.loads(simulation.scene)["terrain"].get("crs", ""))
+
+
+def _write(folder: Path, maps: SlideMaps, summary: SlideSummary, crs: str) -> None:
     for name, values in (
         ("peaks/pft", maps.peak_thickness),
         ("peaks/pfv", maps.peak_speed),
@@ -286,5 +313,5 @@ def _write(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
     ):
         file = folder / f"{name}.asc"
         file.parent.mkdir(exist_ok=True)
-        write_ascii_grid(file, maps.raster(values))
+        write_raster(file, maps.raster(values, crs))
     write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")

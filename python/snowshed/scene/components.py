@@ -234,6 +234,12 @@ class Terrain(Record):
         Elevations, m: an ESRI ASCII grid; relative to the scene file. Required.
     crs : str
         Coordinate system of the raster and the areas, handed on to the results.
+    single_precision : bool
+        Whether the mode "compatible" rounds elevations to single precision, as AvaFrame reads
+        text. Default True.
+    thickness_file : str
+        Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid;
+        relative to the scene file.
     release : list of Area
         Where snow is released. Required.
     entrainment : list of Area
@@ -244,6 +250,8 @@ class Terrain(Record):
 
     file: Optional[PathLike] = None
     crs: Optional[str] = None
+    single_precision: Optional[bool] = None
+    thickness_file: Optional[str] = None
     release: Optional[List[Area]] = None
     entrainment: Optional[List[Area]] = None
     resistance: Optional[List[ResistanceArea]] = None

@@ -30,6 +30,9 @@ std::string lower(std::string_view word) {
   return text;
 }
 
+/// As GDAL writes a missing value where the header says nodata_value nan.
+bool is_nan(std::string_view word) { return lower(word) == "nan"; }
+
 bool is_header_key(const std::string& word) {
   static const char* const keys[] = {"ncols",     "nrows",     "xllcenter", "yllcenter",
                                      "xllcorner", "yllcorner", "cellsize",  "nodata_value"};
@@ -44,7 +47,9 @@ Header read_header(TextScanner& scanner) {
     if (scanner.words().size() != 2) scanner.fail("a line of the header has a key and a value");
     const std::string key = lower(scanner.words()[0]);
     if (header.has(key)) scanner.fail(key + " is given twice");
-    header.values[key] = scanner.number<double>(1);
+    header.values[key] = key == "nodata_value" && is_nan(scanner.words()[1])
+                             ? std::numeric_limits<double>::quiet_NaN()
+                             : scanner.number<double>(1);
   }
   return header;
 }
@@ -93,7 +98,8 @@ HeightField read_ascii_grid(const std::filesystem::path& file) {
   for (bool more = !scanner.words().empty(); more; more = scanner.next_line())
     for (std::size_t i = 0; i < scanner.words().size(); ++i) {
       if (read == nodes) scanner.fail("more values than the header tells of");
-      const double value = scanner.number<double>(i);
+      const bool missing = std::isnan(nodata) && is_nan(scanner.words()[i]);
+      const double value = missing ? nodata : scanner.number<double>(i);
       if (std::abs(value) > 1e5 && value != nodata) scanner.fail("an elevation beyond 1e5 m");
       const int row = field.rows - 1 - int(read / std::size_t(field.columns));
       const int column = int(read++ % std::size_t(field.columns));

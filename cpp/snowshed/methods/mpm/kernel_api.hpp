@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/contact_law.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
@@ -169,9 +170,5 @@ struct KernelChoice {
 /// The best build of the chosen kernels for this machine, or the one that SNOWSHED_KERNELS names.
 template <class T>
 Kernels<T> select_kernels(const KernelChoice&);
-
-/// "avx512", "avx2" or "baseline": what select_kernels uses here. The environment variable
-/// SNOWSHED_KERNELS forces one; InputError where it names none that runs here.
-const char* kernel_variant();
 
 }  // namespace snowshed

@@ -1,12 +1,5 @@
-// Picks, once, the widest instruction set that both the build and the machine have.
-#include <algorithm>
-#include <cstdlib>
-#include <cstring>
-#include <iterator>
-#include <string>
-#include <vector>
-
-#include "snowshed/core/errors.hpp"
+// The kernels of the instruction set in use.
+#include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
 namespace snowshed {
@@ -29,66 +22,6 @@ SNOWSHED_DECLARE(avx512)
 
 namespace {
 
-enum class Variant { baseline, avx2, avx512 };
-constexpr Variant all_variants[] = {Variant::baseline, Variant::avx2, Variant::avx512};
-
-const char* name_of(Variant variant) {
-  switch (variant) {
-    case Variant::avx512:
-      return "avx512";
-    case Variant::avx2:
-      return "avx2";
-    default:
-      return "baseline";
-  }
-}
-
-/// Whether both the build and the machine have a variant.
-bool is_supported(Variant variant) {
-#ifdef SNOWSHED_HAS_KERNELS_avx512
-  if (variant == Variant::avx512)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-#endif
-#ifdef SNOWSHED_HAS_KERNELS_avx2
-  if (variant == Variant::avx2)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-           __builtin_cpu_supports("bmi2");
-#endif
-  return variant == Variant::baseline;
-}
-
-std::vector<Variant> supported_variants() {
-  std::vector<Variant> supported;
-  std::copy_if(std::begin(all_variants), std::end(all_variants), std::back_inserter(supported),
-               is_supported);
-  return supported;
-}
-
-template <class Variants>
-std::string list_of(const Variants& variants) {
-  std::string list;
-  for (const Variant v : variants) list += (list.empty() ? "" : ", ") + std::string(name_of(v));
-  return list;
-}
-
-/// The widest variant that runs here, or the one that the user asks for.
-Variant chosen_variant() {
-  const std::vector<Variant> supported = supported_variants();
-  const char* forced = std::getenv("SNOWSHED_KERNELS");
-  if (!forced || !*forced) return supported.back();
-  for (const Variant v : supported)
-    if (std::strcmp(forced, name_of(v)) == 0) return v;
-  throw InputError("SNOWSHED_KERNELS", "is \"" + std::string(forced) +
-                                           "\"; allowed: " + list_of(all_variants) +
-                                           "; this machine can run: " + list_of(supported));
-}
-
-Variant variant() {
-  static const Variant chosen = chosen_variant();
-  return chosen;
-}
-
 template <class T>
 Kernels<T> from(Kernels<T> (*two)(const KernelChoice&), Kernels<T> (*three)(const KernelChoice&),
                 const KernelChoice& choice) {
@@ -97,12 +30,10 @@ Kernels<T> from(Kernels<T> (*two)(const KernelChoice&), Kernels<T> (*three)(cons
 
 }  // namespace
 
-const char* kernel_variant() { return name_of(variant()); }
-
 #define SNOWSHED_SELECT(T)                                       \
   template <>                                                    \
   Kernels<T> select_kernels<T>(const KernelChoice& choice) {     \
-    switch (variant()) {                                         \
+    switch (chosen_kernel_variant()) {                           \
       SNOWSHED_CASE_AVX512(T)                                    \
       SNOWSHED_CASE_AVX2(T)                                      \
       default:                                                   \
@@ -111,14 +42,14 @@ const char* kernel_variant() { return name_of(variant()); }
   }
 #ifdef SNOWSHED_HAS_KERNELS_avx512
 #define SNOWSHED_CASE_AVX512(T) \
-  case Variant::avx512:         \
+  case KernelVariant::avx512:   \
     return from(avx512::T##_2d, avx512::T##_3d, choice);
 #else
 #define SNOWSHED_CASE_AVX512(T)
 #endif
 #ifdef SNOWSHED_HAS_KERNELS_avx2
 #define SNOWSHED_CASE_AVX2(T) \
-  case Variant::avx2:         \
+  case KernelVariant::avx2:   \
     return from(avx2::T##_2d, avx2::T##_3d, choice);
 #else
 #define SNOWSHED_CASE_AVX2(T)

@@ -5,87 +5,14 @@
 #include <numeric>
 
 namespace snowshed {
-namespace {
-
-constexpr double least_speed = 1e-6;  // m/s
-
-/// A velocity after friction, and for how long the particle moves, s.
-struct Slowed {
-  Vec3 velocity;
-  double moving;
-};
-
-/// Coulomb friction as a set-valued law: it stops snow, and holds it where what drives it is less.
-/// The part that grows with the square of the speed is implicit: s' + drag dt s'^2 = s.
-Slowed slowed(const SlideLoad& load, const Vec3& u, double dt) {
-  const double speed = u.norm(), rest = speed - dt * load.yield;
-  if (rest <= 0) return {Vec3::Zero(), dt};
-  const double after = 2 * rest / (1 + std::sqrt(1 + 4 * load.drag * dt * rest));
-  return {u * (after / speed), dt};
-}
-
-/// As AvaFrame does it by default: a rate that divides by the speed of before.
-Slowed slowed_implicitly(const SlideLoad& load, const Vec3& u, double dt) {
-  const double stress = load.yield + load.drag * load.speed * load.speed;  // m/s2
-  return {u / (1 + dt * stress / std::max(load.speed, least_speed)), dt};
-}
-
-Slowed slowed_explicitly(const SlideLoad& load, const Vec3& u, double dt) {
-  const double stress = load.yield + load.drag * load.speed * load.speed, speed = u.norm();
-  if (speed >= dt * stress) return {u - u * (dt * stress / std::max(speed, 1e-300)), dt};
-  return {Vec3::Zero(), load.speed > 0 ? speed / stress : 0.0};
-}
-
-Slowed slowed_by(const SlideModel& model, const SlideLoad& load, const Vec3& u) {
-  const double dt = model.settings.time_step;
-  if (!model.compatible()) return slowed(load, u, dt);
-  return model.settings.explicit_friction ? slowed_explicitly(load, u, dt)
-                                          : slowed_implicitly(load, u, dt);
-}
-
-/// The velocity along the ground, at its speed of before.
-Vec3 along_ground(const Vec3& u, const Vec3& normal, double added_speed) {
-  const Vec3 tangential = u - u.dot(normal) * normal;
-  const double speed = tangential.norm();
-  return speed > 0 ? Vec3(tangential * (u.norm() / (speed + added_speed))) : tangential;
-}
-
-}  // namespace
 
 void advance(const SlideModel& model, SlideState& state, SlideWork& work) {
-  SlideParticles& p = state.particles;
-  const Terrain& terrain = model.terrain;
-  const double dt = model.settings.time_step;
-  const double added_speed = model.compatible() ? least_speed : 0.0;
-  std::fill(work.removed.begin(), work.removed.end(), 0);
-  const auto move = [&](std::size_t i) {  // returns the kinetic energy, J
-    const SlideLoad& load = work.loads[i];
-    const Vec3 before{p.ux[i], p.uy[i], p.uz[i]};
-    const Vec3 pushed = before + dt * (load.acceleration + load.force / p.mass[i]);
-    const Slowed s = slowed_by(model, load, pushed);
-    const Vec3 way = 0.5 * s.moving * (before + s.velocity);
-    const Reprojection r = reproject(terrain, p.x[i] + way.x(), p.y[i] + way.y(), p.z[i] + way.z());
-    if (!r.on_ground.inside() || !terrain.known(r.on_ground)) {
-      work.removed[i] = 1;
-      return 0.0;
-    }
-    const Vec3 normal = terrain.normal(r.on_ground);
-    const Vec3 u = along_ground(s.velocity, normal, added_speed);
-    p.x[i] = r.x;
-    p.y[i] = r.y;
-    p.z[i] = terrain.height(r.on_ground);
-    p.ux[i] = u.x();
-    p.uy[i] = u.y();
-    p.uz[i] = u.z();
-    work.places[i] = r.on_ground;
-    work.normals[i] = normal;
-    return 0.5 * p.mass[i] * s.velocity.squaredNorm();
-  };
-  parallel_pieces(std::ptrdiff_t(p.size()), model.threads, particles_in_piece,
+  const SlideParticles& p = state.particles;
+  const SlideView view = view_of(model, state, work);
+  parallel_pieces(std::ptrdiff_t(p.size()), model.threads_for(p.size()), particles_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                    double sum = 0;
-                    for (std::ptrdiff_t i = begin; i < end; ++i) sum += move(std::size_t(i));
-                    work.piece_sums[std::size_t(begin / particles_in_piece)] = sum;
+                    work.piece_sums[std::size_t(begin / particles_in_piece)] =
+                        slide_kernels().advance(view, begin, end);
                   });
   // Piece by piece, so that the sum does not depend on the threads.
   const std::ptrdiff_t pieces =
@@ -129,12 +56,27 @@ void remove_marked(SlideState& state, SlideWork& work) {
     ++state.balance.particles_left;
   }
   p.for_each_array([&](const char*, auto& array) { keep(new_place, array); });
-  keep(new_place, work.places);
-  keep(new_place, work.normals);
+  Places::for_each_array(work.places, [&](auto& array) { keep(new_place, array); });
   keep(new_place, work.thickness);
   renumber(state.bonds, new_place);
   work.bond_lists.update(state.bonds, p.size());
 }
+
+namespace {
+
+/// Gives the particles from `begin` on, which have the ids of those they split from, ids of their
+/// own, in the order of these: the order in which particles are stored must not tell.
+void number_new(SlideState& state, SlideWork& work, std::size_t begin) {
+  SlideParticles& p = state.particles;
+  std::vector<std::uint32_t>& order = work.new_places;
+  order.resize(p.size() - begin);
+  std::iota(order.begin(), order.end(), std::uint32_t(begin));
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return p.id[a] < p.id[b]; });
+  for (const std::uint32_t i : order) p.id[i] = state.next_id++;
+}
+
+}  // namespace
 
 void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
   SlideParticles& p = state.particles;
@@ -155,21 +97,20 @@ void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
       continue;
     p.for_each_array([i](const char*, auto& array) { array.push_back(array[i]); });
     p.mass[i] = p.mass.back() = 0.5 * p.mass[i];
-    p.id.back() = state.next_id++;
     const auto put = [&](std::size_t at, const Vec3& to, const GridPlace& place) {
       p.x[at] = to.x();
       p.y[at] = to.y();
       p.z[at] = model.compatible() ? to.z() : model.terrain.height(place);
-      work.places[at] = place;
-      work.normals[at] = model.terrain.normal(place);
+      refresh_places(model, state, work, at, at + 1);
     };
-    work.places.push_back(ahead);
-    work.normals.push_back(Vec3::Zero());
+    work.places.resize(p.size());
     work.thickness.push_back(work.thickness[i]);
     put(i, x - along, behind);
     put(p.size() - 1, x + along, ahead);
   }
-  if (p.size() != before) work.bond_lists.update(state.bonds, p.size());
+  if (p.size() == before) return;
+  number_new(state, work, before);
+  work.bond_lists.update(state.bonds, p.size());
 }
 
 void sort_by_cell(SlideState& state, const std::vector<std::uint32_t>& order) {

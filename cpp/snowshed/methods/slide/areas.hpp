@@ -1,6 +1,7 @@
 // Areas on the map where a slide is released, entrains snow, or is held back by forest.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct SlideArea {
   std::string name;
   Polygon polygon;
   double thickness = 0;  // m of snow, normal to the ground; unused where there is resistance only
+  /// In place of that: the thickness in the cells around nodes. Only of releases.
+  std::shared_ptr<const HeightField> map;
 };
 
 struct SlideAreas {

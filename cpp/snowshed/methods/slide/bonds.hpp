@@ -46,11 +46,10 @@ class BondLists {
   }
   void update(const Bonds& bonds, std::size_t particles);
 
-  /// The bonds of particle i are entries [begin(i), begin(i + 1)).
-  std::uint32_t begin(std::size_t i) const { return begin_[i]; }
-  std::uint32_t bond(std::size_t entry) const { return entry_[entry] >> 1; }
-  /// Whether the particle is the second of the bond.
-  bool is_second(std::size_t entry) const { return entry_[entry] & 1; }
+  /// The bonds of particle i are entries [begins()[i], begins()[i + 1]): each twice the place of
+  /// the bond, and one more where the particle is the second of the bond.
+  const std::uint32_t* begins() const { return begin_.data(); }
+  const std::uint32_t* entries() const { return entry_.data(); }
 
   std::size_t bytes() const {
     return (begin_.capacity() + entry_.capacity()) * sizeof(std::uint32_t);

@@ -14,8 +14,9 @@ namespace snowshed {
 /// that holds them all and a margin of one cell. Within a cell they keep the order of storage.
 class CellLists {
  public:
-  /// `places` are those of the particles, all inside.
-  void update(const SlideParticles& particles, const std::vector<GridPlace>& places, int threads);
+  /// `column` and `row` are those of the particles' cells.
+  void update(const SlideParticles& particles, const AlignedVector<std::int32_t>& column,
+              const AlignedVector<std::int32_t>& row, int threads);
 
   /// Makes room for so many particles anywhere on the terrain.
   void reserve(std::size_t particles, const Terrain& terrain);
@@ -36,6 +37,7 @@ class CellLists {
   /// Where the particle of an entry is stored.
   std::uint32_t particle(std::size_t entry) const { return order_[entry]; }
   const std::vector<std::uint32_t>& order() const { return order_; }
+  const std::uint32_t* begins() const { return begin_.data(); }
 
   // Copies in the order of the entries, for loops over neighbours.
   const double* x() const { return x_.data(); }
@@ -48,7 +50,8 @@ class CellLists {
   }
 
  private:
-  void find_rectangle(const std::vector<GridPlace>& places);
+  void find_rectangle(const AlignedVector<std::int32_t>& column,
+                      const AlignedVector<std::int32_t>& row);
 
   int first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
   std::vector<std::uint32_t> begin_, order_;

@@ -61,7 +61,7 @@ ParticleState SlideSolver::state() const {
     s.densities.push_back(model_.settings.density);
     s.plastic_strains.push_back(0.0);
     // Hydrostatic, at the base.
-    s.pressures.push_back(model_.settings.density * model_.gravity * work_.normals[i].z() *
+    s.pressures.push_back(model_.settings.density * model_.gravity * work_.places.nz[i] *
                           work_.thickness[i]);
     s.ids.push_back(p.id[i]);
     s.events.push_back(p.event[i]);
@@ -96,12 +96,12 @@ std::size_t SlideSolver::bytes() const {
   count(state_.peaks.thickness);
   count(state_.peaks.speed);
   count(state_.erodible);
-  count(work_.places);
-  count(work_.normals);
   count(work_.thickness);
-  count(work_.loads);
   count(work_.predicted);
-  count(work_.bond_forces);
+  count(work_.bond_force);
+  const SlideLoads& l = work_.loads;
+  for (const auto* array : {&l.ax, &l.ay, &l.az, &l.yield, &l.drag, &l.speed}) count(*array);
+  Places::for_each_array(work_.places, count);
   return total;
 }
 

@@ -10,7 +10,7 @@ namespace snowshed {
 void apply_ground(const SlideModel&, SlideState&, SlideWork&);
 
 /// The gradient of the snow's own pressure, by smoothed particle hydrodynamics.
-void add_pressure(const SlideModel&, const SlideState&, SlideWork&);
+void add_pressure(const SlideModel&, SlideState&, SlideWork&);
 
 /// The forces of the bonds. Breaks those that are strained too much.
 void add_bonds(const SlideModel&, SlideState&, SlideWork&);

@@ -113,6 +113,51 @@ double map_area(const Polygon& polygon) {
   return area / 2;
 }
 
+/// The node in whose cell a point lies.
+int node_of(double x, double first, double cell) {
+  return int(std::floor((x - first) / cell + 0.5));
+}
+
+double thickness_at(const SlideArea& area, double x, double y) {
+  if (!area.map) return area.thickness;
+  const HeightField& m = *area.map;
+  const int column = std::clamp(node_of(x, m.west, m.cell), 0, m.columns - 1);
+  const int row = std::clamp(node_of(y, m.south, m.cell), 0, m.rows - 1);
+  return m.height(column, row);
+}
+
+/// The mean of a map's thickness over an area. Throws where it does not say it everywhere.
+double mean_thickness(const SlideArea& area, const Terrain& terrain, std::size_t index) {
+  if (!area.map) return area.thickness;
+  const HeightField& m = *area.map;
+  const Bounds b = bounds_of(area.polygon.outline);
+  const double half = m.cell / 2, rounding = 1e-6 * m.cell;
+  const int west = node_of(b.low[0] + rounding, m.west, m.cell);
+  const int east = node_of(b.high[0] - rounding, m.west, m.cell);
+  const int south = node_of(b.low[1] + rounding, m.south, m.cell);
+  const int north = node_of(b.high[1] - rounding, m.south, m.cell);
+  if (west < 0 || south < 0 || east >= m.columns || north >= m.rows)
+    refuse_area(index, area.name, "reaches beyond the raster of thickness");
+  double volume = 0, covered = 0;
+  for (int row = south; row <= north; ++row)
+    for (int column = west; column <= east; ++column) {
+      const double x = m.west + column * m.cell, y = m.south + row * m.cell;
+      const double part = area_within(area.polygon, {x - half, y - half}, {x + half, y + half});
+      if (part <= rounding * m.cell) continue;
+      const double h = m.height(column, row);
+      if (!(h > 0 && h <= 100))
+        refuse_area(index, area.name,
+                    "the raster of thickness says " +
+                        (std::isnan(h) ? "nothing" : std::to_string(h) + " m") + " at (" +
+                        std::to_string(terrain.west() + x) + ", " +
+                        std::to_string(terrain.south() + y) +
+                        "); allowed: above 0 and at most 100 m");
+      volume += part * h;
+      covered += part;
+    }
+  return volume / covered;
+}
+
 MapPoint centroid(const Ring& ring) {
   double x = 0, y = 0, sum = 0;
   const MapPoint& o = ring[0];
@@ -180,8 +225,9 @@ ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const Sl
                         std::size_t index) {
   const double cell = terrain.cell();
   const Ground ground = ground_under(terrain, area.polygon);
-  const double mass = area.thickness * ground.stretch * map_area(area.polygon) * s.density;
-  const double cell_mass = area.thickness * ground.stretch * cell * cell * s.density;
+  const double thickness = mean_thickness(area, terrain, index);
+  const double mass = thickness * ground.stretch * map_area(area.polygon) * s.density;
+  const double cell_mass = thickness * ground.stretch * cell * cell * s.density;
   const double points = std::max(1.0, std::floor(cell_mass / mass_per_particle(s, cell)));
   ParticleBatch batch;
   double seeded = 0;
@@ -189,7 +235,7 @@ ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const Sl
                      lattice_side(cell * cell, points), [&](double x, double y) {
                        const GridPlace p = terrain.place(x, y);
                        if (!p.inside() || !contains(area.polygon, {x, y})) return;
-                       const double share = 1 / terrain.normal(p).z();
+                       const double share = thickness_at(area, x, y) / terrain.normal(p).z();
                        place_on_ground(terrain, x, y, share, batch);
                        seeded += share;
                      });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "snowshed/core/errors.hpp"
@@ -16,16 +17,46 @@ namespace {
 /// Between two times that particles are stored anew in the order of their cells.
 constexpr int steps_between_sorts = 32;
 
+/// Where a node lies on the map, m.
+std::string on_map(const Terrain& terrain, int column, int row) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.10g, %.10g", terrain.west() + column * terrain.cell(),
+                terrain.south() + row * terrain.cell());
+  return text;
+}
+
+/// Throws where a cell under an area lacks a height at one of its nodes.
+void check_no_hole(const Terrain& terrain, const Polygon& area, const std::string& where) {
+  double low[2] = {area.outline[0][0], area.outline[0][1]}, high[2] = {low[0], low[1]};
+  for (const MapPoint& p : area.outline)
+    for (const int axis : {0, 1}) {
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
+    }
+  const double c = terrain.cell();
+  const int last_row = std::min(terrain.rows() - 1, int(high[1] / c) + 1);
+  const int last_column = std::min(terrain.columns() - 1, int(high[0] / c) + 1);
+  for (int row = std::max(0, int(low[1] / c)); row <= last_row; ++row)
+    for (int column = std::max(0, int(low[0] / c)); column <= last_column; ++column) {
+      const double x = column * c, y = row * c;
+      if (std::isnan(terrain.node(column, row).height) &&
+          area_within(area, {x - c, y - c}, {x + c, y + c}) > 0)
+        throw InputError(where, "the terrain has a hole there: no elevation at (" +
+                                    on_map(terrain, column, row) + ")");
+    }
+}
+
 void check_on_terrain(const Terrain& terrain, const std::vector<SlideArea>& areas,
                       const std::string& kind) {
   for (std::size_t i = 0; i < areas.size(); ++i) {
     const std::string where = "/terrain/" + kind + "/" + std::to_string(i);
     for (const MapPoint& p : areas[i].polygon.outline) {
-      const GridPlace place = terrain.place(p[0], p[1]);
-      if (!place.inside()) throw InputError(where, "reaches beyond the terrain");
-      if (kind == "release" && std::isnan(terrain.height(place)))
-        throw InputError(where, "the terrain has a hole there");
+      if (!terrain.place(p[0], p[1]).inside())
+        throw InputError(
+            where, "reaches beyond the terrain, which extends from (" + on_map(terrain, 0, 0) +
+                       ") to (" + on_map(terrain, terrain.columns() - 1, terrain.rows() - 1) + ")");
     }
+    if (kind == "release") check_no_hole(terrain, areas[i].polygon, where);
   }
 }
 
@@ -120,7 +151,7 @@ void SlideSolver::add_velocity(const std::vector<Vec3>& changes) {
   const std::vector<std::uint32_t>& at = order_by_id();
   for (std::size_t k = 0; k < at.size(); ++k) {
     if (!changes[k].allFinite()) throw InputError("velocity_changes", "not finite");
-    const Vec3& n = work_.normals[at[k]];
+    const Vec3 n = work_.places.normal(at[k]);
     const Vec3 along = changes[k] - changes[k].dot(n) * n;  // snow stays on the ground
     next.particles.ux[at[k]] += along.x();
     next.particles.uy[at[k]] += along.y();

@@ -50,44 +50,145 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   // Each particle may split.
   const std::size_t now = state.particles.size(), most = state.erodible.empty() ? now : 2 * now;
   state.particles.for_each_array([most](const char*, auto& array) { array.reserve(most); });
-  places.reserve(most);
-  normals.reserve(most);
+  Places::for_each_array(places, [most](auto& array) { array.reserve(most); });
   thickness.reserve(most);
   loads.resize(now);
-  predicted.resize(now);
+  predicted.resize(4 * now);
   entrained.resize(state.erodible.empty() ? 0 : now);
   removed.resize(now);
   new_places.reserve(most);
-  piece_sums.resize(now / std::size_t(particles_in_piece) + 1);
-  bond_forces.resize(state.bonds.size());
+  piece_sums.resize(most / std::size_t(particles_in_piece) + 1);
+  bond_force.resize(4 * state.bonds.size());
   broken.resize(state.bonds.size());
   bond_lists.reserve(most, state.bonds.size());
   cells.reserve(most, model.terrain);
   fields.reserve(model.terrain);
 }
 
+namespace {
+
+FrictionScheme friction_scheme(const SlideModel& model) {
+  if (!model.compatible()) return FrictionScheme::set_valued;
+  return model.settings.explicit_friction ? FrictionScheme::avaframe_explicit
+                                          : FrictionScheme::avaframe_implicit;
+}
+
+void view_model(const SlideModel& model, SlideView& v) {
+  const Terrain& t = model.terrain;
+  const SlideSettings& s = model.settings;
+  static_assert(sizeof(Terrain::Node) == 4 * sizeof(double), "kernels read records of four");
+  v.ground = &t.nodes()->height;
+  v.columns = t.columns();
+  v.rows = t.rows();
+  v.cell = t.cell();
+  v.per_cell = 1 / t.cell();
+  v.time_step = s.time_step;
+  v.gravity = model.gravity;
+  v.density = s.density;
+  v.friction = model.friction.friction;
+  v.friction_drag = model.friction.drag;
+  v.viscosity = s.artificial_viscosity;
+  v.max_strain = s.max_strain;
+  v.bond_modulus = s.bond_modulus;
+  v.min_bond_length = s.min_bond_length;
+  v.scheme = friction_scheme(model);
+  v.added_speed = model.compatible() ? 1e-6 : 0.0;
+}
+
+void view_places(SlideWork& work, SlideView& v) {
+  Places& p = work.places;
+  v.column = p.column.data();
+  v.row = p.row.data();
+  v.east = p.east.data();
+  v.north = p.north.data();
+  v.nx = p.nx.data();
+  v.ny = p.ny.data();
+  v.nz = p.nz.data();
+  v.thickness = work.thickness.data();
+  static_assert(sizeof(GridFields::Node) == 4 * sizeof(double), "kernels read records of four");
+  v.flow = &work.fields.nodes()->thickness;
+  v.flow_column = work.fields.first_column();
+  v.flow_row = work.fields.first_row();
+  v.flow_columns = work.fields.columns();
+  v.sorted_x = work.cells.x();
+  v.sorted_y = work.cells.y();
+  v.sorted_mass = work.cells.mass();
+  v.sorted_particle = work.cells.order().data();
+  v.cell_begin = work.cells.begins();
+  v.cell_columns = work.cells.columns();
+}
+
+void view_loads(SlideWork& work, SlideView& v) {
+  SlideLoads& l = work.loads;
+  v.ax = l.ax.data();
+  v.ay = l.ay.data();
+  v.az = l.az.data();
+  v.yield = l.yield.data();
+  v.drag = l.drag.data();
+  v.speed = l.speed.data();
+  v.predicted = work.predicted.data();
+  v.removed = work.removed.data();
+}
+
+}  // namespace
+
+SlideView view_of(const SlideModel& model, SlideState& state, SlideWork& work) {
+  SlideView v{};
+  view_model(model, v);
+  view_places(work, v);
+  view_loads(work, v);
+  SlideParticles& p = state.particles;
+  v.x = p.x.data();
+  v.y = p.y.data();
+  v.z = p.z.data();
+  v.ux = p.ux.data();
+  v.uy = p.uy.data();
+  v.uz = p.uz.data();
+  v.mass = p.mass.data();
+  v.bond_first = state.bonds.first.data();
+  v.bond_second = state.bonds.second.data();
+  v.rest_length = state.bonds.rest_length.data();
+  v.broken = work.broken.data();
+  v.bond_force = work.bond_force.data();
+  v.bond_begin = work.bond_lists.begins();
+  v.bond_entry = work.bond_lists.entries();
+  return v;
+}
+
+void refresh_places(const SlideModel& model, const SlideState& state, SlideWork& work,
+                    std::size_t begin, std::size_t end) {
+  SlideView view{};
+  view_model(model, view);
+  view_places(work, view);
+  view.x = const_cast<double*>(state.particles.x.data());  // which is only read
+  view.y = const_cast<double*>(state.particles.y.data());
+  parallel_pieces(std::ptrdiff_t(end - begin), model.threads_for(end - begin), particles_in_piece,
+                  [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+                    const auto from = std::ptrdiff_t(begin);
+                    slide_kernels().locate(view, from + first, from + last);
+                  });
+}
+
 void refresh(const SlideModel& model, const SlideState& state, SlideWork& work) {
-  const SlideParticles& p = state.particles;
-  work.places.resize(p.size());
-  work.normals.resize(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    work.places[i] = model.terrain.place(p.x[i], p.y[i]);
-    work.normals[i] = model.terrain.normal(work.places[i]);
-  }
-  work.bond_lists.update(state.bonds, p.size());
+  const std::size_t n = state.particles.size();
+  work.places.resize(n);
+  refresh_places(model, state, work, 0, n);
+  work.bond_lists.update(state.bonds, n);
   refresh_fields(model, state, work);
 }
 
 void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork& work) {
   const SlideParticles& p = state.particles;
-  work.cells.update(p, work.places, model.threads);
-  work.fields.update(model.terrain, p, work.places, work.cells, model.settings.density,
-                     model.threads);
+  const Places& places = work.places;
+  work.cells.update(p, places.column, places.row, model.threads_for(p.size()));
+  work.fields.update(model.terrain, p, places.east, places.north, work.cells,
+                     model.settings.density, model.threads_for(p.size()));
   work.thickness.resize(p.size());
-  parallel_pieces(std::ptrdiff_t(p.size()), model.threads, particles_in_piece,
+  SlideView view{};
+  view_places(work, view);
+  parallel_pieces(std::ptrdiff_t(p.size()), model.threads_for(p.size()), particles_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                    for (std::ptrdiff_t i = begin; i < end; ++i)
-                      work.thickness[i] = work.fields.thickness(work.places[i]);
+                    slide_kernels().thickness(view, begin, end);
                   });
 }
 

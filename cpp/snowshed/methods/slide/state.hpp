@@ -2,6 +2,7 @@
 // that follows from both and may be thrown away.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -14,16 +15,25 @@
 #include "snowshed/methods/slide/cells.hpp"
 #include "snowshed/methods/slide/friction.hpp"
 #include "snowshed/methods/slide/grid_fields.hpp"
+#include "snowshed/methods/slide/kernel_api.hpp"
 #include "snowshed/methods/slide/particles.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
 namespace snowshed {
 
+/// The fewest particles that a thread is started for.
+inline constexpr std::size_t particles_per_thread = 1000;
+
 struct SlideModel {
   SlideModel(const SlideSettings&, double gravity, const HeightField&, SlideAreas);
 
   bool compatible() const { return settings.mode == SlideMode::compatible; }
+  /// Threads for a step of so many particles. A thread that has little to do costs more time than
+  /// it saves.
+  int threads_for(std::size_t particles) const {
+    return int(std::clamp<std::size_t>(particles / particles_per_thread, 1, std::size_t(threads)));
+  }
 
   SlideSettings settings;
   double gravity;  // m/s2, along -z
@@ -56,33 +66,52 @@ struct SlideState {
   StepCounters counters;
 };
 
-/// What acts on a particle during a step.
-struct SlideLoad {
-  Vec3 acceleration;  // m/s2, by gravity
-  Vec3 force;         // N, by the pressure of the snow around and by bonds
-  double yield;       // m/s2, deceleration by friction that does not depend on the speed
-  double drag;        // 1/m, deceleration over the square of the speed
-  double speed;       // m/s, at the beginning of the step
+/// Where particles lie in the grid, and the normal of the ground there.
+struct Places {
+  AlignedVector<std::int32_t> column, row;
+  AlignedVector<double> east, north;  // within the cell, 0 to 1
+  AlignedVector<double> nx, ny, nz;
+
+  std::size_t size() const { return column.size(); }
+  GridPlace at(std::size_t i) const { return {column[i], row[i], east[i], north[i]}; }
+  Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
+
+  template <class Self, class Visit>
+  static void for_each_array(Self& self, const Visit& visit) {
+    visit(self.column);
+    visit(self.row);
+    visit(self.east);
+    visit(self.north);
+    visit(self.nx);
+    visit(self.ny);
+    visit(self.nz);
+  }
+  void resize(std::size_t n) {
+    for_each_array(*this, [n](auto& array) { array.resize(n); });
+  }
 };
 
-/// A particle where it would be at the end of the step without forces.
-struct alignas(32) PredictedPoint {
-  double x, y, z, thickness;
+/// What acts on each particle during a step; see SlideView.
+struct SlideLoads {
+  AlignedVector<double> ax, ay, az, yield, drag, speed;
+
+  void resize(std::size_t n) {
+    for (auto* array : {&ax, &ay, &az, &yield, &drag, &speed}) array->resize(n);
+  }
 };
 
 struct SlideWork {
-  std::vector<GridPlace> places;    // of the particles
-  std::vector<Vec3> normals;        // of the ground there
-  AlignedVector<double> thickness;  // m, of the snow there
+  Places places;
+  AlignedVector<double> thickness;  // m, of the snow at the particles
   CellLists cells;
   GridFields fields;
   BondLists bond_lists;
-  std::vector<SlideLoad> loads;
-  AlignedVector<PredictedPoint> predicted;
-  std::vector<Vec3> bond_forces;
-  std::vector<double> entrained;  // kg, by each particle in this step; empty where there is none
-  std::vector<char> removed;      // particles that left the terrain
-  std::vector<char> broken;       // bonds
+  SlideLoads loads;
+  AlignedVector<double> predicted;   // records of four for each particle, see SlideView
+  AlignedVector<double> bond_force;  // records of four for each bond
+  std::vector<double> entrained;     // kg, by each particle in this step; empty where there is none
+  std::vector<char> removed;         // particles that left the terrain
+  std::vector<char> broken;          // bonds
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
 
@@ -93,9 +122,15 @@ struct SlideWork {
 /// Iterations that a thread takes at a time.
 inline constexpr std::ptrdiff_t particles_in_piece = 256;
 
+/// What the kernels see of a slide, until an array of it changes its size.
+SlideView view_of(const SlideModel&, SlideState&, SlideWork&);
+
 /// Makes the workspace follow from the particles: places, cells, fields, bonds.
 void refresh(const SlideModel&, const SlideState&, SlideWork&);
-/// The same where bonds and the particles' places are known already.
+/// The places of the particles [begin, end), which the workspace has room for.
+void refresh_places(const SlideModel&, const SlideState&, SlideWork&, std::size_t begin,
+                    std::size_t end);
+/// The same as `refresh` where bonds and the particles' places are known already.
 void refresh_fields(const SlideModel&, const SlideState&, SlideWork&);
 
 }  // namespace snowshed

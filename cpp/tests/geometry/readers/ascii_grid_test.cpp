@@ -38,6 +38,13 @@ TEST_F(AsciiGrid, nodes_are_the_middles_of_cells_and_the_first_row_is_the_southe
   EXPECT_DOUBLE_EQ(read(replaced(good, "xllcorner", "xllcenter")).west, 1000);
 }
 
+TEST_F(AsciiGrid, a_missing_value_may_be_nan_where_the_header_says_so) {
+  const HeightField f = read(replaced(replaced(good, "value -9", "value nan"), "5 -9", "NaN -9"));
+  EXPECT_TRUE(std::isnan(f.height(1, 0)));
+  EXPECT_DOUBLE_EQ(f.height(2, 0), -9);
+  EXPECT_THROW(read(replaced(good, "5 -9", "nan -9")), InputError);
+}
+
 TEST_F(AsciiGrid, lines_may_break_anywhere) {
   EXPECT_EQ(read(replaced(good, "1 2 3\n4", "1\n2 3 4")).heights.size(), 6u);
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "methods/slide/slide_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
@@ -65,6 +67,42 @@ TEST(SlideRelease, an_area_that_is_smaller_than_a_particle_is_refused) {
   SlideArea ring = rectangle(20, 20, 20.2, 20.2);
   ring.polygon.holes = {{{20.01, 20.01}, {20.19, 20.01}, {20.19, 20.19}, {20.01, 20.19}}};
   EXPECT_THROW(seeded({}, ring), InputError);
+}
+
+/// A raster of thickness whose cells of 4 m begin at the origin.
+SlideArea mapped(SlideArea area, std::vector<double> heights, int columns = 4) {
+  HeightField map;
+  map.columns = columns;
+  map.rows = int(heights.size()) / columns;
+  map.cell = 4;
+  map.west = map.south = 22;  // the middle of the first cell
+  map.heights = std::move(heights);
+  area.map = std::make_shared<const HeightField>(std::move(map));
+  return area;
+}
+
+TEST(SlideRelease, a_raster_of_thickness_gives_each_cell_its_snow) {
+  // Two rows of four cells, of which the area covers a half of the western column.
+  const SlideArea area =
+      mapped(rectangle(22, 20, 36, 28), {0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4});
+  const double volume = 4 * (2 * 0.2 + 4 * (0.4 + 0.6 + 0.8) + 2 * 1.0 + 4 * (0.8 + 0.6 + 0.4));
+  const auto batches = seeded({}, area);
+  EXPECT_NEAR(mass_of(batches) / (volume / std::cos(radians(35)) * 300), 1, 1e-12);
+  // Particles of thicker snow are heavier in its ratio.
+  double thin = 0, thick = 0;
+  for (std::size_t k = 0; k < batches[0].positions.size(); ++k) {
+    const Vec3& x = batches[0].positions[k];
+    if (x.x() > 24.1 && x.x() < 27.9) (x.y() < 24 ? thin : thick) = batches[0].mass_of(k);
+  }
+  EXPECT_NEAR(thick / thin, 2, 1e-9);
+}
+
+TEST(SlideRelease, a_raster_that_does_not_say_the_thickness_everywhere_is_refused) {
+  const SlideArea area = rectangle(22, 20, 36, 28);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {nan, 0.0, -0.5, 1e4})
+    EXPECT_THROW(seeded({}, mapped(area, {1, 1, bad, 1, 1, 1, 1, 1})), InputError) << bad;
+  EXPECT_THROW(seeded({}, mapped(area, {1, 1, 1, 1, 1, 1}, 3)), InputError);
 }
 
 }  // namespace

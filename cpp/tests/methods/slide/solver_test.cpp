@@ -167,9 +167,15 @@ TEST(Slide, extreme_ground_gives_no_number_that_is_none) {
 
 TEST(Slide, areas_that_reach_beyond_the_terrain_are_refused) {
   EXPECT_THROW(make_slide(slide_on(inclined(35), rectangle(20, 20, 500, 40))), InputError);
-  HeightField holed = inclined(35);
-  holed.heights[holed.index(10, 10)] = std::nan("");
-  EXPECT_THROW(make_slide(slide_on(holed, rectangle(20, 20, 40, 40))), InputError);
+}
+
+TEST(Slide, holes_of_the_terrain_are_refused_where_snow_is_released) {
+  for (const int node : {10, 15, 20}) {  // at a corner of the area, within, and at another corner
+    HeightField holed = inclined(35);
+    holed.heights[holed.index(node, node)] = std::nan("");
+    EXPECT_THROW(make_slide(slide_on(holed, rectangle(20.3, 20.3, 39.7, 39.7))), InputError);
+    EXPECT_NO_THROW(make_slide(slide_on(holed, rectangle(60, 20, 80, 40))));
+  }
 }
 
 }  // namespace

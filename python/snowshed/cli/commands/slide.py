@@ -10,7 +10,9 @@ import click
 from snowshed._core import InputError
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
-from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.cli.slide_files import WAYS, SlideFiles, refuse_changed_areas, removing_copies
+from snowshed.cli.slide_project import run_project, write_particles
+from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.schema import Parameter, scene_parameters
 
 PATH = click.Path(path_type=Path)
@@ -42,6 +44,7 @@ def _option(parameter: Parameter, name: str) -> Any:
 @click.option("--terrain", type=PATH, help="Elevations: an ESRI ASCII grid or a GeoTIFF.")
 @click.option("--release", type=PATH, help="Polygons of the areas that break loose.")
 @click.option("--thickness", type=float, help="Thickness of the released snow [m].")
+@click.option("--thickness-raster", type=PATH, help="The same in the cells of a raster.")
 @click.option("--entrainment-areas", type=PATH, help="Polygons where snow is taken up.")
 @click.option("--resistance-areas", type=PATH, help="Polygons of forest.")
 @click.option("--avaframe", type=PATH, help="An AvaFrame project, run as AvaFrame 2.1 does.")
@@ -57,6 +60,7 @@ def slide(
     terrain: Optional[Path],
     release: Optional[Path],
     thickness: Optional[float],
+    thickness_raster: Optional[Path],
     entrainment_areas: Optional[Path],
     resistance_areas: Optional[Path],
     avaframe: Optional[Path],
@@ -78,62 +82,32 @@ def slide(
     given = {name: value for name, value in settings.items() if value is not None}
     if compatible:
         given["mode"] = "compatible"
-    if resume:
-        ready = ResolvedScene.load(folder / "scene.json")
-    else:
-        scene = _scene(
-            folder, terrain, release, thickness, entrainment_areas, resistance_areas, avaframe,
-            example=example, settings=given,
+    if avaframe is not None:
+        if terrain is not None or release is not None or thickness_raster is not None or example:
+            raise InputError(WAYS)
+        if entrainment_areas is not None or resistance_areas is not None:
+            raise InputError("--avaframe: areas are those of the project, in ENT and RES")
+        run_project(
+            avaframe, folder, resume=resume, quiet=quiet, settings=given, thickness=thickness,
+            max_time=max_time, steps=steps,
         )  # fmt: skip
-        if max_time is not None:
-            scene.set("events.max_time", max_time)
-        ready = scene.resolve()
-    run_scene(ready, folder, resume, quiet)
-    if avaframe is not None:
-        _write_as_avaframe(folder, avaframe)
-    if steps:
-        _write_particles(ready, folder, steps)
-
-
-def _scene(
-    folder: Path,
-    terrain: Optional[Path],
-    release: Optional[Path],
-    thickness: Optional[float],
-    entrainment: Optional[Path],
-    resistance: Optional[Path],
-    avaframe: Optional[Path],
-    *,
-    example: bool,
-    settings: dict[str, object],
-) -> Scene:
-    """Return the scene that the options describe."""
-    from snowshed.methods.slide import SlideSettings
-    from snowshed.scene.builders.avaframe import avaframe_scene
-    from snowshed.scene.builders.slides import example_slide, slide_scene
-
-    ways = [terrain is not None or release is not None, avaframe is not None, example]
-    if sum(ways) != 1:
-        raise InputError("give --terrain and --release, or --avaframe, or --example")
-    beside = folder.with_name(f"{folder.name}-terrain")
-    if avaframe is not None:
-        copy = beside.with_suffix(".asc")
-        return avaframe_scene(avaframe, settings=settings, thickness=thickness, ascii_copy=copy)
-    if example:
-        beside.mkdir(parents=True, exist_ok=True)
-        return example_slide(beside).update({"numerics": settings})
-    if terrain is None or release is None:
-        raise InputError("give both --terrain and --release")
-    return slide_scene(
-        terrain,
-        release,
-        thickness=thickness,
-        entrainment=entrainment,
-        resistance=resistance,
-        settings=SlideSettings.from_data(settings),
-        ascii_copy=beside.with_suffix(".asc"),
-        title=f"Slide on {terrain.name}",
+        return
+    files = SlideFiles(
+        terrain, release, thickness_raster, entrainment_areas, resistance_areas, thickness
     )
+    with removing_copies(folder):
+        if resume and not files.any():
+            ready = ResolvedScene.load(folder / "scene.json")
+        else:
+            scene = files.scene(folder, example=example, settings=given)
+            if max_time is not None:
+                scene.set("events.max_time", max_time)
+            ready = scene.resolve()
+            if resume:
+                refuse_changed_areas(ready, folder, files.of_areas())
+        run_scene(ready, folder, resume, quiet)
+    if steps:
+        write_particles(ready, folder, steps)
 
 
 def _steps(text: Optional[str]) -> list[int]:
@@ -146,30 +120,3 @@ def _steps(text: Optional[str]) -> list[int]:
     if min(steps) < 0:
         raise InputError(f"--particles-at: {min(steps)}; a number of steps is not negative")
     return steps
-
-
-def _write_particles(ready: ResolvedScene, folder: Path, steps: list[int]) -> None:
-    from snowshed.io.atomic import replacing
-    from snowshed.run.slides import particles_at
-
-    for step, table in particles_at(ready, steps).items():
-        name = "particles_initial" if step == 0 else f"particles_step{step:05d}"
-        with replacing(folder / f"{name}.csv") as beside:
-            table.to_csv(beside, index=False, float_format="%.10g")
-
-
-def _write_as_avaframe(folder: Path, project: Path) -> None:
-    """Write the peak maps under AvaFrame's names, so that its tools find them."""
-    import hashlib
-    import shutil
-
-    from snowshed.io.atomic import replacing
-
-    scene = (folder / "scene.json").read_bytes()
-    (release,) = sorted((project / "Inputs" / "REL").glob("*.shp"))[:1] or [Path("release")]
-    name = f"{release.stem}_{hashlib.sha256(scene).hexdigest()[:10]}_com5_C_L_null_ssl"
-    peaks = folder / "Outputs" / "com5SnowSlide" / "peakFiles"
-    peaks.mkdir(parents=True, exist_ok=True)
-    for kind in ("ppr", "pft", "pfv"):
-        with replacing(peaks / f"{name}_{kind}.asc") as beside:
-            shutil.copyfile(folder / "peaks" / f"{kind}.asc", beside)

@@ -2,64 +2,114 @@
 
 from __future__ import annotations
 
-import configparser
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.messages import suggestion
+from snowshed.io.map_areas import read_areas
 from snowshed.io.paths import PathLike
+from snowshed.io.raster import GEOTIFF, read_raster, write_ascii_grid
+from snowshed.io.raster_resampling import resampled_raster
 from snowshed.methods.slide import SlideSettings
-from snowshed.scene.builders.slides import MAX_TIME, slide_scene
+from snowshed.scene.builders.avaframe_ini import SIM_TYPES, ProjectSettings, read_ini
+from snowshed.scene.builders.slides import slide_scene
 from snowshed.scene.scene import Scene
 
-#: Keys of the ini that are settings here, in the sections GENERAL and com1DFA's overrides.
-SETTINGS: Mapping[str, str] = {
-    "dt": "time_step",
-    "rho": "density",
-    "meshcellsize": "cell",
-    "deltath": "layer_thickness",
-    "muvoellmy": "friction",
-    "xsivoellmy": "turbulence",
-    "cohesionmaxstrain": "max_strain",
-    "cohesivesurfacetension": "bond_modulus",
-    "mindistcohesion": "min_bond_length",
-    "cresh": "resistance",
-    "subgridmixingfactor": "artificial_viscosity",
-    "rhoent": "entrained_density",
-    "enteroenergy": "erosion_energy",
-    "entshearresistance": "entrainment_shear",
-    "entdefresistance": "entrainment_work",
-    "thresholdmasssplit": "split_ratio",
-    "stopcrit": "stop_ratio",
-}
-#: Keys that may only have the value with which com5SnowSlide works here.
-FIXED: Mapping[str, str] = {
-    "modeltype": "ssl",
-    "initpartdisttype": "triangular",
-    "massperparticledeterminationmethod": "mppdh",
-    "resistancemodel": "default",
-    "detrainment": "false",
-    "sphoption": "1",
-    "viscoption": "1",
-    "splitoption": "0",
-    "interpoption": "2",
-    "stopcrittype": "kinenergy",
-    "centeredposition": "1",
-    "methodmeshnormal": "1",
-    "reprojmethodforce": "2",
-    "reprojmethodposition": "2",
-    "curvaccinfriction": "1",
-    "curvaccintangent": "0",
-    "curvaccingradient": "0",
-    "inistep": "false",
-    "gravacc": "9.81",
-}
-#: Keys that change nothing that is computed.
-IGNORED = ("defaultconfig", "restype", "tsteps", "seed", "simtypelist", "tend")
-#: The computing cell and step of com5SnowSlide.
-DEFAULTS: Mapping[str, float] = {"cell": 2.0, "time_step": 0.01}
+POLYGONS = ("*.shp", "*.gpkg", "*.geojson")
+RASTERS = ("*.asc", "*.tif", "*.tiff")
+#: Cells whose sizes differ by less are the same, m.
+SAME_CELL = 1e-3
+
+
+@dataclass(frozen=True)
+class AvaFrameSimulation:
+    """One of the simulations that AvaFrame makes of a project.
+
+    Attributes
+    ----------
+    scene
+        What to simulate.
+    release
+        Name of the release file, without ending.
+    sim_type
+        "entres", "ent", "res" or "null": with areas of entrainment, of resistance, or neither.
+    project
+        What the ini asks for.
+    folder
+        The project folder.
+    files
+        Files of the areas, by the part of a scene's terrain that they make; None without such.
+    """
+
+    scene: Scene
+    release: str
+    sim_type: str
+    project: ProjectSettings
+    folder: Path
+    files: Mapping[str, Optional[Path]]
+
+
+def avaframe_simulations(
+    folder: PathLike,
+    *,
+    settings: Optional[Mapping[str, object]] = None,
+    thickness: Optional[float] = None,
+    ascii_copy: Optional[PathLike] = None,
+) -> list[AvaFrameSimulation]:
+    """Return the simulations of an AvaFrame project folder, in the compatible mode.
+
+    There is one for every release file and every type of simulation; the first has all areas that
+    are asked for.
+
+    Parameters
+    ----------
+    folder
+        The project: ``Inputs`` with the terrain (.asc or .tif), ``REL`` and, where there are any,
+        ``ENT`` and ``RES``; the ini of com5SnowSlide, if any, in ``Inputs/CFGs``, ``Inputs`` or the
+        folder.
+    settings
+        Settings that go before those of the ini, by their names in `SlideSettings`.
+    thickness
+        Thickness of the released snow [m], in place of the files'.
+    ascii_copy
+        Where the copy of terrain goes that is a GeoTIFF or has other cells than the ini asks for.
+
+    Raises
+    ------
+    InputError
+        If the folder is no such project, or asks for what com5SnowSlide does not do here.
+    OSError
+        If a file cannot be read.
+    """
+    root = Path(folder)
+    inputs = root / "Inputs"
+    if not inputs.is_dir():
+        raise InputError(f"{root}: no AvaFrame project: it has no folder Inputs")
+    project = read_ini(_ini_of(root, inputs / "CFGs", inputs))
+    project.values.update(settings or {})
+    project.values["mode"] = "compatible"
+    if thickness is not None:
+        project.release_thickness = thickness
+    _refuse_what_is_not_done(inputs, project)
+    areas = {
+        "ent": _one_if_any(inputs / "ENT", "entrainment"),
+        "res": _one_if_any(inputs / "RES", "resistance"),
+    }
+    terrain = _terrain(_one(inputs, RASTERS, "terrain"), project, ascii_copy)
+    return [
+        AvaFrameSimulation(
+            _scene(root, terrain, release, areas, sim_type, project, ascii_copy),
+            release.stem,
+            sim_type,
+            project,
+            root,
+            {"release": release, "entrainment": areas["ent"], "resistance": areas["res"]},
+        )
+        for release in _releases(inputs / "REL", project)
+        for sim_type in _sim_types(project, areas, inputs)
+    ]
 
 
 def avaframe_scene(
@@ -69,121 +119,118 @@ def avaframe_scene(
     thickness: Optional[float] = None,
     ascii_copy: Optional[PathLike] = None,
 ) -> Scene:
-    """Return the scene of an AvaFrame project folder, in the compatible mode.
+    """Return the scene of the first simulation of an AvaFrame project, with all its areas.
 
-    Parameters
-    ----------
-    folder
-        The project: ``Inputs`` with the terrain (.asc or .tif), ``REL`` and, where there are any,
-        ``ENT`` and ``RES``; the ini of com5SnowSlide, if any, in it or in ``Inputs``.
-    settings
-        Settings that go before those of the ini, by their names in `SlideSettings`.
-    thickness
-        Thickness of the released snow [m], in place of the files'.
-    ascii_copy
-        Where the copy of a GeoTIFF goes.
-
-    Raises
-    ------
-    InputError
-        If the folder is no such project, or the ini asks for what com5SnowSlide does not do here.
-    OSError
-        If a file cannot be read.
+    Parameters and errors are those of `avaframe_simulations`.
     """
-    project = Path(folder)
-    inputs = project / "Inputs"
-    if not inputs.is_dir():
-        raise InputError(f"{project}: no AvaFrame project: it has no folder Inputs")
-    options, max_time = read_ini(_only(project, inputs))
-    values = {**DEFAULTS, **options, **(settings or {}), "mode": "compatible"}
-    scene = slide_scene(
-        _one(inputs, ("*.asc", "*.tif", "*.tiff"), "terrain"),
-        _one(inputs / "REL", ("*.shp", "*.gpkg", "*.geojson"), "release area"),
-        thickness=thickness,
-        entrainment=_one_if_any(inputs / "ENT"),
-        resistance=_one_if_any(inputs / "RES"),
-        settings=SlideSettings.from_data(values),
-        ascii_copy=ascii_copy,
-        title=f"{project.resolve().name} (AvaFrame)",
+    found = avaframe_simulations(
+        folder, settings=settings, thickness=thickness, ascii_copy=ascii_copy
     )
-    return scene.set("events.max_time", max_time)
+    return found[0].scene
 
 
-def read_ini(file: Optional[Path]) -> tuple[dict[str, object], float]:
-    """Return the settings of an ini of com5SnowSlide, and the longest duration, s.
-
-    Raises
-    ------
-    InputError
-        If the file is no ini, or a key or its value is none that works here.
-
-    Examples
-    --------
-    >>> read_ini(None)
-    ({}, 400.0)
-    """
-    values: dict[str, object] = {}
-    max_time = MAX_TIME
-    for key, text in _keys_of(file).items():
-        where = f"{file}: {key}"
-        if key in SETTINGS:
-            values[SETTINGS[key]] = _number(text, where)
-        elif key == "tend":
-            max_time = _number(text, where)
-        elif key == "snowslide":
-            values["bonds"] = _number(text, where) != 0.0
-        elif key == "explicitfriction":
-            values["explicit_friction"] = _number(text, where) != 0.0
-        elif key == "frictmodel":
-            values["friction_law"] = _friction_law(text, where)
-        elif key == "mucoulomb":
-            values.setdefault("friction", _number(text, where))
-        elif key in FIXED:
-            if not _is_same(text, FIXED[key]):
-                raise InputError(f"{where}: {text!r} is not available; allowed: {FIXED[key]}")
-        elif key not in IGNORED:
-            near = suggestion(key, [*SETTINGS, *FIXED])
-            raise InputError(f"{where}: none of the keys that are known here{near}")
-    return values, max_time
+def _scene(
+    root: Path,
+    terrain: Path,
+    release: Path,
+    areas: Mapping[str, Optional[Path]],
+    sim_type: str,
+    project: ProjectSettings,
+    ascii_copy: Optional[PathLike],
+) -> Scene:
+    entrainment = areas["ent"] if sim_type.startswith("ent") else None
+    resistance = areas["res"] if sim_type.endswith("res") else None
+    scene = slide_scene(
+        terrain,
+        release,
+        thickness=project.release_thickness,
+        entrainment=entrainment,
+        entrained_thickness=_entrained_thickness(entrainment, project),
+        resistance=resistance,
+        settings=SlideSettings.from_data(project.values),
+        ascii_copy=ascii_copy,
+        title=f"{root.resolve().name} (AvaFrame)",
+    )
+    if scene.terrain is not None:
+        for area in (*(scene.terrain.release or ()), *(scene.terrain.entrainment or ())):
+            if area.holes:
+                raise InputError(f"{area.name}: has a hole, which AvaFrame does not allow")
+        # AvaFrame reads GeoTIFF in double precision, also one that it has resampled.
+        if _one(root / "Inputs", RASTERS, "terrain").suffix.lower() in GEOTIFF:
+            scene.terrain.single_precision = False
+    return scene.set("events.max_time", project.max_time)
 
 
-def _keys_of(file: Optional[Path]) -> dict[str, str]:
-    if file is None:
-        return {}
-    parser = configparser.ConfigParser(interpolation=None)
-    try:
-        parser.read_string(file.read_text(encoding="utf-8"), str(file))
-    except (configparser.Error, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: not an ini file: {error}") from None
-    found: dict[str, str] = {}
-    for section in parser.sections():
-        if section == "GENERAL" or section.endswith("_override"):
-            found.update(parser.items(section))
-    return {key: text for key, text in found.items() if text.strip()}
+def _entrained_thickness(file: Optional[Path], project: ProjectSettings) -> Optional[float]:
+    if file is None or project.entrained_thickness is not None:
+        return project.entrained_thickness
+    if all(area.thickness is None for area in read_areas(file)):
+        return project.default_entrained_thickness
+    return None
 
 
-def _number(text: str, where: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise InputError(f"{where}: {text!r} is not one number") from None
+def _terrain(file: Path, project: ProjectSettings, ascii_copy: Optional[PathLike]) -> Path:
+    """Return the terrain on the cells that are asked for, resampled as AvaFrame does it."""
+    cell = float(str(project.values["cell"]))
+    if cell == 0:
+        return file
+    original = read_raster(file)
+    if abs(original.cell - cell) <= SAME_CELL:
+        project.values["cell"] = original.cell
+        return file
+    if ascii_copy is None:
+        raise InputError(f"{file}: say where its copy on cells of {cell:g} m shall go (ascii_copy)")
+    write_ascii_grid(ascii_copy, resampled_raster(file, cell), exact=True)
+    return Path(ascii_copy)
 
 
-def _friction_law(text: str, where: str) -> str:
-    name = text.strip().lower()
-    if name not in ("voellmy", "coulomb"):
-        raise InputError(f"{where}: {text!r} is none of Voellmy, Coulomb")
-    return name
+def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
+    rasters = _files(folder, RASTERS)
+    if rasters:
+        raise InputError(
+            f"{rasters[0]}: com5SnowSlide takes no release from a raster; give polygons, or use "
+            "--terrain with --thickness-raster"
+        )
+    found = _files(folder, POLYGONS)
+    if project.release_scenario:
+        found = [file for file in found if file.stem == project.release_scenario]
+        if not found:
+            raise InputError(f"{folder}: no release area {project.release_scenario!r}")
+    if not found:
+        raise InputError(f"{folder}: no file of a release area ({', '.join(POLYGONS)})")
+    return found
 
 
-def _is_same(text: str, allowed: str) -> bool:
-    try:
-        return float(text) == float(allowed)
-    except ValueError:
-        return text.strip().lower() == allowed
+def _sim_types(
+    project: ProjectSettings, areas: Mapping[str, Optional[Path]], inputs: Path
+) -> list[str]:
+    """Return the types to simulate, that with the most areas first."""
+    wanted = set(project.sim_types)
+    if "available" in wanted:
+        available = "".join(kind for kind, file in areas.items() if file is not None)
+        wanted = (wanted - {"available"}) | {"null", available or "null"}
+    for kind, folder in (("ent", "ENT"), ("res", "RES")):
+        if areas[kind] is None and any(kind in name for name in wanted):
+            raise InputError(
+                f"{inputs / folder}: holds no polygons, which simTypeList "
+                f"{'|'.join(project.sim_types)} needs"
+            )
+    return [name for name in SIM_TYPES if name in wanted]
 
 
-def _only(*folders: Path) -> Optional[Path]:
+def _refuse_what_is_not_done(inputs: Path, project: ProjectSettings) -> None:
+    secondary = _files(inputs / "SECREL", (*POLYGONS, *RASTERS))
+    if secondary and project.with_secondary_release:
+        raise InputError(
+            f"{secondary[0]}: secondary release areas are not available; set secRelArea = False to "
+            "leave them out"
+        )
+    dams = _files(inputs / "DAM", POLYGONS)
+    if dams and project.with_dam:
+        raise InputError(f"{dams[0]}: dams are not available; set dam = False to leave them out")
+
+
+def _ini_of(*folders: Path) -> Optional[Path]:
     """Return the ini of com5SnowSlide in the folders; None without one."""
     found = [file for folder in folders for file in sorted(folder.glob("*com5SnowSlideCfg.ini"))]
     if len(found) > 1:
@@ -191,15 +238,19 @@ def _only(*folders: Path) -> Optional[Path]:
     return found[0] if found else None
 
 
+def _files(folder: Path, patterns: tuple[str, ...]) -> list[Path]:
+    return sorted(file for pattern in patterns for file in folder.glob(pattern))
+
+
 def _one(folder: Path, patterns: tuple[str, ...], what: str) -> Path:
-    found = sorted(file for pattern in patterns for file in folder.glob(pattern))
+    found = _files(folder, patterns)
     if len(found) != 1:
         raise InputError(f"{folder}: {len(found)} files of the {what}; allowed: 1")
     return found[0]
 
 
-def _one_if_any(folder: Path) -> Optional[Path]:
-    patterns = ("*.shp", "*.gpkg", "*.geojson")
-    if not any(True for pattern in patterns for _ in folder.glob(pattern)):
-        return None
-    return _one(folder, patterns, folder.name)
+def _one_if_any(folder: Path, what: str) -> Optional[Path]:
+    rasters = _files(folder, RASTERS)
+    if rasters:
+        raise InputError(f"{rasters[0]}: areas of {what} are taken from polygons only")
+    return _one(folder, POLYGONS, what) if _files(folder, POLYGONS) else None

@@ -11,22 +11,30 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.map_areas import MapArea, read_areas
 from snowshed.io.paths import PathLike
-from snowshed.io.raster import GEOTIFF, Raster, read_raster, write_ascii_grid
+from snowshed.io.raster import GEOTIFF, Raster, is_single, read_raster, write_ascii_grid
+from snowshed.io.release_raster import areas_of_depth
 from snowshed.methods.slide import SlideSettings
+from snowshed.scene.builders.terrain_checks import (
+    check_apart,
+    check_place,
+    check_terrain,
+    common_system,
+)
 from snowshed.scene.components import Area, Events, Hole, ResistanceArea, Terrain
 from snowshed.scene.scene import Scene
 
 MAX_TIME = 400.0  # s, as AvaFrame has it
-LOWEST, HIGHEST = -430.0, 8850.0  # m, of the Earth's land
 THINNEST = 0.01  # m, of snow that is worth a slide
 
 
 def slide_scene(
     raster: PathLike,
-    release: PathLike,
+    release: Optional[PathLike] = None,
     *,
     thickness: Optional[float] = None,
+    thickness_raster: Optional[PathLike] = None,
     entrainment: Optional[PathLike] = None,
+    entrained_thickness: Optional[float] = None,
     resistance: Optional[PathLike] = None,
     settings: Optional[SlideSettings] = None,
     ascii_copy: Optional[PathLike] = None,
@@ -39,38 +47,51 @@ def slide_scene(
     raster
         Elevations, m: an ESRI ASCII grid or a GeoTIFF, on a projected map.
     release
-        Polygons of the areas that break loose; a field "thickness" holds that of the snow, m.
+        Polygons of the areas that break loose; a field "thickness" holds that of the snow, m. None:
+        all cells where `thickness_raster` holds snow.
     thickness
         Thickness of the snow, normal to the ground [m], in place of the file's.
+    thickness_raster
+        The same in the cells of a raster, m; it must say it everywhere in the release.
     entrainment, resistance
         Polygons of areas where snow is taken up, and of forest.
+    entrained_thickness
+        Thickness of the snow that can be taken up [m], in place of the file's.
     settings
         Settings of the method; None: its defaults.
     ascii_copy
-        Where a GeoTIFF's copy as an ASCII grid goes, which the scene names.
+        Where a GeoTIFF's copy as an ASCII grid goes, which the scene names; that of a raster of
+        thickness goes beside it.
     title
         What this scene is.
 
     Raises
     ------
     InputError
-        If a file is not what it should be, coordinate systems differ, elevations are none in
-        metres, or the thickness is missing.
+        If a file is not what it should be, coordinate systems differ, elevations or cells are none
+        in metres, areas lie beside the terrain or on each other, or the thickness is missing.
     OSError
         If a file cannot be read, or the copy not be written.
     """
     terrain = read_raster(raster)
-    _check_elevations(terrain)
-    areas = read_areas(release)
+    check_terrain(terrain)
+    depth = read_raster(thickness_raster) if thickness_raster is not None else None
+    areas = _release_areas(release, thickness, depth)
     eroded = read_areas(entrainment) if entrainment is not None else []
     held = read_areas(resistance) if resistance is not None else []
-    crs = _common_crs([terrain.crs, *(area.crs for area in (*areas, *eroded, *held))])
-    file = Path(raster)
-    if file.suffix.lower() in GEOTIFF:
-        if ascii_copy is None:
-            raise InputError(f"{raster}: say where its copy as an ASCII grid shall go (ascii_copy)")
-        write_ascii_grid(ascii_copy, terrain)
-        file = Path(ascii_copy)
+    check_place(terrain, areas)
+    check_apart(areas)
+    files = [(str(raster), terrain.crs), *((area.file, area.crs) for area in areas + eroded + held)]
+    if depth is not None:
+        files.append((depth.name, depth.crs))
+    crs = common_system(files)
+    rings = [_snow_area(area, thickness, depth) for area in areas]
+    file = _as_text(Path(raster), terrain, ascii_copy)
+    map_file = None
+    if depth is not None:
+        beside = Path(ascii_copy) if ascii_copy is not None else None
+        copy = beside.with_name(f"{beside.stem}-thickness.asc") if beside is not None else None
+        map_file = str(_as_text(Path(depth.name), depth, copy).resolve())
     return Scene(
         method="slide",
         dimension=3,
@@ -78,8 +99,11 @@ def slide_scene(
         terrain=Terrain(
             file=file.resolve(),
             crs=crs,
-            release=[_snow_area(area, thickness) for area in areas],
-            entrainment=[_snow_area(area, None) for area in eroded] or None,
+            # GeoTIFF keeps double precision, AvaFrame reads text in single.
+            single_precision=None if file == Path(raster) or is_single(terrain) else False,
+            thickness_file=map_file,
+            release=rings,
+            entrainment=[_snow_area(area, entrained_thickness) for area in eroded] or None,
             resistance=[
                 ResistanceArea(name=area.name, outline=area.outline, holes=_holes(area))
                 for area in held
@@ -124,32 +148,34 @@ def example_slide(folder: PathLike) -> Scene:
     )
 
 
-def _check_elevations(terrain: Raster) -> None:
-    known = terrain.heights[~np.isnan(terrain.heights)]
-    if known.size == 0:
-        raise InputError(f"{terrain.name}: holds no elevation")
-    low, high = float(known.min()), float(known.max())
-    if low < LOWEST or high > HIGHEST:
-        raise InputError(
-            f"{terrain.name}: elevations from {low:g} to {high:g} m are none of the Earth "
-            f"({LOWEST:g} to {HIGHEST:g} m); are they in feet?"
-        )
+def _as_text(file: Path, raster: Raster, copy: Optional[PathLike]) -> Path:
+    """Return an ASCII grid of a raster: itself, or its copy."""
+    if file.suffix.lower() not in GEOTIFF:
+        return file
+    if copy is None:
+        raise InputError(f"{file}: say where its copy as an ASCII grid shall go (ascii_copy)")
+    write_ascii_grid(copy, raster, exact=True)
+    return Path(copy)
 
 
-def _common_crs(names: list[str]) -> str:
-    """Return the coordinate system that all files have that say it; empty where none does."""
-    given = [name for name in names if name]
-    for name in given:
-        if name != given[0]:
-            raise InputError(
-                f"the files have different coordinate systems, {given[0]} and {name}; "
-                "bring them to one first"
-            )
-    return given[0] if given else ""
+def _release_areas(
+    release: Optional[PathLike], thickness: Optional[float], depth: Optional[Raster]
+) -> list[MapArea]:
+    if depth is not None:
+        if thickness is not None:
+            raise InputError("give one of a thickness and a raster of thickness")
+        if not (depth.heights > 0).any():
+            raise InputError(f"{depth.name}: holds no thickness above 0")
+        return areas_of_depth(depth) if release is None else read_areas(release)
+    if release is None:
+        raise InputError("give the release: polygons or a raster of thickness")
+    return read_areas(release)
 
 
-def _snow_area(area: MapArea, thickness: Optional[float]) -> Area:
+def _snow_area(area: MapArea, thickness: Optional[float], depth: Optional[Raster] = None) -> Area:
     snow = thickness if thickness is not None else area.thickness
+    if depth is not None:  # the scene's raster goes before it
+        snow = float(np.nanmax(depth.heights))
     if snow is None:
         raise InputError(f"{area.name}: the file gives no thickness; give one (--thickness)")
     if snow < THINNEST:

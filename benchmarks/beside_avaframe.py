@@ -1,0 +1,131 @@
+"""Compare the speed of snow slides with AvaFrame's com5SnowSlide, side by side in one run.
+
+Usage: python benchmarks/beside_avaframe.py AVAFRAME_PYTHON [--particles 360 1100 100000]
+
+AVAFRAME_PYTHON is the interpreter of an environment with AvaFrame 2.1 (``pip install
+avaframe==2.1``). Both run the same project folders in turn, a slab on an incline with run-out, in
+steps of 0.01 s; the best of three counts. AvaFrame's time is that of its function for a time step
+alone. Nothing else should run on the machine meanwhile.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from snowshed.io.raster import Raster, write_ascii_grid
+from snowshed.run.simulation import Simulation
+from snowshed.scene.builders.avaframe import avaframe_scene
+
+CELL = 2.0  # m
+THICKNESS = 0.5  # m; two particles a cell
+REPETITIONS = 3
+
+# Runs in AvaFrame's environment: makes the shapefile that it and we read, or times its steps.
+AVAFRAME = """
+import json, logging, sys, time
+from pathlib import Path
+project, steps = Path(sys.argv[1]), int(sys.argv[2])
+if steps == 0:
+    import shapefile
+    low, high = float(sys.argv[3]), float(sys.argv[4])
+    with shapefile.Writer(str(project / "Inputs/REL/slab")) as out:
+        out.field("name", "C"); out.field("thickness", "N", decimal=3)
+        out.poly([[[low, low], [low, high], [high, high], [high, low], [low, low]]])
+        out.record("slab", float(sys.argv[5]))
+    sys.exit()
+import matplotlib; matplotlib.use("Agg")
+logging.disable(logging.WARNING)
+from avaframe.in3Utils import cfgUtils, initializeProject
+from avaframe.com1DFA import com1DFA
+from avaframe.com5SnowSlide import com5SnowSlide
+spent = {"s": 0.0, "particle_steps": 0}
+original = com1DFA.computeEulerTimeStep
+def timed(*args, **options):
+    begin = time.perf_counter()
+    result = original(*args, **options)
+    spent["s"] += time.perf_counter() - begin
+    spent["particle_steps"] += int(result[0]["nPart"])
+    return result
+com1DFA.computeEulerTimeStep = timed
+com1DFA.oP.plotAllPeakFields = lambda *a, **k: {}
+main = cfgUtils.getGeneralConfig()
+main["MAIN"]["avalancheDir"] = str(project)
+main["FLAGS"]["createReport"] = "False"
+initializeProject.cleanSingleAvaDir(str(project), deleteOutput=True)
+cfg = cfgUtils.getModuleConfig(com5SnowSlide, str(project), toPrint=False)
+cfg["com1DFA_com1DFA_override"]["tEnd"] = str(0.01 * steps)
+com5SnowSlide.com5SnowSlideMain(main, cfg)
+print("\\n" + json.dumps(spent))
+"""
+
+
+def make_project(folder: Path, particles: int, python: str) -> None:
+    """Write a project folder whose slab has about so many particles."""
+    side = math.sqrt(particles / 2) * CELL
+    columns, rows = int((side + 240) / CELL), int((side + 40) / CELL)
+    x = np.arange(columns) * CELL
+    fall = np.minimum(x, side + 160) * math.tan(math.radians(35))
+    heights = np.broadcast_to(500 + fall.max() - fall, (rows, columns))
+    (folder / "Inputs" / "REL").mkdir(parents=True)
+    raster = Raster(heights, east=0.0, north=0.0, cell=CELL)
+    write_ascii_grid(folder / "Inputs" / "dem.asc", raster)
+    place = [str(20.0), str(20.0 + side), str(THICKNESS)]
+    subprocess.run([python, "-c", AVAFRAME, str(folder), "0", *place], check=True)
+
+
+def avaframe_seconds(folder: Path, steps: int, python: str) -> float:
+    """Return AvaFrame's time for a particle step, s."""
+    done = subprocess.run(
+        [python, "-c", AVAFRAME, str(folder), str(steps)],
+        check=True,
+        capture_output=True,
+        text=True,
+        cwd=folder,
+    )
+    spent = json.loads(done.stdout.strip().splitlines()[-1])
+    return float(spent["s"] / spent["particle_steps"])
+
+
+def our_seconds(folder: Path, steps: int) -> tuple[float, int]:
+    """Return our time for a particle step, s, and the number of particles."""
+    simulation = Simulation(avaframe_scene(folder))
+    simulation.begin_event()
+    particles = simulation.particle_count
+    begin = time.perf_counter()
+    simulation.step(steps)
+    return (time.perf_counter() - begin) / steps / particles, particles
+
+
+def main() -> None:
+    """Print a table of times and their ratios."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("python", help="interpreter that has AvaFrame")
+    parser.add_argument("--particles", type=int, nargs="+", default=[360, 1100, 100_000])
+    options = parser.parse_args()
+    print(f"{os.cpu_count()} cores; microseconds for a particle step")
+    print(f"{'particles':>10} {'AvaFrame':>10} {'snowshed':>10} {'ratio':>8}")
+    for wanted in options.particles:
+        steps = 500 if wanted < 10_000 else 20
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            make_project(folder, wanted, options.python)
+            ours, theirs, particles = [], [], 0
+            for _ in range(REPETITIONS):
+                seconds, particles = our_seconds(folder, steps)
+                ours.append(seconds)
+                theirs.append(avaframe_seconds(folder, steps, options.python))
+        ratio = min(theirs) / min(ours)
+        print(f"{particles:>10} {1e6 * min(theirs):>10.2f} {1e6 * min(ours):>10.4f} {ratio:>8.1f}")
+
+
+if __name__ == "__main__":
+    main()

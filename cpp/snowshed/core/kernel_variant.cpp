@@ -1,0 +1,81 @@
+// Picks, once, the widest instruction set that both the build and the machine have.
+#include "snowshed/core/kernel_variant.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "snowshed/core/errors.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr KernelVariant all_variants[] = {KernelVariant::baseline, KernelVariant::avx2,
+                                          KernelVariant::avx512};
+
+const char* name_of(KernelVariant variant) {
+  switch (variant) {
+    case KernelVariant::avx512:
+      return "avx512";
+    case KernelVariant::avx2:
+      return "avx2";
+    default:
+      return "baseline";
+  }
+}
+
+/// Whether both the build and the machine have a variant.
+bool is_supported(KernelVariant variant) {
+#ifdef SNOWSHED_HAS_KERNELS_avx512
+  if (variant == KernelVariant::avx512)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+#endif
+#ifdef SNOWSHED_HAS_KERNELS_avx2
+  if (variant == KernelVariant::avx2)
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+           __builtin_cpu_supports("bmi2");
+#endif
+  return variant == KernelVariant::baseline;
+}
+
+std::vector<KernelVariant> supported_variants() {
+  std::vector<KernelVariant> supported;
+  std::copy_if(std::begin(all_variants), std::end(all_variants), std::back_inserter(supported),
+               is_supported);
+  return supported;
+}
+
+template <class Variants>
+std::string list_of(const Variants& variants) {
+  std::string list;
+  for (const KernelVariant v : variants)
+    list += (list.empty() ? "" : ", ") + std::string(name_of(v));
+  return list;
+}
+
+/// The widest variant that runs here, or the one that the user asks for.
+KernelVariant chosen_variant() {
+  const std::vector<KernelVariant> supported = supported_variants();
+  const char* forced = std::getenv("SNOWSHED_KERNELS");
+  if (!forced || !*forced) return supported.back();
+  for (const KernelVariant v : supported)
+    if (std::strcmp(forced, name_of(v)) == 0) return v;
+  throw InputError("SNOWSHED_KERNELS", "is \"" + std::string(forced) +
+                                           "\"; allowed: " + list_of(all_variants) +
+                                           "; this machine can run: " + list_of(supported));
+}
+
+}  // namespace
+
+KernelVariant chosen_kernel_variant() {
+  static const KernelVariant chosen = chosen_variant();
+  return chosen;
+}
+
+const char* kernel_variant() { return name_of(chosen_kernel_variant()); }
+
+}  // namespace snowshed

@@ -1,0 +1,15 @@
+// Which of the instruction sets that kernels are compiled for a process uses.
+#pragma once
+
+namespace snowshed {
+
+enum class KernelVariant { baseline, avx2, avx512 };
+
+/// Returns the widest one that both the build and the machine have, or the one that the environment
+/// variable SNOWSHED_KERNELS names. Throws InputError where that cannot be had.
+KernelVariant chosen_kernel_variant();
+
+/// Returns its name.
+const char* kernel_variant();
+
+}  // namespace snowshed

@@ -1,0 +1,93 @@
+// What the slide's solver and its kernels agree on: raw views, and a table of functions. The
+// kernels are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here
+// depends on one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace snowshed {
+
+/// How friction acts within a step.
+enum class FrictionScheme {
+  set_valued,         // Coulomb friction stops and holds snow
+  avaframe_implicit,  // a rate that divides by the speed of before
+  avaframe_explicit
+};
+
+/// Entries that may be read, whatever they hold, after those of the sorted arrays.
+inline constexpr std::size_t sorted_padding = 8;
+
+/// Arrays of one value for each particle, and what all of them have in common.
+struct SlideView {
+  // The ground: records of height, slopes along x and y, and area at the nodes, row by row.
+  const double* ground;
+  int columns, rows;
+  double cell, per_cell;  // m, 1/m
+
+  // The snow on the nodes of a rectangle: records of thickness and velocity, row by row.
+  const double* flow;
+  int flow_column, flow_row, flow_columns;  // the first node, counted from that of the ground
+
+  // Particles.
+  double *x, *y, *z, *ux, *uy, *uz;
+  const double* mass;
+
+  // Where they are: cells and how far within these, normals of the ground, thickness of the snow.
+  std::int32_t *column, *row;
+  double *east, *north;
+  double *nx, *ny, *nz;
+  double* thickness;
+
+  // What acts on them.
+  double *ax, *ay, *az;  // m/s2
+  double* yield;         // m/s2, deceleration by friction that does not depend on the speed
+  double* drag;          // 1/m, deceleration over the square of the speed
+  double* speed;         // m/s, at the beginning of the step
+  double* predicted;     // records of x, y, z at the end of the step without forces, and thickness
+  char* removed;         // set for those that left the terrain
+
+  // Particles in the order of their cells.
+  const double *sorted_x, *sorted_y, *sorted_mass;
+  const std::uint32_t* sorted_particle;
+  const std::uint32_t* cell_begin;  // of the cells of a rectangle with a margin, row by row
+  int cell_columns;
+
+  // Bonds, and for each particle its bonds: twice the bond's place, and one more where it is
+  // second.
+  const std::uint32_t *bond_first, *bond_second;
+  const double* rest_length;
+  char* broken;
+  double* bond_force;  // records of force (N) on the first particle and 0
+  const std::uint32_t *bond_begin, *bond_entry;
+
+  double time_step, gravity, density;  // s, m/s2, kg/m3
+  double friction, friction_drag;      // see BasalFriction
+  double viscosity;                    // artificial
+  double max_strain, bond_modulus, min_bond_length;
+  FrictionScheme scheme;
+  double added_speed;  // m/s; AvaFrame adds it where it divides by a speed
+};
+
+/// Each takes the particles (bonds, cells) of a range; ranges may run at the same time.
+struct SlideKernels {
+  /// Finds the places of the particles, all on the terrain, and the normals there.
+  void (*locate)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Mixes velocities with those of the snow around and finds how the ground acts.
+  void (*ground)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Adds the acceleration by the gradient of thickness to the particles of a row of cells.
+  void (*pressure)(const SlideView&, int row);
+  /// Finds the forces of bonds; returns whether one breaks.
+  bool (*stretch_bonds)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Adds them to the particles.
+  void (*pull)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Moves the particles; returns their kinetic energy, J.
+  double (*advance)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Finds the thickness of the snow at the particles.
+  void (*thickness)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+};
+
+/// Returns those of the instruction set in use.
+const SlideKernels& slide_kernels();
+
+}  // namespace snowshed

@@ -1,0 +1,111 @@
+"""The files that ``snowshed slide`` is given: terrain, areas, copies of them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional
+
+from snowshed._core import InputError
+from snowshed.scene.scene import ResolvedScene, Scene
+
+WAYS = "give --terrain and --release, or --avaframe, or --example"
+
+
+@dataclass(frozen=True)
+class SlideFiles:
+    """Files of a slide, and the thickness of its release, m; None for what is not given."""
+
+    terrain: Optional[Path]
+    release: Optional[Path]
+    thickness_raster: Optional[Path]
+    entrainment: Optional[Path]
+    resistance: Optional[Path]
+    thickness: Optional[float]
+
+    def any(self) -> bool:
+        """Return whether there are any."""
+        return any(file is not None for file in (self.terrain, *self.of_areas().values()))
+
+    def of_areas(self) -> dict[str, Optional[Path]]:
+        """Return the files of areas by the part of a scene's terrain that they make."""
+        return {
+            "release": self.release or self.thickness_raster,
+            "entrainment": self.entrainment,
+            "resistance": self.resistance,
+        }
+
+    def scene(self, folder: Path, *, example: bool, settings: Mapping[str, object]) -> Scene:
+        """Return the scene that they describe, or that of the example.
+
+        Parameters
+        ----------
+        folder
+            The results folder, beside which copies of files go.
+        example
+            Whether the example is wanted, which takes no files.
+        settings
+            Settings of the method.
+        """
+        from snowshed.methods.slide import SlideSettings
+        from snowshed.scene.builders.slides import example_slide, slide_scene
+
+        if self.any() == example:
+            raise InputError(WAYS)
+        if example:
+            beside = folder.with_name(f"{folder.name}-terrain")
+            beside.mkdir(parents=True, exist_ok=True)
+            return example_slide(beside).update({"numerics": dict(settings)})
+        if self.terrain is None or self.of_areas()["release"] is None:
+            raise InputError("give both --terrain and --release (or --thickness-raster)")
+        return slide_scene(
+            self.terrain,
+            self.release,
+            thickness=self.thickness,
+            thickness_raster=self.thickness_raster,
+            entrainment=self.entrainment,
+            resistance=self.resistance,
+            settings=SlideSettings.from_data(dict(settings)),
+            ascii_copy=terrain_copy(folder),
+            title=f"Slide on {self.terrain.name}",
+        )
+
+
+def terrain_copy(folder: Path) -> Path:
+    """Return where the copy of terrain goes for a results folder: beside it."""
+    return folder.with_name(f"{folder.name}-terrain.asc")
+
+
+@contextmanager
+def removing_copies(folder: Path) -> Iterator[None]:
+    """Remove new copies of files beside a results folder if no run begins there."""
+    copy = terrain_copy(folder)
+    copies = [copy, copy.with_name(f"{copy.stem}-thickness.asc")]
+    new = [file for file in copies if not file.exists()]
+    try:
+        yield
+    except BaseException:
+        if not folder.exists():
+            for file in new:
+                file.unlink(missing_ok=True)
+        raise
+
+
+def refuse_changed_areas(
+    ready: ResolvedScene, folder: Path, files: Mapping[str, Optional[Path]]
+) -> None:
+    """Refuse to resume a run whose areas were others, and name their file."""
+    stored = folder / "scene.json"
+    if not stored.is_file():
+        return  # there is nothing to resume, which resuming says
+    then: dict[str, Any] = json.loads(ResolvedScene.load(stored).json)["terrain"]
+    now: dict[str, Any] = json.loads(ready.json)["terrain"]
+    for part, file in files.items():
+        if file is not None and then.get(part) != now.get(part):
+            raise InputError(
+                f"{file}: has changed since the run in {folder} began; bring back the file, or "
+                "start anew"
+            )
