@@ -93,6 +93,11 @@ def test_nothing_public_is_any(package, name):
     assert vague == []
 
 
+def test_the_page_documents_what_the_package_exports():
+    documented = {name for _, name in DOCUMENTED}
+    assert [name for name in snowshed.__all__ if name not in {*documented, "__version__"}] == []
+
+
 def test_any_is_found_within_other_types():
     assert holds_any(typing.Callable[[typing.Dict[str, typing.Any]], int])
     assert not holds_any(typing.Dict[str, np.ndarray])

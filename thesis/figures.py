@@ -40,7 +40,7 @@ def growth_figure(rows: pd.DataFrame) -> Figure:
         the deviation between seedings.
     """
     keys = ["dimension", "tilt", "friction"]
-    looks = {group: _look(group, rows) for group in rows.groupby(keys).groups}
+    styles = {group: _line_style(group, rows) for group in rows.groupby(keys).groups}
     with matplotlib.rc_context(STYLE):
         figure = blank(8.4, 6.4)
         headline(figure, "The laboratory's stacks, simulated")
@@ -48,18 +48,18 @@ def growth_figure(rows: pd.DataFrame) -> Figure:
             for group, runs in rows.groupby(keys):
                 at = runs.groupby("event")[column].agg(["mean", "std"])
                 axes.errorbar(
-                    at.index, at["mean"], at["std"], capsize=2, markersize=4, **looks[group]
+                    at.index, at["mean"], at["std"], capsize=2, markersize=4, **styles[group]
                 )
             axes.set(ylabel=label, ylim=(0, 1.08 * rows[column].max()))
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         for axes in figure.axes[2:]:
             axes.set_xlabel("event")
-        handles = [Line2D([], [], **look) for look in looks.values()]
+        handles = [Line2D([], [], **style) for style in styles.values()]
         figure.legend(handles=handles, loc="outside lower center", ncols=4)
     return figure
 
 
-def _look(group: Any, rows: pd.DataFrame) -> dict[str, Any]:
+def _line_style(group: Any, rows: pd.DataFrame) -> dict[str, Any]:
     """Return colour by tilt, line by dimension, marker by friction, and the words for them."""
     dimension, tilt, friction = group
     tilts, frictions = sorted(rows["tilt"].unique()), sorted(rows["friction"].unique())

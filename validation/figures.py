@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 #: For a setting's name, how each of its values is drawn.
-Looks = Mapping[str, Mapping[Optional[Value], Any]]
+StylesOfValues = Mapping[str, Mapping[Optional[Value], Any]]
 
 #: The settings that make a problem, and the ways in which it was solved.
 Problem = Tuple[Settings, Sequence[Solution]]
@@ -59,24 +59,24 @@ class KeyLine(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Look:
+class LineStyles:
     """Styles that tell settings apart: one by colour, one by marker, one by dashes.
 
     Attributes
     ----------
     colours, markers, dashes
-        For a setting's name the look of each of its values; empty where no setting is left.
+        For a setting's name the style of each of its values; empty where no setting is left.
     """
 
-    colours: Looks
-    markers: Looks
-    dashes: Looks
+    colours: StylesOfValues
+    markers: StylesOfValues
+    dashes: StylesOfValues
 
     @classmethod
     def of(
         cls, choices: Sequence[Settings], drawn: Sequence[Settings], along: Collection[str] = ()
-    ) -> Look:
-        """Return a look for what is drawn.
+    ) -> LineStyles:
+        """Return the styles for what is drawn.
 
         Parameters
         ----------
@@ -90,14 +90,14 @@ class Look:
         names = [name for name in varying(drawn) if name not in along]
         names.sort(key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST))
         shapes = (COLOURS, MARKERS, DASHES) if along else (COLOURS, MARKERS)
-        looks: list[dict[str, dict[Optional[Value], Any]]] = [{}, {}, {}]
-        for look, name, of_values in zip(looks, names, shapes):
+        of_names: list[dict[str, dict[Optional[Value], Any]]] = [{}, {}, {}]
+        for of_name, name, of_values in zip(of_names, names, shapes):
             values = dict.fromkeys(one.get(name) for one in choices)
-            look[name] = dict(zip(values, cycle(of_values)))
-        return cls(*looks)
+            of_name[name] = dict(zip(values, cycle(of_values)))
+        return cls(*of_names)
 
     def for_line(self, settings: Settings) -> dict[str, Any]:
-        """Return what draws a line in this look."""
+        """Return the arguments that draw the line of some settings."""
         return {
             "color": _pick(self.colours, settings, COLOURS[0]),
             "marker": _pick(self.markers, settings, MARKERS[0]),
@@ -109,8 +109,8 @@ class Look:
         kinds = (("color", self.colours), ("marker", self.markers), ("linestyle", self.dashes))
         return [
             _entry(keyword, shape, setting_labels.setting(name, value))
-            for keyword, looks in kinds
-            for name, shapes in looks.items()
+            for keyword, styles in kinds
+            for name, shapes in styles.items()
             for value, shape in shapes.items()
             if any(one.get(name) == value for one in drawn)
         ]
@@ -129,10 +129,10 @@ def convergence_figure(
         All choices of settings of the case.
     """
     drawn = [one.settings for _, series in panels for one in series]
-    look = Look.of(choices, drawn, _orders_in(panels))
-    with _figure(look, drawn, rows=-(-len(panels) // 2)) as figure:
+    styles = LineStyles.of(choices, drawn, _orders_in(panels))
+    with _figure(styles, drawn, rows=-(-len(panels) // 2)) as figure:
         for axes, (quantity, series) in zip(_pairs(figure, len(panels)), panels):
-            _draw_convergence(axes, quantity, series, look)
+            _draw_convergence(axes, quantity, series, styles)
     return figure
 
 
@@ -150,11 +150,11 @@ def work_precision_figure(
         All choices of settings of the case.
     """
     drawn = [one.settings for _, problems in panels for _, found in problems for one in found]
-    look = Look.of(choices, drawn, _orders_in(panels))
-    with _figure(look, drawn, rows=len(panels)) as figure:
+    styles = LineStyles.of(choices, drawn, _orders_in(panels))
+    with _figure(styles, drawn, rows=len(panels)) as figure:
         grid = figure.subplots(len(panels), 2, squeeze=False, width_ratios=(1.25, 1))
         for (axes, beside), (quantity, problems) in zip(grid, panels):
-            _write_key(beside, _draw_work_precision(axes, quantity, problems, look))
+            _write_key(beside, _draw_work_precision(axes, quantity, problems, styles))
     return figure
 
 
@@ -174,12 +174,12 @@ def _entry(keyword: str, shape: Any, label: str) -> Line2D:
 
 
 @contextmanager
-def _figure(look: Look, drawn: Sequence[Settings], *, rows: int) -> Iterator[Figure]:
-    """Yield a figure for some rows of panels; what the look of what is drawn means is added."""
+def _figure(styles: LineStyles, drawn: Sequence[Settings], *, rows: int) -> Iterator[Figure]:
+    """Yield a figure for some rows of panels, with a legend of the styles that are drawn."""
     with matplotlib.rc_context(STYLE):
         figure = blank(8.2, 2.9 * rows + 0.6)
         yield figure
-        if key := look.key(drawn):
+        if key := styles.key(drawn):
             lines = -(-len(key) // 8)
             figure.legend(handles=key, loc="outside lower center", ncols=-(-len(key) // lines))
 
@@ -193,11 +193,11 @@ def _pairs(figure: Figure, count: int) -> list[Axes]:
 
 
 def _draw_convergence(
-    axes: Axes, quantity: Quantity, series: Sequence[Convergence], look: Look
+    axes: Axes, quantity: Quantity, series: Sequence[Convergence], styles: LineStyles
 ) -> None:
     for one in series:
         errors = np.maximum(one.errors, ZERO)
-        axes.plot(one.sizes, errors, markersize=4.5, linewidth=1.3, **look.for_line(one.settings))
+        axes.plot(one.sizes, errors, markersize=4.5, linewidth=1.3, **styles.for_line(one.settings))
     axes.set(xscale="log", yscale="log", title=_title(quantity))
     axes.set_xlabel((quantity.order_in or "").replace("_", " "))
     sizes = sorted({size for one in series for size in one.sizes})
@@ -223,11 +223,11 @@ def _draw_slope(axes: Axes, series: Sequence[Convergence], least: Optional[float
 
 
 def _draw_work_precision(
-    axes: Axes, quantity: Quantity, problems: Sequence[Problem], look: Look
+    axes: Axes, quantity: Quantity, problems: Sequence[Problem], styles: LineStyles
 ) -> list[KeyLine]:
     """Draw one diagram and return what is to be said about its fronts."""
     for _, found in problems:
-        _draw_points(axes, found, quantity.order_in, look)
+        _draw_points(axes, found, quantity.order_in, styles)
     axes.set(xscale="log", yscale="log", title=_title(quantity), xlabel="time of the solution")
     axes.margins(0.1)
     axes.set_xlim(_widened(*axes.get_xlim()))
@@ -249,11 +249,11 @@ def _with_fronts(problems: Sequence[Problem]) -> list[Problem]:
 
 
 def _draw_points(
-    axes: Axes, found: Sequence[Solution], order_in: Optional[str], look: Look
+    axes: Axes, found: Sequence[Solution], order_in: Optional[str], styles: LineStyles
 ) -> None:
     for line in _lines(found, order_in):
         points = [_time(found[i]) for i in line], [_size(found[i]) for i in line]
-        drawn = look.for_line(found[line[0]].settings)
+        drawn = styles.for_line(found[line[0]].settings)
         axes.plot(*points, markersize=5, linewidth=0.9, alpha=0.8, markeredgewidth=0, **drawn)
 
 
@@ -382,9 +382,7 @@ def _widened(low: float, high: float) -> tuple[float, float]:
     return low / factor, high * factor
 
 
-def _pick(
-    looks: Mapping[str, Mapping[Optional[Value], Any]], settings: Settings, plain: Any
-) -> Any:
-    for name, shapes in looks.items():
+def _pick(styles: StylesOfValues, settings: Settings, plain: Any) -> Any:
+    for name, shapes in styles.items():
         return shapes.get(settings.get(name), plain)
     return plain

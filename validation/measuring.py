@@ -21,7 +21,7 @@ from validation.case import Outcome
 
 Measure = Callable[[Settings], Outcome]
 
-WAIT_S = 3600.0  # between two looks at a measurement that has no limit
+WAIT_S = 3600.0  # between two checks of a measurement that has no limit
 
 
 class Request(NamedTuple):

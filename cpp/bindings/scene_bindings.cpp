@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bindings.hpp"
-#include "snowshed/run/plan.hpp"
+#include "snowshed/run/cost_report.hpp"
 #include "snowshed/scene/earlier_version.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/presets.hpp"
@@ -16,21 +16,21 @@ namespace {
 
 py::dict plan_dict(const std::string& text, const std::string& base_dir) {
   const Scene scene = parse_scene(text);
-  const Plan p = plan(scene, base_dir);
+  const CostReport report = report_cost(scene, base_dir);
   const int events = scene.events.count;
   py::dict d;
-  d["used"] = p.used;
-  d["left_out"] = p.left_out;
+  d["used"] = report.used;
+  d["left_out"] = report.left_out;
   d["particles_per_event"] =
-      std::int64_t(p.cost.particles.empty() ? 0.0 : p.cost.particles.front());
-  d["particles_total"] = std::int64_t(p.cost.total_particles);
-  d["memory_bytes"] = std::int64_t(p.cost.bytes);
-  d["time_step_s"] = p.cost.time_step;
-  d["steps_per_event"] = std::int64_t(p.cost.steps / events);
-  d["expected_wall_s"] = p.wall_time;
-  d["updates_per_s"] = p.updates_per_s;
-  d["threads"] = p.threads;
-  d["kernels"] = p.kernels;
+      std::int64_t(report.cost.particles.empty() ? 0.0 : report.cost.particles.front());
+  d["particles_total"] = std::int64_t(report.cost.total_particles);
+  d["memory_bytes"] = std::int64_t(report.cost.bytes);
+  d["time_step_s"] = report.cost.time_step;
+  d["steps_per_event"] = std::int64_t(report.cost.steps / events);
+  d["expected_wall_s"] = report.wall_time;
+  d["updates_per_s"] = report.updates_per_s;
+  d["threads"] = report.threads;
+  d["kernels"] = report.kernels;
   d["scalar"] =
       scene.uses<MpmSettings>() && scene.mpm().precision == Precision::float32 ? "float" : "double";
   return d;

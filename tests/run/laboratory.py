@@ -12,7 +12,7 @@ from snowshed import _core
 
 FILE = Path(__file__).with_name("laboratory_stacks.json")
 SETTINGS = {"dimension": 2, "dx": 0.01, "events": 4}
-MEASURES = ("height", "length")
+COMPARED = ("height", "length")
 #: Of the recorded means; the tests use others.
 SEEDS = range(101, 125)
 ABOUT = (
@@ -25,7 +25,7 @@ ABOUT = (
 def stacks(seeds):
     """Height and length after each event, m, for each seed: shape (seeds, events) each."""
     runs = [run_lab({**SETTINGS, "seed": seed}) for seed in seeds]
-    return {name: np.array([run.series(name) for run in runs]) for name in MEASURES}
+    return {name: np.array([run.series(name) for run in runs]) for name in COMPARED}
 
 
 def record():

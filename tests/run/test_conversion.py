@@ -7,7 +7,7 @@ from conftest import tiny_scene
 from test_events import compare_tables, interrupt_at
 
 from snowshed import Body, InputError, Interrupted, Shape, _core, run_events
-from snowshed.run import events
+from snowshed.run import sequence
 from snowshed.run.conversion import CONVERSION_COLUMNS, conversion_row, outline_difference
 from snowshed.snow.stack.measure import StackMeasure
 
@@ -83,7 +83,7 @@ def test_reseeded_snow_lies_at_rest_and_keeps_its_event():
 
 
 def test_a_reseeded_run_resumes(reseeded, tmp_path, monkeypatch):
-    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.0)
+    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     scene = tiny_scene(**{"events.between": "reseed"})
     with pytest.raises(Interrupted):
         run_events(scene, tmp_path, progress=interrupt_at(2, 0.0), pictures=False)

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from snowshed import InputError, Interrupted, SimulationError, _core, run_events
-from snowshed.run import events
+from snowshed.run import sequence
 from snowshed.run.results import read_events
 
 
@@ -90,7 +90,7 @@ def test_the_run_repeats_from_its_own_scene(finished, tmp_path):
 def test_interrupted_and_resumed_equals_uninterrupted(
     finished, tmp_path, tiny, monkeypatch, event, moment
 ):
-    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.0)
+    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     tiny.set("output.energy", True)
     with pytest.raises(Interrupted, match="--resume"):
         run_events(tiny, tmp_path, progress=interrupt_at(event, moment), pictures=False)
@@ -109,7 +109,7 @@ def test_the_handler_of_interrupts_is_put_back(tmp_path, tiny):
 
 
 def test_checkpoints_on_the_way_change_nothing(finished, tmp_path, tiny, monkeypatch):
-    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.02)
+    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.02)
     saved = set()
 
     def look(progress):
@@ -170,7 +170,7 @@ def fail_at(event, error):
 
 @pytest.mark.parametrize("kind", [SimulationError, InputError])
 def test_a_run_that_cannot_go_on_leaves_a_checkpoint(finished, tmp_path, tiny, monkeypatch, kind):
-    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.0)
+    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     tiny.set("output.energy", True)
     with pytest.raises(kind, match="particle 7"):
         run_events(tiny, tmp_path, progress=fail_at(2, kind("at particle 7")), pictures=False)

@@ -16,7 +16,7 @@ from test_events import interrupt_at
 
 from snowshed import Interrupted, ResolvedScene, _core, run_events
 from snowshed.cli.main import main
-from snowshed.run import events
+from snowshed.run import sequence
 
 EXECUTABLE = Path(sysconfig.get_path("scripts")) / "snowshed-run"
 
@@ -272,7 +272,7 @@ def test_python_goes_on_with_what_the_executable_began(longer, measured, tmp_pat
 def test_the_executable_goes_on_with_what_python_began(
     longer, measured, tmp_path, monkeypatch, where
 ):
-    monkeypatch.setattr(events, "REPORT_INTERVAL", 0.0)
+    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     scene, results = longer
     begin_with_python(scene, tmp_path / "out", where)
     done = snowshed_run(scene, "-o", tmp_path / "out", "--resume")

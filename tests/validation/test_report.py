@@ -9,7 +9,7 @@ from made_up import DRIFT, HEIGHT, made_up_case
 from pages import Page
 from validation import sections
 from validation.case import Quantity
-from validation.figures import Look, worth_naming
+from validation.figures import LineStyles, worth_naming
 from validation.measurement_file import MeasurementFile
 from validation.report import Stress, Suite, write_report
 from validation.runner import run_suite
@@ -150,28 +150,28 @@ def test_the_front_is_named_where_it_matters():
 
 def test_what_varies_looks_different():
     settings = [{"dx": dx, "basis": b, "transfer": t} for dx in (1, 2) for b in "qc" for t in "fa"]
-    look = Look.of(settings, settings, along=["dx"])
-    lines = [look.for_line(one) for one in settings[:4]]
+    styles = LineStyles.of(settings, settings, along=["dx"])
+    lines = [styles.for_line(one) for one in settings[:4]]
     assert len({(line["color"], line["marker"]) for line in lines}) == 4
     assert len({line["color"] for line in lines}) == 2  # the transfer
-    assert lines == [look.for_line(one) for one in settings[4:]]
-    assert sorted(line.get_label() for line in look.key(settings)) == ["a", "c", "f", "q"]
+    assert lines == [styles.for_line(one) for one in settings[4:]]
+    assert sorted(line.get_label() for line in styles.key(settings)) == ["a", "c", "f", "q"]
 
 
 def test_a_value_looks_the_same_whatever_else_is_drawn():
     settings = [{"dx": dx, "basis": b, "transfer": t} for dx in (1, 2) for b in "qc" for t in "fa"]
     drawn = [one for one in settings if one["transfer"] == "a"]
-    look = Look.of(settings, drawn, along=["dx"])
-    assert sorted(line.get_label() for line in look.key(drawn)) == ["c", "q"]
-    looks = [Look.of(settings, some, along=["dx"]) for some in (settings, settings[:2])]
-    colours = [[look.for_line(one)["color"] for one in settings[:2]] for look in looks]
+    styles = LineStyles.of(settings, drawn, along=["dx"])
+    assert sorted(line.get_label() for line in styles.key(drawn)) == ["c", "q"]
+    both = [LineStyles.of(settings, some, along=["dx"]) for some in (settings, settings[:2])]
+    colours = [[styles.for_line(one)["color"] for one in settings[:2]] for styles in both]
     assert colours[0] == colours[1]
 
 
 def test_dashes_tell_nothing_where_there_are_no_lines():
     settings = [{"a": a, "b": b, "c": c} for a in (1, 2) for b in (1, 2) for c in (1, 2)]
-    assert len(Look.of(settings, settings).key(settings)) == 4
-    assert len(Look.of(settings, settings, along=["dx"]).key(settings)) == 6
+    assert len(LineStyles.of(settings, settings).key(settings)) == 4
+    assert len(LineStyles.of(settings, settings, along=["dx"]).key(settings)) == 6
 
 
 def test_errors_are_drawn_against_time_where_they_say_which_way_is_better(tmp_path):

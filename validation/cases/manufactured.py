@@ -15,7 +15,7 @@ from validation.manufactured_motions import WAVE_SPEED, AxialWaves, Motion, Vort
 
 #: From rest through the largest displacement and back to the largest one the other way, s.
 DURATION = 1.5 / WAVE_SPEED
-#: Steps between two looks at the error.
+#: Steps between two samples of the error.
 STEPS = 4
 #: The motions by name, made from their amplitude.
 MOTIONS: Mapping[str, Callable[[float], Motion]] = {"waves": AxialWaves, "vortex": Vortex}

@@ -31,7 +31,7 @@ SLAB: Settings = {
     "model": "cam_clay",
     "length": LENGTH,
 }
-#: Steps between two looks, and how many cells past the edge a slab is free.
+#: Steps between two samples, and how many cells past the edge a slab is free.
 STEPS, FREE_CELLS = 20, 3
 
 
@@ -82,17 +82,17 @@ class Throw:
             If the slab does not come down.
         """
         flight = []
-        moment = self._look()
+        moment = self._sample()
         while moment.position[2] > -DROP:
             if moment.time_s > self._longest:
                 raise SimulationError(f"the slab has not come down after {moment.time_s:.3g} s")
             self.drive.step(STEPS)
-            moment = self._look()
+            moment = self._sample()
             if moment.rear > self._free:
                 flight.append(moment)
         return flight
 
-    def _look(self) -> Moment:
+    def _sample(self) -> Moment:
         core, mean = self.drive.core, self.drive.mean
         places, speeds = core.positions() - self._edge, core.velocities()
         position, velocity = mean(places), mean(speeds)

@@ -27,7 +27,7 @@ SLOPE, COHESION, HARDENING, STRENGTH = 0.5, 0.2, 1.0, 200.0
 OWN = frozenset({"floor_offset"})
 #: Layers above the floor that count as its neighbourhood.
 FLOOR_LAYERS = 2
-#: Steps between two kicks that damp the motion.
+#: Steps after which the velocities are damped again.
 STEPS = 4
 
 

@@ -21,10 +21,10 @@ RATE = 0.2 * math.sqrt(YOUNGS_MODULUS / DENSITY) / RADIUS  # rad/s
 TURN = 2 * math.pi / RATE  # s
 #: Settings that are the case's own.
 OWN = frozenset({"begins", "turns"})
-#: Steps between two looks or two kicks.
+#: Steps between two samples, or between two damped velocities.
 STEPS = 4
 #: If a body is to begin in equilibrium: for how many turns its breathing is damped, and what part
-#: of the radial velocities each kick takes away.
+#: of the radial velocities is taken away each time.
 SETTLING, DAMPED = 1.0, 0.1
 
 DISC: Settings = {

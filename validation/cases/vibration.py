@@ -62,7 +62,7 @@ class Vibrating:
         drive.core.add_velocity(from_plane(2 * math.pi * frequency * height * mode))
 
     def swing(self, periods: float, steps: int) -> Swing:
-        """Let it vibrate, look every so many steps, and return the vibration."""
+        """Let it vibrate and return its deflection, sampled every so many steps."""
         times, values = [], []
         while self.drive.core.time_s < periods / self._frequency:
             self.drive.step(steps)
@@ -177,7 +177,7 @@ BAR = Case(
 CANTILEVER_HEIGHT, POISSONS_RATIO = 0.2, 0.3  # m
 #: How far the beam reaches into its clamp, in cells.
 HELD_CELLS = 4
-#: Largest deflection over the length, periods, and steps between two looks.
+#: Largest deflection over the length, periods, and steps between two samples.
 DEFLECTION, CANTILEVER_PERIODS, STEPS = 2e-3, 1.5, 10
 CANTILEVER_DEFAULTS: Settings = {**DEFAULTS, "dx": 0.025, "length": LENGTH}
 

@@ -17,7 +17,7 @@ namespace {
 
 /// Geometry knows no scene; gives its errors the place in it.
 template <class Action>
-auto naming(const std::string& path, Action action) {
+auto with_path(const std::string& path, Action action) {
   try {
     return action();
   } catch (const InputError& error) {
@@ -37,10 +37,10 @@ std::vector<std::string> body_paths(const Scene& scene, int event) {
     const auto& layers = scene.slab->layers;
     if (layers.empty()) paths.push_back("/slab");
     for (std::size_t i = 0; i < layers.size(); ++i)
-      if (is_laid_in(layers[i], event)) paths.push_back("/slab/layers/" + std::to_string(i));
+      if (is_added_in(layers[i], event)) paths.push_back("/slab/layers/" + std::to_string(i));
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (is_laid_in(scene.bodies[i], event)) paths.push_back(body_path(i));
+    if (is_added_in(scene.bodies[i], event)) paths.push_back(body_path(i));
   return paths;
 }
 
@@ -49,7 +49,7 @@ std::vector<std::string> body_paths(const Scene& scene, int event) {
 double body_volume(const BodySpec& body, const Scene& scene, const std::string& path,
                    const std::filesystem::path& base_dir) {
   if (const auto told = shape_volume(body.shape, scene.dimension)) return *told;
-  return naming(path, [&] {
+  return with_path(path, [&] {
     const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
     Vec3 size = shape->bounds().max - shape->bounds().min;
     if (scene.dimension == 2) size.y() = 0;  // endless
@@ -85,7 +85,7 @@ SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
     const std::uint64_t seed = scene.seeding.seed + 1000003u * std::uint64_t(event) + i;
     ParticleBatch& batch = snow.batches.emplace_back();
     batch.event = event;
-    snow.mass += naming(
+    snow.mass += with_path(
         paths[i], [&] { return seed_body(bodies[i], scene, paths[i], base_dir, seed, batch); });
     if (i >= layers) snow.height_on_panel += panel.height_of(batch.positions);
   }
@@ -117,7 +117,7 @@ std::vector<double> count_particles(const Scene& scene, const std::filesystem::p
     if (count < 0.5) throw InputError(body_path(i), "too small to hold a particle; reduce dx");
     if (shape_volume(body.shape, scene.dimension)) continue;  // counted already
     for (int event = 1; event <= scene.events.count; ++event)
-      if (is_laid_in(body, event)) counts[std::size_t(event - 1)] += count;
+      if (is_added_in(body, event)) counts[std::size_t(event - 1)] += count;
   }
   return counts;
 }

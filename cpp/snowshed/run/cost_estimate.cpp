@@ -72,29 +72,28 @@ double approach(const Scene& scene, const Vec3& velocity) {
 }
 
 /// The slab's rear slides off the lower edge and falls freely.
-void add_slab(const Scene& scene, CostEstimate& estimate_cost) {
+void add_slab(const Scene& scene, CostEstimate& estimate) {
   const PanelFrame frame = panel_frame(scene);
   const double distance = (scene.panel->length + scene.slab->length) / 2.0;
   const double acceleration = slide_acceleration(scene);
-  estimate_cost.slides = acceleration > 0.0;
-  if (!estimate_cost.slides) return;
-  estimate_cost.slide_time = std::sqrt(2.0 * distance / acceleration);
-  const Vec3 velocity = acceleration * estimate_cost.slide_time * frame.slope;
-  estimate_cost.fall_time =
-      fall_duration(scene.panel->height, approach(scene, velocity), scene.gravity);
+  estimate.slides = acceleration > 0.0;
+  if (!estimate.slides) return;
+  estimate.slide_time = std::sqrt(2.0 * distance / acceleration);
+  const Vec3 velocity = acceleration * estimate.slide_time * frame.slope;
+  estimate.fall_time = fall_duration(scene.panel->height, approach(scene, velocity), scene.gravity);
 
   const double ahead = std::max(0.0, (scene.panel->length - scene.slab->length) / 2.0);
   const double front_slides = std::sqrt(2.0 * ahead / acceleration);
   const Vec3 front_velocity = acceleration * front_slides * frame.slope;
-  estimate_cost.first_landing =
+  estimate.first_landing =
       front_slides +
       fall_duration(scene.panel->height, approach(scene, front_velocity), scene.gravity);
 }
 
 /// Speed of what falls last when it lands, over gravity.
-double time_to_lose_speed(const Scene& scene, const CostEstimate& estimate_cost) {
-  if (!(scene.gravity > 0.0) || !estimate_cost.slides) return 0.0;
-  const double along = slide_acceleration(scene) * estimate_cost.slide_time;
+double time_to_lose_speed(const Scene& scene, const CostEstimate& estimate) {
+  if (!(scene.gravity > 0.0) || !estimate.slides) return 0.0;
+  const double along = slide_acceleration(scene) * estimate.slide_time;
   return std::sqrt(along * along + 2.0 * scene.gravity * scene.panel->height) / scene.gravity;
 }
 
@@ -110,28 +109,27 @@ double longest_body_fall(const Scene& scene) {
   return longest;
 }
 
-void add_times(const Scene& scene, CostEstimate& estimate_cost) {
-  if (scene.slab) add_slab(scene, estimate_cost);
+void add_times(const Scene& scene, CostEstimate& estimate) {
+  if (scene.slab) add_slab(scene, estimate);
   const double bodies = longest_body_fall(scene);
-  const double slab = estimate_cost.slide_time + estimate_cost.fall_time;
-  if (bodies > slab) estimate_cost.fall_time = bodies;
-  if (!scene.bodies.empty()) estimate_cost.first_landing = 0.0;
-  const double settling = std::max(least_settling_time, time_to_lose_speed(scene, estimate_cost));
-  estimate_cost.event_time = std::min(std::max(slab, bodies) + settling, scene.events.max_time);
+  const double slab = estimate.slide_time + estimate.fall_time;
+  if (bodies > slab) estimate.fall_time = bodies;
+  if (!scene.bodies.empty()) estimate.first_landing = 0.0;
+  const double settling = std::max(least_settling_time, time_to_lose_speed(scene, estimate));
+  estimate.event_time = std::min(std::max(slab, bodies) + settling, scene.events.max_time);
 }
 
 /// New snow is awake from its release to rest, older snow in part, once something lands on it.
-double count_updates(const Scene& scene, const CostEstimate& estimate_cost) {
+double count_updates(const Scene& scene, const CostEstimate& estimate) {
   double old_awake = 1.0;
   if (scene.mpm().sleep_speed > 0.0)
-    old_awake =
-        woken_share * std::max(0.0, 1.0 - estimate_cost.first_landing / estimate_cost.event_time);
+    old_awake = woken_share * std::max(0.0, 1.0 - estimate.first_landing / estimate.event_time);
   double particles = 0.0, old = 0.0;
-  for (double fresh : estimate_cost.particles) {
+  for (double fresh : estimate.particles) {
     particles += fresh + old_awake * old;
     old += fresh;
   }
-  return particles * std::ceil(estimate_cost.event_time / estimate_cost.time_step);
+  return particles * std::ceil(estimate.event_time / estimate.time_step);
 }
 
 std::vector<double> count_particles(const Scene& scene) {
@@ -172,21 +170,19 @@ CostEstimate estimate_cost(const Scene& scene) {
 
 CostEstimate estimate_cost(const Scene& given, std::vector<double> particles) {
   const Scene scene = resolve(given);
-  CostEstimate estimate_cost;
-  estimate_cost.total_particles = std::accumulate(particles.begin(), particles.end(), 0.0);
-  estimate_cost.particles = std::move(particles);
+  CostEstimate estimate;
+  estimate.total_particles = std::accumulate(particles.begin(), particles.end(), 0.0);
+  estimate.particles = std::move(particles);
   for (const Snow& snow : assemble_snows(scene))
-    estimate_cost.wave_speed = std::max(estimate_cost.wave_speed, wave_speed(snow));
-  estimate_cost.time_step = stable_time_step(scene);
-  add_times(scene, estimate_cost);
-  estimate_cost.steps =
-      scene.events.count * std::ceil(estimate_cost.event_time / estimate_cost.time_step);
-  estimate_cost.updates = count_updates(scene, estimate_cost);
+    estimate.wave_speed = std::max(estimate.wave_speed, wave_speed(snow));
+  estimate.time_step = stable_time_step(scene);
+  add_times(scene, estimate);
+  estimate.steps = scene.events.count * std::ceil(estimate.event_time / estimate.time_step);
+  estimate.updates = count_updates(scene, estimate);
   const auto [per_particle, per_voxel] = storage(scene.dimension, scene.mpm().precision);
-  const double voxels =
-      grid_spread * estimate_cost.total_particles / scene.seeding.particles_per_voxel;
-  estimate_cost.bytes = per_particle * estimate_cost.total_particles + per_voxel * voxels;
-  return estimate_cost;
+  const double voxels = grid_spread * estimate.total_particles / scene.seeding.particles_per_voxel;
+  estimate.bytes = per_particle * estimate.total_particles + per_voxel * voxels;
+  return estimate;
 }
 
 void check_memory(double bytes, double available) {

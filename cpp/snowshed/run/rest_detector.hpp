@@ -13,13 +13,13 @@ class RestDetector {
 
   void start_event(double time) { since_ = time, speed_at_start_ = 0, speed_ = 0, next_ = time; }
 
-  /// Whether it is time to look again.
+  /// Whether the speed is to be told again.
   bool due(double time) const { return time >= next_; }
 
   /// Tells the detector the speed (m/s) at a time (s); returns whether the snow rests.
   bool at_rest(double time, double speed);
 
-  /// Speed at the last look, m/s.
+  /// Speed that was told last, m/s.
   double speed() const { return speed_; }
 
   /// State for checkpoints.

@@ -44,7 +44,7 @@ class Simulation {
   explicit Simulation(const Scene& scene, const std::filesystem::path& base_dir = ".");
   ~Simulation();
 
-  /// Lays the next event's snow: the slab on the panel (above what remained there, unless that is
+  /// Seeds the next event's snow: the slab on the panel (above what remained there, unless that is
   /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
   /// "reseed", from the second event on the stack is first seeded afresh (`reseed_stack`). All or
   /// nothing: throws InputError where the snow of this event cannot be seeded, SimulationError
@@ -56,7 +56,7 @@ class Simulation {
   /// that a checkpoint resumes to the same bits, and returns `paused`. Call again to go on.
   RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
 
-  /// Adds particles of the present event, beside those that begin_event lays; before the first
+  /// Adds particles of the present event, beside those that begin_event seeds; before the first
   /// event they are of that. `batch.event` is set here.
   void add_snow(ParticleBatch batch);
 

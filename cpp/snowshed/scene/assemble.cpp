@@ -111,7 +111,7 @@ std::vector<BodySpec> assemble_slab(const Scene& scene, int event, double lift) 
   const Scene resolved = resolve(scene);
   double height = lift;
   for (const Layer& layer : layers_of(*scene.slab)) {
-    if (!is_laid_in(layer, event)) continue;
+    if (!is_added_in(layer, event)) continue;
     bodies.push_back(layer_body(resolved, layer, height));
     height += layer.thickness;
   }
@@ -121,14 +121,14 @@ std::vector<BodySpec> assemble_slab(const Scene& scene, int event, double lift) 
 double slab_thickness(const Slab& slab, int event) {
   double thickness = 0.0;
   for (const Layer& layer : layers_of(slab))
-    if (is_laid_in(layer, event)) thickness += layer.thickness;
+    if (is_added_in(layer, event)) thickness += layer.thickness;
   return thickness;
 }
 
 std::vector<BodySpec> assemble_bodies(const Scene& scene, int event, double lift) {
   std::vector<BodySpec> bodies = assemble_slab(scene, event, lift);
   for (const auto& body : scene.bodies)
-    if (is_laid_in(body, event)) bodies.push_back(body);
+    if (is_added_in(body, event)) bodies.push_back(body);
   return bodies;
 }
 

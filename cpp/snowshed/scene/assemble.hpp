@@ -36,7 +36,7 @@ std::vector<ObstacleSpec> assemble_obstacles(const Scene& scene);
 
 /// Whether a layer or body is laid at the start of `event` (1 is the first).
 template <class Part>
-bool is_laid_in(const Part& part, int event) {
+bool is_added_in(const Part& part, int event) {
   return part.event == 0 || part.event == event;
 }
 

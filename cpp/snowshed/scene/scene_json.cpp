@@ -51,7 +51,7 @@ void complete_snow(nlohmann::json& scene) {
   }
 }
 
-InputError naming_file(const InputError& error, const std::string& file) {
+InputError with_file_name(const InputError& error, const std::string& file) {
   if (error.where().rfind(file, 0) == 0) return error;
   const std::string message = error.what();
   return InputError(error.where(), message.substr(error.where().size() + 2) + " [in " + file + "]");
@@ -86,7 +86,7 @@ Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* no
     return with_absolute_files(file.parent_path(),
                                parse_scene(read_text(file), file.string(), notes));
   } catch (const InputError& error) {
-    throw naming_file(error, file.string());
+    throw with_file_name(error, file.string());
   }
 }
 

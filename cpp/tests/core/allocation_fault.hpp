@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 namespace snowshed {
 
@@ -17,5 +18,11 @@ class AllocationFault {
   /// Whether the n-th call has come.
   static bool happened();
 };
+
+enum class FaultOutcome { no_fault, failed, done_without };
+
+/// Makes a call during which the n-th allocation fails. It may not come so far, throw
+/// std::bad_alloc, or do without the memory.
+FaultOutcome with_allocation_fault(std::int64_t n, const std::function<void()>& call);
 
 }  // namespace snowshed

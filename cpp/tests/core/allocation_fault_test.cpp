@@ -30,6 +30,16 @@ AllocationFault::AllocationFault(std::int64_t n) { allocations_left = n; }
 AllocationFault::~AllocationFault() { allocations_left = 0; }
 bool AllocationFault::happened() { return allocations_left < 0; }
 
+FaultOutcome with_allocation_fault(std::int64_t n, const std::function<void()>& call) {
+  const AllocationFault fault(n);
+  try {
+    call();
+  } catch (const std::bad_alloc&) {
+    return FaultOutcome::failed;
+  }
+  return AllocationFault::happened() ? FaultOutcome::done_without : FaultOutcome::no_fault;
+}
+
 }  // namespace snowshed
 
 void* operator new(std::size_t bytes) {

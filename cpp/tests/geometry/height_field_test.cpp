@@ -4,19 +4,10 @@
 
 #include <cmath>
 
+#include "geometry/terrain_testing.hpp"
+
 namespace snowshed {
 namespace {
-
-template <class F>
-HeightField field_of(int columns, int rows, double cell, F height) {
-  HeightField f;
-  f.columns = columns;
-  f.rows = rows;
-  f.cell = cell;
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) f.heights.push_back(height(i * cell, j * cell));
-  return f;
-}
 
 TEST(HeightField, a_place_is_a_cell_and_the_way_from_its_corner) {
   const GridPlace p = place_in(2.25, 1.5, 4, 3);
@@ -31,7 +22,7 @@ TEST(HeightField, a_place_is_a_cell_and_the_way_from_its_corner) {
 
 TEST(HeightField, resampling_keeps_a_quadratic_surface) {
   const auto surface = [](double x, double y) { return 3 + 0.2 * x - 0.1 * y + 0.01 * x * y; };
-  const HeightField fine = resampled(field_of(12, 9, 5.0, surface), 2.0);
+  const HeightField fine = resampled(terrain_of(12, 9, 5.0, surface), 2.0);
   ASSERT_EQ(fine.columns, 28);  // 55 m
   ASSERT_EQ(fine.rows, 21);
   for (int j = 0; j < fine.rows; ++j)
@@ -40,7 +31,7 @@ TEST(HeightField, resampling_keeps_a_quadratic_surface) {
 }
 
 TEST(HeightField, resampling_keeps_holes_and_what_is_known_around_them) {
-  HeightField f = field_of(9, 9, 1.0, [](double x, double) { return x; });
+  HeightField f = terrain_of(9, 9, 1.0, [](double x, double) { return x; });
   f.heights[f.index(4, 4)] = std::nan("");
   const HeightField fine = resampled(f, 0.5);
   EXPECT_TRUE(std::isnan(fine.height(8, 8)));

@@ -153,7 +153,7 @@ TEST(CostEstimate, DoublesNeedTwiceTheMemory) {
   EXPECT_NEAR(estimate_cost(scene).bytes, 2 * single, 1e-6 * single);
 }
 
-TEST(CostEstimate, AbsurdScenesAreForecastAndRefused) {
+TEST(CostEstimate, AbsurdScenesAreEstimatedAndRefused) {
   Scene scene = preset_scene("lab-40");
   scene.mpm().dx = 1e-9;
   EXPECT_GT(estimate_cost(scene).total_particles, 1e20);

@@ -11,7 +11,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/run/cost_estimate.hpp"
-#include "snowshed/run/plan.hpp"
+#include "snowshed/run/cost_report.hpp"
 #include "snowshed/scene/assemble.hpp"
 
 namespace snowshed {
@@ -33,7 +33,7 @@ Scene layered_scene(Transfer transfer = Transfer::flip) {
   return scene;
 }
 
-/// Total mass by event and kind of snow.
+/// Total mass by event and material_id.
 std::map<std::pair<int, int>, double> masses(const Simulation& sim) {
   const ParticleState s = sim.solver().state();
   std::map<std::pair<int, int>, double> sums;
@@ -66,7 +66,7 @@ TEST_F(Layers, LieOnEachOtherInTheOrderGiven) {
   }
 }
 
-TEST_F(Layers, OfTheScenesOwnSnowNeedNoKinds) {
+TEST_F(Layers, OfTheScenesOwnSnowNeedNoMaterialIds) {
   Scene scene = layered_scene();
   scene.slab->layers[0].snow = scene.snow;
   Simulation sim(scene);
@@ -106,13 +106,13 @@ TEST_F(Layers, KeepTheirMassWhenTheStackIsReseeded) {
                 1e-5 * before.at({1, material_id}));
 }
 
-TEST_F(Layers, StiffestSnowDecidesThePlannedStep) {
+TEST_F(Layers, StiffestSnowDecidesTheEstimatedStep) {
   Scene scene = layered_scene(), stiff = layered_scene();
   stiff.slab->layers[0].snow->youngs_modulus = 1e7;
   EXPECT_DOUBLE_EQ(stable_time_step(scene), stable_time_step(small_scene()));
   EXPECT_LT(stable_time_step(stiff), 0.3 * stable_time_step(scene));
   EXPECT_GT(estimate_cost(stiff).wave_speed, 3 * estimate_cost(scene).wave_speed);
-  const Plan p = plan(scene);
+  const CostReport p = report_cost(scene);
   EXPECT_NE(std::find(p.used.begin(), p.used.end(), "several snows"), p.used.end());
   EXPECT_NEAR(p.cost.particles[1] / p.cost.particles[0], 4.0 / 3.0, 0.02);
 }

@@ -14,7 +14,6 @@ moved mass, height, length and outline. What time does to a stack that is carrie
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -23,17 +22,16 @@ from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.vtp import read_particles
 from snowshed.run.ageing import Ageing
 from snowshed.run.conversion import conversion_row
-from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
+from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
+from snowshed.run.sequence import open_sequence, run_sequence
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 
 if TYPE_CHECKING:
     import pandas as pd
-
-REPORT_INTERVAL = 0.5  # s of wall time between progress reports
 
 
 def run_events(
@@ -95,15 +93,14 @@ def run_events(
     if ageing is not None and data["events"]["between"] != "carry":
         raise _core.InputError('/events/between: "reseed" makes new snow of one that ages')
     results = RunFolder(out_dir)
-    open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
-    sequence = open_folder(ready.json, ready.base_dir, os.fspath(out_dir))
+    sequence = open_sequence(ready, out_dir, resume=resume)
     with sequence, deferred_interrupts() as interrupt:
         prepare = _continue_tables if resume else _begin_tables
         prepare(sequence, results, None if ageing is None else ageing.data)
         sequence.describe_machine(machine_facts())
         recorder = _Recorder(sequence.simulation, results, ageing, interrupt, progress)
         recorder.fill_in(sequence.finished_events)
-        _run(sequence, recorder)
+        run_sequence(sequence, recorder, results.folder)
     if pictures:
         recorder.draw()
     return read_events(results.folder)
@@ -125,17 +122,6 @@ def _continue_tables(
     events = results.events
     if events.rows and not sequence.finished_events:  # of the version before
         sequence.count_from(int(events.total("steps")), events.total("wall_s"))
-
-
-def _run(sequence: _core.EventSequence, recorder: _Recorder) -> None:
-    """Run the events that are left; a failure is written down in the folder."""
-    try:
-        finished = sequence.run(recorder, REPORT_INTERVAL)
-    except (_core.SimulationError, _core.InputError) as error:
-        sequence.record_failure(str(error))
-        raise
-    if not finished:
-        raise Interrupted(recorder.results.folder)
 
 
 class _Recorder:

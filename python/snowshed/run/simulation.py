@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 Order = Literal["id", "storage"]
 Ended = Literal["rest", "time_limit", "reached"]
 
-STRETCH = 64  # most steps at a time: between them Python looks for Ctrl-C
-LOOK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to rest
+MOST_STEPS = 64  # most steps at a time: between them Python checks for Ctrl-C
+CHECK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to rest
 DATASET = (
     "id",
     "position",
@@ -45,7 +45,7 @@ DATASET = (
 class Simulation:
     """A scene being simulated, in memory.
 
-    It is driven event by event: `begin_event` lays the snow, `run` or `step` moves it. Methods
+    It is driven event by event: `begin_event` seeds the snow, `run` or `step` moves it. Methods
     such as `positions` return the particles ordered by id, which they keep; `fields` shows their
     memory in the order of storage.
 
@@ -136,7 +136,7 @@ class Simulation:
         """
         left = _whole("count", count, lowest=0)
         while left:
-            taken = min(left, STRETCH)
+            taken = min(left, MOST_STEPS)
             self._core.step(taken)
             left -= taken
 
@@ -173,14 +173,14 @@ class Simulation:
         if isinstance(until, str):
             if until != "rest":
                 raise InputError(f'until: {until!r}; allowed: "rest", a time in s, a function')
-            return cast(Ended, self._core.run(lambda report: True, LOOK_INTERVAL))
+            return cast(Ended, self._core.run(lambda report: True, CHECK_INTERVAL))
         if callable(until):
             return self._run_until(until, steps)
         end = finite("until", until)
         while self.time < end:
             # Half of what is left at the present time step: the step may grow on the way.
             left = 0.5 * (end - self.time) / self._core.time_step_s if self.time else 1
-            self._core.step(max(1, min(STRETCH, int(left))))
+            self._core.step(max(1, min(MOST_STEPS, int(left))))
         return "reached"
 
     def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:

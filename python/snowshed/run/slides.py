@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -35,16 +34,16 @@ from snowshed.methods.peak_maps import PeakMaps
 from snowshed.methods.slide_frames import FrameSeries
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.methods.slide_validity import ReleaseArea, release_areas, validity_notes
-from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
+from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
+from snowshed.run.sequence import REPORT_INTERVAL, open_sequence, run_sequence
 from snowshed.scene.components import Outline
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
 if TYPE_CHECKING:
     import pandas as pd
 
-REPORT_INTERVAL = 0.5  # s of wall time
 PACKED = "peaks.npz"  # the peak maps, where no rasters are wanted
 FRAMES = "frames.npz"  # the slide over time, while it is interrupted
 
@@ -174,21 +173,17 @@ def run_slide(
     'time_limit'
     """
     ready = resolve_scene(scene)
-    open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
-    sequence = open_folder(ready.json, ready.base_dir, os.fspath(out_dir))
+    sequence = open_sequence(ready, out_dir, resume=resume)
     with sequence, deferred_interrupts() as interrupt:
         sequence.describe_machine(machine_facts())
         frames = _frames(sequence.simulation, Path(out_dir)) if pictures else None
         recorder = _Recorder(sequence.simulation, interrupt, progress, frames)
         try:
-            finished = sequence.run(recorder, REPORT_INTERVAL if frames is None else 0.0)
-        except (_core.SimulationError, _core.InputError) as error:
-            sequence.record_failure(str(error))
-            raise
-        if not finished:
+            run_sequence(sequence, recorder, out_dir, every_step=frames is not None)
+        except Interrupted:
             if frames is not None:
                 frames.save(Path(out_dir) / FRAMES)
-            raise Interrupted(Path(out_dir))
+            raise
         (facts,) = sequence.finished_events
         maps = slide_maps(sequence.simulation)
         areas = release_areas(maps.raster(maps.terrain), _release(sequence.simulation))

@@ -104,7 +104,7 @@ class Study:
             If the file cannot be read.
         """
         path = Path(file)
-        with study_file.naming(path):
+        with study_file.name_in_errors(path):
             found = study_file.read(path)
             study = cls(found.scene, found.parts, found.name, found.seeds, found.description)
             study.runs()  # a wrong scene is the file's error

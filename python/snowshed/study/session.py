@@ -29,8 +29,8 @@ from snowshed.study.scene_hash import Run
 from snowshed.study.store import Store, StoredRun
 from snowshed.study.workers import Workers
 
-POLL_S = 0.25  # s between looks at interrupts and progress
-ELSEWHERE_S = 1.0  # s between looks at what other processes compute
+POLL_S = 0.25  # s between checks of interrupts and progress
+ELSEWHERE_S = 1.0  # s between checks of what other processes compute
 DEATHS = 3  # workers that may die of a run before it counts as failed
 
 

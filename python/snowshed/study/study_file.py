@@ -124,7 +124,7 @@ class Content:
 
 
 @contextmanager
-def naming(file: Path) -> Iterator[None]:
+def name_in_errors(file: Path) -> Iterator[None]:
     """Name the file in errors about what it holds."""
     try:
         yield

@@ -81,10 +81,10 @@ class Contacts {
       contacts_[i].next_normal_impulse = contacts_[i].normal_impulse;
   }
 
-  /// Finds for each obstacle what its stored impulses are in sum over those of them that are
-  /// positive; 1 for obstacles that let go of snow. Slip holds some nodes of a body against pull
-  /// while others are pressed the more, all by internal forces that come and go as snow passes the
-  /// grid. Friction on the pushed nodes alone would be too large.
+  /// Finds for each obstacle the sum of its stored impulses over the sum of those that are
+  /// positive; 1 for obstacles that let snow leave. Slip holds some nodes of a body against pull,
+  /// while internal forces press it more strongly on others. Friction on the pushed nodes alone
+  /// would be too large.
   void find_pushing_shares(PushingShares<T>& found) const;
 
   /// A contact with stored impulse (N s), for checkpoints.

@@ -55,10 +55,11 @@ struct ParticleView {
   T* be_minus_identity[6];  // b_e the elastic left Cauchy-Green tensor
   T* plastic;               // volumetric plastic strain; plastic laws only
   T* mass;
-  const std::uint8_t* material_id;  // by kind only: which snow
+  const std::uint8_t* material_id;  // which snow; only with several materials
 };
 
-/// What the kernels need of a snow. C is a scalar, or lanes: of the particles of a chunk.
+/// What the kernels need of a snow. C is a scalar, or a SIMD pack: one value for each particle of a
+/// chunk.
 template <class C>
 struct MaterialConstants {
   C lambda, mu, bulk;         // Pa, see Elasticity
@@ -71,7 +72,7 @@ struct StepParameters {
   T dt, dx, gravity, flip_ratio;
   T friction_rate;                    // dt over the friction memory, see NodeKernels::apply
   T friction_rate_per_speed;          // s/m, the same for each m/s at which snow slides
-  const MaterialConstants<T>* snows;  // by kind
+  const MaterialConstants<T>* snows;  // by material_id
   const T* pushing;  // by obstacle: part of the friction of pushed nodes that remains, see
                      // Contacts::find_pushing_shares
 };

@@ -28,7 +28,7 @@ struct Particles {
   std::array<AlignedVector<T>, D> velocity;    // m/s
   std::array<AlignedVector<T>, D * D> affine;  // APIC only, 1/s
   std::array<AlignedVector<T>, strain_size> be_minus_identity;  // b_e - I
-  AlignedVector<T> plastic;                                     // plastic laws, and with kinds
+  AlignedVector<T> plastic;                                     // plastic laws, several materials
   AlignedVector<T> mass;                                        // kg (per metre of width in 2D)
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;       // in which each was released

@@ -18,7 +18,7 @@ constexpr double noise = 0.005;
 /// must be in flight.
 constexpr double flight = 0.5;
 
-/// Looks that the mean of a half takes, however long the steps are.
+/// Samples that the mean of a half takes, however long the steps are.
 constexpr double least_samples = 4;
 
 template <int D>

@@ -40,8 +40,8 @@ class Sleep {
     std::function<bool(std::int32_t)> holds_its_snow;    // whether its particles lie within it
   };
 
-  /// Looks at all blocks, at a time, after some steps of dt; returns the blocks that fall asleep,
-  /// until the next call.
+  /// Checks all blocks at the time `now`, after some steps of dt; returns the blocks that fall
+  /// asleep, until the next call.
   const std::vector<std::int32_t>& update(const BlockLayout<D>& layout, double now, int steps,
                                           double dt, const BlockProbe& block_probe) noexcept;
 

@@ -8,7 +8,7 @@
 namespace snowshed {
 namespace {
 
-/// Steps between looks for snow to fall asleep or to wake: a wave crosses less than a block.
+/// Steps between the checks whether snow falls asleep or wakes: a wave crosses less than a block.
 constexpr int steps_between_checks = 8;
 
 }  // namespace

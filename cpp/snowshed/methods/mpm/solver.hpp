@@ -14,7 +14,7 @@ namespace snowshed {
 struct MpmOptions {
   int dimension = 3;
   double gravity = 9.81;            // m/s2, along -z
-  std::vector<Snow> snows{Snow()};  // by kind; at least one, at most `max_materials`
+  std::vector<Snow> snows{Snow()};  // by material_id; at least one, at most `max_materials`
   MpmSettings numerics;
   bool energy = false;  // keep the energy balance
 };

@@ -1,4 +1,4 @@
-// Moves the particles of a slide by what acts on them.
+// Moves the particles of a slide by the forces on them.
 #pragma once
 
 #include "snowshed/methods/slide/state.hpp"
@@ -9,7 +9,7 @@ namespace snowshed {
 /// are marked in `work.removed`. Updates the kinetic energy and whether the slide has stopped.
 void advance(const SlideModel&, SlideState&, SlideWork&);
 
-/// Takes the marked particles and their bonds out of the state, and counts what they carry.
+/// Removes the marked particles and their bonds, and counts the mass that they carry.
 void remove_marked(SlideState&, SlideWork&);
 
 /// Splits particles that have become too heavy.

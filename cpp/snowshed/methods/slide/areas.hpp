@@ -1,4 +1,4 @@
-// Areas on the map that a slide begins in, takes snow from, or is held back by.
+// Areas on the map where a slide is released, entrains snow, or is held back by forest.
 #pragma once
 
 #include <memory>
@@ -29,14 +29,14 @@ enum class Reach {
   one_cell,  // so near that snow of the area may lie in the node's cell
 };
 
-/// The thickness of each node of a grid, 0 outside of the areas; where areas overlap, the mean of
-/// the sum so far and the next, as AvaFrame has it.
+/// Returns the thickness at each node of a grid, 0 outside of the areas. Where areas overlap, each
+/// further area gives the mean of its own thickness and of that so far, as in AvaFrame.
 std::vector<double> thickness_at_nodes(const std::vector<SlideArea>& areas, const Terrain& terrain,
                                        Reach reach);
 
-/// The outline of an area as AvaFrame 2.1 widens it: by half of `radius`. It goes by the sense of
-/// rotation that most corners show as seen from the first, which for some outlines with deep bays
-/// is the wrong one; these become narrower.
+/// Returns the outline of an area, widened by half of `radius` as AvaFrame 2.1 does it. Which side
+/// is outside follows from the sense of rotation that most corners show as seen from the first one.
+/// For some outlines with deep bays this sense is wrong, and they become narrower.
 Ring widened_as_avaframe(const Ring& outline, double radius);
 
 }  // namespace snowshed

@@ -1,4 +1,4 @@
-// What acts on the particles of a slide during a step.
+// The forces on the particles of a slide during a step.
 #pragma once
 
 #include "snowshed/methods/slide/state.hpp"

@@ -16,7 +16,7 @@ struct BasalFriction {
             s.friction_law == SlideFriction::voellmy ? s.density * gravity / s.turbulence : 0.0};
   }
 
-  /// Of the given normal stress (Pa) at a speed (m/s), Pa.
+  /// Returns the shear stress, Pa, at a normal stress (Pa) and a speed (m/s).
   double stress(double normal, double speed) const {
     return friction * normal + drag * speed * speed;
   }

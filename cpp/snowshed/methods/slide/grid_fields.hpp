@@ -1,4 +1,4 @@
-// The snow as the nodes of the terrain see it: thickness, velocity, and their peaks so far.
+// The snow at the nodes of the terrain: thickness, velocity, and their peaks so far.
 #pragma once
 
 #include <vector>
@@ -35,7 +35,7 @@ class GridFields {
               const AlignedVector<double>& east, const AlignedVector<double>& north,
               const CellLists& cells, double density, int threads);
 
-  /// Takes the fields into account in the peaks.
+  /// Raises the peaks to the fields where these are larger.
   void raise(PeakFields& peaks, const Terrain& terrain) const;
 
   /// The nodes of the rectangle, row by row, and where it begins on the terrain.

@@ -9,21 +9,22 @@
 
 namespace snowshed {
 
-/// The mass that a fresh particle has at most, kg: that of a layer of the given thickness over a
-/// cell.
+/// Returns the largest mass of a fresh particle, kg: that of a layer of the given thickness over
+/// one cell.
 double mass_per_particle(const SlideSettings& settings, double cell);
 
-/// The distance from a particle of a batch to the nearest other one, m, as seen from above; the
-/// median of a sample. 0 for a single particle.
+/// Returns the distance on the map between neighbouring particles of a batch, m: the median over a
+/// sample. 0 for a single particle.
 double lattice_spacing(const ParticleBatch& batch);
 
 /// Returns the particles of all release areas, on triangular lattices, a batch for each area.
 ///
-/// Improved mode: the lattice of each area begins at its centre and follows its mean slope, so
-/// that the result does not depend on how the grid lies; a layer thinner than a particle's has
-/// one particle a cell; the mass is exactly that of the thickness over the sloping area. Compatible
-/// mode: one lattice from the grid's origin, so many particles a cell as the mean slope of all
-/// areas asks for, each with its share of its cell's mass, all in one batch.
+/// Improved mode: the lattice of each area begins at its centre and follows its mean slope, so the
+/// result does not depend on the position of the grid. A layer thinner than that of a particle has
+/// one particle per cell. The mass is exactly that of the thickness over the sloping area.
+///
+/// Compatible mode: one lattice begins at the grid's origin. The mean slope of all areas decides
+/// the number of particles per cell. The particles of a cell share its mass. All are in one batch.
 ///
 /// Throws InputError where an area holds no particle, or, in compatible mode, is too thin for one.
 std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,

@@ -216,6 +216,7 @@ void SlideSolver::sort_now_and_then() {
   refresh(model_, next, work);
   state_ = std::move(next);
   work_ = std::move(work);
+  order_known_ = false;
   ++state_.counters.sorts;
 }
 

@@ -40,16 +40,7 @@ double spin_left(const MpmSettings& numerics) {
   o.gravity = 0;
   o.snows[0].model = SnowModel::elastic;
   const auto solver = make_mpm(o, {});
-  const ParticleBatch box =
-      filled_box(2, Vec3(-radius, 0, -radius), Vec3(radius, 0, radius), 0.0025);
-  for (const Vec3& x : box.positions) {
-    if (x.norm() > radius) continue;
-    ParticleBatch one;
-    one.positions = {x};
-    one.velocity = spin * Vec3::UnitY().cross(x);
-    one.mass = box.mass;
-    solver->add(one);
-  }
+  add_spinning_disc(*solver, radius, spin, 0.0025);
   const auto angular_momentum = [](const ParticleState& s) {
     double sum = 0;
     for (std::size_t i = 0; i < s.masses.size(); ++i)

@@ -6,7 +6,6 @@
 
 #include <csignal>
 #include <functional>
-#include <new>
 
 #include "core/allocation_fault.hpp"
 #include "io/temporary_folder.hpp"
@@ -128,19 +127,6 @@ class Story {
   std::filesystem::path file_;
 };
 
-enum class Outcome { no_fault, failed, done_without };
-
-/// Makes a call during which the n-th allocation fails.
-Outcome with_fault(std::int64_t n, const std::function<void()>& call) {
-  const AllocationFault fault(n);
-  try {
-    call();
-  } catch (const std::bad_alloc&) {
-    return Outcome::failed;
-  }
-  return AllocationFault::happened() ? Outcome::done_without : Outcome::no_fault;
-}
-
 class AllocationFaults : public TemporaryFolder {
  protected:
   /// Lets each allocation of each call of a story fail in turn, until it is done; returns their
@@ -163,12 +149,12 @@ int AllocationFaults::try_all(const Case& c) {
   for (std::size_t k = 0; k < faulty.calls.size(); ++k) {
     Seen expected = before[k];
     for (std::int64_t n = 1;; ++n) {
-      const Outcome outcome = with_fault(n, faulty.calls[k]);
-      if (outcome == Outcome::no_fault) break;
+      const FaultOutcome outcome = with_allocation_fault(n, faulty.calls[k]);
+      if (outcome == FaultOutcome::no_fault) break;
       ++faults;
       SCOPED_TRACE("call " + std::to_string(k) + ", allocation " + std::to_string(n));
       // Streams do without some memory; what reads or writes a file may be done again.
-      if (outcome == Outcome::done_without) expected = Seen(*faulty.solver);
+      if (outcome == FaultOutcome::done_without) expected = Seen(*faulty.solver);
       expect_same(Seen(*faulty.solver), expected);
       if (HasFailure()) return faults;
     }
@@ -177,6 +163,7 @@ int AllocationFaults::try_all(const Case& c) {
   expect_same_bits(now.particles, end.particles);
   expect_same_counters(now.counters, end.counters);
   EXPECT_EQ(now.energy.residual(), end.energy.residual());
+  RecordProperty("faults", faults);
   return faults;
 }
 
@@ -215,6 +202,7 @@ TEST_F(AllocationFaults, AFullDiskLeavesTheLastCheckpointAsItWas) {
     EXPECT_THROW(story.save(), FileError) << bytes;
     ++faults;
   }
+  RecordProperty("faults", faults);
   EXPECT_GE(faults, 20);
   EXPECT_EQ(number_of_files(), 1u);
   EXPECT_EQ(content(path("checkpoint")), good);

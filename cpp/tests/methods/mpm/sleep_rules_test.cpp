@@ -8,10 +8,10 @@ namespace snowshed {
 namespace {
 
 constexpr double speed_limit = 0.02, time_to_sleep = 0.04, step = 1e-4;
-constexpr int steps_between_looks = 8;
+constexpr int steps_between_checks = 8;
 
-/// What a look at the quiet block finds.
-struct Look {
+/// What a check of the quiet block finds.
+struct QuietBlock {
   double speed = 0, fastest = 0;
   CarriedMotion carried;
   VecD<2> velocity = VecD<2>::Zero();
@@ -19,23 +19,23 @@ struct Look {
 
 class TwoBlocks : public testing::Test {
  protected:
-  /// Looks every few steps for a time; returns whether the quiet block sleeps then.
-  bool look_for(double duration, const Look& look) {
+  /// Checks every few steps for a time (s); returns whether the quiet block sleeps then.
+  bool sleeps_after(double duration, const QuietBlock& block) {
     Sleep<2>::BlockProbe probe;
-    probe.fastest = [&](std::int32_t b) { return b == 0 ? 1.0 : look.fastest; };
-    probe.speed = [&](std::int32_t b) { return b == 0 ? 1.0 : look.speed; };
-    probe.velocity = [&](std::int32_t) { return look.velocity; };
-    probe.carried = [&](std::int32_t) { return look.carried; };
+    probe.fastest = [&](std::int32_t b) { return b == 0 ? 1.0 : block.fastest; };
+    probe.speed = [&](std::int32_t b) { return b == 0 ? 1.0 : block.speed; };
+    probe.velocity = [&](std::int32_t) { return block.velocity; };
+    probe.carried = [&](std::int32_t) { return block.carried; };
     probe.obstacle_moves = [](std::int32_t) { return false; };
     probe.holds_its_snow = [](std::int32_t) { return true; };
-    for (const double end = now_ + duration; now_ < end; now_ += steps_between_looks * step)
-      sleep_.update(layout_, now_, steps_between_looks, step, probe);
+    for (const double end = now_ + duration; now_ < end; now_ += steps_between_checks * step)
+      sleep_.update(layout_, now_, steps_between_checks, step, probe);
     return sleep_.states()[1].asleep;
   }
 
   void wake_all() { sleep_.wake_all(layout_, now_); }
   void fall_asleep() {
-    ASSERT_TRUE(look_for(2 * time_to_sleep, {0.5 * speed_limit, speed_limit, {}}));
+    ASSERT_TRUE(sleeps_after(2 * time_to_sleep, {0.5 * speed_limit, speed_limit, {}}));
   }
 
   const BlockLayout<2> layout_ =
@@ -45,24 +45,24 @@ class TwoBlocks : public testing::Test {
 };
 
 TEST_F(TwoBlocks, SleepBelowTheLimitAfterTheTime) {
-  EXPECT_FALSE(look_for(0.9 * time_to_sleep, {0.9 * speed_limit, speed_limit, {}}));
-  EXPECT_TRUE(look_for(0.3 * time_to_sleep, {0.9 * speed_limit, speed_limit, {}}));
+  EXPECT_FALSE(sleeps_after(0.9 * time_to_sleep, {0.9 * speed_limit, speed_limit, {}}));
+  EXPECT_TRUE(sleeps_after(0.3 * time_to_sleep, {0.9 * speed_limit, speed_limit, {}}));
 }
 
 TEST_F(TwoBlocks, StayAwakeAboveTheLimitAndWithOneFastParticle) {
-  EXPECT_FALSE(look_for(5 * time_to_sleep, {1.1 * speed_limit, speed_limit, {}}));
-  EXPECT_FALSE(look_for(5 * time_to_sleep, {0.5 * speed_limit, 6 * speed_limit, {}}));
-  EXPECT_TRUE(look_for(5 * time_to_sleep, {0.5 * speed_limit, 4 * speed_limit, {}}));
+  EXPECT_FALSE(sleeps_after(5 * time_to_sleep, {1.1 * speed_limit, speed_limit, {}}));
+  EXPECT_FALSE(sleeps_after(5 * time_to_sleep, {0.5 * speed_limit, 6 * speed_limit, {}}));
+  EXPECT_TRUE(sleeps_after(5 * time_to_sleep, {0.5 * speed_limit, 4 * speed_limit, {}}));
 }
 
 /// The mean velocity in the first half of the time to fall asleep, and in the second.
 TEST_F(TwoBlocks, StayAwakeWhileTheySetOff) {
   for (const double second : {0.001, 0.009}) {
     wake_all();
-    Look look{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, -0.002)};
-    look_for(0.5 * time_to_sleep, look);
-    look.velocity[1] = -second;
-    EXPECT_EQ(look_for(0.55 * time_to_sleep, look), second < 0.002) << second;
+    QuietBlock block{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, -0.002)};
+    sleeps_after(0.5 * time_to_sleep, block);
+    block.velocity[1] = -second;
+    EXPECT_EQ(sleeps_after(0.55 * time_to_sleep, block), second < 0.002) << second;
   }
 }
 
@@ -70,19 +70,19 @@ TEST_F(TwoBlocks, StayAwakeWhileTheyLoseTheSpeedThatGravityTakes) {
   const double lost = 9.81 * 0.5 * time_to_sleep;  // from one half to the other
   for (const double part : {0.3, 0.7}) {
     wake_all();
-    Look look{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, lost)};
-    look_for(0.5 * time_to_sleep, look);
-    look.velocity[1] = (1 - part) * lost;
-    EXPECT_EQ(look_for(0.55 * time_to_sleep, look), part < 0.5) << part;
+    QuietBlock block{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, lost)};
+    sleeps_after(0.5 * time_to_sleep, block);
+    block.velocity[1] = (1 - part) * lost;
+    EXPECT_EQ(sleeps_after(0.55 * time_to_sleep, block), part < 0.5) << part;
   }
 }
 
 TEST_F(TwoBlocks, WakeWhereTheirNeighbourWouldCarryThemFasterThanTheLimit) {
   for (const double part : {0.9, 1.1}) {
     fall_asleep();
-    Look look{0, 0, {}};
-    look.carried.speed_squared = part * part * speed_limit * speed_limit;
-    EXPECT_EQ(look_for(4.5 * steps_between_looks * step, look), part < 1) << part;
+    QuietBlock block{0, 0, {}};
+    block.carried.speed_squared = part * part * speed_limit * speed_limit;
+    EXPECT_EQ(sleeps_after(4.5 * steps_between_checks * step, block), part < 1) << part;
   }
 }
 
@@ -90,9 +90,9 @@ TEST_F(TwoBlocks, WakeWhereTheirNeighbourWouldCarryThemFasterThanTheLimit) {
 TEST_F(TwoBlocks, WakeByForcesThatActForAsLongAsItTakesToFallAsleep) {
   for (const double part : {0.8, 1.2}) {
     fall_asleep();
-    Look look{1.0, 1.0, {}};  // once awake it stays so
-    look.carried.change[1] = part * speed_limit / time_to_sleep * step;
-    EXPECT_EQ(look_for(10 * time_to_sleep, look), part < 1) << part;
+    QuietBlock block{1.0, 1.0, {}};  // once awake it stays so
+    block.carried.change[1] = part * speed_limit / time_to_sleep * step;
+    EXPECT_EQ(sleeps_after(10 * time_to_sleep, block), part < 1) << part;
   }
 }
 

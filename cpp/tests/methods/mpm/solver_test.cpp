@@ -133,16 +133,7 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
     o.numerics.flip_ratio = 1;  // each percent of PIC damps a spin of so few cells visibly
     o.snows[0].model = SnowModel::elastic;
     const auto solver = make_mpm(o, {});
-    const ParticleBatch box =
-        filled_box(2, Vec3(-radius, 0, -radius), Vec3(radius, 0, radius), 0.005);
-    for (const Vec3& x : box.positions) {
-      if (x.norm() > radius) continue;
-      ParticleBatch one;
-      one.positions = {x};
-      one.velocity = spin * Vec3::UnitY().cross(x);
-      one.mass = box.mass;
-      solver->add(one);
-    }
+    add_spinning_disc(*solver, radius, spin, 0.005);
     const ParticleState before = solver->state();
     double inertia = 0;
     for (std::size_t i = 0; i < before.masses.size(); ++i)
@@ -310,7 +301,7 @@ TEST_P(SameBits, FromACheckpoint) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Method, SameBits, testing::Bool(), [](const auto& info) {
-  return info.param ? "with_books" : "without_books";
+  return info.param ? "with_energy_balance" : "without_energy_balance";
 });
 
 // --- steps that are too much ------------------------------------------------------------------

@@ -79,6 +79,20 @@ inline ParticleBatch filled_box(int dimension, const Vec3& low, const Vec3& high
   return batch;
 }
 
+/// Adds a disc in the x-z plane, around the origin, whose particles turn about y at `rate` (rad/s).
+inline void add_spinning_disc(Method& solver, double radius, double rate, double spacing) {
+  const ParticleBatch box =
+      filled_box(2, Vec3(-radius, 0, -radius), Vec3(radius, 0, radius), spacing);
+  for (const Vec3& x : box.positions) {
+    if (x.norm() > radius) continue;
+    ParticleBatch one;
+    one.positions = {x};
+    one.velocity = rate * Vec3::UnitY().cross(x);
+    one.mass = box.mass;
+    solver.add(one);
+  }
+}
+
 /// A vector of components within [-size, size], in the plane y = 0 in 2D.
 inline Vec3 random_vector(Random& random, int dimension, double size) {
   Vec3 v;

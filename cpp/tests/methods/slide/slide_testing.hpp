@@ -4,21 +4,11 @@
 #include <cmath>
 #include <memory>
 
+#include "geometry/terrain_testing.hpp"
 #include "snowshed/core/angles.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
 namespace snowshed {
-
-template <class F>
-HeightField terrain_of(int columns, int rows, double cell, F height) {
-  HeightField f;
-  f.columns = columns;
-  f.rows = rows;
-  f.cell = cell;
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) f.heights.push_back(height(i * cell, j * cell));
-  return f;
-}
 
 /// A plane that falls toward the east.
 inline HeightField inclined(double degrees, int columns = 60, int rows = 30, double cell = 2) {

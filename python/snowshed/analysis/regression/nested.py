@@ -25,7 +25,7 @@ from snowshed.run.progress import Progress, Reporter
 
 IDENTITY = "regression.json"
 FORMAT = 2  # of the results of folds; another one is computed anew
-POLL_S = 0.25  # s between looks at interrupts
+POLL_S = 0.25  # s between checks of interrupts
 
 
 Results = dict[Task, FoldResult]

@@ -1,5 +1,5 @@
 // The snow of the particles in a chunk: one for all of them, whose constants are scalars, or each
-// particle's own, whose constants are lanes.
+// particle's own, whose constants are SIMD packs.
 #pragma once
 
 #include "snowshed/material/cam_clay.hpp"

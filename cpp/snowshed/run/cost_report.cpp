@@ -1,4 +1,4 @@
-#include "snowshed/run/plan.hpp"
+#include "snowshed/run/cost_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,13 +19,13 @@ constexpr double measured_particles = 50000;
 /// factor over an event of the laboratory scene (2D 1.3, 3D 1.4).
 constexpr double broken_snow = 1.35;
 
-void list_feature(Plan& plan, bool used, const std::string& name) {
-  (used ? plan.used : plan.left_out).push_back(name);
+void list_feature(CostReport& report, bool used, const std::string& name) {
+  (used ? report.used : report.left_out).push_back(name);
 }
 
-void list_features_of(const SlideSettings& slide, const Scene& s, Plan& plan) {
-  const auto feature = [&plan](bool used, const std::string& name) {
-    list_feature(plan, used, name);
+void list_features_of(const SlideSettings& slide, const Scene& s, CostReport& report) {
+  const auto feature = [&report](bool used, const std::string& name) {
+    list_feature(report, used, name);
   };
   feature(slide.bonds, "cohesive bonds");
   feature(slide.friction_law == SlideFriction::voellmy, "turbulent friction (Voellmy)");
@@ -36,9 +36,9 @@ void list_features_of(const SlideSettings& slide, const Scene& s, Plan& plan) {
   feature(s.output.snapshot_interval > 0, "snapshots during the slide");
 }
 
-void list_features_of(const MpmSettings& mpm, const Scene& s, Plan& plan) {
-  const auto feature = [&plan](bool used, const std::string& name) {
-    list_feature(plan, used, name);
+void list_features_of(const MpmSettings& mpm, const Scene& s, CostReport& report) {
+  const auto feature = [&report](bool used, const std::string& name) {
+    list_feature(report, used, name);
   };
   feature(s.dimension == 3, "third dimension");
   feature(mpm.precision == Precision::float64, "double precision");
@@ -85,17 +85,17 @@ double expected_work(const Scene& scene, const std::filesystem::path& base_dir) 
   return broken_snow * Simulation(scene, base_dir).cost().updates;
 }
 
-Plan plan(const Scene& given, const std::filesystem::path& base_dir) {
+CostReport report_cost(const Scene& given, const std::filesystem::path& base_dir) {
   const Scene scene = resolve(given);
-  Plan p;
-  std::visit([&](const auto& own) { list_features_of(own, scene, p); }, scene.numerics);
+  CostReport report;
+  std::visit([&](const auto& own) { list_features_of(own, scene, report); }, scene.numerics);
   const Simulation sim(scene, base_dir);
-  p.cost = sim.cost();
-  p.threads = sim.threads();
-  p.kernels = kernel_variant();
-  p.updates_per_s = measured_speed(scene, base_dir, p.cost);
-  p.wall_time = broken_snow * p.cost.updates / std::max(p.updates_per_s, 1.0);
-  return p;
+  report.cost = sim.cost();
+  report.threads = sim.threads();
+  report.kernels = kernel_variant();
+  report.updates_per_s = measured_speed(scene, base_dir, report.cost);
+  report.wall_time = broken_snow * report.cost.updates / std::max(report.updates_per_s, 1.0);
+  return report;
 }
 
 }  // namespace snowshed

@@ -1,4 +1,4 @@
-// What running a scene would use and cost, before it runs.
+// What a scene uses and costs on this machine, before it runs.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace snowshed {
 
-struct Plan {
+struct CostReport {
   std::vector<std::string> used, left_out;  // features, in words
   CostEstimate cost;
   double updates_per_s = 0;  // particle updates, measured here and now on a small copy
@@ -24,6 +24,6 @@ double expected_work(const Scene& scene, const std::filesystem::path& base_dir =
 
 /// Throws InputError as running would. Takes a fraction of a second: the speed is measured on the
 /// scene itself, coarsened to at most 50 000 particles.
-Plan plan(const Scene& scene, const std::filesystem::path& base_dir = ".");
+CostReport report_cost(const Scene& scene, const std::filesystem::path& base_dir = ".");
 
 }  // namespace snowshed

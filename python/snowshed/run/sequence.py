@@ -1,0 +1,51 @@
+"""The core's sequence of events in a results folder: opened, and run to its end."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import snowshed._core as _core
+from snowshed.run.interrupt import Interrupted
+from snowshed.scene.scene import PathLike, ResolvedScene
+
+REPORT_INTERVAL = 0.5  # s of wall time between progress reports
+
+
+def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _core.EventSequence:
+    """Return the sequence of a scene's events in a folder that is new, empty or to be resumed.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, the folder is not empty, or there is nothing to resume.
+    """
+    open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
+    return open_folder(scene.json, scene.base_dir, os.fspath(folder))
+
+
+def run_sequence(
+    sequence: _core.EventSequence,
+    observer: _core.EventObserver,
+    folder: PathLike,
+    *,
+    every_step: bool = False,
+) -> None:
+    """Run the events that are left; a failure is written down in the folder.
+
+    The observer is told of the progress after every step, or about twice a second.
+
+    Raises
+    ------
+    SimulationError, InputError
+        If the simulation cannot go on.
+    Interrupted
+        If the observer asked for a stop; a checkpoint holds the state to resume from.
+    """
+    try:
+        finished = sequence.run(observer, 0.0 if every_step else REPORT_INTERVAL)
+    except (_core.SimulationError, _core.InputError) as error:
+        sequence.record_failure(str(error))
+        raise
+    if not finished:
+        raise Interrupted(Path(folder))

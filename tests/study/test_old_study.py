@@ -1,0 +1,48 @@
+"""A study file and a store of the version before are still read, and its runs are found."""
+
+import os
+import sqlite3
+from pathlib import Path
+
+import pytest
+import study_helpers
+
+from snowshed import _core
+from snowshed.study import Study
+from snowshed.study.database import FILE
+from snowshed.study.table import read_table
+
+OLD = Path(__file__).with_name("old_study")
+
+scripted = study_helpers.scripted  # a fixture
+
+
+@pytest.fixture
+def store(tmp_path, monkeypatch):
+    monkeypatch.setattr(_core, "version", "0.1.0")  # part of the hashes
+    folder = tmp_path / "store"
+    folder.mkdir()
+    connection = sqlite3.connect(folder / FILE)
+    connection.executescript((OLD / "store.sql").read_text())
+    connection.close()
+    return folder
+
+
+def test_its_runs_are_found_and_nothing_is_computed_again(store, scripted):
+    study = Study.load(OLD / "study.toml")
+    assert study.scene.numerics.courant_factor == 0.9
+    table = study.run(store)
+    assert scripted.tasks == []
+    assert table["height_m"].tolist() == [0.318458004]
+
+
+@pytest.mark.parametrize("writable", [True, False])
+def test_its_table_is_read(store, monkeypatch, writable):
+    monkeypatch.setattr(os, "access", lambda path, mode: writable)
+    (row,) = read_table(store).to_dict("records")
+    assert (row["panel.friction"], row["length_m"], row["ended"]) == (
+        0.3,
+        0.121961517,
+        "time_limit",
+    )
+    assert (row["courant_factor"], row["trimming"]) == (0.9, "equal_pace")
