@@ -34,7 +34,7 @@ from snowshed.methods.peak_maps import PeakMaps
 from snowshed.methods.slide_frames import FrameSeries
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.methods.slide_validity import ReleaseArea, release_areas, validity_notes
-from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.sequence import REPORT_INTERVAL, open_sequence, run_sequence

@@ -61,8 +61,6 @@ void expect_same_slide(const SlideMethod& now, const SlideMethod& wanted) {
 
 class SlideFaults : public TemporaryFolder {};
 
-// Disabled until a step that fails after it has sorted the particles also forgets their old order
-// (SlideSolver::sort_now_and_then).
 TEST_F(SlideFaults, leave_no_trace) {
   SlideStory whole(path("whole")), faulty(path("faulty"));
   int faults = 0;
