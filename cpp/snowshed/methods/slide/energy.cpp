@@ -16,8 +16,7 @@ Vec3 velocity_at(const SlideState& state, std::size_t i) {
 /// The integral over length of a bond's force E h L/sqrt(3) (L/L0 - 1).
 double bond_energy(double modulus, double thickness, double length, double rest) {
   const double strain = length / rest - 1;
-  return modulus * thickness / std::sqrt(3.0) * rest * rest * strain * strain *
-         (0.5 + strain / 3);
+  return modulus * thickness / std::sqrt(3.0) * rest * rest * strain * strain * (0.5 + strain / 3);
 }
 
 /// The parts of a particle's friction that grow with the square of its speed, 1/m.
@@ -47,28 +46,39 @@ double cover_of(const SlideParticles& p, const CellLists& cells, const Places& p
   return sum;
 }
 
-/// The energy sum_k m_k g n_z h_k / 2 with the kernel's thickness (kernels/surface_pressure.hpp), J:
-/// that by which the snow's centre of mass lies above the ground.
+/// The integral of what pressure is raised by, from 0 to n neighbours; see FewNeighbours.
+double raised_integral(double n) {
+  const double rest = 1 - few_neighbours.power;
+  const double twofold = std::pow(few_neighbours.factor, 1 / few_neighbours.power);  // up to here
+  if (n <= twofold) return 2 * n;
+  return twofold + n + few_neighbours.factor / rest * (std::pow(n, rest) - std::pow(twofold, rest));
+}
+
+/// The potential of the pressure (kernels/surface_pressure.hpp), J: sum_k m_k g n_z h_k / 2, by
+/// which the snow's centre of mass lies above the ground, raised at few neighbours.
 double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
-  const double radius = model.terrain.cell();
-  const double kernel = 10 / (3.14159265358979323846 * std::pow(radius, 5));
-  const double factor = 0.5 * kernel * model.gravity / model.settings.density;
+  const double radius = model.terrain.cell(), pi = 3.14159265358979323846;
+  const SlideParticles& p = state.particles;
   double sum = 0;
-  for (std::uint32_t i = 0; i < state.particles.size(); ++i)
-    sum += factor * state.particles.mass[i] * work.places.nz[i] *
-           cover_of(state.particles, work.cells, work.places, i, radius);
+  for (std::uint32_t i = 0; i < p.size(); ++i) {
+    const double cover = cover_of(p, work.cells, work.places, i, radius);
+    const double seen = 10 / (radius * radius * radius) * cover / p.mass[i];
+    const double thickness_of_one = p.mass[i] / (pi * radius * radius * model.settings.density);
+    sum += 0.5 * p.mass[i] * model.gravity * work.places.nz[i] * thickness_of_one *
+           raised_integral(seen);
+  }
   return sum;
 }
 
 }  // namespace
 
 NamedEnergies named_energies(const SlideEnergy& e) {
-  return {{"kinetic_j", e.kinetic},         {"potential_j", e.potential},
-          {"bonds_j", e.bonds},             {"coulomb_j", e.coulomb},
-          {"turbulent_j", e.turbulent},     {"resistance_j", e.resistance},
-          {"viscosity_j", e.viscosity},     {"entrainment_j", e.entrainment},
-          {"broken_bonds_j", e.broken},     {"left_terrain_j", e.left},
-          {"added_j", e.added},             {"residual_j", e.residual()}};
+  return {{"kinetic_j", e.kinetic},     {"potential_j", e.potential},
+          {"bonds_j", e.bonds},         {"coulomb_j", e.coulomb},
+          {"turbulent_j", e.turbulent}, {"resistance_j", e.resistance},
+          {"viscosity_j", e.viscosity}, {"entrainment_j", e.entrainment},
+          {"broken_bonds_j", e.broken}, {"left_terrain_j", e.left},
+          {"added_j", e.added},         {"residual_j", e.residual()}};
 }
 
 void store_energy(const SlideModel& model, const SlideState& state, const SlideWork& work,
@@ -122,8 +132,8 @@ void EnergyAudit::before_bonds(const SlideModel& model, const SlideState& state,
     const bool breaks = length > model.settings.min_bond_length &&
                         std::abs(length / bonds.rest_length[b] - 1) > model.settings.max_strain;
     if (breaks)
-      e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]),
-                              length, bonds.rest_length[b]);
+      e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]), length,
+                              bonds.rest_length[b]);
   }
 }
 

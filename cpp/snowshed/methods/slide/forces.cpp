@@ -112,15 +112,19 @@ void add_pressure(const SlideModel& model, SlideState& state, SlideWork& work) {
   const SlideView view = view_of(model, state, work);
   const SlideKernels& kernels = slide_kernels();
   if (model.compatible()) {
-    for_each_row(work.cells, model.threads_for(n), [&](int row) { kernels.map_pressure(view, row); });
+    for_each_row(work.cells, model.threads_for(n),
+                 [&](int row) { kernels.map_pressure(view, row); });
     return;
   }
-  parallel_pieces(std::ptrdiff_t(n), model.threads_for(n), particles_in_piece,
-                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                    kernels.show_neighbours(view, begin, end);
-                  });
-  for_each_row(work.cells, model.threads_for(n),
-               [&](int row) { kernels.surface_pressure(view, row); });
+  const int threads = model.threads_for(n);
+  const auto for_each_piece = [&](auto kernel) {
+    parallel_pieces(std::ptrdiff_t(n), threads, particles_in_piece,
+                    [&](std::ptrdiff_t begin, std::ptrdiff_t end) { kernel(view, begin, end); });
+  };
+  for_each_piece(kernels.show_heights);
+  for_each_row(work.cells, threads, [&](int row) { kernels.count_neighbours(view, row); });
+  for_each_piece(kernels.weigh_pressure);
+  for_each_row(work.cells, threads, [&](int row) { kernels.surface_pressure(view, row); });
 }
 
 void add_bonds(const SlideModel& model, SlideState& state, SlideWork& work) {

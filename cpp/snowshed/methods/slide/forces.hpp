@@ -9,8 +9,9 @@ namespace snowshed {
 /// Changes velocities, and masses where snow is entrained.
 void apply_ground(const SlideModel&, SlideState&, SlideWork&);
 
-/// The gradient of the snow's own pressure, by smoothed particle hydrodynamics: along the ground, or,
-/// in compatible mode, along the map. See kernels/surface_pressure.hpp and kernels/map_pressure.hpp.
+/// The gradient of the snow's own pressure, by smoothed particle hydrodynamics: along the ground,
+/// or, in compatible mode, along the map. See kernels/surface_pressure.hpp and
+/// kernels/map_pressure.hpp.
 void add_pressure(const SlideModel&, SlideState&, SlideWork&);
 
 /// The forces of the bonds. Breaks those that are strained too much.

@@ -15,6 +15,15 @@ enum class FrictionScheme {
   avaframe_explicit
 };
 
+/// By how much the kernel's sum over few neighbours falls short of the pressure of snow: where a
+/// particle sees n of its like within the kernel, pressure is raised by 1 + factor n^-power, at
+/// most twofold. In a triangular lattice with N particles within the kernel the sum gives n = N - 5
+/// N^-0.4, within a few percent for N above 10; this is its inverse, to 2 %.
+struct FewNeighbours {
+  double factor, power;
+};
+inline constexpr FewNeighbours few_neighbours{3.7, 1.32};
+
 /// Entries that may be read, whatever they hold, after those of the sorted arrays.
 inline constexpr std::size_t sorted_padding = 8;
 
@@ -49,7 +58,7 @@ struct SlideView {
 
   // Particles in the order of their cells.
   const double *sorted_x, *sorted_y, *sorted_mass;
-  double *sorted_z, *sorted_pressing;  // default mode: m; the normal's z, raised at few neighbours
+  double *sorted_z, *sorted_pressing;  // default mode: m; see weigh_pressure
   const std::uint32_t* sorted_particle;
   const std::uint32_t* cell_begin;  // of the cells of a rectangle with a margin, row by row
   int cell_columns;
@@ -76,8 +85,11 @@ struct SlideKernels {
   void (*locate)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Mixes velocities with those of the snow around and finds how the ground acts.
   void (*ground)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Fills in what neighbours see of the particles in the order of their cells.
-  void (*show_neighbours)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Fills in the heights of the particles in the order of their cells; then, for the particles of
+  /// a row of cells, how many neighbours they see; then what their pressure is multiplied by.
+  void (*show_heights)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  void (*count_neighbours)(const SlideView&, int row);
+  void (*weigh_pressure)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Adds the acceleration by the snow's pressure to the particles of a row of cells: along the
   /// ground, or along the map as AvaFrame does it.
   void (*surface_pressure)(const SlideView&, int row);

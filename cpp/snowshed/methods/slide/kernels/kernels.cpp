@@ -20,8 +20,14 @@ void ground(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_lanes(begin, end, [&](const Lanes& l) { ground_lanes(s, l); });
 }
 
-void show_neighbours(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  show_entries(s, begin, end);
+void show_heights(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  for (std::ptrdiff_t e = begin; e < end; ++e) s.sorted_z[e] = s.z[s.sorted_particle[e]];
+}
+
+void count_neighbours(const SlideView& s, int row) { count_row(s, row); }
+
+void weigh_pressure(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  weigh_entries(s, begin, end);
 }
 
 void surface_pressure(const SlideView& s, int row) { surface_pressure_row(s, row); }
@@ -52,8 +58,9 @@ void thickness(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
 }  // namespace
 
 extern const SlideKernels slide_kernel_table;
-const SlideKernels slide_kernel_table{&locate,        &ground, &show_neighbours, &surface_pressure,
-                                      &map_pressure,  &stretch_bonds, &pull, &advance,
-                                      &thickness};
+const SlideKernels slide_kernel_table{&locate,           &ground,         &show_heights,
+                                      &count_neighbours, &weigh_pressure, &surface_pressure,
+                                      &map_pressure,     &stretch_bonds,  &pull,
+                                      &advance,          &thickness};
 
 SNOWSHED_VARIANT_END

@@ -10,7 +10,8 @@ SNOWSHED_INLINE void map_pressure_row(const SlideView& s, int row) {
   constexpr std::uint32_t width = simd_width<double>;
   const double factor = spiky_constant(s.cell) * s.gravity / s.density;
   V gx{}, gy{};
-  const auto add = [&](std::uint32_t k, std::uint32_t begin, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
+  const auto add = [&](std::uint32_t k, std::uint32_t begin,
+                       std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
     for (std::uint32_t e = begin; e < end; e += width) {
       const V dx = load_beyond<V>(s.sorted_x + e) - s.sorted_x[k];
       const V dy = load_beyond<V>(s.sorted_y + e) - s.sorted_y[k];

@@ -4,44 +4,59 @@
 // distance r_kl in space, so that h is normal to the ground. Snow has the potential energy
 // sum_k m_k g n_z h_k / 2, with the ground's normal n. What it exerts along the ground follows from
 // it: two particles push each other with opposite forces (Monaghan 2005,
-// doi:10.1088/0034-4885/68/8/R01). Where a particle has so few neighbours that the sum falls short of
-// the integral, its pressure is raised by what is missing, at most twofold.
+// doi:10.1088/0034-4885/68/8/R01). Where a particle has so few neighbours that the sum falls short
+// of the integral, its pressure is raised by what is missing, at most twofold. That depends on h_k
+// alone, so that it has a potential, too.
 #pragma once
 
 #include "snowshed/core/simd_math.hpp"
-#include "snowshed/methods/slide/kernels/ground.hpp"
 #include "snowshed/methods/slide/kernels/neighbours.hpp"
 
 SNOWSHED_VARIANT_BEGIN
 
-/// By how much the kernel's sum over few neighbours falls short of the pressure of snow, inverted. In
-/// a triangular lattice with N particles within the kernel the sum is 1 - 5 N^-1.4 of the integral,
-/// within a few percent for N above 10.
+/// See `few_neighbours` in kernel_api.hpp.
 template <class V>
-SNOWSHED_INLINE V few_neighbours(const V& particles_in_kernel) {
-  const V power = 1.0 + expm1(V(-1.4 * log1p(V(particles_in_kernel - 1.0))));
-  return 1.0 / max(broadcast<V>(0.5), V(1.0 - 5.0 * power));
+SNOWSHED_INLINE V raised_pressure(const V& seen) {
+  const V log_seen = log1p(V(max(seen, broadcast<V>(1e-3)) - 1.0));
+  const V more = 1.0 + expm1(V(-few_neighbours.power * log_seen));
+  return min(broadcast<V>(2.0), V(1.0 + few_neighbours.factor * more));
 }
 
-/// Of entries in the order of cells.
-SNOWSHED_INLINE void show_entries(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+/// Finds how many particles each particle of a row of cells sees, by mass, within its kernel.
+SNOWSHED_INLINE void count_row(const SlideView& s, int row) {
+  using V = SimdPack<double>;
+  constexpr std::uint32_t width = simd_width<double>;
+  const double constant = 10 / (s.cell * s.cell * s.cell);  // of the kernel, over a disc's area
+  V sum{};
+  const auto add = [&](std::uint32_t k, std::uint32_t begin,
+                       std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
+    for (std::uint32_t e = begin; e < end; e += width) {
+      const V dx = load_beyond<V>(s.sorted_x + e) - s.sorted_x[k];
+      const V dy = load_beyond<V>(s.sorted_y + e) - s.sorted_y[k];
+      const V dz = load_beyond<V>(s.sorted_z + e) - s.sorted_z[k];
+      const V square = max(V(dx * dx + dy * dy + dz * dz), broadcast<V>(least_square));
+      const V inside = max(V{}, V(s.cell - square * inverse_sqrt(square)));
+      const V share = load_beyond<V>(s.sorted_mass + e) * inside * inside * inside;
+      sum += select(lane_numbers<V>() < double(end - e), share, V{});
+    }
+  };
+  for_each_neighbourhood(s, row, add, [&](std::uint32_t k) SNOWSHED_INLINE_LAMBDA {
+    s.sorted_pressing[k] = constant * sum_of(sum) / s.sorted_mass[k];
+    sum = V{};
+  });
+}
+
+/// Turns these numbers into what pressure is multiplied by.
+SNOWSHED_INLINE void weigh_entries(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   using V = SimdPack<double>;
   constexpr int width = simd_width<double>;
-  const double kernel_mass = 3.14159265358979323846 * s.cell * s.cell * s.density;  // kg per m
   for (std::ptrdiff_t e = begin; e < end; e += width) {
     const int count = end - e < width ? int(end - e) : width;
-    V z, nz, thickness, mass;
-    for (int lane = 0; lane < width; ++lane) {
-      const std::ptrdiff_t at = e + (lane < count ? lane : 0);
-      const std::uint32_t i = s.sorted_particle[at];
-      z[lane] = s.z[i];
-      nz[lane] = s.nz[i];
-      thickness[lane] = s.thickness[i];
-      mass[lane] = s.sorted_mass[at];
-    }
-    const V h = max(thickness, broadcast<V>(least_slide_thickness));
-    store(s.sorted_z + e, z, count);
-    store(s.sorted_pressing + e, V(nz * few_neighbours(V(kernel_mass * h / mass))), count);
+    V nz;
+    for (int lane = 0; lane < width; ++lane)
+      nz[lane] = s.nz[s.sorted_particle[e + (lane < count ? lane : 0)]];
+    store(s.sorted_pressing + e, V(nz * raised_pressure(load(s.sorted_pressing + e, count))),
+          count);
   }
 }
 
@@ -50,7 +65,8 @@ SNOWSHED_INLINE void surface_pressure_row(const SlideView& s, int row) {
   constexpr std::uint32_t width = simd_width<double>;
   const double factor = 0.5 * spiky_constant(s.cell) * s.gravity / s.density;
   V sx{}, sy{}, sz{};
-  const auto add = [&](std::uint32_t k, std::uint32_t begin, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
+  const auto add = [&](std::uint32_t k, std::uint32_t begin,
+                       std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
     for (std::uint32_t e = begin; e < end; e += width) {
       const V dx = load_beyond<V>(s.sorted_x + e) - s.sorted_x[k];
       const V dy = load_beyond<V>(s.sorted_y + e) - s.sorted_y[k];
