@@ -40,8 +40,8 @@ def exact_thickness(s: Floats, time: float) -> Floats:
     --------
     At the dam, seen from the moving snow, it is 4/9 of what it was.
 
-    >>> float(exact_thickness(np.array([PLANE.coulomb(FRICTION) / 2]), 1.0).round(6))
-    0.444444
+    >>> exact_thickness(np.array([PLANE.coulomb(FRICTION) / 2]), 1.0).round(6).tolist()
+    [0.444444]
     """
     c = wave_speed()
     place = (s - 0.5 * PLANE.coulomb(FRICTION) * time**2) / time

@@ -13,7 +13,7 @@ from validation.slides import Height, Site, rectangle, slide_drive
 
 SLOPE = math.tan(math.radians(38.0))
 STEPS = 300
-OWN = frozenset({"ground", "thickness", "steps"})
+OWN = frozenset({"ground", "thickness", "steps_to_take"})
 
 GROUNDS: Mapping[str, Height] = {
     "slope": lambda x, y: -SLOPE * x,
@@ -61,7 +61,7 @@ def measure(settings: Settings) -> Outcome:
     snow = rectangle(-12.3, -12.3, 12.3, 12.3, float(settings["thickness"]))
     drive = slide_drive(Site(height, -30.0, -30.0, 60.0, 30.0, [snow]), settings, OWN)
     released = drive.masses.sum()
-    while drive.core.total_steps < int(settings["steps"]) and drive.core.particle_count:
+    while drive.core.total_steps < int(settings["steps_to_take"]) and drive.core.particle_count:
         drive.step()
     facts = drive.core.slide_facts()
     speeds = np.linalg.norm(drive.core.velocities(), axis=1)
@@ -81,7 +81,7 @@ def matrix(full: bool) -> list[Settings]:
     """Return grounds with thicknesses, and settings at their extremes."""
     steps = 3000 if full else STEPS
     thicknesses = (0.001, 0.05, 0.5, 10.0) if full else (0.001, 10.0)
-    base: Settings = {**DEFAULTS, "steps": steps}
+    base: Settings = {**DEFAULTS, "steps_to_take": steps}
     listed: list[Settings] = [
         {**base, "ground": ground, "thickness": thickness}
         for ground in GROUNDS
