@@ -110,7 +110,9 @@ def _ellipse(radius: float) -> list[tuple[float, float]]:
 def _half_length(drive: Drive, shape: str) -> float:
     """Return it from the second moment: a^2/5 of a parabola, a^2/6 along an axis of a cap."""
     x, y = drive.core.positions()[:, :2].T
-    masses = drive.masses * (np.abs(y - drive.mean(y)) < MEASURED if shape == "ridge" else 1.0)
+    masses = drive.core.masses()  # without what left the terrain
+    if shape == "ridge":
+        masses = masses * (np.abs(y - np.average(y, weights=masses)) < MEASURED)
     s = x / math.cos(PLANE.angle)
     variance = np.average((s - np.average(s, weights=masses)) ** 2, weights=masses)
     return math.sqrt((5 if shape == "ridge" else 6) * variance)
