@@ -21,8 +21,8 @@ std::unique_ptr<Method> build(const MpmSettings& settings, const Scene& scene,
 
 std::unique_ptr<Method> build(const SlideSettings& settings, const Scene& scene,
                               const std::vector<Snow>&, const Surroundings& surroundings) {
-  return make_slide({settings, scene.gravity, surroundings.terrain, surroundings.areas,
-                     scene.output.energy});
+  return make_slide(
+      {settings, scene.gravity, surroundings.terrain, surroundings.areas, scene.output.energy});
 }
 
 }  // namespace
