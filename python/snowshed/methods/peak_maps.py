@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-import zipfile
-import zlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.io.damage import DAMAGED
 
 Singles = NDArray[np.float32]
-DAMAGED = (ValueError, KeyError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
 
 
 @dataclass(frozen=True)
@@ -98,5 +96,5 @@ class PeakMaps:
                 row, column, rows, columns = archive["place"].tolist()
                 h, v, p = (archive[name] for name in ("thickness", "speed", "pressure"))
                 return cls(h, v, p, row, column, (rows, columns))
-        except DAMAGED as error:
+        except (OSError, *DAMAGED) as error:
             raise InputError(f"not maps that snowshed kept: {error}") from None

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed.io.atomic import replacing
-from snowshed.methods.peak_maps import DAMAGED
+from snowshed.io.damage import DAMAGED
 
 Singles = NDArray[np.float32]
 FIRST_INTERVAL = 0.25  # s between frames, to begin with
@@ -103,7 +103,7 @@ class FrameSeries:
                     if time < until:
                         cut = archive[f"frame{number}"]
                         series.frames.append(Frame(time, cut, int(row), int(column)))
-        except DAMAGED:
+        except (OSError, *DAMAGED):
             return cls()  # the page begins later; nothing else depends on it
         times = [frame.time for frame in series.frames]
         if len(times) > 1:

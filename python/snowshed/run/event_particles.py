@@ -7,8 +7,6 @@ are thousands of runs, so that a new measure needs no new run.
 from __future__ import annotations
 
 import io
-import zipfile
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +16,7 @@ from numpy.typing import NDArray
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.io.damage import DAMAGED
 from snowshed.io.vtp import read_particles
 from snowshed.run.results import RunFolder
 from snowshed.scene.scene import PathLike, ResolvedScene
@@ -25,7 +24,6 @@ from snowshed.snow.stack.measure import StackMeasure, measure_stack
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
 
 Singles = NDArray[np.float32]
-DAMAGED = (ValueError, KeyError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
 
 
 @dataclass(frozen=True)
@@ -99,7 +97,7 @@ class EventParticles:
         try:
             with np.load(io.BytesIO(data), allow_pickle=False) as archive:
                 return cls._of(archive)
-        except DAMAGED as error:
+        except (OSError, *DAMAGED) as error:
             raise InputError(f"not particles that snowshed kept: {error}") from None
 
     @classmethod

@@ -9,11 +9,10 @@ namespace snowshed {
 void advance(const SlideModel& model, SlideState& state, SlideWork& work) {
   const SlideParticles& p = state.particles;
   const SlideView view = view_of(model, state, work);
-  parallel_pieces(std::ptrdiff_t(p.size()), model.threads_for(p.size()), particles_in_piece,
-                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                    work.piece_sums[std::size_t(begin / particles_in_piece)] =
-                        slide_kernels().advance(view, begin, end);
-                  });
+  for_each_piece(model, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    work.piece_sums[std::size_t(begin / particles_in_piece)] =
+        slide_kernels().advance(view, begin, end);
+  });
   // Piece by piece, so that the sum does not depend on the threads.
   const std::ptrdiff_t pieces =
       (std::ptrdiff_t(p.size()) + particles_in_piece - 1) / particles_in_piece;
@@ -84,7 +83,8 @@ void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
   const std::size_t before = p.size();
   for (std::size_t i = 0; i < before; ++i) {
     if (!(p.mass[i] > p.fresh_mass[i] * model.settings.split_ratio)) continue;
-    const double area = p.mass[i] / (model.settings.density * std::max(work.thickness[i], 1e-6));
+    const double area =
+        p.mass[i] / (model.settings.density * std::max(work.thickness[i], least_slide_thickness));
     const double distance = 0.41 * std::sqrt(area / 3.14159265358979323846);
     Vec3 along{p.ux[i], p.uy[i], p.uz[i]};
     const double speed = along.norm();

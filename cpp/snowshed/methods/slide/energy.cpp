@@ -24,7 +24,7 @@ struct Drag {
   double turbulent, resistance;
 };
 Drag drag_parts(const SlideModel& model, const SlideWork& work, std::size_t i) {
-  const double h = std::max(work.thickness[i], 1e-6);
+  const double h = std::max(work.thickness[i], least_slide_thickness);
   const double all = work.loads.drag[i];
   const double turbulent = std::min(all, model.friction.drag / (model.settings.density * h));
   return model.resistance.empty() ? Drag{all, 0.0} : Drag{turbulent, all - turbulent};

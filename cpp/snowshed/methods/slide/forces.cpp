@@ -7,8 +7,7 @@
 namespace snowshed {
 namespace {
 
-constexpr double least_thickness = 1e-6;  // m
-constexpr double least_speed = 1e-6;      // m/s
+constexpr double least_speed = 1e-6;  // m/s
 
 /// The node nearest to a place.
 std::size_t nearest_node(const Terrain& terrain, const GridPlace& p) {
@@ -35,15 +34,11 @@ double entrain(const SlideModel& model, double erodible, double stress, double a
   return taken;
 }
 
-}  // namespace
-
-namespace {
-
 /// Entrainment by one particle; returns the mass that it takes up, kg.
 double entrain_by(const SlideModel& model, const SlideState& state, SlideView& v, SlideParticles& p,
                   std::size_t i, std::size_t node) {
   const double density = model.settings.density, dt = state.step;
-  const double h = std::max(v.thickness[i], least_thickness), speed = v.speed[i];
+  const double h = std::max(v.thickness[i], least_slide_thickness), speed = v.speed[i];
   const double pressing = model.friction.friction > 0 ? v.yield[i] / model.friction.friction : 0.0;
   const double stress =
       v.drag[i] > 0 || pressing > 0 ? model.friction.stress(pressing * density * h, speed) : 0.0;
@@ -68,7 +63,7 @@ void sweep(const SlideModel& model, SlideState& state, SlideWork& work) {
     if (!work.entrained.empty())
       work.entrained[i] = state.erodible[node] > 0 ? entrain_by(model, state, v, p, i, node) : 0.0;
     if (!model.resistance.empty())
-      v.drag[i] += model.resistance[node] / std::max(v.thickness[i], least_thickness);
+      v.drag[i] += model.resistance[node] / std::max(v.thickness[i], least_slide_thickness);
     if (model.compatible() && !work.entrained.empty()) {  // forces on the mass before, there
       const double share = 1 - work.entrained[i] / p.mass[i];
       for (double* load : {v.ax, v.ay, v.az, v.yield, v.drag}) load[i] *= share;
@@ -88,43 +83,35 @@ void sweep(const SlideModel& model, SlideState& state, SlideWork& work) {
 void apply_ground(const SlideModel& model, SlideState& state, SlideWork& work) {
   const std::size_t n = state.particles.size();
   const SlideView view = view_of(model, state, work);
-  parallel_pieces(
-      std::ptrdiff_t(n), model.threads_for(n), particles_in_piece,
-      [&](std::ptrdiff_t begin, std::ptrdiff_t end) { slide_kernels().ground(view, begin, end); });
+  for_each_piece(model, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    slide_kernels().ground(view, begin, end);
+  });
   if (!state.erodible.empty() || !model.resistance.empty()) sweep(model, state, work);
 }
 
-namespace {
-
-template <class Kernel>
-void for_each_row(const CellLists& cells, int threads, Kernel kernel) {
-  parallel_pieces(cells.rows() - 2, threads, 1,
-                  [&](std::ptrdiff_t j, std::ptrdiff_t) { kernel(int(j) + 1); });
-}
-
-}  // namespace
-
 void add_pressure(const SlideModel& model, SlideState& state, SlideWork& work) {
-  const Places& places = work.places;
   const std::size_t n = state.particles.size();
+  const int threads = model.threads_for(n);
   if (!work.entrained.empty())  // new masses
-    work.cells.update(state.particles, places.column, places.row, model.threads_for(n));
+    work.cells.update(state.particles, work.places.column, work.places.row, threads);
   const SlideView view = view_of(model, state, work);
   const SlideKernels& kernels = slide_kernels();
+  const auto for_rows = [&](auto kernel) {
+    parallel_pieces(work.cells.rows() - 2, threads, 1,
+                    [&](std::ptrdiff_t j, std::ptrdiff_t) { kernel(view, int(j) + 1); });
+  };
+  const auto for_entries = [&](auto kernel) {
+    for_each_piece(model, n,
+                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) { kernel(view, begin, end); });
+  };
   if (model.compatible()) {
-    for_each_row(work.cells, model.threads_for(n),
-                 [&](int row) { kernels.map_pressure(view, row); });
+    for_rows(kernels.map_pressure);
     return;
   }
-  const int threads = model.threads_for(n);
-  const auto for_each_piece = [&](auto kernel) {
-    parallel_pieces(std::ptrdiff_t(n), threads, particles_in_piece,
-                    [&](std::ptrdiff_t begin, std::ptrdiff_t end) { kernel(view, begin, end); });
-  };
-  for_each_piece(kernels.show_heights);
-  for_each_row(work.cells, threads, [&](int row) { kernels.count_neighbours(view, row); });
-  for_each_piece(kernels.weigh_pressure);
-  for_each_row(work.cells, threads, [&](int row) { kernels.surface_pressure(view, row); });
+  for_entries(kernels.show_heights);
+  for_rows(kernels.count_neighbours);
+  for_entries(kernels.weigh_pressure);
+  for_rows(kernels.surface_pressure);
 }
 
 void add_bonds(const SlideModel& model, SlideState& state, SlideWork& work) {
@@ -132,13 +119,12 @@ void add_bonds(const SlideModel& model, SlideState& state, SlideWork& work) {
   const std::size_t n = state.particles.size();
   const SlideView view = view_of(model, state, work);
   std::atomic<bool> breaks{false};
-  parallel_pieces(std::ptrdiff_t(state.bonds.size()), model.threads_for(n), particles_in_piece,
-                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                    if (slide_kernels().stretch_bonds(view, begin, end)) breaks = true;
-                  });
-  parallel_pieces(
-      std::ptrdiff_t(n), model.threads_for(n), particles_in_piece,
-      [&](std::ptrdiff_t begin, std::ptrdiff_t end) { slide_kernels().pull(view, begin, end); });
+  for_each_piece(model, n, state.bonds.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    if (slide_kernels().stretch_bonds(view, begin, end)) breaks = true;
+  });
+  for_each_piece(model, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    slide_kernels().pull(view, begin, end);
+  });
   if (!breaks) return;
   remove_bonds(state.bonds, work.broken);
   work.bond_lists.update(state.bonds, state.particles.size());

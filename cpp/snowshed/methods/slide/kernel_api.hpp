@@ -24,6 +24,9 @@ struct FewNeighbours {
 };
 inline constexpr FewNeighbours few_neighbours{3.7, 1.32};
 
+/// Thinner snow counts as so thick where something is divided by it, m.
+inline constexpr double least_slide_thickness = 1e-6;
+
 /// Entries that may be read, whatever they hold, after those of the sorted arrays.
 inline constexpr std::size_t sorted_padding = 8;
 

@@ -172,11 +172,10 @@ void refresh_places(const SlideModel& model, const SlideState& state, SlideWork&
   view_places(work, view);
   view.x = const_cast<double*>(state.particles.x.data());  // which is only read
   view.y = const_cast<double*>(state.particles.y.data());
-  parallel_pieces(std::ptrdiff_t(end - begin), model.threads_for(end - begin), particles_in_piece,
-                  [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-                    const auto from = std::ptrdiff_t(begin);
-                    slide_kernels().locate(view, from + first, from + last);
-                  });
+  for_each_piece(model, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+    const auto from = std::ptrdiff_t(begin);
+    slide_kernels().locate(view, from + first, from + last);
+  });
 }
 
 void refresh(const SlideModel& model, const SlideState& state, SlideWork& work) {
@@ -196,10 +195,9 @@ void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork&
   work.thickness.resize(p.size());
   SlideView view{};
   view_places(work, view);
-  parallel_pieces(std::ptrdiff_t(p.size()), model.threads_for(p.size()), particles_in_piece,
-                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                    slide_kernels().thickness(view, begin, end);
-                  });
+  for_each_piece(model, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    slide_kernels().thickness(view, begin, end);
+  });
 }
 
 }  // namespace snowshed

@@ -131,6 +131,16 @@ inline constexpr std::ptrdiff_t particles_in_piece = 256;
 /// What the kernels see of a slide, until an array of it changes its size.
 SlideView view_of(const SlideModel&, SlideState&, SlideWork&);
 
+/// Calls f(begin, end) for pieces of so many particles, or of bonds between them.
+template <class F>
+void for_each_piece(const SlideModel& model, std::size_t particles, std::size_t count, F f) {
+  parallel_pieces(std::ptrdiff_t(count), model.threads_for(particles), particles_in_piece, f);
+}
+template <class F>
+void for_each_piece(const SlideModel& model, std::size_t particles, F f) {
+  for_each_piece(model, particles, particles, f);
+}
+
 /// Makes the workspace follow from the particles: places, cells, fields, bonds.
 void refresh(const SlideModel&, const SlideState&, SlideWork&);
 /// The places of the particles [begin, end), which the workspace has room for.

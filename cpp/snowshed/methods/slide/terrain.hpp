@@ -62,14 +62,6 @@ class Terrain {
                   w0 * a[0].slope_y + w1 * a[1].slope_y + w2 * b[0].slope_y + w3 * b[1].slope_y);
   }
 
-  /// The upward unit normal in the middle of a cell.
-  Vec3 cell_normal(const GridPlace& p) const {
-    const Node* a = &nodes_[index(p.column, p.row)];
-    const Node* b = a + columns_;
-    return upward(0.25 * (a[0].slope_x + a[1].slope_x + b[0].slope_x + b[1].slope_x),
-                  0.25 * (a[0].slope_y + a[1].slope_y + b[0].slope_y + b[1].slope_y));
-  }
-
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
  private:
@@ -82,26 +74,5 @@ class Terrain {
   double cell_, per_cell_, west_, south_;
   std::vector<Node> nodes_;
 };
-
-/// A point brought onto the ground along the normals of the cells it comes through, up to five
-/// times, as AvaFrame and SamosAT do it. `on_ground.inside()` is false where it left the grid.
-struct Reprojection {
-  double x, y;
-  GridPlace on_ground;
-};
-inline Reprojection reproject(const Terrain& terrain, double x, double y, double z) {
-  GridPlace place = terrain.place(x, y);
-  const int first_column = place.column, first_row = place.row;
-  for (int i = 0; i < 5 && place.inside(); ++i) {
-    const Vec3 n = terrain.cell_normal(place);
-    const double distance = (terrain.height(place) - z) * n.z();
-    x += distance * n.x();
-    y += distance * n.y();
-    z += distance * n.z();
-    place = terrain.place(x, y);
-    if (place.column == first_column && place.row == first_row) break;
-  }
-  return {x, y, place};
-}
 
 }  // namespace snowshed

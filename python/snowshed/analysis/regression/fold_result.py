@@ -10,10 +10,10 @@ from typing import Any, Optional
 
 import numpy as np
 
-from snowshed.analysis.regression.damage import DAMAGED
 from snowshed.analysis.regression.kernels import Expansion
 from snowshed.io.arrays import Floats, Integers
 from snowshed.io.atomic import replacing
+from snowshed.io.damage import DAMAGED
 
 NUMBERS = ("inner_score", "development_score", "validation_score", "fits", "elapsed_s")
 ARRAYS = ("validation", "held_out", "predictions")

@@ -14,7 +14,6 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed._core import version as snowshed_version
-from snowshed.analysis.regression.damage import DAMAGED
 from snowshed.analysis.regression.domain import Domain
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.rows import INPUTS, TARGETS
@@ -22,6 +21,7 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
+from snowshed.io.damage import DAMAGED
 from snowshed.scene.accuracy_settings import FORMER_NAMES
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import measure_named

@@ -5,8 +5,6 @@
 
 SNOWSHED_VARIANT_BEGIN
 
-inline constexpr double least_slide_thickness = 1e-6;  // m
-
 /// Draws a velocity toward that of the snow around, implicitly (artificial viscosity of SamosAT).
 SNOWSHED_INLINE QuadVec mixed(const SlideView& s, const QuadVec& u, const QuadVec& around,
                               const QuadVec& normal, const Quad& mass, const Quad& thickness) {

@@ -16,7 +16,7 @@ SNOWSHED_INLINE void map_pressure_row(const SlideView& s, int row) {
       const V dx = load_beyond<V>(s.sorted_x + e) - s.sorted_x[k];
       const V dy = load_beyond<V>(s.sorted_y + e) - s.sorted_y[k];
       const V w = load_beyond<V>(s.sorted_mass + e) * spiky_gradient(V(dx * dx + dy * dy), s.cell);
-      const V counted = select(lane_numbers<V>() < double(end - e), w, V{});
+      const V counted = within(w, e, end);
       gx += counted * dx;
       gy += counted * dy;
     }

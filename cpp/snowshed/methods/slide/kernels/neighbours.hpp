@@ -22,6 +22,24 @@ SNOWSHED_INLINE V load_beyond(const double* p) {
   return v;
 }
 
+/// The way from a particle to some neighbours, in space, from entry e on in the order of cells.
+template <class V>
+struct Way {
+  V x, y, z;
+
+  SNOWSHED_INLINE Way(const SlideView& s, std::uint32_t from, std::uint32_t e)
+      : x(load_beyond<V>(s.sorted_x + e) - s.sorted_x[from]),
+        y(load_beyond<V>(s.sorted_y + e) - s.sorted_y[from]),
+        z(load_beyond<V>(s.sorted_z + e) - s.sorted_z[from]) {}
+  SNOWSHED_INLINE V square() const { return x * x + y * y + z * z; }
+};
+
+/// The values of those of the entries from e on that belong to a run up to `end`; 0 for others.
+template <class V>
+SNOWSHED_INLINE V within(const V& values, std::uint32_t e, std::uint32_t end) {
+  return select(lane_numbers<V>() < double(end - e), values, V{});
+}
+
 /// (R - r)^2 / r from the square of the distance r: the gradient of the kernel with the radius R,
 /// over the distance and but for its constant.
 template <class V>

@@ -174,7 +174,8 @@ SNOWSHED_INLINE QuadMask is_known(const SlideView& s, const QuadPlace& p) {
   return height == height;
 }
 
-/// See `reproject` of terrain.hpp.
+/// Points brought onto the ground along the normals of the cells they come through, up to five
+/// times, as AvaFrame and SamosAT do it. They are not inside where they left the grid.
 struct QuadReprojection {
   Quad x, y;
   QuadPlace on_ground;

@@ -31,13 +31,11 @@ SNOWSHED_INLINE void count_row(const SlideView& s, int row) {
   const auto add = [&](std::uint32_t k, std::uint32_t begin,
                        std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
     for (std::uint32_t e = begin; e < end; e += width) {
-      const V dx = load_beyond<V>(s.sorted_x + e) - s.sorted_x[k];
-      const V dy = load_beyond<V>(s.sorted_y + e) - s.sorted_y[k];
-      const V dz = load_beyond<V>(s.sorted_z + e) - s.sorted_z[k];
-      const V square = max(V(dx * dx + dy * dy + dz * dz), broadcast<V>(least_square));
+      const Way<V> way(s, k, e);
+      const V square = max(way.square(), broadcast<V>(least_square));
       const V inside = max(V{}, V(s.cell - square * inverse_sqrt(square)));
       const V share = load_beyond<V>(s.sorted_mass + e) * inside * inside * inside;
-      sum += select(lane_numbers<V>() < double(end - e), share, V{});
+      sum += within(share, e, end);
     }
   };
   for_each_neighbourhood(s, row, add, [&](std::uint32_t k) SNOWSHED_INLINE_LAMBDA {
@@ -68,16 +66,14 @@ SNOWSHED_INLINE void surface_pressure_row(const SlideView& s, int row) {
   const auto add = [&](std::uint32_t k, std::uint32_t begin,
                        std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
     for (std::uint32_t e = begin; e < end; e += width) {
-      const V dx = load_beyond<V>(s.sorted_x + e) - s.sorted_x[k];
-      const V dy = load_beyond<V>(s.sorted_y + e) - s.sorted_y[k];
-      const V dz = load_beyond<V>(s.sorted_z + e) - s.sorted_z[k];
+      const Way<V> way(s, k, e);
       const V pressing = load_beyond<V>(s.sorted_pressing + e) + s.sorted_pressing[k];
-      const V w = load_beyond<V>(s.sorted_mass + e) * pressing *
-                  spiky_gradient(V(dx * dx + dy * dy + dz * dz), s.cell);
-      const V counted = select(lane_numbers<V>() < double(end - e), w, V{});
-      sx += counted * dx;
-      sy += counted * dy;
-      sz += counted * dz;
+      const V w =
+          load_beyond<V>(s.sorted_mass + e) * pressing * spiky_gradient(way.square(), s.cell);
+      const V counted = within(w, e, end);
+      sx += counted * way.x;
+      sy += counted * way.y;
+      sz += counted * way.z;
     }
   };
   for_each_neighbourhood(s, row, add, [&](std::uint32_t k) SNOWSHED_INLINE_LAMBDA {
