@@ -138,6 +138,13 @@ class BinaryReader {
     return {reinterpret_cast<const T*>(bytes() + section.offset), section.count};
   }
 
+  /// The same; throws InputError unless it has `count` elements, too.
+  template <class T>
+  ArrayView<T> view(std::string_view name, std::size_t count) const {
+    require_count(name, count);
+    return view<T>(name);
+  }
+
   /// Returns a copy of the array called `name`.
   template <class T>
   std::vector<T> get(std::string_view name) const {

@@ -80,6 +80,8 @@ void write(const std::filesystem::path& path, const std::vector<std::array<Real,
   std::iota(index.begin(), index.end(), Index{0});
 
   std::vector<Index> line_points, line_ends;
+  line_points.reserve(2 * lines.size());
+  line_ends.reserve(lines.size());
   for (const auto& line : lines) {
     line_points.insert(line_points.end(), {Index(line[0]), Index(line[1])});
     line_ends.push_back(Index(line_points.size()));

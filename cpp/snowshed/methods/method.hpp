@@ -142,6 +142,9 @@ class Method {
   /// Takes over the state from an archive that a method of the same scene has saved. Throws
   /// InputError where the archive is not sound.
   virtual void load(const BinaryReader&) = 0;
+
+  /// Throws InputError where `load` would, but takes nothing over and needs less memory.
+  virtual void check(const BinaryReader&) const = 0;
 };
 
 }  // namespace snowshed

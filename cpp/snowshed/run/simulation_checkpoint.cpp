@@ -70,12 +70,12 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   }
 }
 
-/// Throws InputError where `load` would. Particles and grid are there twice meanwhile; where that
-/// does not fit into memory, only the file is checked.
+/// Throws InputError where `load` would. Particles are there twice meanwhile; where that does not fit
+/// into memory, only the file is checked.
 void Simulation::read_back(const std::filesystem::path& checkpoint) const {
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();
-  if (solver_->bytes() < available_memory_bytes()) empty_method()->load(in);
+  if (solver_->bytes() < available_memory_bytes()) solver_->check(in);
 }
 
 std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint) {

@@ -22,6 +22,8 @@ PointPairs add_slide(const SlideMethod& slide, const ParticleState& s,
   const std::vector<std::uint32_t>& order = slide.order_by_id();
   std::vector<std::uint32_t> place(order.size());
   std::vector<float> thickness, speed;
+  thickness.reserve(order.size());
+  speed.reserve(order.size());
   for (std::uint32_t k = 0; k < order.size(); ++k) {
     place[order[k]] = k;
     thickness.push_back(float(*view.at<double>(order[k])));
@@ -30,6 +32,7 @@ PointPairs add_slide(const SlideMethod& slide, const ParticleState& s,
   PointPairs pairs;
   std::vector<std::int32_t> count(order.size(), 0);
   const Bonds& bonds = slide.bonds();
+  pairs.reserve(bonds.size());
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     pairs.push_back({place[bonds.first[b]], place[bonds.second[b]]});
     for (const std::uint32_t particle : pairs.back()) ++count[particle];
@@ -40,31 +43,42 @@ PointPairs add_slide(const SlideMethod& slide, const ParticleState& s,
   return pairs;
 }
 
+/// What a file of particles holds.
+struct PointCloud {
+  std::vector<std::array<float, 3>> points;
+  std::vector<PointArray> arrays;
+  PointPairs lines;
+};
+
+PointCloud point_cloud(const Method& solver) {
+  const ParticleState s = solver.state();
+  PointCloud cloud;
+  std::vector<float> velocity;
+  cloud.points.reserve(s.positions.size());
+  velocity.reserve(3 * s.positions.size());
+  for (std::size_t i = 0; i < s.positions.size(); ++i) {
+    const Eigen::Vector3f x = s.positions[i].cast<float>(), v = s.velocities[i].cast<float>();
+    cloud.points.push_back({x[0], x[1], x[2]});
+    velocity.insert(velocity.end(), {v[0], v[1], v[2]});
+  }
+  cloud.arrays = {{"velocity", 3, std::move(velocity)},
+                  {"mass", 1, converted<float>(s.masses)},
+                  {"event", 1, s.events},
+                  {"density", 1, converted<float>(s.densities)},
+                  {"pressure", 1, converted<float>(s.pressures)},
+                  {"volumetric_plastic_strain", 1, converted<float>(s.plastic_strains)},
+                  {"id", 1, converted<std::int32_t>(s.ids)}};
+  if (!s.material_ids.empty()) cloud.arrays.push_back({"snow", 1, s.material_ids});
+  if (const auto* slide = dynamic_cast<const SlideMethod*>(&solver))
+    cloud.lines = add_slide(*slide, s, cloud.arrays);
+  return cloud;
+}
+
 }  // namespace
 
 void write_particles(const std::filesystem::path& file, const Method& solver) {
-  const ParticleState s = solver.state();
-  std::vector<std::array<float, 3>> points;
-  std::vector<float> velocity;
-  points.reserve(s.positions.size());
-  for (std::size_t i = 0; i < s.positions.size(); ++i) {
-    const Eigen::Vector3f x = s.positions[i].cast<float>(), v = s.velocities[i].cast<float>();
-    points.push_back({x[0], x[1], x[2]});
-    velocity.insert(velocity.end(), {v[0], v[1], v[2]});
-  }
-  std::vector<PointArray> arrays{
-      {"velocity", 3, std::move(velocity)},
-      {"mass", 1, converted<float>(s.masses)},
-      {"event", 1, s.events},
-      {"density", 1, converted<float>(s.densities)},
-      {"pressure", 1, converted<float>(s.pressures)},
-      {"volumetric_plastic_strain", 1, converted<float>(s.plastic_strains)},
-      {"id", 1, converted<std::int32_t>(s.ids)}};
-  if (!s.material_ids.empty()) arrays.push_back({"snow", 1, s.material_ids});
-  PointPairs lines;
-  if (const auto* slide = dynamic_cast<const SlideMethod*>(&solver))
-    lines = add_slide(*slide, s, arrays);
-  write_vtp(file, points, arrays, lines);
+  const PointCloud cloud = point_cloud(solver);
+  write_vtp(file, cloud.points, cloud.arrays, cloud.lines);
 }
 
 SnapshotSeries::SnapshotSeries(std::filesystem::path folder, double interval, double time)

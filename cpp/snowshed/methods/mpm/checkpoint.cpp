@@ -165,7 +165,7 @@ std::vector<typename Sleep<D>::State> read_sleep(const BinaryReader& in, std::si
 }  // namespace
 
 template <class T, int D>
-void MpmSolver<T, D>::load(const BinaryReader& in) {
+MpmState<T, D> MpmSolver<T, D>::read_state(const BinaryReader& in) const {
   MpmState<T, D> next(model_);
   read_particles(in, model_.materials.size(), next.particles);
   next.find_elastic_limits(model_);
@@ -176,9 +176,19 @@ void MpmSolver<T, D>::load(const BinaryReader& in) {
   next.contacts.restore(read_impulses<T, D>(in));
   next.sleep =
       next.sleep.restored(next.layout, read_sleep<D>(in, next.layout.particle_blocks.size()));
-  accept(std::move(next));
+  return next;
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::load(const BinaryReader& in) {
+  accept(read_state(in));
   work_.since_sort = 0;
   broken_ = false;
+}
+
+template <class T, int D>
+void MpmSolver<T, D>::check(const BinaryReader& in) const {
+  read_state(in);
 }
 
 template class MpmSolver<float, 2>;

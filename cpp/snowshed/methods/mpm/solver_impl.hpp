@@ -49,8 +49,11 @@ class MpmSolver final : public Method {
   std::size_t bytes() const override;
   void save(BinaryWriter&) const override;
   void load(const BinaryReader&) override;
+  void check(const BinaryReader&) const override;
 
  private:
+  MpmState<T, D> read_state(const BinaryReader&) const;
+
   // The phases of a step.
   double try_step();  ///< returns its dt
   void sort();

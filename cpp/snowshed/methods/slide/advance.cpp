@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
 
 namespace snowshed {
 
@@ -33,11 +34,15 @@ void keep(const std::vector<std::uint32_t>& new_place, Array& array) {
   array.resize(kept);
 }
 
+/// Puts the entries of an array into an order; the scratch has room for all of them.
 template <class Array>
-void reorder(const std::vector<std::uint32_t>& order, Array& array) {
-  Array sorted(array.size());
+void reorder(const std::vector<std::uint32_t>& order, AlignedVector<double>& scratch,
+             Array& array) {
+  using Entry = typename Array::value_type;
+  static_assert(sizeof(Entry) <= sizeof(double) && std::is_trivially_copyable_v<Entry>);
+  auto* sorted = reinterpret_cast<Entry*>(scratch.data());
   for (std::size_t e = 0; e < order.size(); ++e) sorted[e] = array[order[e]];
-  array = std::move(sorted);
+  std::copy_n(sorted, order.size(), array.data());
 }
 
 }  // namespace
@@ -113,11 +118,15 @@ void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
   work.bond_lists.update(state.bonds, p.size());
 }
 
-void sort_by_cell(SlideState& state, const std::vector<std::uint32_t>& order) {
-  state.particles.for_each_array([&](const char*, auto& array) { reorder(order, array); });
-  std::vector<std::uint32_t> new_place(order.size());
-  for (std::size_t e = 0; e < order.size(); ++e) new_place[order[e]] = std::uint32_t(e);
-  renumber(state.bonds, new_place);
+void sort_by_cell(SlideState& state, SlideWork& work) {
+  const std::vector<std::uint32_t>& order = work.cells.order();
+  AlignedVector<double> scratch(order.size());
+  work.new_places.resize(order.size());
+  // Nothing from here on allocates.
+  state.particles.for_each_array(
+      [&](const char*, auto& array) { reorder(order, scratch, array); });
+  for (std::size_t e = 0; e < order.size(); ++e) work.new_places[order[e]] = std::uint32_t(e);
+  renumber(state.bonds, work.new_places);
 }
 
 }  // namespace snowshed

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_set>
 
 #include "snowshed/particles/point_grid.hpp"
 
@@ -43,6 +42,7 @@ class MapPoints {
  private:
   static std::vector<Vec3> points_of(const SlideParticles& particles, std::size_t begin) {
     std::vector<Vec3> points;
+    points.reserve(particles.size() - begin);
     for (std::size_t i = begin; i < particles.size(); ++i)
       points.push_back({particles.x[i], 0.0, particles.y[i]});
     return points;
@@ -99,6 +99,29 @@ bool crosses_outline(const std::vector<SlideArea>& areas, const MapPoint& a, con
   return false;
 }
 
+/// Pairs of points: for each first point a chain of those it is paired with, in little memory.
+class PairSet {
+ public:
+  explicit PairSet(std::size_t points) : newest_(points, end) {}
+
+  /// Returns whether the pair is new.
+  bool insert(std::uint32_t first, std::uint32_t second) {
+    for (std::uint32_t i = newest_[first]; i != end; i = links_[i].older)
+      if (links_[i].second == second) return false;
+    links_.push_back({second, newest_[first]});
+    newest_[first] = std::uint32_t(links_.size() - 1);
+    return true;
+  }
+
+ private:
+  struct Link {
+    std::uint32_t second, older;
+  };
+  static constexpr std::uint32_t end = 0xffffffff;
+  std::vector<std::uint32_t> newest_;
+  std::vector<Link> links_;
+};
+
 }  // namespace
 
 Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double spacing,
@@ -112,9 +135,9 @@ Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double s
   double shortest = spacing;
   for (const auto& [t, longest] : triangles) shortest = std::min(shortest, longest);
 
-  std::unordered_set<std::uint64_t> known;
+  PairSet known(particles.size() - begin);
   const auto connect = [&](std::uint32_t a, std::uint32_t b) {
-    if (!known.insert(std::uint64_t(a) << 32 | b).second) return;
+    if (!known.insert(a, b)) return;
     const std::size_t i = begin + a, j = begin + b;
     if (areas &&
         crosses_outline(*areas, {particles.x[i], particles.y[i]}, {particles.x[j], particles.y[j]}))

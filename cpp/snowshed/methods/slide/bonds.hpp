@@ -16,6 +16,11 @@ struct Bonds {
   std::vector<double> rest_length;  // m
 
   std::size_t size() const { return first.size(); }
+  void reserve(std::size_t n) {
+    first.reserve(n);
+    second.reserve(n);
+    rest_length.reserve(n);
+  }
   void add(std::uint32_t a, std::uint32_t b, double length) {
     first.push_back(a);
     second.push_back(b);

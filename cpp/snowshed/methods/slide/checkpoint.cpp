@@ -1,5 +1,6 @@
 // Saving and restoring a slide. The workspace follows from the state, so any time is a safe point.
-#include <algorithm>
+#include <string>
+#include <type_traits>
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
@@ -33,41 +34,69 @@ void SlideSolver::save(BinaryWriter& out) const {
 
 namespace {
 
-void check_places(const BinaryReader& in, const Terrain& terrain, const SlideParticles& p) {
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const GridPlace place = terrain.place(p.x[i], p.y[i]);
+void check_places(const BinaryReader& in, const Terrain& terrain) {
+  const auto x = in.view<double>("particles/x"), y = in.view<double>("particles/y"),
+             mass = in.view<double>("particles/mass");
+  for (std::size_t i = 0; i < mass.size; ++i) {
+    const GridPlace place = terrain.place(x[i], y[i]);
     if (!place.inside() || !terrain.known(place))
       throw InputError(in.path().string(), "a particle lies outside of the terrain");
-    if (!(p.mass[i] > 0)) throw InputError(in.path().string(), "a particle has no mass");
+    if (!(mass[i] > 0)) throw InputError(in.path().string(), "a particle has no mass");
   }
 }
 
-void check_bonds(const BinaryReader& in, const Bonds& bonds, std::size_t particles) {
-  for (std::size_t b = 0; b < bonds.size(); ++b)
-    if (bonds.first[b] >= particles || bonds.second[b] >= particles ||
-        bonds.first[b] == bonds.second[b] || !(bonds.rest_length[b] > 0))
+void check_bonds(const BinaryReader& in, std::size_t particles) {
+  const auto first = in.view<std::uint32_t>("bonds/first"),
+             second = in.view<std::uint32_t>("bonds/second");
+  const auto length = in.view<double>("bonds/rest_length");
+  for (std::size_t b = 0; b < first.size; ++b)
+    if (first[b] >= particles || second[b] >= particles || first[b] == second[b] ||
+        !(length[b] > 0))
       throw InputError(in.path().string(), "a bond is not sound");
+}
+
+/// Takes over an array whose length has been checked.
+template <class Array>
+void copy_array(const BinaryReader& in, const std::string& name, Array& array) {
+  const auto values = in.view<typename Array::value_type>(name);
+  array.assign(values.begin(), values.end());
 }
 
 }  // namespace
 
-void SlideSolver::load(const BinaryReader& in) {
-  SlideState next(model_);
+void SlideSolver::check(const BinaryReader& in) const {
   const std::size_t n = in.view<double>("particles/mass").size;
-  next.particles.resize(n);
-  next.particles.for_each_array([&in, n](const char* name, auto& array) {
-    using Value = typename std::remove_reference_t<decltype(array)>::value_type;
-    const auto values = in.get<Value>(std::string("particles/") + name, n);
-    std::copy(values.begin(), values.end(), array.begin());
+  state_.particles.for_each_array([&in, n](const char* name, const auto& array) {
+    using Value = typename std::decay_t<decltype(array)>::value_type;
+    in.view<Value>(std::string("particles/") + name, n);
   });
-  check_places(in, model_.terrain, next.particles);
-  next.bonds.first = in.get<std::uint32_t>("bonds/first");
-  next.bonds.second = in.get<std::uint32_t>("bonds/second", next.bonds.first.size());
-  next.bonds.rest_length = in.get<double>("bonds/rest_length", next.bonds.first.size());
-  check_bonds(in, next.bonds, n);
-  next.peaks.thickness = in.get<double>("peaks/thickness", next.peaks.thickness.size());
-  next.peaks.speed = in.get<double>("peaks/speed", next.peaks.speed.size());
-  next.erodible = in.get<double>("erodible", next.erodible.size());
+  check_places(in, model_.terrain);
+  const std::size_t bonds = in.view<std::uint32_t>("bonds/first").size;
+  in.view<std::uint32_t>("bonds/second", bonds);
+  in.view<double>("bonds/rest_length", bonds);
+  check_bonds(in, n);
+  in.view<double>("peaks/thickness", state_.peaks.thickness.size());
+  in.view<double>("peaks/speed", state_.peaks.speed.size());
+  in.view<double>("erodible", state_.erodible.size());
+  in.view<double>("clock", 8);
+  in.view<double>("energy", 8);
+  in.view<std::int64_t>("counters", 7);
+  if (!(in.view<double>("clock")[7] > 0))
+    throw InputError(in.path().string(), "the time step is not sound");
+}
+
+void SlideSolver::load(const BinaryReader& in) {
+  check(in);
+  SlideState next(model_);
+  next.particles.for_each_array([&in](const char* name, auto& array) {
+    copy_array(in, std::string("particles/") + name, array);
+  });
+  copy_array(in, "bonds/first", next.bonds.first);
+  copy_array(in, "bonds/second", next.bonds.second);
+  copy_array(in, "bonds/rest_length", next.bonds.rest_length);
+  copy_array(in, "peaks/thickness", next.peaks.thickness);
+  copy_array(in, "peaks/speed", next.peaks.speed);
+  copy_array(in, "erodible", next.erodible);
   const auto clock = in.get<double>("clock", 8);
   next.time = clock[0];
   next.dt = clock[1];
@@ -79,7 +108,6 @@ void SlideSolver::load(const BinaryReader& in) {
   const auto counts = in.get<std::int64_t>("counters", 7);
   next.step = clock[7];
   next.balance = {clock[4], clock[5], clock[6], counts[4]};
-  if (!(next.step > 0)) throw InputError(in.path().string(), "the time step is not sound");
   next.counters.smallest_dt = next.step;
   next.counters.steps = counts[0];
   next.counters.sorts = counts[1];

@@ -53,13 +53,18 @@ FieldView SlideSolver::field(const std::string& name) const {
 ParticleState SlideSolver::state() const {
   const SlideParticles& p = state_.particles;
   ParticleState s;
+  s.positions.reserve(size());
+  s.velocities.reserve(size());
+  s.volume_ratios.assign(size(), 1.0);
+  s.plastic_strains.assign(size(), 0.0);
+  s.densities.assign(size(), model_.settings.density);
+  for (auto* values : {&s.masses, &s.pressures}) values->reserve(size());
+  s.ids.reserve(size());
+  s.events.reserve(size());
   for (const std::uint32_t i : order_by_id()) {
     s.positions.push_back({p.x[i], p.y[i], p.z[i]});
     s.velocities.push_back({p.ux[i], p.uy[i], p.uz[i]});
     s.masses.push_back(p.mass[i]);
-    s.volume_ratios.push_back(1.0);
-    s.densities.push_back(model_.settings.density);
-    s.plastic_strains.push_back(0.0);
     // Hydrostatic, at the base.
     s.pressures.push_back(model_.settings.density * model_.gravity * work_.places.nz[i] *
                           work_.thickness[i]);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "snowshed/core/compensated_sum.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/slide/advance.hpp"
 #include "snowshed/methods/slide/forces.hpp"
@@ -110,12 +111,13 @@ void SlideSolver::append(SlideState& state, const ParticleBatch& batch) const {
     p.fresh_mass[i] = model_.compatible() ? fresh : p.mass[i];
     p.id[i] = state.next_id++;
     p.event[i] = std::uint16_t(batch.event);
-    state.balance.released += p.mass[i];
   }
+  state.balance.released += compensated_sum(p.mass.data() + old, batch.positions.size());
   if (!model_.settings.bonds) return;
   // Compatible mode has bonds across gaps of the release.
   const Bonds bonds = bonds_between(p, old, lattice_spacing(batch),
                                     model_.compatible() ? nullptr : &model_.areas.release);
+  state.bonds.reserve(state.bonds.size() + bonds.size());
   for (std::size_t b = 0; b < bonds.size(); ++b)
     state.bonds.add(bonds.first[b], bonds.second[b], bonds.rest_length[b]);
   state.bonds_made += std::int64_t(bonds.size());
@@ -206,16 +208,13 @@ void SlideSolver::settle(const std::vector<double>&, const std::vector<double>&)
   throw InputError("settling", "snow of a slide does not settle between events");
 }
 
-/// In the order of their cells particles find their neighbours faster. All or nothing.
+/// In the order of their cells particles find their neighbours faster. All or nothing: the
+/// workspace has room for all that follows.
 void SlideSolver::sort_now_and_then() {
   if (state_.counters.steps % steps_between_sorts != 0) return;
   if (std::is_sorted(work_.cells.order().begin(), work_.cells.order().end())) return;
-  SlideState next = state_;
-  sort_by_cell(next, work_.cells.order());
-  SlideWork work;
-  refresh(model_, next, work);
-  state_ = std::move(next);
-  work_ = std::move(work);
+  sort_by_cell(state_, work_);
+  refresh(model_, state_, work_);
   order_known_ = false;
   ++state_.counters.sorts;
 }
@@ -223,8 +222,8 @@ void SlideSolver::sort_now_and_then() {
 void SlideSolver::step() {
   require_sound();
   if (size() == 0) throw SimulationError("there is no snow on the terrain");
-  sort_now_and_then();
   work_.make_room(model_, state_);
+  sort_now_and_then();
   // Nothing from here on allocates.
   const bool audited = model_.keeps_energy;
   EnergyAudit& audit = work_.audit;

@@ -36,6 +36,7 @@ class SlideSolver final : public SlideMethod {
 
   void save(BinaryWriter&) const override;
   void load(const BinaryReader&) override;
+  void check(const BinaryReader&) const override;
 
   std::vector<ParticleBatch> seed() const override {
     return seed_release(model_.settings, model_.terrain, model_.areas.release);

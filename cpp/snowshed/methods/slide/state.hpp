@@ -23,7 +23,7 @@
 namespace snowshed {
 
 /// The fewest particles that a thread is started for.
-inline constexpr std::size_t particles_per_thread = 1000;
+inline constexpr std::size_t particles_per_thread = 128;
 
 struct SlideModel {
   SlideModel(const SlideSettings&, double gravity, const HeightField&, SlideAreas,
@@ -126,7 +126,7 @@ struct SlideWork {
 };
 
 /// Iterations that a thread takes at a time.
-inline constexpr std::ptrdiff_t particles_in_piece = 256;
+inline constexpr std::ptrdiff_t particles_in_piece = 64;
 
 /// What the kernels see of a slide, until an array of it changes its size.
 SlideView view_of(const SlideModel&, SlideState&, SlideWork&);
