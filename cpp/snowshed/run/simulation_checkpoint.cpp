@@ -70,8 +70,8 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   }
 }
 
-/// Throws InputError where `load` would. Particles are there twice meanwhile; where that does not fit
-/// into memory, only the file is checked.
+/// Throws InputError where `load` would. Particles are there twice meanwhile; where that does not
+/// fit into memory, only the file is checked.
 void Simulation::read_back(const std::filesystem::path& checkpoint) const {
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();

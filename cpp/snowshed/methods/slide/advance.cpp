@@ -123,8 +123,7 @@ void sort_by_cell(SlideState& state, SlideWork& work) {
   AlignedVector<double> scratch(order.size());
   work.new_places.resize(order.size());
   // Nothing from here on allocates.
-  state.particles.for_each_array(
-      [&](const char*, auto& array) { reorder(order, scratch, array); });
+  state.particles.for_each_array([&](const char*, auto& array) { reorder(order, scratch, array); });
   for (std::size_t e = 0; e < order.size(); ++e) work.new_places[order[e]] = std::uint32_t(e);
   renumber(state.bonds, work.new_places);
 }

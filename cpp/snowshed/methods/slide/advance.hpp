@@ -15,8 +15,8 @@ void remove_marked(SlideState&, SlideWork&);
 /// Splits particles that have become too heavy.
 void split_heavy(const SlideModel&, SlideState&, SlideWork&);
 
-/// Stores the particles in the order of their cells. Of the workspace only the cells' order is read;
-/// it does not follow. All or nothing.
+/// Stores the particles in the order of their cells. Of the workspace only the cells' order is
+/// read; it does not follow. All or nothing.
 void sort_by_cell(SlideState&, SlideWork&);
 
 }  // namespace snowshed
