@@ -1,6 +1,6 @@
 """The command line: the list of commands, and their exit codes.
 
-``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``scene|plan|schema`` describe a scene,
+``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``grains`` loads grains, ``scene|plan|schema`` describe a scene,
 ``study`` computes many runs, and ``season`` a winter. ``compare|sensitivity|calibrate`` answer
 questions about runs, and ``geometry|regress|predict`` treat the data set of panels.
 
@@ -32,6 +32,7 @@ DEFERRED = (
     ("panel", "run", "Run slide-offs from a panel described by options."),
     ("run", "run", "Run a scene file."),
     ("slide", "slide", "Run a small snow slide on terrain."),
+    ("grains", "grains", "Load segmented snow grain by grain."),
     ("plan", "scene", "Print the features and the cost of a scene file, without running it."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
     ("schema", "scene", "Print the JSON Schema of a scene."),

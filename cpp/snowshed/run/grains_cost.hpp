@@ -1,0 +1,21 @@
+// What a loading test of grains will cost, by its time and its spheres.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/methods/grains/solver.hpp"
+#include "snowshed/run/cost_estimate.hpp"
+
+namespace snowshed {
+
+/// The time that the stages take on a sample of that height (m), if none ends before its strain, s;
+/// to hold takes none.
+double loading_time(const std::vector<LoadingStage>&, double height);
+
+/// The part of the loading that is done: strain by strain, each weighted with the time it takes.
+double loading_progress(const std::vector<LoadingStage>&, const LoadingMeasures&);
+
+/// `grains` holds no snow yet.
+CostEstimate estimate_grains_cost(const Scene&, const GrainSample&, const GrainsMethod& grains);
+
+}  // namespace snowshed

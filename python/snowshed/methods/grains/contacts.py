@@ -1,0 +1,67 @@
+"""The contacts between grains at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed.io.arrays import Booleans, Floats, Integers
+
+
+@dataclass(frozen=True)
+class GrainContacts:
+    """Grains that touch, and the spheres they consist of.
+
+    Attributes
+    ----------
+    spheres : (s, 3)
+        Centres, m.
+    sphere_grains : (s,)
+        The grain of each sphere.
+    grains : (n, 2)
+        The two grains of each contact.
+    points : (n, 3)
+        Where they touch, m.
+    forces : (n, 3)
+        On the first of the two, N.
+    bonded : (n,)
+        Whether a bond still holds them together.
+    """
+
+    spheres: Floats
+    sphere_grains: Integers
+    grains: Integers
+    points: Floats
+    forces: Floats
+    bonded: Booleans
+
+    @property
+    def centres(self) -> Floats:
+        """Mean of the spheres of each grain, (g, 3), m."""
+        count = np.bincount(self.sphere_grains)
+        sums = [np.bincount(self.sphere_grains, self.spheres[:, axis]) for axis in range(3)]
+        return np.asarray(np.stack(sums, axis=1) / count[:, None])
+
+    @property
+    def extent(self) -> Floats:
+        """Lengths over which the spheres' centres spread, (3,), m."""
+        return np.asarray(np.ptp(self.spheres, axis=0))
+
+    @property
+    def normal_forces(self) -> Floats:
+        """Force of each contact along the line of its grains' centres, pressing > 0, (n,), N."""
+        centres = self.centres
+        line = centres[self.grains[:, 0]] - centres[self.grains[:, 1]]
+        # Over the sides of a periodic sample, whose period is about the extent.
+        line -= self.extent * np.rint(line / np.maximum(self.extent, 1e-300))
+        line /= np.linalg.norm(line, axis=1, keepdims=True)
+        return np.asarray(np.einsum("ij,ij->i", self.forces, line))
+
+    def text(self) -> str:
+        """Return the contacts as CSV."""
+        lines = ["grain,other,x_m,y_m,z_m,force_x_n,force_y_n,force_z_n,bonded"]
+        for pair, point, force, bonded in zip(self.grains, self.points, self.forces, self.bonded):
+            numbers = (repr(float(value)) for value in (*point, *force))
+            lines.append(",".join([str(pair[0]), str(pair[1]), *numbers, str(int(bonded))]))
+        return "\n".join(lines) + "\n"

@@ -1,0 +1,112 @@
+"""The forces between the grains of a sample."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from snowshed.io.arrays import Booleans, Floats
+from snowshed.methods.grains.contacts import GrainContacts
+from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SLICE = 0.25  # of the sample's depth, about its middle, whose grains are drawn
+WIDEST = 7.0  # points, of a line
+ICE = ("#e3ebf1", "#cfdce6", "#bccdda", "#d9e0ea", "#c5d6d9")
+
+
+def force_figure(contacts: GrainContacts, voxel_size: float) -> Figure:
+    """Return the picture of a sample from the side, with the forces between its grains.
+
+    Lines join the centres of grains that touch by way of their contact; all contacts are drawn,
+    and the ice of a slice in the middle. Width is in proportion to the force.
+
+    Parameters
+    ----------
+    contacts
+        As they are at a time.
+    voxel_size
+        Diameter of the spheres, m.
+    """
+    from matplotlib import rc_context
+
+    with rc_context(STYLE):
+        figure = blank(6.4, 6.4)
+        axes = figure.subplots()
+        axes.grid(visible=False)
+        _draw_ice(axes, contacts, voxel_size)
+        _draw_forces(axes, contacts)
+        axes.set_aspect("equal")
+        axes.set(xlabel="x, mm", ylabel="z, mm")
+    return figure
+
+
+def _draw_ice(axes: Axes, contacts: GrainContacts, voxel_size: float) -> None:
+    from matplotlib.collections import EllipseCollection
+
+    depth = contacts.spheres[:, 1]
+    low, high = depth.min(), depth.max()
+    near = np.abs(depth - 0.5 * (low + high)) <= 0.5 * SLICE * (high - low) + 0.5 * voxel_size
+    shown = np.flatnonzero(near)
+    shown = shown[np.argsort(-depth[shown], kind="stable")]  # from the back to the front
+    centres = 1e3 * contacts.spheres[shown][:, [0, 2]]
+    size = np.full(len(shown), 1e3 * voxel_size)
+    colours = [ICE[grain % len(ICE)] for grain in contacts.sphere_grains[shown]]
+    axes.add_collection(
+        EllipseCollection(
+            size, size, np.zeros(len(shown)), units="xy", offsets=centres,
+            offset_transform=axes.transData, facecolors=colours, edgecolors="none",
+        )  # fmt: skip
+    )
+    edge = voxel_size
+    for set_limits, axis in ((axes.set_xlim, 0), (axes.set_ylim, 2)):
+        values = contacts.spheres[:, axis]
+        set_limits(1e3 * (values.min() - edge), 1e3 * (values.max() + edge))
+
+
+def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
+    from matplotlib.collections import LineCollection
+    from matplotlib.lines import Line2D
+
+    normal = contacts.normal_forces
+    size = np.linalg.norm(contacts.forces, axis=1)
+    largest = float(size.max(initial=0.0))
+    if largest == 0.0:
+        axes.set_title("No forces between the grains")
+        return
+    centres, extent = contacts.centres, contacts.extent
+    for pulls, colour in ((False, BODY), (True, STACK)):
+        chosen = np.flatnonzero((normal < 0.0) == pulls)
+        for side in (0, 1):
+            grains = contacts.grains[chosen, side]
+            lines, whole = _lines(centres[grains], contacts.points[chosen], extent)
+            widths = (WIDEST * size[chosen] / largest)[whole]
+            style = {"colors": colour, "alpha": 0.75, "capstyle": "round"}
+            axes.add_collection(LineCollection(list(lines[whole]), linewidths=widths, **style))
+    axes.set_title("Forces between grains", color=INK)
+    key = [
+        Line2D([], [], color=BODY, lw=WIDEST, label=f"pressing, {_force_text(largest)}"),
+        Line2D([], [], color=BODY, lw=WIDEST / 4, label=f"pressing, {_force_text(largest / 4)}"),
+        Line2D([], [], color=STACK, lw=WIDEST / 4, label=f"pulling, {_force_text(largest / 4)}"),
+    ]
+    axes.figure.legend(handles=key, loc="outside lower center", ncols=3, edgecolor=FAINT)
+
+
+def _lines(centres: Floats, points: Floats, extent: Floats) -> tuple[Floats, Booleans]:
+    """Return lines from centres to contacts in the picture, (n, 2, 2), mm, and which to draw.
+
+    One that leaves a periodic sample at one side and enters it at the other is not drawn.
+    """
+    whole = (np.abs(points - centres) < 0.5 * extent).all(axis=1)
+    return np.asarray(1e3 * np.stack([centres, points], axis=1)[:, :, [0, 2]]), whole
+
+
+def _force_text(newtons: float) -> str:
+    for unit, factor in (("N", 1.0), ("mN", 1e3), ("µN", 1e6)):
+        if newtons * factor >= 1.0:
+            break
+    return f"{newtons * factor:.2g} {unit}"
