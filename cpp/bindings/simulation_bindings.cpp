@@ -240,7 +240,9 @@ void bind_files(SimulationClass& c) {
   using namespace py::literals;
   (*c).def_static(
       "load",
-      [](const std::string& path) { return std::make_unique<SimulationHandle>(Simulation::load(path)); },
+      [](const std::string& path) {
+        return std::make_unique<SimulationHandle>(Simulation::load(path));
+      },
       "path"_a);
   c.reads("save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a);
   c.changes(
@@ -323,11 +325,11 @@ void bind_simulation(py::module_& m) {
   m.def("read_ascii_grid", &ascii_grid, "path"_a,
         "(heights, west, south, cell) of an ESRI ASCII grid, the southernmost row first.");
   SimulationClass c(m);
-  (*c).def(
-      py::init([](const std::string& json, const std::string& base_dir) {
-        return std::make_unique<SimulationHandle>(std::make_shared<Simulation>(parse_scene(json), base_dir));
-      }),
-      "scene_json"_a, "base_dir"_a = ".");
+  (*c).def(py::init([](const std::string& json, const std::string& base_dir) {
+             return std::make_unique<SimulationHandle>(
+                 std::make_shared<Simulation>(parse_scene(json), base_dir));
+           }),
+           "scene_json"_a, "base_dir"_a = ".");
   bind_run(c);
   bind_files(c);
   bind_fields(c);

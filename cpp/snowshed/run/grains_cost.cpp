@@ -37,8 +37,7 @@ CostEstimate estimate_grains_cost(const Scene& scene, const GrainSample& sample,
   cost.total_particles = cost.particles.front();
   cost.parts = {{"spheres", double(sample.spheres.size())}, {"bonds", double(sample.bonds.size())}};
   cost.time_step = grains.time_step();
-  cost.event_time =
-      std::min(loading_time(scene.loading, sample.box.z()), scene.events.max_time);
+  cost.event_time = std::min(loading_time(scene.loading, sample.box.z()), scene.events.max_time);
   cost.steps = std::ceil(cost.event_time / cost.time_step);
   cost.updates = cost.steps * double(sample.spheres.size());
   cost.bytes = double(grains.bytes());

@@ -9,11 +9,21 @@ namespace snowshed {
 namespace {
 
 /// Energies are added behind these.
-const std::vector<std::string> measured_columns = {
-    "time_s",           "stage",          "axial_strain",      "shear_strain",
-    "top_stress_pa",    "bottom_stress_pa", "side_stress_pa",  "shear_stress_pa",
-    "cone_force_n",     "bonds",          "broken_in_tension", "broken_in_shear",
-    "contacts",         "coordination",   "solid_fraction"};
+const std::vector<std::string> measured_columns = {"time_s",
+                                                   "stage",
+                                                   "axial_strain",
+                                                   "shear_strain",
+                                                   "top_stress_pa",
+                                                   "bottom_stress_pa",
+                                                   "side_stress_pa",
+                                                   "shear_stress_pa",
+                                                   "cone_force_n",
+                                                   "bonds",
+                                                   "broken_in_tension",
+                                                   "broken_in_shear",
+                                                   "contacts",
+                                                   "coordination",
+                                                   "solid_fraction"};
 
 }  // namespace
 
@@ -46,8 +56,7 @@ void LoadingCurve::record(const GrainsMethod& grains) {
     stage_ = stage;
     begun_ = time;
     points_done_ = 0;
-  } else if (std::size_t(stage_) < stages_.size() && points_done_ < points &&
-             time >= next_time()) {
+  } else if (std::size_t(stage_) < stages_.size() && points_done_ < points && time >= next_time()) {
     add_row(grains);
     while (points_done_ < points && time >= next_time()) ++points_done_;
   }
@@ -55,11 +64,21 @@ void LoadingCurve::record(const GrainsMethod& grains) {
 
 void LoadingCurve::add_row(const GrainsMethod& grains) {
   const LoadingMeasures m = grains.measures();
-  const double row[] = {grains.time(),     double(stage_ + 1),    m.axial_strain,
-                        m.shear_strain,    m.top_stress,          m.bottom_stress,
-                        m.side_stress,     m.shear_stress,        m.cone_force,
-                        double(m.bonds),   double(m.broken_in_tension), double(m.broken_in_shear),
-                        double(m.contacts), m.coordination,       m.solid_fraction};
+  const double row[] = {grains.time(),
+                        double(stage_ + 1),
+                        m.axial_strain,
+                        m.shear_strain,
+                        m.top_stress,
+                        m.bottom_stress,
+                        m.side_stress,
+                        m.shear_stress,
+                        m.cone_force,
+                        double(m.bonds),
+                        double(m.broken_in_tension),
+                        double(m.broken_in_shear),
+                        double(m.contacts),
+                        m.coordination,
+                        m.solid_fraction};
   values_.insert(values_.end(), std::begin(row), std::end(row));
   if (energy_)
     for (const auto& energy : grains.energy_table()) values_.push_back(energy.second);

@@ -12,9 +12,9 @@ class BinaryReader;
 class BinaryWriter;
 
 /// Rows of instantaneous values at the beginning of the test, at `points` strains of each stage,
-/// and where a stage ends. The strains are (k / points)^2 of that at which the stage ends: a brittle
-/// sample is elastic for a thousandth of it only. The rows depend on the steps alone: neither on
-/// the number of threads nor on whether the run was resumed.
+/// and where a stage ends. The strains are (k / points)^2 of that at which the stage ends: a
+/// brittle sample is elastic for a thousandth of it only. The rows depend on the steps alone:
+/// neither on the number of threads nor on whether the run was resumed.
 class LoadingCurve {
  public:
   static constexpr int points = 300;
@@ -41,9 +41,9 @@ class LoadingCurve {
   bool energy_;
   std::vector<std::string> columns_;
   std::vector<double> values_;
-  int stage_ = 0;          // that is being loaded
-  double begun_ = 0;       // s, when it began
-  int points_done_ = -1;   // of it; before the beginning of the test -1
+  int stage_ = 0;         // that is being loaded
+  double begun_ = 0;      // s, when it began
+  int points_done_ = -1;  // of it; before the beginning of the test -1
 };
 
 }  // namespace snowshed

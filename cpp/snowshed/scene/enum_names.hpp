@@ -57,11 +57,13 @@ struct EnumNames<GrainSides> {
 
 template <>
 struct EnumNames<LoadingKind> {
-  static constexpr Named<LoadingKind> list[] = {
-      {LoadingKind::compress, "compress"},   {LoadingKind::unload, "unload"},
-      {LoadingKind::stretch, "stretch"},     {LoadingKind::shear, "shear"},
-      {LoadingKind::isotropic, "isotropic"}, {LoadingKind::penetrate, "penetrate"},
-      {LoadingKind::hold, "hold"}};
+  static constexpr Named<LoadingKind> list[] = {{LoadingKind::compress, "compress"},
+                                                {LoadingKind::unload, "unload"},
+                                                {LoadingKind::stretch, "stretch"},
+                                                {LoadingKind::shear, "shear"},
+                                                {LoadingKind::isotropic, "isotropic"},
+                                                {LoadingKind::penetrate, "penetrate"},
+                                                {LoadingKind::hold, "hold"}};
 };
 
 template <>

@@ -185,8 +185,9 @@ class SceneRules {
   void check_grains() const {
     if (!scene_.sample) fail(scene_, "grains need a " + path_of(scene_, scene_.sample));
     if (scene_.loading.empty())
-      fail(scene_.loading, "a sample is loaded in at least one stage, such as {\"kind\": "
-                           "\"compress\"}");
+      fail(scene_.loading,
+           "a sample is loaded in at least one stage, such as {\"kind\": "
+           "\"compress\"}");
     if (!in_3d()) fail(scene_.dimension, "grains move in space; allowed: 3");
     if (scene_.events.count != 1)
       fail(scene_.events.count, show(scene_.events.count) + " events; a loading is 1");
@@ -211,8 +212,9 @@ class SceneRules {
       if (stage.kind == LoadingKind::unload && !loaded)
         fail(stage.kind, "there is nothing to unload; compress the sample before");
       if (open && stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold)
-        fail(stage.kind, "the top plate is away since the stage \"penetrate\"; allowed: penetrate, "
-                         "hold");
+        fail(stage.kind,
+             "the top plate is away since the stage \"penetrate\"; allowed: penetrate, "
+             "hold");
       check_stage(stage);
       loaded = loaded || compresses;
       open = open || stage.kind == LoadingKind::penetrate;

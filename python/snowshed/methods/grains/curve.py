@@ -89,12 +89,12 @@ class LoadingCurve:
         OSError
             If it cannot be read.
         """
-        table = read_csv(Path(path))
+        table = read_csv(Path(path), as_text=True)  # pandas rounds its numbers
         missing = [name for name in COLUMNS if name not in table]
         if missing:
             raise InputError(f"{path}: no curve of a loading test: no column {missing[0]}")
         try:
-            return cls({str(name): table[name].to_numpy(np.float64) for name in table})
+            return cls({str(name): table[name].to_numpy().astype(np.float64) for name in table})
         except ValueError as error:
             raise InputError(f"{path}: {error}") from None
 
