@@ -26,7 +26,7 @@ py::dict curve(const Simulation& sim) {
 }
 
 /// Grains that touch: their numbers (n, 2), where, the force on the first, and whether bonded.
-py::dict contacts(const Simulation& sim) {
+py::tuple contacts(const Simulation& sim) {
   const std::vector<GrainContact> contacts = sim.grains().grain_contacts();
   py::array_t<std::int64_t> grains({py::ssize_t(contacts.size()), py::ssize_t(2)});
   auto pairs = grains.mutable_unchecked<2>();
@@ -39,12 +39,7 @@ py::dict contacts(const Simulation& sim) {
     forces.push_back(contacts[i].force);
     bonded.push_back(contacts[i].bonded);
   }
-  py::dict d;
-  d["grains"] = grains;
-  d["points"] = rows(points);
-  d["forces"] = rows(forces);
-  d["bonded"] = column<bool>(bonded);
-  return d;
+  return py::make_tuple(grains, rows(points), rows(forces), column<bool>(bonded));
 }
 
 /// Centres of the spheres (n, 3), and the grain that each belongs to.

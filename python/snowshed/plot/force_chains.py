@@ -56,12 +56,11 @@ def _draw_ice(axes: Axes, contacts: GrainContacts, voxel_size: float) -> None:
     centres = 1e3 * contacts.spheres[shown][:, [0, 2]]
     size = np.full(len(shown), 1e3 * voxel_size)
     colours = [ICE[grain % len(ICE)] for grain in contacts.sphere_grains[shown]]
-    axes.add_collection(
-        EllipseCollection(
-            size, size, np.zeros(len(shown)), units="xy", offsets=centres,
-            offset_transform=axes.transData, facecolors=colours, edgecolors="none",
-        )  # fmt: skip
-    )
+    discs = EllipseCollection(
+        size, size, np.zeros(len(shown)), units="xy", offsets=centres,
+        offset_transform=axes.transData, facecolors=colours, edgecolors="none",
+    )  # fmt: skip
+    axes.add_collection(discs)
     edge = voxel_size
     for set_limits, axis in ((axes.set_xlim, 0), (axes.set_ylim, 2)):
         values = contacts.spheres[:, axis]
@@ -85,8 +84,9 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
             grains = contacts.grains[chosen, side]
             lines, whole = _lines(centres[grains], contacts.points[chosen], extent)
             widths = (WIDEST * size[chosen] / largest)[whole]
-            style = {"colors": colour, "alpha": 0.75, "capstyle": "round"}
-            axes.add_collection(LineCollection(list(lines[whole]), linewidths=widths, **style))
+            drawn = LineCollection(list(lines[whole]), linewidths=widths, colors=colour)
+            drawn.set(alpha=0.75, capstyle="round")
+            axes.add_collection(drawn)
     axes.set_title("Forces between grains", color=INK)
     key = [
         Line2D([], [], color=BODY, lw=WIDEST, label=f"pressing, {_force_text(largest)}"),
@@ -101,12 +101,12 @@ def _lines(centres: Floats, points: Floats, extent: Floats) -> tuple[Floats, Boo
 
     One that leaves a periodic sample at one side and enters it at the other is not drawn.
     """
-    whole = (np.abs(points - centres) < 0.5 * extent).all(axis=1)
+    whole = np.asarray((np.abs(points - centres) < 0.5 * extent).all(axis=1))
     return np.asarray(1e3 * np.stack([centres, points], axis=1)[:, :, [0, 2]]), whole
 
 
 def _force_text(newtons: float) -> str:
-    for unit, factor in (("N", 1.0), ("mN", 1e3), ("µN", 1e6)):
+    for unit, factor in (("N", 1.0), ("mN", 1e3)):
         if newtons * factor >= 1.0:
-            break
-    return f"{newtons * factor:.2g} {unit}"
+            return f"{newtons * factor:.2g} {unit}"
+    return f"{newtons * 1e6:.2g} µN"

@@ -59,7 +59,7 @@ def grain_contacts(simulation: _core.Simulation) -> GrainContacts:
         If the scene's method is another.
     """
     spheres, grain = simulation.grains_spheres()
-    return GrainContacts(spheres=spheres, sphere_grains=grain, **simulation.grains_contacts())
+    return GrainContacts(spheres, grain, *simulation.grains_contacts())
 
 
 def run_grains(
@@ -208,5 +208,7 @@ def _draw(
     from snowshed.plot.force_chains import force_figure
     from snowshed.plot.loading_figure import loading_figure
 
-    save(loading_figure(curve, [stage["kind"] for stage in scene["loading"]]), folder / "grains.png")
+    save(
+        loading_figure(curve, [stage["kind"] for stage in scene["loading"]]), folder / "grains.png"
+    )
     save(force_figure(contacts, scene["sample"]["voxel_size"]), folder / "forces.png")

@@ -85,9 +85,7 @@ def test_the_summary_says_what_makes_its_figures_doubtful():
     assert "differ by 200 %" in said  # the bottom plate feels nothing in this curve
     columns = dict(brittle().columns)
     columns["bottom_stress_pa"] = columns["top_stress_pa"]
-    many = summarise(
-        LoadingCurve(columns), scene_of(), ended="rest", grains=1000, spheres=9
-    )
+    many = summarise(LoadingCurve(columns), scene_of(), ended="rest", grains=1000, spheres=9)
     assert many.notes == ()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Optional, TypeVar
+from typing import Any, TypeVar
 
 import click
 
@@ -12,7 +12,7 @@ from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.scene.builders import example_grains, grains_scene
+from snowshed.scene.builders.grains import SAMPLE, example_grains, grains_scene
 from snowshed.scene.components import Output
 from snowshed.scene.loading import Cone, LoadingKind, LoadingStage
 from snowshed.scene.scene import ResolvedScene
@@ -126,10 +126,11 @@ def example(folder: Path, resume: bool, quiet: bool) -> None:
     beside = folder.with_name(f"{folder.name}-sample")
     existed = beside.exists()
     scene = example_grains(beside)
+    labels = beside / SAMPLE
     try:
         run_scene(scene.resolve(), folder, resume, quiet)
     except BaseException:
         if not existed and not (folder / "scene.json").exists():
-            Path(str(scene.sample.file)).unlink()
+            labels.unlink()
             beside.rmdir()
         raise

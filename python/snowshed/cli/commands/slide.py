@@ -23,6 +23,7 @@ from snowshed.scene.scene import ResolvedScene
 
 PATH = click.Path(path_type=Path)
 
+
 @click.command()
 @run_options
 @click.option("--terrain", type=PATH, help="Elevations: an ESRI ASCII grid or a GeoTIFF.")

@@ -68,7 +68,8 @@ def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
     >>> from snowshed.methods.grains.curve import COLUMNS
     >>> strain = np.linspace(0.0, 0.3, 301)
     >>> columns = {name: np.zeros(301) for name in COLUMNS}
-    >>> stress = np.where(strain < 0.01, 1e7 * strain, 1e5 * np.exp(20 * np.maximum(strain - 0.2, 0)))
+    >>> hardening = 1e5 * np.exp(20 * np.maximum(strain - 0.2, 0))
+    >>> stress = np.where(strain < 0.01, 1e7 * strain, hardening)
     >>> broken = np.where(strain > 0.01, 5.0, 0.0)
     >>> columns.update(axial_strain=strain, top_stress_pa=stress, broken_in_shear=broken)
     >>> phases = find_phases(LoadingCurve(columns))
@@ -124,7 +125,9 @@ def _elastic(
     return limit, float(slope), float(1.0 - scatter / spread) if spread > 0 else None
 
 
-def _hardening(strain: Floats, stress: Floats, limit: float) -> tuple[Optional[float], Optional[float]]:
+def _hardening(
+    strain: Floats, stress: Floats, limit: float
+) -> tuple[Optional[float], Optional[float]]:
     """Return onset and rate of hardening.
 
     The logarithm of the stress, averaged over bins of `BIN`, is fitted by a constant and a rising
@@ -135,9 +138,7 @@ def _hardening(strain: Floats, stress: Floats, limit: float) -> tuple[Optional[f
     if len(edges) < 6:
         return None, None
     means = [mean_stress(strain, stress, a, b) for a, b in zip(edges, edges[1:])]
-    pairs = [
-        (a + BIN / 2, math.log(mean)) for a, mean in zip(edges, means) if mean and mean > 0
-    ]
+    pairs = [(a + BIN / 2, math.log(mean)) for a, mean in zip(edges, means) if mean and mean > 0]
     if len(pairs) < 5:
         return None, None
     x, y = np.array(pairs).T
@@ -149,7 +150,7 @@ def _hardening(strain: Floats, stress: Floats, limit: float) -> tuple[Optional[f
 
 
 def _hinge(x: Floats, y: Floats, onset: float) -> tuple[float, float, float]:
-    """Return the squared misfit of a constant and a line from `onset` on, `onset`, and the slope."""
+    """Return the squared misfit of a constant and a line from an onset on, this, and the slope."""
     design = np.column_stack([np.ones_like(x), np.maximum(x - onset, 0.0)])
     found, *_ = np.linalg.lstsq(design, y, rcond=None)
     return float(np.sum((design @ found - y) ** 2)), onset, float(found[1])

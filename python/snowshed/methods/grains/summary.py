@@ -14,7 +14,7 @@ from snowshed.methods.grains.phases import MEANS, Phases, find_phases, mean_stre
 FEW_GRAINS = 1000
 #: Mean difference of the stresses on the two plates, over their mean, that inertia may make.
 UNBALANCED = 0.2
-#: density_scaling times speed squared, m2/s2, up to which the brittle stress was seen not to change.
+#: density_scaling times speed squared, m2/s2, up to which inertia was seen not to raise stresses.
 INERTIA = 0.004
 
 
@@ -154,7 +154,7 @@ def _notes(
     fastest = max(float(stage["speed"]) for stage in scene["loading"])
     if scaling * fastest**2 > INERTIA * (1.0 + 1e-9):
         notes.append(
-            f"density_scaling times speed squared is {scaling * fastest**2:g} m2/s2; compare with a "
-            f"run of {INERTIA:g} or less, as inertia may raise the stresses"
+            f"density_scaling times speed squared is {scaling * fastest**2:g} m2/s2; compare with "
+            f"a run of {INERTIA:g} or less, as inertia may raise the stresses"
         )
     return notes

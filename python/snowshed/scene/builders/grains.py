@@ -17,6 +17,7 @@ from snowshed.scene.scene import Scene
 
 MAX_TIME = 1e4  # s; the stages end before
 NPY = ".npy"
+SAMPLE = "labels.npy"  # of the example
 EXAMPLE_VOXEL = 1e-4  # m
 
 
@@ -96,7 +97,7 @@ def example_grains(folder: PathLike) -> Scene:
     >>> scene.loading[0].kind
     'compress'
     """
-    file = Path(folder) / "labels.npy"
+    file = Path(folder) / SAMPLE
     file.parent.mkdir(parents=True, exist_ok=True)
     np.save(file, _sintered_balls())
     return grains_scene(
