@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snowshed/core/errors.hpp"
+#include "snowshed/scene/message_format.hpp"
+
 namespace snowshed {
 namespace {
 
@@ -28,6 +31,14 @@ double loading_progress(const std::vector<LoadingStage>& stages, const LoadingMe
   for (std::size_t i = 0; i < done; ++i) passed += slowness(stages[i]);
   passed += slowness(stages[done]) * std::clamp(now.strain / stages[done].strain, 0.0, 1.0);
   return passed / all;
+}
+
+void check_loading_time(const Scene& scene, double height) {
+  const double needed = loading_time(scene.loading, height), allowed = scene.events.max_time;
+  if (needed > allowed)
+    throw InputError("/events/max_time", "the stages take " + show_rounded(needed) +
+                                             " s on a sample of " + show_rounded(height) +
+                                             " m, longer than " + show(allowed) + " s");
 }
 
 CostEstimate estimate_grains_cost(const Scene& scene, const GrainSample& sample,

@@ -12,6 +12,9 @@ namespace snowshed {
 /// to hold takes none.
 double loading_time(const std::vector<LoadingStage>&, double height);
 
+/// Throws InputError where that is longer than the scene's events may be.
+void check_loading_time(const Scene&, double height);
+
 /// The part of the loading that is done: strain by strain, each weighted with the time it takes.
 double loading_progress(const std::vector<LoadingStage>&, const LoadingMeasures&);
 

@@ -40,6 +40,7 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
     check_memory(cost_.bytes);
   }
   if (scene_.uses<GrainsSettings>()) {
+    check_loading_time(scene_, surroundings_.sample.box.z());
     cost_ = estimate_grains_cost(scene_, surroundings_.sample, grains());
     check_memory(cost_.bytes);
     curve_ = std::make_unique<LoadingCurve>(

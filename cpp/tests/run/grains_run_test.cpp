@@ -128,6 +128,16 @@ TEST_F(GrainsRun, AnImageWithoutGrainsIsRefused) {
   EXPECT_NE(said.find("labels.npy: no grain in the image"), std::string::npos) << said;
 }
 
+TEST_F(GrainsRun, StagesThatTakeLongerThanAnEventMayAreRefused) {
+  Scene s = scene();  // 4e-4 m, by a thousandth and two at 0.02 m/s
+  s.events.max_time = 6.1e-5;
+  s.events.rest_time = 0;
+  EXPECT_NO_THROW(Simulation{s});
+  s.events.max_time = 5.9e-5;
+  const std::string said = message_of<InputError>([&] { Simulation sim(s); });
+  EXPECT_EQ(said.find("/events/max_time: the stages take 6e-05 s"), 0u) << said;
+}
+
 TEST_F(GrainsRun, OnlyGrainsHaveACurve) {
   Scene s;
   s.ground.emplace();

@@ -1,8 +1,9 @@
 """The command line: the list of commands, and their exit codes.
 
 ``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``grains`` a loading test of segmented
-snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, and ``season`` a winter. ``compare|sensitivity|calibrate`` answer
-questions about runs, and ``geometry|regress|predict`` treat the data set of panels.
+snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, and ``season`` a winter.
+``compare|sensitivity|calibrate`` answer questions about runs, and ``geometry|regress|predict``
+treat the data set of panels.
 
 Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted. Errors are one
 line on stderr.

@@ -108,5 +108,5 @@ def _lines(centres: Floats, points: Floats, extent: Floats) -> tuple[Floats, Boo
 def _force_text(newtons: float) -> str:
     for unit, factor in (("N", 1.0), ("mN", 1e3)):
         if newtons * factor >= 1.0:
-            return f"{newtons * factor:.2g} {unit}"
-    return f"{newtons * 1e6:.2g} µN"
+            return f"{newtons * factor:.3g} {unit}"
+    return f"{newtons * 1e6:.3g} µN"

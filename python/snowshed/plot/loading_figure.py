@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
 from snowshed.methods.grains.phases import Phases, find_phases
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STACK, STYLE, blank
 
@@ -22,12 +22,16 @@ STRESSES = {
     "side_stress_pa": "on the sides",
     "shear_stress_pa": "shear, top plate",
 }
+BEGINNING = 4.0  # times the elastic limit that the diagram of the beginning shows
 #: Colours of the phases: elastic, brittle and frictional, hardening.
 PHASES = ("#d8e8f2", "#f6efe2", "#f3dfd8")
 
 
 def loading_figure(curve: LoadingCurve, kinds: Sequence[str]) -> Figure:
     """Return the figure of a loading test: stresses, broken bonds, coordination and energies.
+
+    The first stage is shaded by its phases if it compresses; where it hardens, stresses are on a
+    logarithmic scale.
 
     Parameters
     ----------
@@ -41,22 +45,24 @@ def loading_figure(curve: LoadingCurve, kinds: Sequence[str]) -> Figure:
     along, label = _abscissa(curve, kinds)
     with rc_context(STYLE):
         figure = blank(9.0, 6.6)
-        (stress, logarithmic), (bonds, last) = figure.subplots(2, 2, sharex=True)
+        (stress, beginning), (bonds, last) = figure.subplots(2, 2)
         phases = find_phases(curve.of_stage(1), kinds[0])
-        _draw_stresses(stress, curve, along)
-        _draw_logarithm(logarithmic, curve, along)
+        _draw_stresses(stress, curve, along, logarithmic=phases.hardening_onset is not None)
+        if np.any(curve["cone_force_n"] != 0.0):
+            _draw_cone(beginning, curve, along, label)
+        else:
+            _draw_beginning(beginning, curve.of_stage(1), kinds[0], phases)
         _draw_bonds(bonds, curve, along)
         if curve.energies:
             _draw_energies(last, curve, along)
         else:
             _draw_fraction(last, curve, along)
-        if kinds[0] in ("compress", "isotropic"):
-            end = float(curve.of_stage(1)["axial_strain"][-1])
-            for axes in (stress, logarithmic, bonds, last):
-                _shade(axes, phases, end, named=axes is logarithmic)
-        for axes in (bonds, last):
+        for axes in (stress, bonds, last):
+            if kinds[0] in ("compress", "isotropic"):
+                end = float(curve.of_stage(1)["axial_strain"][-1])
+                _shade(axes, phases, end, named=axes is stress)
             axes.set_xlabel(label)
-        stress.set_xlim(float(along.min()), float(along.max()))
+            axes.set_xlim(float(along.min()), float(along.max()))
     return figure
 
 
@@ -71,32 +77,54 @@ def _abscissa(curve: LoadingCurve, kinds: Sequence[str]) -> tuple[np.ndarray, st
     return 1e3 * curve["time_s"], "time, ms"
 
 
-def _draw_stresses(axes: Axes, curve: LoadingCurve, along: np.ndarray) -> None:
+def _draw_stresses(
+    axes: Axes, curve: LoadingCurve, along: np.ndarray, *, logarithmic: bool
+) -> None:
     for (name, text), colour in zip(STRESSES.items(), (INK, FAINT, *COLOURS[1:])):
-        if np.any(curve[name] != 0.0):
+        stress = curve[name] / 1e3
+        if np.any(stress != 0.0):
+            shown = np.where(stress > 0.0, stress, np.nan) if logarithmic else stress
             width = 1.4 if name == "top_stress_pa" else 0.9
-            axes.plot(along, curve[name] / 1e3, color=colour, lw=width, label=text)
-    if np.any(curve["cone_force_n"] != 0.0):
-        force = axes.twinx()
-        force.plot(along, curve["cone_force_n"], color=BODY, lw=1.2)
-        force.set_ylabel("force on the cone, N", color=BODY)
-        force.grid(visible=False)
+            axes.plot(along, shown, color=colour, lw=width, label=text)
+    if logarithmic:
+        axes.set_yscale("log")
+        axes.set_ylim(bottom=1e-6 * curve["top_stress_pa"].max())  # a thousandth of the largest
     axes.set_ylabel("stress, kPa")
     axes.set_title("Stress")
     axes.legend(loc="upper left")
 
 
-def _draw_logarithm(axes: Axes, curve: LoadingCurve, along: np.ndarray) -> None:
-    stress = np.abs(curve["top_stress_pa"]) / 1e3
-    if np.all(stress == 0.0):
-        stress = np.abs(curve["shear_stress_pa"]) / 1e3
-    shown = stress > 0.0
-    axes.plot(along[shown], stress[shown], color=INK, lw=1.2)
-    if shown.any():
-        axes.set_yscale("log")
-        axes.set_ylim(bottom=max(stress[shown].min(), stress.max() * 1e-6))
-    axes.set_ylabel("stress, kPa")
-    axes.set_title("The same on a logarithmic scale, with the phases")
+def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) -> None:
+    strain, stress = stage_strain(stage, kind), stage_stress(stage, kind)
+    limit = phases.elastic_limit or 0.0
+    shown = strain <= max(BEGINNING * limit, 1e-3 * float(strain.max()))
+    unit = _unit_of_strain(float(strain[shown].max(initial=0.0)))
+    axes.plot(unit[1] * strain[shown], stress[shown] / 1e3, ".-", color=INK, lw=1.0, ms=4)
+    title = "Beginning"
+    if phases.tangent_modulus is not None:
+        x = np.array([0.0, limit])
+        fitted = np.polyfit(strain[strain <= limit], stress[strain <= limit], 1)
+        axes.plot(unit[1] * x, np.polyval(fitted, x) / 1e3, color=BODY, lw=2.5, alpha=0.6)
+        title += f": tangent modulus {phases.tangent_modulus / 1e6:.3g} MPa"
+    if limit > 0.0:
+        axes.axvspan(0.0, unit[1] * limit, color=PHASES[0], lw=0, zorder=0)
+        axes.text(
+            0.5 * unit[1] * limit, 0.97, "elastic", ha="center", va="top", color=INK,
+            fontsize=8.5, transform=axes.get_xaxis_transform(),
+        )  # fmt: skip
+    axes.set(xlabel=f"strain of the first stage{unit[0]}", ylabel="stress, kPa")
+    axes.set_title(title)
+
+
+def _unit_of_strain(largest: float) -> tuple[str, float]:
+    """Return the unit in which small strains are shown, and its factor."""
+    return (", %", 1e2) if largest > 5e-3 else (" times 1000", 1e3)
+
+
+def _draw_cone(axes: Axes, curve: LoadingCurve, along: np.ndarray, label: str) -> None:
+    axes.plot(along, curve["cone_force_n"], color=BODY, lw=1.2)
+    axes.set(xlabel=label, ylabel="force, N")
+    axes.set_title("Force on the cone")
 
 
 def _draw_bonds(axes: Axes, curve: LoadingCurve, along: np.ndarray) -> None:

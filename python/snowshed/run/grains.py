@@ -126,7 +126,9 @@ def run_grains(
         write_text(folder / "grains.json", json.dumps(asdict(summary), indent=2) + "\n")
         write_text(folder / "contacts.csv", contacts.text())
         if facts["energy"]:
-            Table(folder / "energy.csv").add([{"event": 1, **facts["energy"]}])
+            energies = Table(folder / "energy.csv")
+            energies.keep_through(0)  # a finished test may be resumed, too
+            energies.add([{"event": 1, **facts["energy"]}])
         if pictures:
             _draw(folder, data, curve, contacts)
     return summary
