@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats
 from snowshed.methods.grains.contacts import GrainContacts
 from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank
 
@@ -77,14 +76,14 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
     if largest == 0.0:
         axes.set_title("No forces between the grains")
         return
-    centres, extent = contacts.centres, contacts.extent
     for pulls, colour in ((False, BODY), (True, STACK)):
-        chosen = np.flatnonzero((normal < 0.0) == pulls)
+        chosen = (normal < 0.0) == pulls
         for side in (0, 1):
-            grains = contacts.grains[chosen, side]
-            lines, whole = _lines(centres[grains], contacts.points[chosen], extent)
-            widths = (WIDEST * size[chosen] / largest)[whole]
-            drawn = LineCollection(list(lines[whole]), linewidths=widths, colors=colour)
+            ways, whole = contacts.arms(side)
+            shown = np.flatnonzero(chosen & whole)
+            ends = np.stack([contacts.points[shown] - ways[shown], contacts.points[shown]], axis=1)
+            lines, widths = 1e3 * ends[:, :, [0, 2]], WIDEST * size[shown] / largest
+            drawn = LineCollection(list(lines), linewidths=widths, colors=colour)
             drawn.set(alpha=0.75, capstyle="round")
             axes.add_collection(drawn)
     axes.set_title("Forces between grains", color=INK)
@@ -94,15 +93,6 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
         Line2D([], [], color=STACK, lw=WIDEST / 4, label=f"pulling, {_force_text(largest / 4)}"),
     ]
     axes.figure.legend(handles=key, loc="outside lower center", ncols=3, edgecolor=FAINT)
-
-
-def _lines(centres: Floats, points: Floats, extent: Floats) -> tuple[Floats, Booleans]:
-    """Return lines from centres to contacts in the picture, (n, 2, 2), mm, and which to draw.
-
-    One that leaves a periodic sample at one side and enters it at the other is not drawn.
-    """
-    whole = np.asarray((np.abs(points - centres) < 0.5 * extent).all(axis=1))
-    return np.asarray(1e3 * np.stack([centres, points], axis=1)[:, :, [0, 2]]), whole
 
 
 def _force_text(newtons: float) -> str:

@@ -91,7 +91,8 @@ def _draw_stresses(
         axes.set_ylim(bottom=1e-6 * curve["top_stress_pa"].max())  # a thousandth of the largest
     axes.set_ylabel("stress, kPa")
     axes.set_title("Stress")
-    axes.legend(loc="upper left")
+    if axes.lines:
+        axes.legend(loc="upper left")
 
 
 def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) -> None:

@@ -43,20 +43,23 @@ class GrainContacts:
         sums = [np.bincount(self.sphere_grains, self.spheres[:, axis]) for axis in range(3)]
         return np.asarray(np.stack(sums, axis=1) / count[:, None])
 
-    @property
-    def extent(self) -> Floats:
-        """Lengths over which the spheres' centres spread, (3,), m."""
-        return np.asarray(np.ptp(self.spheres, axis=0))
+    def arms(self, side: int) -> tuple[Floats, Booleans]:
+        """Return the ways from the centres of the first (0) or second (1) grains to the contacts.
+
+        Those that leave a periodic sample at one side and enter it at the other are none: the
+        second array tells which are ways, (n,).
+        """
+        ways = self.points - self.centres[self.grains[:, side]]
+        half = 0.5 * np.ptp(self.spheres, axis=0)
+        return ways, np.asarray((np.abs(ways) <= half).all(axis=1))
 
     @property
     def normal_forces(self) -> Floats:
         """Force of each contact along the line of its grains' centres, pressing > 0, (n,), N."""
-        centres = self.centres
-        line = centres[self.grains[:, 0]] - centres[self.grains[:, 1]]
-        # Over the sides of a periodic sample, whose period is about the extent.
-        line -= self.extent * np.rint(line / np.maximum(self.extent, 1e-300))
-        line /= np.linalg.norm(line, axis=1, keepdims=True)
-        return np.asarray(np.einsum("ij,ij->i", self.forces, line))
+        (to, first), (back, second) = self.arms(0), self.arms(1)
+        line = np.where(second[:, None], back, 0.0) - np.where(first[:, None], to, 0.0)
+        length = np.maximum(np.linalg.norm(line, axis=1), 1e-300)
+        return np.asarray(np.einsum("ij,ij->i", self.forces, line) / length)
 
     def text(self) -> str:
         """Return the contacts as CSV."""
