@@ -72,7 +72,7 @@ def test_headers_that_promise_too_much_are_refused(tmp_path, capsys):
         ("compress", ["--sides", "round"], "'round' is not one of 'walls', 'periodic'"),
         ("compress", ["--snapshots", -1], "/output/snapshot_interval"),
         ("stretch", [], '"stretch" pulls at the plates; set /numerics/bonded_plates'),
-        ("penetrate", ["--half-angle", 90], "/cone/half_angle"),
+        ("penetrate", ["--half-angle", 91], "/cone/half_angle"),
         ("stretch", ["--stress", 1], "No such option"),
     ],
 )  # fmt: skip

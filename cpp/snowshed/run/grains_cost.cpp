@@ -42,7 +42,7 @@ void check_loading_time(const Scene& scene, double height) {
 }
 
 CostEstimate estimate_grains_cost(const Scene& scene, const GrainSample& sample,
-                                  const GrainsMethod& grains) {
+                                  const Method& grains) {
   CostEstimate cost;
   cost.particles = {double(sample.clumps.size())};
   cost.total_particles = cost.particles.front();
@@ -50,7 +50,7 @@ CostEstimate estimate_grains_cost(const Scene& scene, const GrainSample& sample,
   cost.time_step = grains.time_step();
   cost.event_time = std::min(loading_time(scene.loading, sample.box.z()), scene.events.max_time);
   cost.steps = std::ceil(cost.event_time / cost.time_step);
-  cost.updates = cost.steps * double(sample.spheres.size());
+  cost.updates = cost.steps * cost.total_particles;
   cost.bytes = double(grains.bytes());
   return cost;
 }

@@ -18,7 +18,7 @@ void check_loading_time(const Scene&, double height);
 /// The part of the loading that is done: strain by strain, each weighted with the time it takes.
 double loading_progress(const std::vector<LoadingStage>&, const LoadingMeasures&);
 
-/// `grains` holds no snow yet.
-CostEstimate estimate_grains_cost(const Scene&, const GrainSample&, const GrainsMethod& grains);
+/// The first time step and the memory are those of `grains`, which hold the sample.
+CostEstimate estimate_grains_cost(const Scene&, const GrainSample&, const Method& grains);
 
 }  // namespace snowshed

@@ -41,7 +41,9 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   }
   if (scene_.uses<GrainsSettings>()) {
     check_loading_time(scene_, surroundings_.sample.box.z());
-    cost_ = estimate_grains_cost(scene_, surroundings_.sample, grains());
+    const std::unique_ptr<Method> filled = empty_method();  // its first step is not known before
+    filled->add(grains().seed());
+    cost_ = estimate_grains_cost(scene_, surroundings_.sample, *filled);
     check_memory(cost_.bytes);
     curve_ = std::make_unique<LoadingCurve>(
         scene_.loading, surroundings_.sample.box.z(),

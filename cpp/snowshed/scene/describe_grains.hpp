@@ -35,7 +35,7 @@ void describe(V& v, LoadingStage& s) {
 template <class V>
 void describe(V& v, Cone& c) {
   v.number("radius", c.radius, "m", between(1e-9, 1.0), "Of the cone's base and the shaft");
-  v.number("half_angle", c.half_angle, "degrees", positive.below(90.0),
+  v.number("half_angle", c.half_angle, "degrees", positive.up_to(90.0),
            "Between the axis and the cone's side");
 }
 

@@ -65,7 +65,7 @@ class Cone(Record):
     radius : float
         Of the cone's base and the shaft [m]. 1e-09 <= value <= 1; default 0.0025.
     half_angle : float
-        Between the axis and the cone's side [degrees]. 0 < value < 90; default 30.
+        Between the axis and the cone's side [degrees]. 0 < value <= 90; default 30.
     """
 
     radius: Optional[float] = None

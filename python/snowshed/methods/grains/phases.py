@@ -98,8 +98,8 @@ def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Opti
 
     Examples
     --------
-    >>> mean_stress(np.array([0.0, 0.1]), np.array([0.0, 2.0]), 0.05, 0.1)
-    1.5
+    >>> mean_stress(np.array([0.0, 0.1]), np.array([0.0, 2.0]), 0.0, 0.1)
+    1.0
     """
     end = float(strain[-1])
     if end < high and not math.isclose(end, high, rel_tol=1e-3):
