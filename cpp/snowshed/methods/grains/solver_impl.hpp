@@ -41,6 +41,7 @@ class GrainsSolver final : public GrainsMethod {
   std::vector<ParticleBatch> seed() const override;
   std::size_t count_spheres() const override { return model_.spheres.offsets.size(); }
   LoadingMeasures measures() const override;
+  int stage() const override { return state_.loading.stage; }
   std::vector<GrainContact> grain_contacts() const override;
   std::vector<Vec3> sphere_positions() const override;
   std::vector<std::uint32_t> sphere_grains() const override { return model_.spheres.grain; }
