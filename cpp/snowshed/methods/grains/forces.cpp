@@ -79,8 +79,7 @@ void surface_forces(const GrainsModel& model, GrainsState& state, GrainsWork& wo
                     std::size_t group, double dt) {
   const PairGroup& g = state.pairs.groups[group];
   const Partner partner = Partner(g.second - std::uint32_t(model.grains.size()));
-  BondLaw law = model.law;
-  if (partner != Partner::cone) law.friction = law.shear_stiffness = 0;
+  const double rough = partner == Partner::cone ? 1 : 0;  // sides do not take shear
   const GrainBody& body = state.bodies[g.first];
   const Vec3 spin = vec(work.frames[g.first].spin);
   const Mat3 rotation = body.orientation.toRotationMatrix();
@@ -95,11 +94,11 @@ void surface_forces(const GrainsModel& model, GrainsState& state, GrainsWork& wo
     const Vec3 velocity = surface - body.velocity - spin.cross(pair.arm_a);
     const double along = velocity.dot(pair.normal);
     const ContactMotion<double> motion{pair.gap, dt * along, triple(pair.normal),
-                                       triple(dt * (velocity - along * pair.normal)),
+                                       triple(rough * dt * (velocity - along * pair.normal)),
                                        0.5 * dt * spin.dot(pair.normal)};
     Triple<double> u{list.ux[p], list.uy[p], list.uz[p]};
     bool bonded = false;
-    const auto f = law(motion, u, bonded);
+    const auto f = model.law(motion, u, bonded);
     list.ux[p] = u.x;
     list.uy[p] = u.y;
     list.uz[p] = u.z;
