@@ -31,9 +31,9 @@ constexpr std::size_t numbers_of_body = 25, numbers_of_pose = 7;
 
 constexpr std::size_t numbers_of_boundary = 39;
 
-std::vector<double> numbers_of(const Boundary& b) {
+std::vector<double> numbers_of(const GrainsBoundary& b) {
   std::vector<double> values;
-  Boundary::for_each_number(b, [&](double value) { values.push_back(value); });
+  GrainsBoundary::for_each_number(b, [&](double value) { values.push_back(value); });
   return values;
 }
 
@@ -52,12 +52,12 @@ void check_orientation(const BinaryReader& in, const Orientation& q) {
   if (!(std::abs(q.norm() - 1) < 1e-6)) refuse(in, "the orientation of a grain is not sound");
 }
 
-Boundary read_boundary(const BinaryReader& in, const char* name, const GrainsModel& model,
+GrainsBoundary read_boundary(const BinaryReader& in, const char* name, const GrainsModel& model,
                        std::int64_t flags) {
   const std::vector<double> values = in.get<double>(name, numbers_of_boundary);
-  Boundary b;
+  GrainsBoundary b;
   NumberSource source{values};
-  Boundary::for_each_number(b, [&](double& value) { source(value); });
+  GrainsBoundary::for_each_number(b, [&](double& value) { source(value); });
   b.has_top = (flags & 1) != 0;
   b.has_cone = (flags & 2) != 0;
   const double far = 5e4 * model.radius + 10 * model.box.maxCoeff();
@@ -169,7 +169,7 @@ void GrainsSolver::save(BinaryWriter& out) const {
                             l.displacement, l.duration, l.peak_kinetic};
   GrainsEnergy::for_each_sum(state_.energy, [&](double sum) { clock.push_back(sum); });
   out.add("clock", std::move(clock));
-  const auto flags = [](const Boundary& b) { return std::int64_t(b.has_top) + 2 * b.has_cone; };
+  const auto flags = [](const GrainsBoundary& b) { return std::int64_t(b.has_top) + 2 * b.has_cone; };
   const StepCounters& c = state_.counters;
   out.add("counters",
           std::vector<std::int64_t>{

@@ -24,7 +24,7 @@ BodyFrame frame_of(const GrainBody& body, const Vec3& inertia) {
   return f;
 }
 
-BodyFrame frame_of_plate(const Boundary& b, int plate) {
+BodyFrame frame_of_plate(const GrainsBoundary& b, int plate) {
   BodyFrame f{};
   for (int i = 0; i < 3; ++i) {
     f.position[i] = b.plate[plate][i];
@@ -68,7 +68,7 @@ Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
 Vec3 vec(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-Vec3 surface_velocity(const Boundary& b, Partner partner) {
+Vec3 surface_velocity(const GrainsBoundary& b, Partner partner) {
   if (partner == Partner::cone) return b.tip_velocity;
   const int side = int(partner) - int(Partner::west);
   return b.side_velocity[side] * Vec3::Unit(side / 2);
@@ -147,7 +147,7 @@ void gather(const GrainsModel& model, GrainsState& state, const GrainsWork& work
 
 /// What the grains do to plates, sides and the cone, and what was lost, group by group.
 void sum_up(const GrainsModel& model, GrainsState& state, const GrainsWork& work) {
-  Boundary& b = state.boundary;
+  GrainsBoundary& b = state.boundary;
   for (Vec3* f : {&b.plate_force[0], &b.plate_force[1], &b.cone_force}) f->setZero();
   for (double& f : b.side_force) f = 0;
   b.top_contacts = 0;

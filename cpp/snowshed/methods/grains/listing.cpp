@@ -31,7 +31,7 @@ std::vector<GrainPose> poses_of(const std::vector<GrainBody>& bodies) {
 }
 
 Listing listing_of(const GrainsModel& model, std::vector<GrainPose> poses,
-                   const Boundary& boundary, const std::vector<PairHistory>& past) {
+                   const GrainsBoundary& boundary, const std::vector<PairHistory>& past) {
   Listing listing;
   const PairSearch search = search_of(model);
   listing.pairs = make_list(search, find_pairs(search, poses, boundary), past);
@@ -44,7 +44,7 @@ Listing listing_of(const GrainsModel& model, std::vector<GrainPose> poses,
 
 std::vector<PairHistory> initial_bonds(const GrainsModel& model,
                                        const std::vector<GrainPose>& poses,
-                                       const Boundary& boundary) {
+                                       const GrainsBoundary& boundary) {
   std::vector<PairHistory> bonds;
   for (const BondedPair& bond : model.bonds) {
     std::uint32_t a = bond.first, b = bond.second;

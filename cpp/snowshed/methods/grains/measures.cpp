@@ -8,7 +8,7 @@
 namespace snowshed {
 
 LoadingMeasures GrainsSolver::measures() const {
-  const Boundary& b = state_.boundary;
+  const GrainsBoundary& b = state_.boundary;
   const double height = model_.box.z();
   LoadingMeasures m;
   m.stage = state_.loading.stage;

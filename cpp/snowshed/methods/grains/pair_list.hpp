@@ -84,7 +84,7 @@ Vec3 plate_sphere(std::uint32_t number, double radius);
 
 /// All pairs nearer than the skin, ordered. Throws SimulationError where they are more than
 /// `most_pairs`, or the period too short.
-std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&, const Boundary&);
+std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&, const GrainsBoundary&);
 
 /// A list of these pairs, and of those to be kept, however far apart.
 PairList make_list(const PairSearch&, const std::vector<PairKey>&,

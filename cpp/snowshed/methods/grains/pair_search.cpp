@@ -19,7 +19,7 @@ std::uint32_t plate_number(int i, int j) {
 /// cells of its border, or to those of its image where the box is periodic.
 class SphereCells {
  public:
-  SphereCells(const PairSearch& s, const std::vector<Vec3>& places, const Boundary& b,
+  SphereCells(const PairSearch& s, const std::vector<Vec3>& places, const GrainsBoundary& b,
               double reach)
       : periodic_(s.periodic), boundary_(b) {
     const double bottom = std::min(b.plate[0].z(), b.plate[1].z());
@@ -83,7 +83,7 @@ class SphereCells {
   }
 
   bool periodic_;
-  const Boundary& boundary_;
+  const GrainsBoundary& boundary_;
   Vec3 low_;
   int count_[3];
   double per_width_[3];
@@ -92,7 +92,7 @@ class SphereCells {
 
 class Finder {
  public:
-  Finder(const PairSearch& s, const std::vector<GrainPose>& poses, const Boundary& b)
+  Finder(const PairSearch& s, const std::vector<GrainPose>& poses, const GrainsBoundary& b)
       : s_(s), b_(b), reach_(2 * s.radius + s.skin), places_(s.spheres.offsets.size()) {
     std::vector<Mat3> rotations;
     rotations.reserve(poses.size());
@@ -211,7 +211,7 @@ class Finder {
   }
 
   const PairSearch& s_;
-  const Boundary& b_;
+  const GrainsBoundary& b_;
   double reach_;
   std::vector<Vec3> places_;
   std::vector<PairKey> pairs_;
@@ -225,7 +225,7 @@ Vec3 plate_sphere(std::uint32_t number, double radius) {
 }
 
 std::vector<PairKey> find_pairs(const PairSearch& search, const std::vector<GrainPose>& poses,
-                                const Boundary& boundary) {
+                                const GrainsBoundary& boundary) {
   return Finder(search, poses, boundary).find();
 }
 

@@ -61,11 +61,11 @@ struct GrainsState {
   std::vector<GrainBody> bodies;  // empty before the grains are added
   std::vector<std::uint16_t> events;
   std::uint32_t first_id = 0, next_id = 0;
-  Boundary boundary;
+  GrainsBoundary boundary;
   LoadingProgress loading;
   PairList pairs;
   std::vector<GrainPose> listed;  // of the grains as the pairs were looked for
-  Boundary listed_boundary;
+  GrainsBoundary listed_boundary;
   double time = 0, dt = 0;  // s
   std::int64_t bonds = 0, broken_in_tension = 0, broken_in_shear = 0;
   StepCounters counters;

@@ -24,7 +24,7 @@ struct GrainStiffness {
 
 }  // namespace
 
-double longest_step(const GrainsModel& model, const Boundary& boundary, const PairList& list,
+double longest_step(const GrainsModel& model, const GrainsBoundary& boundary, const PairList& list,
                     const std::vector<GrainPose>& poses) {
   const double k = std::max(model.law.normal_stiffness, model.law.shear_stiffness);
   std::vector<GrainStiffness> stiffness(poses.size());
