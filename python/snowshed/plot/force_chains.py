@@ -34,7 +34,8 @@ def force_figure(contacts: GrainContacts, voxel_size: float) -> Figure:
     from matplotlib import rc_context
 
     with rc_context(STYLE):
-        figure = blank(6.4, 6.4)
+        width, _, height = np.ptp(contacts.spheres, axis=0) + voxel_size
+        figure = blank(6.4, 1.2 + 5.6 * min(height / width, 2.0))
         axes = figure.subplots()
         axes.grid(visible=False)
         _draw_ice(axes, contacts, voxel_size)

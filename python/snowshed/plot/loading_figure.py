@@ -88,7 +88,8 @@ def _draw_stresses(
             axes.plot(along, shown, color=colour, lw=width, label=text)
     if logarithmic:
         axes.set_yscale("log")
-        axes.set_ylim(bottom=1e-6 * curve["top_stress_pa"].max())  # a thousandth of the largest
+        largest = curve["top_stress_pa"].max() / 1e3
+        axes.set_ylim(largest / 1000, 3 * largest)
     axes.set_ylabel("stress, kPa")
     axes.set_title("Stress")
     if axes.lines:
@@ -176,4 +177,5 @@ def _shade(axes: Axes, phases: Phases, end: float, *, named: bool) -> None:
             axes.text(
                 50.0 * (low + high), 0.02, name, ha="center", va="bottom", color=INK,
                 fontsize=8.5, transform=axes.get_xaxis_transform(),
+                bbox={"facecolor": colour, "edgecolor": "none", "pad": 1.5},
             )  # fmt: skip

@@ -14,6 +14,8 @@ from snowshed.methods.grains.phases import MEANS, Phases, find_phases, mean_stre
 FEW_GRAINS = 1000
 #: Mean difference of the stresses on the two plates, over their mean, that inertia may make.
 UNBALANCED = 0.2
+#: R2 of the line through the elastic phase below which it is none.
+LINEAR = 0.95
 #: density_scaling times speed squared, m2/s2, up to which inertia was seen not to raise stresses.
 INERTIA = 0.004
 
@@ -150,6 +152,12 @@ def _notes(
                 f"the stresses on the two plates differ by {100 * apart / mean:.0f} % of their "
                 "mean: the test is not quasi-static; load more slowly, or with less density_scaling"
             )
+    linearity = find_phases(first, kind).linearity if kind != "penetrate" else None
+    if linearity is not None and linearity < LINEAR:
+        notes.append(
+            f"the stress is not linear before the first bond breaks (R2 {linearity:.2f}), as waves "
+            "run through the sample; load more slowly to find the modulus"
+        )
     scaling = float(scene["numerics"]["density_scaling"])
     fastest = max(float(stage["speed"]) for stage in scene["loading"])
     if scaling * fastest**2 > INERTIA * (1.0 + 1e-9):

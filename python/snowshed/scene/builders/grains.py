@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.io.arrays import Integers
 from snowshed.io.paths import PathLike
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.components import Events, Output
@@ -85,9 +86,8 @@ def grains_scene(
 def example_grains(folder: PathLike) -> Scene:
     """Write an example's sample to a folder, and return the scene of its compression.
 
-    About a hundred sintered balls of ice, 4 mm in all, are compressed by 15 % of their height. To
-    take seconds, they are compressed faster than a quasi-static test would be, with grains of
-    greater inertia.
+    Sintered balls of ice, 3 mm in all, are compressed by 30 % of their height. To take seconds,
+    they are compressed faster than a quasi-static test would be, with grains of greater inertia.
 
     Examples
     --------
@@ -103,20 +103,25 @@ def example_grains(folder: PathLike) -> Scene:
     return grains_scene(
         file,
         EXAMPLE_VOXEL,
-        [LoadingStage(kind="compress", speed=0.1, strain=0.15)],
+        [LoadingStage(kind="compress", speed=0.1, strain=0.3)],
         settings=GrainsSettings(density_scaling=100.0),
         title="Sintered balls of ice, compressed",
     )
 
 
-def _sintered_balls() -> np.ndarray:
-    """Return the labels of overlapping balls on a jittered lattice, (40, 40, 40)."""
-    count, size, radius = 5, 40, 4.7
-    pitch = size / count
+def _sintered_balls() -> Integers:
+    """Return the labels of balls that overlap, on a jittered lattice with holes, (30, 30, 30)."""
+    count, pitch, radius, kept = 5, 6, 3.3, 0.62
+    random = np.random.default_rng(7)
     lattice = np.stack(np.meshgrid(*[np.arange(count)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    jitter = np.random.default_rng(7).uniform(-0.12, 0.12, lattice.shape)
-    centres = (lattice + 0.5 + jitter) * pitch
-    voxels = np.stack(np.meshgrid(*[np.arange(size) + 0.5] * 3, indexing="ij"), axis=-1)
-    distance = np.linalg.norm(voxels[..., None, :] - centres, axis=-1)
-    nearest = distance.argmin(axis=-1)
-    return np.where(distance.min(axis=-1) < radius, nearest + 1, 0).astype(np.int32)
+    lattice = lattice[random.random(len(lattice)) < kept]
+    centres = (lattice + 0.5 + random.uniform(-0.08, 0.08, lattice.shape)) * pitch
+    axis = np.arange(count * pitch) + 0.5
+    voxels = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
+    labels = np.zeros(voxels.shape[:3], dtype=np.int64)
+    nearest = np.full(voxels.shape[:3], radius)
+    for label, centre in enumerate(centres, start=1):
+        distance = np.linalg.norm(voxels - centre, axis=-1)
+        labels[distance < nearest] = label
+        nearest = np.minimum(nearest, distance)
+    return labels
