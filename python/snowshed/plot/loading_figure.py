@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,10 @@ STRESSES = {
     "side_stress_pa": "on the sides",
     "shear_stress_pa": "shear, top plate",
 }
+SMALL = 0.01  # of the largest energy: what is less is not drawn
+KEY: dict[str, Any] = {
+    "loc": "best", "frameon": True, "framealpha": 0.8, "edgecolor": "none"
+}  # fmt: skip
 BEGINNING = 4.0  # times the elastic limit that the diagram of the beginning shows
 #: Colours of the phases: elastic, brittle and frictional, hardening.
 PHASES = ("#d8e8f2", "#f6efe2", "#f3dfd8")
@@ -93,7 +97,7 @@ def _draw_stresses(
     axes.set_ylabel("stress, kPa")
     axes.set_title("Stress")
     if axes.lines:
-        axes.legend(loc="upper left")
+        axes.legend(**KEY)
 
 
 def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) -> None:
@@ -108,6 +112,7 @@ def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) 
         fitted = np.polyfit(strain[strain <= limit], stress[strain <= limit], 1)
         axes.plot(unit[1] * x, np.polyval(fitted, x) / 1e3, color=BODY, lw=2.5, alpha=0.6)
         title += f": tangent modulus {phases.tangent_modulus / 1e6:.3g} MPa"
+        title += f" (R² {phases.linearity:.3f})" if phases.linearity is not None else ""
     if limit > 0.0:
         axes.axvspan(0.0, unit[1] * limit, color=PHASES[0], lw=0, zorder=0)
         axes.text(
@@ -144,17 +149,18 @@ def _draw_bonds(axes: Axes, curve: LoadingCurve, along: np.ndarray) -> None:
     touching.set_ylim(bottom=0.0)
     touching.grid(visible=False)
     axes.set_title("Broken bonds and coordination")
-    axes.legend(loc="upper left")
+    axes.legend(**KEY)
 
 
 def _draw_energies(axes: Axes, curve: LoadingCurve, along: np.ndarray) -> None:
-    drawn = [name for name in curve.energies if np.any(curve[name] != 0.0)]
+    largest = max(np.abs(curve[name]).max() for name in curve.energies)
+    drawn = [name for name in curve.energies if np.abs(curve[name]).max() > SMALL * largest]
     for name, colour in zip(drawn, (*COLOURS, INK, FAINT, STACK, BODY)):
         text = name[: -len("_j")].replace("_", " ")
         axes.plot(along, 1e6 * curve[name], color=colour, lw=1.2, label=text)
     axes.set_ylabel("energy, µJ")
     axes.set_title("Energy balance")
-    axes.legend(loc="upper left", ncols=2)
+    axes.legend(**KEY)
 
 
 def _draw_fraction(axes: Axes, curve: LoadingCurve, along: np.ndarray) -> None:

@@ -196,11 +196,19 @@ class _Recorder:
 
     def _doing(self) -> str:
         """Return the stage, and the last row of the curve, in words."""
-        curve = self.simulation.grains_curve()
-        stage = min(int(curve["stage"][-1]), len(self.stages))
-        strain, stress = curve["axial_strain"][-1], curve["top_stress_pa"][-1]
+        last = {name: values[-1] for name, values in self.simulation.grains_curve().items()}
+        stage = min(int(last["stage"]), len(self.stages))
         kind = self.stages[stage - 1]["kind"]
-        return f"stage {stage} of {len(self.stages)}, {kind}: {strain:.1%}, {stress / 1e3:.3g} kPa"
+        return f"stage {stage} of {len(self.stages)}, {kind}: {_reading(kind, last)}"
+
+
+def _reading(kind: str, row: dict[str, float]) -> str:
+    """Return what a stage builds up, in words."""
+    if kind == "penetrate":
+        return f"{row['cone_force_n']:.3g} N"
+    if kind == "shear":
+        return f"{row['shear_strain']:.1%}, {row['shear_stress_pa'] / 1e3:.3g} kPa"
+    return f"{abs(row['axial_strain']):.1%}, {row['top_stress_pa'] / 1e3:.3g} kPa"
 
 
 def _draw(
