@@ -7,21 +7,22 @@
 
 namespace snowshed {
 
-void Boundary::move(double dt) {
+void GrainsBoundary::move(double dt) {
   for (int p = 0; p < 2; ++p) plate[p] += dt * plate_velocity[p];
   for (int s = 0; s < 4; ++s) side[s] += dt * side_velocity[s];
   tip += dt * tip_velocity;
 }
 
-double Boundary::travel_since(const Boundary& earlier) const {
+double GrainsBoundary::travel_since(const GrainsBoundary& earlier) const {
   double farthest = (tip - earlier.tip).norm();
   for (int p = 0; p < 2; ++p) farthest = std::max(farthest, (plate[p] - earlier.plate[p]).norm());
   // Two sides together move an image.
-  for (int s = 0; s < 4; ++s) farthest = std::max(farthest, 2 * std::abs(side[s] - earlier.side[s]));
+  for (int s = 0; s < 4; ++s)
+    farthest = std::max(farthest, 2 * std::abs(side[s] - earlier.side[s]));
   return farthest;
 }
 
-double Boundary::top_speed() const {
+double GrainsBoundary::top_speed() const {
   double fastest = tip_velocity.norm();
   for (int p = 0; p < 2; ++p) fastest = std::max(fastest, plate_velocity[p].norm());
   for (int s = 0; s < 4; ++s) fastest = std::max(fastest, 2 * std::abs(side_velocity[s]));

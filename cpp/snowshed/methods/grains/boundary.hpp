@@ -15,12 +15,12 @@ inline constexpr std::uint32_t partners = 7;
 
 /// Positions and velocities, and the forces of the grains on each part. A plate is an endless
 /// square grid of spheres, of which one lies half a spacing from the plate's origin along x and y.
-struct Boundary {
+struct GrainsBoundary {
   Vec3 plate[2] = {Vec3::Zero(), Vec3::Zero()};  // m, origins: bottom, top
   Vec3 plate_velocity[2] = {Vec3::Zero(), Vec3::Zero()};
   double side[4] = {0, 0, 0, 0};  // m: west, east, south, north; periodic sides are a period apart
   double side_velocity[4] = {0, 0, 0, 0};
-  Vec3 tip = Vec3::Zero();        // of the cone
+  Vec3 tip = Vec3::Zero();  // of the cone
   Vec3 tip_velocity = Vec3::Zero();
   bool has_top = true, has_cone = false;
 
@@ -35,7 +35,7 @@ struct Boundary {
   }
   void move(double dt);
   /// The farthest that a part has come since an earlier time, m.
-  double travel_since(const Boundary& earlier) const;
+  double travel_since(const GrainsBoundary& earlier) const;
   double top_speed() const;  // m/s, of the fastest part
 
   /// Calls visit(number) for each of the numbers.
@@ -70,7 +70,8 @@ struct SurfaceContact {
 SurfaceContact meet_cone(const Cone&, const Vec3& centre, double radius);
 
 /// The wall that a sphere with this centre meets.
-inline SurfaceContact meet_side(const Boundary& b, int side, const Vec3& centre, double radius) {
+inline SurfaceContact meet_side(const GrainsBoundary& b, int side, const Vec3& centre,
+                                double radius) {
   const int axis = side / 2;
   const double sign = side % 2 == 0 ? -1 : 1;  // outward
   return {sign * (b.side[side] - centre[axis]) - radius, sign * Vec3::Unit(axis)};

@@ -12,7 +12,7 @@ Vec3 triple(const AlignedVector<double>& x, const AlignedVector<double>& y,
 
 }  // namespace
 
-PairGeometry pair_geometry(const GrainsModel& model, const Boundary& boundary,
+PairGeometry pair_geometry(const GrainsModel& model, const GrainsBoundary& boundary,
                            const PairList& list, const PairGroup& g, std::size_t p,
                            const Vec3& position_a, const Mat3& rotation_a,
                            const GrainPose* second) {

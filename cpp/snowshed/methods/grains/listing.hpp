@@ -15,13 +15,13 @@ struct Listing {
 };
 
 /// Looks for the near pairs of these poses. Contacts keep their past.
-Listing listing_of(const GrainsModel&, std::vector<GrainPose>, const Boundary&,
+Listing listing_of(const GrainsModel&, std::vector<GrainPose>, const GrainsBoundary&,
                    const std::vector<PairHistory>&);
 
 /// The pairs that are bonded at the beginning: those of the sample, those across the sides of a
 /// periodic sample, and with bonded plates those that touch a plate.
 std::vector<PairHistory> initial_bonds(const GrainsModel&, const std::vector<GrainPose>&,
-                                       const Boundary&);
+                                       const GrainsBoundary&);
 
 /// Poses of grains that stand in a state, or where they began.
 std::vector<GrainPose> poses_of(const std::vector<GrainBody>&);

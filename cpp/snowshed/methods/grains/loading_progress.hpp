@@ -23,29 +23,29 @@ struct LoadingGauge {
 
 /// What the loading knows of the sample.
 struct LoadedSample {
-  Vec3 box;                   // m, at the beginning
-  double radius;              // m, of the spheres
-  double contact_stiffness;   // N/m
+  Vec3 box;                  // m, at the beginning
+  double radius;             // m, of the spheres
+  double contact_stiffness;  // N/m
 };
 
 /// A stage of holding ends when the kinetic energy has fallen to this share of its peak there.
 inline constexpr double rest_per_peak = 1e-4;
 
 /// The plates, sides and cone of a sample that is not loaded yet.
-Boundary initial_boundary(const LoadedSample&);
+GrainsBoundary initial_boundary(const LoadedSample&);
 
 /// Prepares what the present stage needs: penetration takes the top plate away and brings the cone.
 void begin_stage(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
-                 Boundary&);
+                 GrainsBoundary&);
 
 /// Sets the velocities for a step of this length. A normal stress in shear is kept by the top
-/// plate's speed: the error of the force over the stiffness of the plate's contacts is mended within
-/// fifty steps, at the stage's speed at most.
+/// plate's speed: the error of the force over the stiffness of the plate's contacts is mended
+/// within five steps, at the stage's speed at most.
 void set_velocities(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
-                    double dt, Boundary&);
+                    double dt, GrainsBoundary&);
 
 /// Counts a step, and goes on to the next stage where this one has ended.
 void count_step(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingGauge&,
-                double dt, LoadingProgress&, Boundary&);
+                double dt, LoadingProgress&, GrainsBoundary&);
 
 }  // namespace snowshed

@@ -50,7 +50,7 @@ double push(const GrainConstants& grain, GrainBody& body, double half_step) {
 constexpr std::ptrdiff_t bodies_in_push = 32;
 
 /// What the grains do to their surroundings does work on them, for half a step.
-double boundary_work(const Boundary& b, double half_step) {
+double boundary_work(const GrainsBoundary& b, double half_step) {
   double power = b.cone_force.dot(b.tip_velocity);
   for (int p = 0; p < 2; ++p) power += b.plate_force[p].dot(b.plate_velocity[p]);
   for (int s = 0; s < 4; ++s) power += (s % 2 == 0 ? -1 : 1) * b.side_force[s] * b.side_velocity[s];
@@ -59,8 +59,7 @@ double boundary_work(const Boundary& b, double half_step) {
 
 }  // namespace
 
-GrainsSolver::GrainsSolver(GrainsOptions o)
-    : model_(std::move(o)), state_(empty_state(model_)) {}
+GrainsSolver::GrainsSolver(GrainsOptions o) : model_(std::move(o)), state_(empty_state(model_)) {}
 
 void GrainsSolver::require_sound() const {
   if (broken_) throw SimulationError("the grains have failed; load a checkpoint to go on");
@@ -172,7 +171,8 @@ void GrainsSolver::add_velocity(const std::vector<Vec3>& changes) {
 }
 
 void GrainsSolver::settle(const std::vector<double>&, const std::vector<double>&) {
-  throw InputError("settling", "grains move as their forces say; they do not settle between events");
+  throw InputError("settling",
+                   "grains move as their forces say; they do not settle between events");
 }
 
 /// Half a step's forces, then a step's motion, into the workspace.
@@ -201,8 +201,8 @@ void GrainsSolver::check_places() const {
 }
 
 /// Whether a sphere may have moved more than half the skin since pairs were looked for.
-bool GrainsSolver::must_relist(const Boundary& moved) const {
-  const Boundary& then = state_.listed_boundary;
+bool GrainsSolver::must_relist(const GrainsBoundary& moved) const {
+  const GrainsBoundary& then = state_.listed_boundary;
   if (moved.has_top != then.has_top || moved.has_cone != then.has_cone) return true;
   const double most = 0.5 * skin_per_radius * model_.radius;
   if (!(moved.travel_since(then) < most)) return true;
@@ -218,9 +218,8 @@ bool GrainsSolver::must_relist(const Boundary& moved) const {
 }
 
 /// All or nothing: the list for the poses in the workspace.
-void GrainsSolver::relist(const Boundary& moved) {
-  Listing listing =
-      listing_of(model_, poses_of(work_.next), moved, state_.pairs.histories());
+void GrainsSolver::relist(const GrainsBoundary& moved) {
+  Listing listing = listing_of(model_, poses_of(work_.next), moved, state_.pairs.histories());
   double gone = 0;  // J, with a plate that is taken away
   if (model_.keeps_energy && moved.has_top != state_.listed_boundary.has_top) {
     GrainsEnergy e;
@@ -245,7 +244,7 @@ void GrainsSolver::step() {
   require_sound();
   require_grains();
   const double dt = choose_step(model_, state_, work_.longest_step);
-  Boundary moved = state_.boundary;
+  GrainsBoundary moved = state_.boundary;
   set_velocities(model_.loading, model_.loaded(), state_.loading, dt, moved);
   moved.move(dt);
   drift(dt);
@@ -255,7 +254,7 @@ void GrainsSolver::step() {
 }
 
 /// From here on nothing throws but for forces that are not finite.
-void GrainsSolver::end_step(const Boundary& moved, double dt) {
+void GrainsSolver::end_step(const GrainsBoundary& moved, double dt) {
   state_.energy.boundary += boundary_work(moved, 0.5 * dt);  // with the forces of before
   std::swap(state_.bodies, work_.next);
   state_.boundary = moved;
@@ -272,7 +271,7 @@ void GrainsSolver::end_step(const Boundary& moved, double dt) {
     const GrainBody& body = state_.bodies[i];
     sound = sound && std::isfinite(body.velocity.squaredNorm() + body.spin_momentum.squaredNorm());
   }
-  const Boundary& b = state_.boundary;
+  const GrainsBoundary& b = state_.boundary;
   LoadingGauge gauge;
   gauge.top_stress = b.plate_force[1].z() / model_.area();
   const double sides[2] = {model_.box.y() * model_.box.z(), model_.box.x() * model_.box.z()};

@@ -52,9 +52,9 @@ class GrainsSolver final : public GrainsMethod {
   void require_grains() const;
   void drift(double dt);
   void check_places() const;
-  bool must_relist(const Boundary&) const;
-  void relist(const Boundary&);
-  void end_step(const Boundary& moved, double dt);
+  bool must_relist(const GrainsBoundary&) const;
+  void relist(const GrainsBoundary&);
+  void end_step(const GrainsBoundary& moved, double dt);
   template <class Visit>
   void visit_fields(Visit) const;
 
