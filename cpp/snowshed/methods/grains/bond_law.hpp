@@ -52,10 +52,11 @@ struct ContactForce {
 };
 
 /// Linear springs along and across the normal. A bond bears tension up to a limit, and shear up to
-/// a limit plus friction, and is lost for good beyond. Without a bond there is no tension, and shear
-/// is at most friction (Cundall and Strack 1979 for the springs; Hagenmuller, Chambon and Naaim 2015
-/// for bonds between grains of snow. The tables of the latter are not at hand: that shear of a bond
-/// is raised by friction, and that all of a pair's cohesion is lost at once, are inferred).
+/// a limit plus friction, and is lost for good beyond. Without a bond there is no tension, and
+/// shear is at most friction (Cundall and Strack 1979 for the springs; Hagenmuller, Chambon and
+/// Naaim 2015 for bonds between grains of snow. The tables of the latter are not at hand: that
+/// shear of a bond is raised by friction, and that all of a pair's cohesion is lost at once, are
+/// inferred).
 struct BondLaw {
   double normal_stiffness = 0, shear_stiffness = 0;  // N/m
   double tension_limit = 0, shear_limit = 0;         // N

@@ -17,7 +17,8 @@ double GrainsBoundary::travel_since(const GrainsBoundary& earlier) const {
   double farthest = (tip - earlier.tip).norm();
   for (int p = 0; p < 2; ++p) farthest = std::max(farthest, (plate[p] - earlier.plate[p]).norm());
   // Two sides together move an image.
-  for (int s = 0; s < 4; ++s) farthest = std::max(farthest, 2 * std::abs(side[s] - earlier.side[s]));
+  for (int s = 0; s < 4; ++s)
+    farthest = std::max(farthest, 2 * std::abs(side[s] - earlier.side[s]));
   return farthest;
 }
 

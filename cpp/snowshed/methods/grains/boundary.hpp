@@ -20,7 +20,7 @@ struct GrainsBoundary {
   Vec3 plate_velocity[2] = {Vec3::Zero(), Vec3::Zero()};
   double side[4] = {0, 0, 0, 0};  // m: west, east, south, north; periodic sides are a period apart
   double side_velocity[4] = {0, 0, 0, 0};
-  Vec3 tip = Vec3::Zero();        // of the cone
+  Vec3 tip = Vec3::Zero();  // of the cone
   Vec3 tip_velocity = Vec3::Zero();
   bool has_top = true, has_cone = false;
 
@@ -70,7 +70,8 @@ struct SurfaceContact {
 SurfaceContact meet_cone(const Cone&, const Vec3& centre, double radius);
 
 /// The wall that a sphere with this centre meets.
-inline SurfaceContact meet_side(const GrainsBoundary& b, int side, const Vec3& centre, double radius) {
+inline SurfaceContact meet_side(const GrainsBoundary& b, int side, const Vec3& centre,
+                                double radius) {
   const int axis = side / 2;
   const double sign = side % 2 == 0 ? -1 : 1;  // outward
   return {sign * (b.side[side] - centre[axis]) - radius, sign * Vec3::Unit(axis)};

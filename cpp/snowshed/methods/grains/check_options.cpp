@@ -35,7 +35,8 @@ void check_settings(const GrainsSettings& s) {
   finite("friction", s.friction);
   positive("density", s.density);
   positive("density_scaling", s.density_scaling);
-  if (!(s.damping >= 0 && s.damping < 1)) refuse("/numerics/damping", s.damping, "from 0 to below 1");
+  if (!(s.damping >= 0 && s.damping < 1))
+    refuse("/numerics/damping", s.damping, "from 0 to below 1");
   if (!(s.courant_factor > 0 && s.courant_factor <= 1))
     refuse("/numerics/courant_factor", s.courant_factor, "above 0, and 1 at most");
 }
@@ -43,7 +44,8 @@ void check_settings(const GrainsSettings& s) {
 void check_clump(const GrainSample& sample, std::size_t c, std::size_t spheres) {
   const Clump& clump = sample.clumps[c];
   const std::string where = "grain " + std::to_string(c);
-  if (clump.first_sphere != spheres) throw InputError(where, "its spheres do not follow the others");
+  if (clump.first_sphere != spheres)
+    throw InputError(where, "its spheres do not follow the others");
   if (clump.spheres == 0) throw InputError(where, "it has no spheres");
   if (!(clump.volume > 0) || !std::isfinite(clump.volume) || !clump.centre.allFinite())
     throw InputError(where, "its volume or centre is not sound");

@@ -53,7 +53,7 @@ void check_orientation(const BinaryReader& in, const Orientation& q) {
 }
 
 GrainsBoundary read_boundary(const BinaryReader& in, const char* name, const GrainsModel& model,
-                       std::int64_t flags) {
+                             std::int64_t flags) {
   const std::vector<double> values = in.get<double>(name, numbers_of_boundary);
   GrainsBoundary b;
   NumberSource source{values};
@@ -114,7 +114,10 @@ std::vector<PairHistory> read_histories(const BinaryReader& in, const GrainsMode
   const std::size_t grains = model.grains.size(), spheres = model.spheres.offsets.size();
   for (std::size_t p = 0; p < n; ++p) {
     PairHistory& h = past[p];
-    h.key = {keys[4 * p], keys[4 * p + 1], {shifts[2 * p], shifts[2 * p + 1]}, keys[4 * p + 2],
+    h.key = {keys[4 * p],
+             keys[4 * p + 1],
+             {shifts[2 * p], shifts[2 * p + 1]},
+             keys[4 * p + 2],
              keys[4 * p + 3]};
     for (int i = 0; i < 3; ++i) h.shear[i] = shear[3 * p + std::size_t(i)];
     h.bonded = bonded[p] == 1;
@@ -123,8 +126,7 @@ std::vector<PairHistory> read_histories(const BinaryReader& in, const GrainsMode
     const bool sound =
         bonded[p] <= 1 && h.shear.allFinite() && h.key.a < spheres && h.key.first < grains &&
         model.spheres.grain[h.key.a] == h.key.first && h.key.second < grains + partners &&
-        (!of_grain ||
-         (h.key.b < spheres && model.spheres.grain[h.key.b] == h.key.second)) &&
+        (!of_grain || (h.key.b < spheres && model.spheres.grain[h.key.b] == h.key.second)) &&
         (of_grain ? model.periodic() || (h.key.shift[0] == 0 && h.key.shift[1] == 0)
                   : h.key.shift[0] == 0 && h.key.shift[1] == 0) &&
         (!h.bonded || h.key.second < grains + std::size_t(Partner::west)) &&
@@ -165,18 +167,20 @@ void GrainsSolver::save(BinaryWriter& out) const {
   out.add("boundary/now", numbers_of(state_.boundary));
   out.add("boundary/listed", numbers_of(state_.listed_boundary));
   const LoadingProgress& l = state_.loading;
-  std::vector<double> clock{state_.time,  state_.dt,    state_.counters.smallest_dt,
+  std::vector<double> clock{state_.time,    state_.dt,  state_.counters.smallest_dt,
                             l.displacement, l.duration, l.peak_kinetic};
   GrainsEnergy::for_each_sum(state_.energy, [&](double sum) { clock.push_back(sum); });
   out.add("clock", std::move(clock));
-  const auto flags = [](const GrainsBoundary& b) { return std::int64_t(b.has_top) + 2 * b.has_cone; };
+  const auto flags = [](const GrainsBoundary& b) {
+    return std::int64_t(b.has_top) + 2 * b.has_cone;
+  };
   const StepCounters& c = state_.counters;
   out.add("counters",
-          std::vector<std::int64_t>{
-              std::int64_t(size()), c.steps, c.sorts, c.particle_updates, state_.bonds,
-              state_.broken_in_tension, state_.broken_in_shear, std::int64_t(state_.first_id),
-              std::int64_t(state_.next_id), std::int64_t(l.stage), flags(state_.boundary),
-              flags(state_.listed_boundary), state_.boundary.top_contacts});
+          std::vector<std::int64_t>{std::int64_t(size()), c.steps, c.sorts, c.particle_updates,
+                                    state_.bonds, state_.broken_in_tension, state_.broken_in_shear,
+                                    std::int64_t(state_.first_id), std::int64_t(state_.next_id),
+                                    std::int64_t(l.stage), flags(state_.boundary),
+                                    flags(state_.listed_boundary), state_.boundary.top_contacts});
 }
 
 void GrainsSolver::load(const BinaryReader& in) {

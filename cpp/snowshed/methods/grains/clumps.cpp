@@ -60,12 +60,12 @@ void for_each_bond(const LabelImage& image, const Visit& visit) {
     const std::int32_t label = image.labels[other];
     if (label != 0 && label != image.labels[voxel]) visit(voxel, other);
   };
-  for_each_ice(image, [&, ny = ny, nz = nz](std::size_t voxel, std::size_t i, std::size_t j,
-                                            std::size_t k) {
-    if (i + 1 < row) meet(voxel, voxel + 1);
-    if (j + 1 < ny) meet(voxel, voxel + row);
-    if (k + 1 < nz) meet(voxel, voxel + layer);
-  });
+  for_each_ice(
+      image, [&, ny = ny, nz = nz](std::size_t voxel, std::size_t i, std::size_t j, std::size_t k) {
+        if (i + 1 < row) meet(voxel, voxel + 1);
+        if (j + 1 < ny) meet(voxel, voxel + row);
+        if (k + 1 < nz) meet(voxel, voxel + layer);
+      });
 }
 
 /// Which clump each label is: labels in rising order.
@@ -116,8 +116,8 @@ void weigh(const LabelImage& image, ClumpOfLabel& clump_of, std::vector<Clump>& 
   for_each_ice(image, [&](std::size_t voxel, std::size_t i, std::size_t j, std::size_t k) {
     Clump& c = clumps[clump_of(image.labels[voxel])];
     const Vec3 d = voxel_centre(image, i, j, k) - c.centre;
-    c.inertia += volume * ((d.squaredNorm() + side * side / 6) * Mat3::Identity() -
-                           d * d.transpose());
+    c.inertia +=
+        volume * ((d.squaredNorm() + side * side / 6) * Mat3::Identity() - d * d.transpose());
   });
 }
 
@@ -142,8 +142,8 @@ GrainSample make_sample(const LabelImage& image) {
   if (clump_of.size() == 0) throw InputError("labels", "no grain: all voxels are air");
   GrainSample sample;
   sample.radius = 0.5 * image.voxel_size;
-  sample.box = image.voxel_size *
-               Vec3(double(image.size[0]), double(image.size[1]), double(image.size[2]));
+  sample.box =
+      image.voxel_size * Vec3(double(image.size[0]), double(image.size[1]), double(image.size[2]));
   sample.clumps.resize(clump_of.size());
   weigh(image, clump_of, sample.clumps);
 

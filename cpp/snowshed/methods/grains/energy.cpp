@@ -6,11 +6,11 @@
 namespace snowshed {
 
 NamedEnergies named_energies(const GrainsEnergy& e) {
-  return {{"kinetic_j", e.kinetic},           {"potential_j", e.potential},
-          {"elastic_normal_j", e.normal},     {"elastic_shear_j", e.shear},
-          {"friction_j", e.friction},         {"damping_j", e.damping},
-          {"broken_bonds_j", e.broken},       {"boundary_work_j", e.boundary},
-          {"added_j", e.added},               {"residual_j", e.residual()}};
+  return {{"kinetic_j", e.kinetic},       {"potential_j", e.potential},
+          {"elastic_normal_j", e.normal}, {"elastic_shear_j", e.shear},
+          {"friction_j", e.friction},     {"damping_j", e.damping},
+          {"broken_bonds_j", e.broken},   {"boundary_work_j", e.boundary},
+          {"added_j", e.added},           {"residual_j", e.residual()}};
 }
 
 double kinetic_energy(const GrainsModel& model, const GrainsState& state) {

@@ -11,13 +11,13 @@ struct GrainsState;
 /// The energy of grains, J. The first four are the present store; the others are sums over all
 /// steps. The balance closes when `residual` is small beside the work.
 struct GrainsEnergy {
-  double kinetic = 0;               // with the scaled masses
-  double potential = 0;             // of the weight
-  double normal = 0, shear = 0;     // elastic
+  double kinetic = 0;            // with the scaled masses
+  double potential = 0;          // of the weight
+  double normal = 0, shear = 0;  // elastic
   double friction = 0, damping = 0;
-  double broken = 0;                // that bonds held as they broke
-  double boundary = 0;              // work of plates, sides and the cone on the grains
-  double added = 0;                 // brought by grains that were added, or taken with the top plate
+  double broken = 0;    // that bonds held as they broke
+  double boundary = 0;  // work of plates, sides and the cone on the grains
+  double added = 0;     // brought by grains that were added, or taken with the top plate
 
   double stored() const { return kinetic + potential + normal + shear; }
   double spent() const { return friction + damping + broken; }

@@ -89,8 +89,8 @@ void surface_forces(const GrainsModel& model, GrainsState& state, GrainsWork& wo
   PairList& list = state.pairs;
   for (std::size_t p = g.begin; p < g.end; ++p) {
     if (!list.is_pair(p)) continue;
-    const PairGeometry pair = pair_geometry(model, state.boundary, list, g, p, body.position,
-                                            rotation, nullptr);
+    const PairGeometry pair =
+        pair_geometry(model, state.boundary, list, g, p, body.position, rotation, nullptr);
     const Vec3 velocity = surface - body.velocity - spin.cross(pair.arm_a);
     const double along = velocity.dot(pair.normal);
     const ContactMotion<double> motion{pair.gap, dt * along, triple(pair.normal),
@@ -115,8 +115,8 @@ void surface_forces(const GrainsModel& model, GrainsState& state, GrainsWork& wo
   work.results[group] = r;
 }
 
-/// Local damping (Cundall 1987): each component of force and torque is lessened by a share of itself
-/// where it speeds the grain up, and raised where it slows it down.
+/// Local damping (Cundall 1987): each component of force and torque is lessened by a share of
+/// itself where it speeds the grain up, and raised where it slows it down.
 Vec3 damping_of(double share, const Vec3& force, const Vec3& velocity) {
   Vec3 damping;
   for (int i = 0; i < 3; ++i) {
@@ -185,8 +185,8 @@ void evaluate_forces(const GrainsModel& model, GrainsState& state, GrainsWork& w
   parallel_pieces(std::ptrdiff_t(grains), model.threads, bodies_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::ptrdiff_t i = begin; i < end; ++i)
-                      work.frames[std::size_t(i)] =
-                          frame_of(state.bodies[std::size_t(i)], model.grains[std::size_t(i)].inertia);
+                      work.frames[std::size_t(i)] = frame_of(state.bodies[std::size_t(i)],
+                                                             model.grains[std::size_t(i)].inertia);
                   });
   for (int plate = 0; plate < 2; ++plate)
     work.frames[grains + std::size_t(plate)] = frame_of_plate(state.boundary, plate);

@@ -27,9 +27,9 @@ struct PairGroup {
 
 /// What the pairs of a group do to the two bodies.
 struct GroupForce {
-  double force[3];                             // N, on the first
+  double force[3];                                 // N, on the first
   double torque_on_first[3], torque_on_second[3];  // N m, about their centres
-  double heat, broken_energy;                  // J
+  double heat, broken_energy;                      // J
   std::int32_t touching, tension_breaks, shear_breaks;
 };
 

@@ -10,8 +10,10 @@ namespace {
 
 PairSearch search_of(const GrainsModel& model) {
   const std::size_t spheres = model.spheres.offsets.size();
-  return {model.spheres,    std::uint32_t(model.grains.size()), model.radius,
-          skin_per_radius * model.radius, model.periodic(), model.cone, 64 * spheres + 256};
+  return {model.spheres,     std::uint32_t(model.grains.size()),
+          model.radius,      skin_per_radius * model.radius,
+          model.periodic(),  model.cone,
+          64 * spheres + 256};
 }
 
 /// Whether a pair that touches at the beginning is ice there that the image cuts apart.
@@ -49,8 +51,8 @@ std::vector<PairHistory> initial_bonds(const GrainsModel& model,
   for (const BondedPair& bond : model.bonds) {
     std::uint32_t a = bond.first, b = bond.second;
     if (model.spheres.grain[a] > model.spheres.grain[b]) std::swap(a, b);
-    bonds.push_back({{model.spheres.grain[a], model.spheres.grain[b], {0, 0}, a, b},
-                     Vec3::Zero(), true, true});
+    bonds.push_back(
+        {{model.spheres.grain[a], model.spheres.grain[b], {0, 0}, a, b}, Vec3::Zero(), true, true});
   }
   if (model.periodic() || model.settings.bonded_plates) {
     const PairSearch search = search_of(model);
@@ -65,11 +67,10 @@ std::vector<PairHistory> initial_bonds(const GrainsModel& model,
   }
   std::sort(bonds.begin(), bonds.end(),
             [](const PairHistory& x, const PairHistory& y) { return x.key < y.key; });
-  bonds.erase(std::unique(bonds.begin(), bonds.end(),
-                          [](const PairHistory& x, const PairHistory& y) {
-                            return x.key == y.key;
-                          }),
-              bonds.end());
+  bonds.erase(
+      std::unique(bonds.begin(), bonds.end(),
+                  [](const PairHistory& x, const PairHistory& y) { return x.key == y.key; }),
+      bonds.end());
   return bonds;
 }
 

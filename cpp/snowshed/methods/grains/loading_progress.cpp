@@ -5,13 +5,16 @@
 namespace snowshed {
 namespace {
 
-constexpr double servo_steps = 50;
+/// The plate then acts as a dashpot, which takes energy and cannot make the snow swing; explicit
+/// steps of it are stable from one on.
+constexpr double servo_steps = 5;
 
 /// Upward, so that the force on the top plate comes near to what the stage asks for.
 double servo_speed(const LoadingStage& stage, const LoadedSample& sample, const GrainsBoundary& b,
                    double dt) {
   const double excess = b.plate_force[1].z() - stage.stress * sample.box.x() * sample.box.y();
-  const double stiffness = sample.contact_stiffness * double(std::max<std::int64_t>(1, b.top_contacts));
+  const double stiffness =
+      sample.contact_stiffness * double(std::max<std::int64_t>(1, b.top_contacts));
   return std::clamp(excess / (stiffness * servo_steps * dt), -stage.speed, stage.speed);
 }
 
@@ -25,8 +28,7 @@ bool has_ended(const LoadingStage& stage, const LoadedSample& sample, const Load
     case LoadingKind::unload:
       return gauge.top_stress <= stage.stress || progress.displacement >= end;
     case LoadingKind::compress:
-      return (stage.stress > 0 && gauge.top_stress >= stage.stress) ||
-             progress.displacement >= end;
+      return (stage.stress > 0 && gauge.top_stress >= stage.stress) || progress.displacement >= end;
     case LoadingKind::isotropic:
       return (stage.stress > 0 && gauge.mean_stress >= stage.stress) ||
              progress.displacement >= end;
@@ -90,7 +92,8 @@ void set_velocities(const std::vector<LoadingStage>& stages, const LoadedSample&
 }
 
 void count_step(const std::vector<LoadingStage>& stages, const LoadedSample& sample,
-                const LoadingGauge& gauge, double dt, LoadingProgress& progress, GrainsBoundary& b) {
+                const LoadingGauge& gauge, double dt, LoadingProgress& progress,
+                GrainsBoundary& b) {
   if (progress.stage >= int(stages.size())) return;
   const LoadingStage& stage = stages[std::size_t(progress.stage)];
   if (stage.kind != LoadingKind::hold) progress.displacement += dt * stage.speed;

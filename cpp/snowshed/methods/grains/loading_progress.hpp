@@ -23,9 +23,9 @@ struct LoadingGauge {
 
 /// What the loading knows of the sample.
 struct LoadedSample {
-  Vec3 box;                   // m, at the beginning
-  double radius;              // m, of the spheres
-  double contact_stiffness;   // N/m
+  Vec3 box;                  // m, at the beginning
+  double radius;             // m, of the spheres
+  double contact_stiffness;  // N/m
 };
 
 /// A stage of holding ends when the kinetic energy has fallen to this share of its peak there.
@@ -39,8 +39,8 @@ void begin_stage(const std::vector<LoadingStage>&, const LoadedSample&, const Lo
                  GrainsBoundary&);
 
 /// Sets the velocities for a step of this length. A normal stress in shear is kept by the top
-/// plate's speed: the error of the force over the stiffness of the plate's contacts is mended within
-/// fifty steps, at the stage's speed at most.
+/// plate's speed: the error of the force over the stiffness of the plate's contacts is mended
+/// within five steps, at the stage's speed at most.
 void set_velocities(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
                     double dt, GrainsBoundary&);
 

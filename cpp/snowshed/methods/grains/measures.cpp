@@ -1,6 +1,5 @@
 // What a loading test measures, and the contacts between grains.
 #include <algorithm>
-#include <set>
 
 #include "snowshed/methods/grains/contacts.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
@@ -13,8 +12,9 @@ LoadingMeasures GrainsSolver::measures() const {
   LoadingMeasures m;
   m.stage = state_.loading.stage;
   m.strain = state_.loading.displacement / height;
-  const double now = b.plate[1].z() - b.plate[0].z() - 2 * model_.radius;
-  m.axial_strain = 1 - now / height;
+  const double r = model_.radius;
+  const double shortened = (height + r - b.plate[1].z()) + (b.plate[0].z() + r);
+  m.axial_strain = shortened / height;
   m.shear_strain = (b.plate[1].x() - b.plate[0].x()) / height;
   m.top_stress = b.plate_force[1].z() / model_.area();
   m.bottom_stress = -b.plate_force[0].z() / model_.area();
@@ -25,7 +25,7 @@ LoadingMeasures GrainsSolver::measures() const {
   m.bonds = state_.bonds;
   m.broken_in_tension = state_.broken_in_tension;
   m.broken_in_shear = state_.broken_in_shear;
-  m.solid_fraction = model_.solid_volume / (b.period(0) * b.period(1) * now);
+  m.solid_fraction = model_.solid_volume / (b.period(0) * b.period(1) * (height - shortened));
   if (size() == 0) return m;
   for_each_touching(model_, state_,
                     [&](const PairGroup&, std::size_t, const PairGeometry&) { ++m.contacts; });
@@ -37,21 +37,21 @@ std::vector<GrainContact> GrainsSolver::grain_contacts() const {
   std::vector<GrainContact> contacts;
   std::vector<double> pairs;
   const PairGroup* last = nullptr;
-  for_each_touching(model_, state_, [&](const PairGroup& g, std::size_t p,
-                                        const PairGeometry& pair) {
-    if (g.second >= size()) return;
-    if (&g != last) {
-      contacts.push_back({g.first, g.second, Vec3::Zero(), Vec3::Zero(), false});
-      pairs.push_back(0);
-      last = &g;
-    }
-    GrainContact& contact = contacts.back();
-    contact.point += state_.bodies[g.first].position + pair.arm_a;
-    contact.force += model_.law.normal_stiffness * pair.gap * pair.normal +
-                     model_.law.shear_stiffness * state_.pairs.shear(p);
-    contact.bonded = contact.bonded || state_.pairs.bonded[p] != 0;
-    ++pairs.back();
-  });
+  for_each_touching(model_, state_,
+                    [&](const PairGroup& g, std::size_t p, const PairGeometry& pair) {
+                      if (g.second >= size()) return;
+                      if (&g != last) {
+                        contacts.push_back({g.first, g.second, Vec3::Zero(), Vec3::Zero(), false});
+                        pairs.push_back(0);
+                        last = &g;
+                      }
+                      GrainContact& contact = contacts.back();
+                      contact.point += state_.bodies[g.first].position + pair.arm_a;
+                      contact.force += model_.law.normal_stiffness * pair.gap * pair.normal +
+                                       model_.law.shear_stiffness * state_.pairs.shear(p);
+                      contact.bonded = contact.bonded || state_.pairs.bonded[p] != 0;
+                      ++pairs.back();
+                    });
   for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].point /= pairs[i];
   return contacts;
 }

@@ -128,8 +128,8 @@ PairList make_list(const PairSearch& search, const std::vector<PairKey>& found,
   entries = (entries + pairs_at_once - 1) / pairs_at_once * pairs_at_once;
   PairList list;
   list.groups.reserve(groups);
-  for (auto* array : {&list.ax, &list.ay, &list.az, &list.bx, &list.by, &list.bz, &list.ux,
-                      &list.uy, &list.uz})
+  for (auto* array :
+       {&list.ax, &list.ay, &list.az, &list.bx, &list.by, &list.bz, &list.ux, &list.uy, &list.uz})
     array->reserve(entries);
   list.bonded.reserve(entries);
   list.a.reserve(entries);

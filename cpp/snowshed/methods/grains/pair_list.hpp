@@ -75,8 +75,8 @@ struct PairSearch {
   std::size_t most_pairs;  // that memory is taken for
 };
 
-/// The gap below which pairs are listed, as a share of the spheres' radius: twice as far as a sphere
-/// may move before the list is made anew.
+/// The gap below which pairs are listed, as a share of the spheres' radius: twice as far as a
+/// sphere may move before the list is made anew.
 inline constexpr double skin_per_radius = 0.4;
 
 /// Where the centre of a plate's sphere lies from the plate's origin, m.
@@ -84,11 +84,11 @@ Vec3 plate_sphere(std::uint32_t number, double radius);
 
 /// All pairs nearer than the skin, ordered. Throws SimulationError where they are more than
 /// `most_pairs`, or the period too short.
-std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&, const GrainsBoundary&);
+std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&,
+                                const GrainsBoundary&);
 
 /// A list of these pairs, and of those to be kept, however far apart.
-PairList make_list(const PairSearch&, const std::vector<PairKey>&,
-                   const std::vector<PairHistory>&);
+PairList make_list(const PairSearch&, const std::vector<PairKey>&, const std::vector<PairHistory>&);
 
 /// For each grain, in the order of the list: twice the group, and one more where it is second.
 struct BodyGroups {

@@ -70,14 +70,13 @@ class SphereCells {
     begin_.assign(number(0, 0, count_[2]) + 1, 0);
     std::vector<std::uint32_t> cell(places.size());
     for (std::size_t s = 0; s < places.size(); ++s) {
-      cell[s] = std::uint32_t(
-          number(place(places[s], 0), place(places[s], 1), place(places[s], 2)));
+      cell[s] =
+          std::uint32_t(number(place(places[s], 0), place(places[s], 1), place(places[s], 2)));
       ++begin_[cell[s] + 1];
     }
     for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
     spheres_.resize(places.size());
-    for (std::size_t s = 0; s < places.size(); ++s)
-      spheres_[begin_[cell[s]]++] = std::uint32_t(s);
+    for (std::size_t s = 0; s < places.size(); ++s) spheres_[begin_[cell[s]]++] = std::uint32_t(s);
     for (std::size_t c = begin_.size() - 1; c > 0; --c) begin_[c] = begin_[c - 1];
     begin_[0] = 0;
   }
@@ -124,7 +123,8 @@ class Finder {
           const std::uint32_t begin = cells.begin(i, j, k), end = cells.end(i, j, k);
           if (begin == end) continue;
           for (std::uint32_t e = begin; e < end; ++e)
-            for (std::uint32_t f = e + 1; f < end; ++f) meet(cells, cells.sphere(e), cells.sphere(f), 0, 0);
+            for (std::uint32_t f = e + 1; f < end; ++f)
+              meet(cells, cells.sphere(e), cells.sphere(f), 0, 0);
           find_ahead(cells, i, j, k);
         }
   }
@@ -167,8 +167,7 @@ class Finder {
       way += Vec3(shift[0] * b_.period(0), shift[1] * b_.period(1), 0);
     }
     if (way.squaredNorm() >= reach_ * reach_) return;
-    const bool forward = of_a != of_b ? of_a < of_b
-                                      : shift[0] != 0 ? shift[0] > 0 : shift[1] > 0;
+    const bool forward = of_a != of_b ? of_a < of_b : shift[0] != 0 ? shift[0] > 0 : shift[1] > 0;
     if (forward)
       push({of_a, of_b, {shift[0], shift[1]}, a, b});
     else
@@ -188,7 +187,9 @@ class Finder {
         if ((plate_sphere(number, s_.radius) - from).squaredNorm() < reach_ * reach_)
           push({s_.spheres.grain[a],
                 partner(plate == 0 ? Partner::bottom_plate : Partner::top_plate),
-                {0, 0}, a, number});
+                {0, 0},
+                a,
+                number});
       }
   }
 

@@ -59,8 +59,7 @@ double boundary_work(const GrainsBoundary& b, double half_step) {
 
 }  // namespace
 
-GrainsSolver::GrainsSolver(GrainsOptions o)
-    : model_(std::move(o)), state_(empty_state(model_)) {}
+GrainsSolver::GrainsSolver(GrainsOptions o) : model_(std::move(o)), state_(empty_state(model_)) {}
 
 void GrainsSolver::require_sound() const {
   if (broken_) throw SimulationError("the grains have failed; load a checkpoint to go on");
@@ -172,7 +171,8 @@ void GrainsSolver::add_velocity(const std::vector<Vec3>& changes) {
 }
 
 void GrainsSolver::settle(const std::vector<double>&, const std::vector<double>&) {
-  throw InputError("settling", "grains move as their forces say; they do not settle between events");
+  throw InputError("settling",
+                   "grains move as their forces say; they do not settle between events");
 }
 
 /// Half a step's forces, then a step's motion, into the workspace.
@@ -219,8 +219,7 @@ bool GrainsSolver::must_relist(const GrainsBoundary& moved) const {
 
 /// All or nothing: the list for the poses in the workspace.
 void GrainsSolver::relist(const GrainsBoundary& moved) {
-  Listing listing =
-      listing_of(model_, poses_of(work_.next), moved, state_.pairs.histories());
+  Listing listing = listing_of(model_, poses_of(work_.next), moved, state_.pairs.histories());
   double gone = 0;  // J, with a plate that is taken away
   if (model_.keeps_energy && moved.has_top != state_.listed_boundary.has_top) {
     GrainsEnergy e;

@@ -20,8 +20,8 @@ namespace snowshed {
 struct GrainBody {
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();  // m, m/s, of the centre of mass
   Orientation orientation{1, 0, 0, 0};
-  Vec3 spin_momentum = Vec3::Zero();                    // kg m2/s, about the centre, in space
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();     // N, N m; damped
+  Vec3 spin_momentum = Vec3::Zero();                         // kg m2/s, about the centre, in space
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();          // N, N m; damped
   Vec3 damping = Vec3::Zero(), spin_damping = Vec3::Zero();  // N, N m; part of the above
 };
 
@@ -73,12 +73,12 @@ struct GrainsState {
 };
 
 struct GrainsWork {
-  std::vector<GrainBody> next;       // where grains will be at the end of a step
-  std::vector<BodyFrame> frames;     // of grains and plates
-  std::vector<GroupForce> results;   // of the groups of pairs
-  BodyGroups groups_of;              // of each grain
-  double longest_step = 0;           // s, for the pairs that are listed
-  std::vector<double> damped;        // J, of each grain in a step
+  std::vector<GrainBody> next;      // where grains will be at the end of a step
+  std::vector<BodyFrame> frames;    // of grains and plates
+  std::vector<GroupForce> results;  // of the groups of pairs
+  BodyGroups groups_of;             // of each grain
+  double longest_step = 0;          // s, for the pairs that are listed
+  std::vector<double> damped;       // J, of each grain in a step
 };
 
 }  // namespace snowshed

@@ -58,8 +58,7 @@ double choose_step(const GrainsModel& model, const GrainsState& state, double lo
     const double spin = body.spin_momentum.norm() / grain.inertia.minCoeff();
     fastest = std::max(fastest, body.velocity.norm() + spin * (grain.reach + model.radius));
   }
-  const double dt =
-      fastest > 0 ? std::min(longest, 0.2 * model.radius / fastest) : longest;
+  const double dt = fastest > 0 ? std::min(longest, 0.2 * model.radius / fastest) : longest;
   if (!(dt > 1e-18))
     throw SimulationError("the time step has fallen to " + std::to_string(dt) +
                           " s: a grain moves at " + std::to_string(fastest) + " m/s");

@@ -86,10 +86,9 @@ SNOWSHED_INLINE void group_forces(const GrainsView& s, std::size_t group) {
     const QuadTriple arm_b = arm_a - apart;
     const QuadTriple velocity = parting + cross(spin_b, arm_b) - cross(spin_a, arm_a);
     const Quad along = dot(velocity, normal);
-    const ContactMotion<Quad> motion{
-        Quad(distance - s.diameter), Quad(dt * along), normal,
-        scaled(dt, velocity - scaled(along, normal)),
-        Quad(0.5 * dt * dot(normal, spin_a + spin_b))};
+    const ContactMotion<Quad> motion{Quad(distance - s.diameter), Quad(dt * along), normal,
+                                     scaled(dt, velocity - scaled(along, normal)),
+                                     Quad(0.5 * dt * dot(normal, spin_a + spin_b))};
     const ContactForce<Quad, QuadMask> f = law(motion, u, bonded);
 
     const QuadTriple on_a = f.drag - scaled(f.push, normal);
