@@ -24,6 +24,9 @@ py::dict plan_dict(const std::string& text, const std::string& base_dir) {
   d["particles_per_event"] =
       std::int64_t(report.cost.particles.empty() ? 0.0 : report.cost.particles.front());
   d["particles_total"] = std::int64_t(report.cost.total_particles);
+  py::dict parts;
+  for (const auto& [name, count] : report.cost.parts) parts[name.c_str()] = std::int64_t(count);
+  d["parts"] = parts;
   d["memory_bytes"] = std::int64_t(report.cost.bytes);
   d["time_step_s"] = report.cost.time_step;
   d["steps_per_event"] = std::int64_t(report.cost.steps / events);

@@ -1,9 +1,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "array_copies.hpp"
 #include "bindings.hpp"
-#include "field_arrays.hpp"
-#include "simulation_handle.hpp"
+#include "simulation_class.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/readers/ascii_grid.hpp"
 #include "snowshed/methods/slide/solver.hpp"
@@ -17,22 +17,6 @@ namespace py = pybind11;
 
 namespace snowshed {
 namespace {
-
-py::array_t<double> rows(const std::vector<Vec3>& vectors) {
-  py::array_t<double> a({py::ssize_t(vectors.size()), py::ssize_t(3)});
-  auto out = a.mutable_unchecked<2>();
-  for (py::ssize_t i = 0; i < a.shape(0); ++i)
-    for (int k = 0; k < 3; ++k) out(i, k) = vectors[std::size_t(i)][k];
-  return a;
-}
-
-template <class To, class From>
-py::array_t<To> column(const std::vector<From>& values) {
-  py::array_t<To> a(py::ssize_t(values.size()));
-  auto out = a.template mutable_unchecked<1>();
-  for (py::ssize_t i = 0; i < a.shape(0); ++i) out(i) = To(values[std::size_t(i)]);
-  return a;
-}
 
 py::object vector(const Vec3& v) { return py::make_tuple(v[0], v[1], v[2]); }
 
@@ -222,50 +206,6 @@ void add_snow(Simulation& sim, const py::array_t<double>& positions, double mass
   sim.add_snow(std::move(batch));
 }
 
-using Handle = SimulationHandle;
-
-/// The class as Python sees it; every call goes through the guard.
-class SimulationClass {
- public:
-  explicit SimulationClass(py::module_& m) : class_(m, "Simulation") {}
-
-  py::class_<Handle>& operator*() { return class_; }
-
-  /// A method that only reads: f(simulation, arguments...).
-  template <class F, class... Extra>
-  void reads(const char* name, F f, const Extra&... extra) {
-    class_.def(name, guarded(name, Handle::Access::read, +f), extra...);
-  }
-  template <class F, class... Extra>
-  void changes(const char* name, F f, const Extra&... extra) {
-    class_.def(name, guarded(name, Handle::Access::change, +f), extra...);
-  }
-  template <class F>
-  void property(const char* name, F f) {
-    class_.def_property_readonly(name, guarded(name, Handle::Access::read, +f));
-  }
-  /// A field by the name of its own method, ordered by id.
-  void column(const char* name, const char* field) {
-    class_.def(name, [name, field](Handle& handle) {
-      return handle.use(name, Handle::Access::read, [field](const auto& simulation) {
-        return array_by_id(simulation->solver(), field);
-      });
-    });
-  }
-
- private:
-  template <class Result, class Sim, class... Arguments>
-  static auto guarded(const char* name, Handle::Access access, Result (*f)(Sim&, Arguments...)) {
-    return [name, access, f](Handle& handle, Arguments... arguments) -> Result {
-      return handle.use(name, access, [&](const auto& simulation) -> Result {
-        return f(*simulation, std::forward<Arguments>(arguments)...);
-      });
-    };
-  }
-
-  py::class_<Handle> class_;
-};
-
 void bind_run(SimulationClass& c) {
   using namespace py::literals;
   c.changes("begin_event", [](Simulation& s) { return reseeding_dict(s.begin_event()); });
@@ -300,7 +240,9 @@ void bind_files(SimulationClass& c) {
   using namespace py::literals;
   (*c).def_static(
       "load",
-      [](const std::string& path) { return std::make_unique<Handle>(Simulation::load(path)); },
+      [](const std::string& path) {
+        return std::make_unique<SimulationHandle>(Simulation::load(path));
+      },
       "path"_a);
   c.reads("save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a);
   c.changes(
@@ -383,15 +325,16 @@ void bind_simulation(py::module_& m) {
   m.def("read_ascii_grid", &ascii_grid, "path"_a,
         "(heights, west, south, cell) of an ESRI ASCII grid, the southernmost row first.");
   SimulationClass c(m);
-  (*c).def(
-      py::init([](const std::string& json, const std::string& base_dir) {
-        return std::make_unique<Handle>(std::make_shared<Simulation>(parse_scene(json), base_dir));
-      }),
-      "scene_json"_a, "base_dir"_a = ".");
+  (*c).def(py::init([](const std::string& json, const std::string& base_dir) {
+             return std::make_unique<SimulationHandle>(
+                 std::make_shared<Simulation>(parse_scene(json), base_dir));
+           }),
+           "scene_json"_a, "base_dir"_a = ".");
   bind_run(c);
   bind_files(c);
   bind_fields(c);
   bind_facts(c);
+  bind_grains(c);
 }
 
 }  // namespace snowshed

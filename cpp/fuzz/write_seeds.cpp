@@ -69,6 +69,14 @@ const char* const slide_scene = R"({"snowshed": 2, "method": "slide", "dimension
   "numerics": {"cell": 2, "time_step": 0.01, "friction_law": "coulomb", "bonds": true},
   "events": {"max_time": 10}})";
 
+/// A sample that is loaded, with everything that grains take.
+const char* const grains_scene = R"({"snowshed": 2, "method": "grains", "dimension": 3,
+  "sample": {"file": "labels.npy", "voxel_size": 5e-5},
+  "loading": [{"kind": "compress", "speed": 0.02, "strain": 0.1, "stress": 1e4},
+              {"kind": "unload", "stress": 10}, {"kind": "hold"}, {"kind": "penetrate"}],
+  "cone": {"radius": 0.002, "half_angle": 30},
+  "numerics": {"elastic_modulus": 1e8, "sides": "periodic", "bonded_plates": true}})";
+
 std::string rich_scene_in(int dimension) {
   const std::string scene =
       std::regex_replace(rich_scene, std::regex("%D"), std::to_string(dimension));
@@ -81,6 +89,7 @@ void write_scenes(const fs::path& folder) {
   for (const int dimension : {2, 3})
     write(folder / ("rich-" + std::to_string(dimension) + "d.json"),
           write_scene(parse_scene(rich_scene_in(dimension))));
+  write(folder / "grains.json", write_scene(parse_scene(grains_scene)));
   write(folder / "slide.json", write_scene(parse_scene(slide_scene)));
   write(folder / "least.json", R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere",)"
                                R"( "center": [0, 0, 1], "radius": 1e-1}}]})");

@@ -22,6 +22,7 @@ from snowshed._core import InputError, SimulationError
 from snowshed._core import version as __version__
 from snowshed.analysis.dimension_ratio import dimension_ratio
 from snowshed.io.renamed import renamed as _renamed
+from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
 from snowshed.methods.slide import SlideSettings
 from snowshed.run.events import run_events
@@ -46,6 +47,7 @@ from snowshed.scene.components import (
     Snow,
     Terrain,
 )
+from snowshed.scene.loading import Cone, LoadingStage, Sample
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.shape import Shape
 from snowshed.snow.stack.measure import Extent, StackMeasure, level, measure_stack
@@ -53,13 +55,16 @@ from snowshed.snow.stack.measure import Extent, StackMeasure, level, measure_sta
 __all__ = [
     "Area",
     "Body",
+    "Cone",
     "Domain",
     "Events",
     "Extent",
+    "GrainsSettings",
     "Ground",
     "InputError",
     "Interrupted",
     "Layer",
+    "LoadingStage",
     "Motion",
     "MpmSettings",
     "Obstacle",
@@ -68,6 +73,7 @@ __all__ = [
     "Progress",
     "ResolvedScene",
     "Results",
+    "Sample",
     "Scene",
     "Seeding",
     "Shape",

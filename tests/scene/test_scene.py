@@ -46,7 +46,7 @@ def check_mirror(record: type[Record], node: dict, seen: set) -> None:
 def test_fields_are_the_properties_of_the_cores_schema():
     seen: set = set()
     check_mirror(Scene, SCHEMA, seen)
-    assert len(seen) == 19  # every record there is, but for the settings of the other methods
+    assert len(seen) == 22  # every record there is, but for the settings of the other methods
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -112,7 +112,7 @@ def test_the_method_decides_what_the_settings_are(tiny):
     assert tiny.set("method", "mpm").resolve() == Scene.from_data(tiny.to_data()).resolve()
     assert "method" not in tiny.resolve().data
     with pytest.raises(
-        InputError, match=r"^/method: 'mps' is none of mpm, slide; did you mean mpm"
+        InputError, match=r"^/method: 'mps' is none of mpm, slide, grains; did you mean mpm"
     ):
         tiny.set("method", "mps")
     with pytest.raises(

@@ -8,9 +8,12 @@ const std::vector<Quantity>& quantities() {
   static const std::vector<Quantity> all{
       {"position", "m", "Position", 3},
       {"velocity", "m/s", "Velocity", 3},
+      {"angular_velocity", "rad/s", "Angular velocity", 3},
       {"mass", "kg", "Mass; in 2D per metre of width"},
       {"density", "kg/m3", "Current density"},
       {"volume_ratio", "1", "Current over initial volume"},
+      {"equivalent_radius", "m", "Radius of the sphere with a grain's volume"},
+      {"coordination", "1", "Number of grains that a grain touches"},
       {"thickness", "m", "Thickness of the snow, normal to the ground"},
       {"pressure", "Pa", "Kirchhoff pressure, positive in compression"},
       {"volumetric_plastic_strain", "1",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/run/cost_estimate.hpp"
@@ -93,9 +94,9 @@ SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
   return snow;
 }
 
-SeededSnow seed_release(const SlideMethod& slide) {
+SeededSnow seeded(std::vector<ParticleBatch> batches) {
   SeededSnow snow;
-  snow.batches = slide.seed();
+  snow.batches = std::move(batches);
   for (const ParticleBatch& batch : snow.batches) snow.mass += batch.total_mass();
   return snow;
 }

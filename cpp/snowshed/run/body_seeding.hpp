@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "snowshed/methods/slide/solver.hpp"
+#include "snowshed/methods/particle_batch.hpp"
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/scene/scene.hpp"
 
@@ -22,8 +22,8 @@ struct SeededSnow {
 SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
                       const PanelRegion& panel, int event, double lift);
 
-/// Seeds the release areas of a slide.
-SeededSnow seed_release(const SlideMethod& slide);
+/// The snow of a method that seeds its own.
+SeededSnow seeded(std::vector<ParticleBatch>);
 
 /// Returns the mass of the slab laid at the start of an event, kg.
 double slab_mass(const Scene& scene, int event);

@@ -1,6 +1,8 @@
 // What a scene will cost, by arithmetic alone: nothing is seeded or simulated.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "snowshed/scene/scene.hpp"
@@ -21,6 +23,7 @@ struct CostEstimate {
   double steps = 0.0;             // all events
   double updates = 0.0;           // of particles that are awake, all events
   double bytes = 0.0;             // peak memory, particles and grid
+  std::vector<std::pair<std::string, double>> parts;  // of which particles consist, if of any
 };
 
 /// `particles`, new in each event, replace the estimate from the volumes, which leaves out snow

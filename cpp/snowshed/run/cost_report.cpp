@@ -36,6 +36,22 @@ void list_features_of(const SlideSettings& slide, const Scene& s, CostReport& re
   feature(s.output.snapshot_interval > 0, "snapshots during the slide");
 }
 
+void list_features_of(const GrainsSettings& grains, const Scene& s, CostReport& report) {
+  const auto feature = [&report](bool used, const std::string& name) {
+    list_feature(report, used, name);
+  };
+  for (const auto& [kind, name] : EnumNames<LoadingKind>::list)
+    feature(std::any_of(s.loading.begin(), s.loading.end(),
+                        [kind = kind](const LoadingStage& stage) { return stage.kind == kind; }),
+            name);
+  feature(grains.sides == GrainSides::periodic, "periodic sides");
+  feature(grains.bonded_plates, "bonded plates");
+  feature(grains.density_scaling > 1, "density scaling");
+  feature(s.gravity > 0, "gravity");
+  feature(s.output.energy, "energy balance");
+  feature(s.output.snapshot_interval > 0, "snapshots during the loading");
+}
+
 void list_features_of(const MpmSettings& mpm, const Scene& s, CostReport& report) {
   const auto feature = [&report](bool used, const std::string& name) {
     list_feature(report, used, name);

@@ -8,6 +8,7 @@
 
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/methods/grains/energy.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/slide/energy.hpp"
 #include "snowshed/scene/enum_names.hpp"
@@ -40,6 +41,16 @@ const json& require(const json& object, const char* key, const std::string& path
   return object[key];
 }
 
+/// The energies of the method that has such, in the order of tables.
+NamedEnergies energies_like(const json& given) {
+  for (const NamedEnergies& own : {named_energies(SlideEnergy{}), named_energies(GrainsEnergy{})})
+    if (given.is_object() && given.size() == own.size() &&
+        std::all_of(own.begin(), own.end(),
+                    [&](const auto& energy) { return given.contains(energy.first); }))
+      return own;
+  return named_energies(EnergyBalance{});
+}
+
 EventFacts event_facts(const json& j, const std::string& path) {
   const auto number = [&](const char* key) {
     return to_number(require(j, key, path), path + "/" + key, "a number");
@@ -54,10 +65,7 @@ EventFacts event_facts(const json& j, const std::string& path) {
   const char* const damping = "damping_rate_per_s";
   if (j.contains(damping) && !j[damping].is_null()) facts.damping_rate = number(damping);
   if (!j.contains("energy")) return facts;
-  const bool of_slide = j["energy"].is_object() && j["energy"].contains("coulomb_j");
-  const NamedEnergies names =  // in the order of tables
-      of_slide ? named_energies(SlideEnergy{}) : named_energies(EnergyBalance{});
-  for (const auto& [name, _] : names)
+  for (const auto& [name, _] : energies_like(j["energy"]))
     facts.energy.emplace_back(name, to_number(require(j["energy"], name.c_str(), path + "/energy"),
                                               path + "/energy/" + name, "a number"));
   return facts;

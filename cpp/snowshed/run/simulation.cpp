@@ -8,8 +8,10 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/timer.hpp"
+#include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/methods/slide/solver.hpp"
-#include "snowshed/run/body_seeding.hpp"
+#include "snowshed/run/grains_cost.hpp"
+#include "snowshed/run/loading_curve.hpp"
 #include "snowshed/run/slide_cost.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/scene/assemble.hpp"
@@ -37,6 +39,16 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
                                 slide().count_seeds());
     check_memory(cost_.bytes);
   }
+  if (scene_.uses<GrainsSettings>()) {
+    check_loading_time(scene_, surroundings_.sample.box.z());
+    const std::unique_ptr<Method> filled = empty_method();  // its first step is not known before
+    filled->add(grains().seed());
+    cost_ = estimate_grains_cost(scene_, surroundings_.sample, *filled);
+    check_memory(cost_.bytes);
+    curve_ = std::make_unique<LoadingCurve>(
+        scene_.loading, surroundings_.sample.box.z(),
+        scene_.output.energy ? grains().energy_table() : NamedEnergies{});
+  }
 }
 
 Simulation::~Simulation() = default;
@@ -52,6 +64,17 @@ const SlideMethod& Simulation::slide() const {
   return static_cast<const SlideMethod&>(*solver_);
 }
 
+const GrainsMethod& Simulation::grains() const {
+  if (!scene_.uses<GrainsSettings>())
+    throw InputError("/method", "is not \"grains\", and loads no sample");
+  return static_cast<const GrainsMethod&>(*solver_);
+}
+
+const LoadingCurve& Simulation::loading_curve() const {
+  grains();  // or throws
+  return *curve_;
+}
+
 int Simulation::threads() const { return threads_to_use(wanted_threads(scene_.numerics)); }
 
 std::optional<Reseeding> Simulation::begin_event() {
@@ -60,9 +83,7 @@ std::optional<Reseeding> Simulation::begin_event() {
   if (event_ > 0 && scene_.events.between == Between::reseed)
     reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_);
   const double lift = lift_of_next_slab(reseeding);
-  SeededSnow snow = scene_.uses<SlideSettings>()
-                        ? seed_release(slide())
-                        : seed_event(scene_, base_dir_, panel_, event_ + 1, lift);
+  SeededSnow snow = seed_next_event(lift);
   change_snow(reseeding, std::move(snow.batches));
   event_mass_ = snow.mass;
   laid_height_ += snow.height_on_panel;
@@ -70,7 +91,20 @@ std::optional<Reseeding> Simulation::begin_event() {
   running_ = true;
   event_start_ = solver_->time();
   rest_.start_event(event_start_);
+  if (curve_) curve_->record(grains());
   return reseeding;
+}
+
+SeededSnow Simulation::seed_next_event(double lift) const {
+  if (scene_.uses<SlideSettings>()) return seeded(slide().seed());
+  if (scene_.uses<GrainsSettings>()) return seeded(grains().seed());
+  return seed_event(scene_, base_dir_, panel_, event_ + 1, lift);
+}
+
+/// Takes a step of the present event.
+void Simulation::advance() {
+  solver_->step();
+  if (curve_) curve_->record(grains());
 }
 
 /// The only change that beginning an event makes to the particles, so that it is all or nothing.
@@ -133,7 +167,7 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
       running_ = false;
       return *end;
     }
-    solver_->step();
+    advance();
     if (!pausing && clock.seconds() >= interval) {
       clock.restart();
       RunReport r = report(rest_.speed());
@@ -162,7 +196,7 @@ bool Simulation::is_at_rest() {
 
 void Simulation::step(int count) {
   if (!running_) throw SimulationError("no event is running; begin_event first");
-  for (int i = 0; i < count; ++i) solver_->step();
+  for (int i = 0; i < count; ++i) advance();
 }
 
 RunReport Simulation::report(double rms_speed) const {
@@ -172,7 +206,9 @@ RunReport Simulation::report(double rms_speed) const {
   r.rms_speed = rms_speed;
   r.steps = solver_->counters().steps;
   r.particles = solver_->size();
-  r.progress = std::min(0.99, r.time / std::max(cost_.event_time, 1e-9));
+  r.progress = curve_ ? loading_progress(scene_.loading, grains().measures())
+                      : r.time / std::max(cost_.event_time, 1e-9);
+  r.progress = std::min(0.99, r.progress);
   return r;
 }
 

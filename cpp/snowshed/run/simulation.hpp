@@ -11,6 +11,7 @@
 
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/obstacle.hpp"
+#include "snowshed/run/body_seeding.hpp"
 #include "snowshed/run/cost_estimate.hpp"
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/run/reseeding.hpp"
@@ -20,6 +21,8 @@
 
 namespace snowshed {
 
+class GrainsMethod;
+class LoadingCurve;
 class SlideMethod;
 class SnapshotSeries;
 
@@ -88,6 +91,9 @@ class Simulation {
   const Method& solver() const { return *solver_; }
   /// The solver as a slide; throws InputError where the scene's method is another.
   const SlideMethod& slide() const;
+  /// The same of grains, and what their loading has measured so far.
+  const GrainsMethod& grains() const;
+  const LoadingCurve& loading_curve() const;
   int event() const { return event_; }
   bool event_running() const { return running_; }
   double event_time() const { return solver_->time() - event_start_; }
@@ -123,7 +129,9 @@ class Simulation {
  private:
   double lift_of_next_slab(const std::optional<Reseeding>&) const;
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
+  SeededSnow seed_next_event(double lift) const;
   void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
+  void advance();
   bool is_at_rest();
   std::optional<RunEnd> event_end();
   std::unique_ptr<Method> empty_method() const;
@@ -141,6 +149,7 @@ class Simulation {
   std::vector<Obstacle> listed_obstacles_;  // those of the scene's list
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
+  std::unique_ptr<LoadingCurve> curve_;  // of grains only
   RestDetector rest_;
   int event_ = 0;
   bool running_ = false;

@@ -3,6 +3,7 @@
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/method.hpp"
+#include "snowshed/run/loading_curve.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -24,6 +25,20 @@ class Fingerprint {
     add(place, std::size(place));
     add(f.heights.data(), f.heights.size());
   }
+  void add(const GrainSample& s) {
+    add(s.box.data(), 3);
+    add(&s.radius, 1);
+    for (const Clump& c : s.clumps) {
+      add(c.centre.data(), 3);
+      add(&c.volume, 1);
+      add(&c.spheres, 1);
+    }
+    for (const Vec3& x : s.spheres) add(x.data(), 3);
+    for (const BondedPair& b : s.bonds) {
+      add(&b.first, 1);
+      add(&b.second, 1);
+    }
+  }
   std::int64_t value() const { return std::int64_t(value_); }
 
  private:
@@ -39,15 +54,30 @@ std::vector<std::int64_t> ground_of(const Surroundings& surroundings) {
   return {terrain.value(), thickness.value()};
 }
 
-void check_ground(const BinaryReader& in, const TerrainSpec& terrain,
-                  const Surroundings& surroundings) {
-  const auto then = in.get<std::int64_t>("ground", 2);
-  const auto now = ground_of(surroundings);
-  for (const int i : {0, 1})
-    if (then[i] != now[i])
-      throw InputError(i == 0 ? terrain.file : terrain.thickness_file,
-                       "has changed since the checkpoint " + in.path().string() +
-                           " was made; bring back the file, or start anew");
+/// Of the file of grains.
+std::int64_t sample_of(const Surroundings& surroundings) {
+  Fingerprint sample;
+  sample.add(surroundings.sample);
+  return sample.value();
+}
+
+void check_file(const BinaryReader& in, const std::string& file, std::int64_t then,
+                std::int64_t now) {
+  if (then != now)
+    throw InputError(file, "has changed since the checkpoint " + in.path().string() +
+                               " was made; bring back the file, or start anew");
+}
+
+/// Throws InputError where a file is another than when the checkpoint was made.
+void check_files(const BinaryReader& in, const Scene& scene, const Surroundings& surroundings) {
+  if (scene.terrain) {
+    const auto then = in.get<std::int64_t>("ground", 2);
+    const auto now = ground_of(surroundings);
+    check_file(in, scene.terrain->file, then[0], now[0]);
+    check_file(in, scene.terrain->thickness_file, then[1], now[1]);
+  }
+  if (scene.sample)
+    check_file(in, scene.sample->file, in.value<std::int64_t>("sample"), sample_of(surroundings));
 }
 
 }  // namespace
@@ -57,6 +87,8 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   out.add_text("scene", scene_text_);
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
   if (scene_.terrain) out.add("ground", ground_of(surroundings_));
+  if (scene_.sample) out.add_value("sample", sample_of(surroundings_));
+  if (curve_) curve_->save(out);
   out.add("event", std::vector<std::int64_t>{event_, running_});
   const RestDetector::State r = rest_.state();
   out.add("run", std::vector<double>{event_start_, event_mass_, r.since, r.speed_at_start, r.speed,
@@ -83,7 +115,7 @@ std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkp
   in.require_finite();  // a clock that is not a number would never reach the end of an event
   auto sim = std::make_unique<Simulation>(parse_scene(in.text("scene"), checkpoint.string()),
                                           in.text("base_dir"));
-  if (sim->scene_.terrain) check_ground(in, *sim->scene_.terrain, sim->surroundings_);
+  check_files(in, sim->scene_, sim->surroundings_);
   const auto event = in.get<std::int64_t>("event", 2);
   if (event[0] < 0 || event[0] > sim->scene_.events.count)
     throw InputError(checkpoint.string(), "event " + std::to_string(event[0]) + " of " +
@@ -95,6 +127,7 @@ std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkp
   sim->event_mass_ = run[1];
   sim->rest_.restore({run[2], run[3], run[4], run[5]});
   sim->laid_height_ = run[6];
+  if (sim->curve_) sim->curve_->load(in);
   sim->solver_->load(in);
   return sim;
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "snowshed/io/vtp_writer.hpp"
+#include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
 namespace snowshed {
@@ -43,6 +44,40 @@ PointPairs add_slide(const SlideMethod& slide, const ParticleState& s,
   return pairs;
 }
 
+/// The spheres of grains, with what is known of the grain that each belongs to: its number, its
+/// velocity, how many grains it touches and is bonded to, and half the sum of its contact forces.
+void write_grains(const std::filesystem::path& file, const GrainsMethod& grains) {
+  const std::vector<Vec3> positions = grains.sphere_positions();
+  const std::vector<std::uint32_t> of = grains.sphere_grains();
+  const std::vector<Vec3> velocities = grains.state().velocities;
+  std::vector<std::int32_t> touching(velocities.size(), 0), bonded(velocities.size(), 0);
+  std::vector<float> force(velocities.size(), 0);
+  for (const GrainContact& contact : grains.grain_contacts())
+    for (const std::uint32_t grain : {contact.first, contact.second}) {
+      ++touching[grain];
+      bonded[grain] += contact.bonded;
+      force[grain] += 0.5f * float(contact.force.norm());
+    }
+  std::vector<std::array<float, 3>> points;
+  std::vector<float> velocity;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Eigen::Vector3f x = positions[i].cast<float>(), v = velocities[of[i]].cast<float>();
+    points.push_back({x[0], x[1], x[2]});
+    velocity.insert(velocity.end(), {v[0], v[1], v[2]});
+  }
+  const auto of_grain = [&of](const auto& values) {
+    std::vector<typename std::decay_t<decltype(values)>::value_type> each;
+    for (const std::uint32_t grain : of) each.push_back(values[grain]);
+    return each;
+  };
+  write_vtp(file, points,
+            {{"velocity", 3, std::move(velocity)},
+             {"grain", 1, converted<std::int32_t>(of)},
+             {"touching_grains", 1, of_grain(touching)},
+             {"bonded_grains", 1, of_grain(bonded)},
+             {"contact_force", 1, of_grain(force)}});
+}
+
 /// What a file of particles holds.
 struct PointCloud {
   std::vector<std::array<float, 3>> points;
@@ -77,6 +112,8 @@ PointCloud point_cloud(const Method& solver) {
 }  // namespace
 
 void write_particles(const std::filesystem::path& file, const Method& solver) {
+  if (const auto* grains = dynamic_cast<const GrainsMethod*>(&solver))
+    return write_grains(file, *grains);
   const PointCloud cloud = point_cloud(solver);
   write_vtp(file, cloud.points, cloud.arrays, cloud.lines);
 }

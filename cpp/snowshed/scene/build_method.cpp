@@ -1,8 +1,10 @@
 #include "snowshed/scene/build_method.hpp"
 
+#include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
+#include "snowshed/scene/build_sample.hpp"
 #include "snowshed/scene/build_terrain.hpp"
 
 namespace snowshed {
@@ -25,6 +27,12 @@ std::unique_ptr<Method> build(const SlideSettings& settings, const Scene& scene,
       {settings, scene.gravity, surroundings.terrain, surroundings.areas, scene.output.energy});
 }
 
+std::unique_ptr<Method> build(const GrainsSettings& settings, const Scene& scene,
+                              const std::vector<Snow>&, const Surroundings& surroundings) {
+  return make_grains({settings, scene.gravity, surroundings.sample, scene.loading,
+                      scene.cone.value_or(Cone{}), scene.output.energy});
+}
+
 }  // namespace
 
 Surroundings build_surroundings(const Scene& scene, const std::filesystem::path& base_dir) {
@@ -35,6 +43,7 @@ Surroundings build_surroundings(const Scene& scene, const std::filesystem::path&
         build_height_field(*scene.terrain, std::get<SlideSettings>(scene.numerics), base_dir);
     s.areas = build_areas(*scene.terrain, s.terrain, base_dir);
   }
+  if (scene.sample) s.sample = build_sample(*scene.sample, base_dir);
   return s;
 }
 

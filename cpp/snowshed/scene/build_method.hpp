@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "snowshed/methods/grains/clumps.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/obstacle.hpp"
 #include "snowshed/methods/slide/areas.hpp"
@@ -17,6 +18,7 @@ struct Surroundings {
   std::vector<Obstacle> obstacles;  // all of them
   HeightField terrain;              // empty without terrain
   SlideAreas areas;
+  GrainSample sample;  // empty without one
 };
 
 /// Relative file names are looked for in `base_dir`. Throws InputError.

@@ -27,24 +27,12 @@
 //   accuracy({key...})                       before fields: those that trade accuracy for time
 #pragma once
 
+#include "snowshed/scene/allowed.hpp"
+#include "snowshed/scene/describe_grains.hpp"
 #include "snowshed/scene/enum_names.hpp"
-#include "snowshed/scene/range.hpp"
 #include "snowshed/scene/scene.hpp"
 
 namespace snowshed {
-
-// Limits far beyond any structure or snow; they keep arithmetic on untrusted input finite.
-namespace allowed {
-inline constexpr Range coordinate = between(-1e6, 1e6);         // m
-inline constexpr Range map_coordinate = between(-1e8, 1e8);     // m
-inline constexpr Range size = positive.up_to(1e6);              // m
-inline constexpr Range size_or_zero = non_negative.up_to(1e6);  // m
-inline constexpr Range pressure = positive.up_to(1e12);         // Pa
-inline constexpr Range speed = between(-1e4, 1e4);              // m/s, rad/s
-inline constexpr Range time = non_negative.up_to(1e9);          // s
-inline constexpr Range duration = positive.up_to(1e9);          // s
-inline constexpr Range coefficient = non_negative.up_to(100.0);
-}  // namespace allowed
 
 inline constexpr const char* condition_doc =
     "What snow that touches it may do: stay (sticky), slide in the surface (slip), slide and leave "
@@ -361,6 +349,13 @@ void describe(V& v, Scene& s) {
   v.optional("ground", s.ground, "An inclined plane through the origin");
   v.taken_by(&TakenParts::terrain);
   v.optional("terrain", s.terrain, "Ground from a raster of elevations, and where snow lies on it");
+  v.taken_by(&TakenParts::sample);
+  v.optional("sample", s.sample, "Segmented snow to be loaded");
+  if (v.shows(s.numerics, &TakenParts::sample))  // other scenes, and their hashes, lack the list
+    v.list("loading", s.loading, between(0, most_stages),
+           "How the sample is loaded, stage by stage");
+  v.taken_by(&TakenParts::sample);
+  v.optional("cone", s.cone, "The tip that stages \"penetrate\" push in");
   v.taken_by(&TakenParts::obstacles);
   v.list("obstacles", s.obstacles, between(0, 10000), "Further solids that snow collides with");
   v.taken_by(&TakenParts::bodies);

@@ -50,6 +50,23 @@ struct EnumNames<SlideFriction> {
 };
 
 template <>
+struct EnumNames<GrainSides> {
+  static constexpr Named<GrainSides> list[] = {{GrainSides::walls, "walls"},
+                                               {GrainSides::periodic, "periodic"}};
+};
+
+template <>
+struct EnumNames<LoadingKind> {
+  static constexpr Named<LoadingKind> list[] = {{LoadingKind::compress, "compress"},
+                                                {LoadingKind::unload, "unload"},
+                                                {LoadingKind::stretch, "stretch"},
+                                                {LoadingKind::shear, "shear"},
+                                                {LoadingKind::isotropic, "isotropic"},
+                                                {LoadingKind::penetrate, "penetrate"},
+                                                {LoadingKind::hold, "hold"}};
+};
+
+template <>
 struct EnumNames<Condition> {
   static constexpr Named<Condition> list[] = {
       {Condition::sticky, "sticky"}, {Condition::slip, "slip"}, {Condition::separate, "separate"}};

@@ -10,13 +10,14 @@
 #include <variant>
 #include <vector>
 
+#include "snowshed/methods/grains/settings.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 
 namespace snowshed {
 
 /// The settings of the method that a scene has chosen; the first is the default.
-using MethodSettings = std::variant<MpmSettings, SlideSettings>;
+using MethodSettings = std::variant<MpmSettings, SlideSettings, GrainsSettings>;
 
 /// The parts of a scene that a method can use.
 struct TakenParts {
@@ -27,6 +28,7 @@ struct TakenParts {
   bool bodies = false;
   bool domain = false;
   bool terrain = false;
+  bool sample = false;  // with its loading and its cone
   bool snow = false;
   bool seeding = false;
 };
@@ -43,13 +45,21 @@ inline constexpr MethodInfo method_info{};
 
 template <>
 inline constexpr MethodInfo method_info<MpmSettings>{
-    "mpm", "The material point method", {true, true, true, true, true, true, false, true, true}};
+    "mpm",
+    "The material point method",
+    {true, true, true, true, true, true, false, false, true, true}};
 
 template <>
 inline constexpr MethodInfo method_info<SlideSettings>{
     "slide",
     "The snow slide: depth-averaged particles with cohesive bonds on terrain",
-    {false, false, false, false, false, false, true, false, false}};
+    {false, false, false, false, false, false, true, false, false, false}};
+
+template <>
+inline constexpr MethodInfo method_info<GrainsSettings>{
+    "grains",
+    "Discrete elements of snow: rigid clumps of spheres with bonds that break",
+    {false, false, false, false, false, false, false, true, false, false}};
 
 /// The method that has been chosen.
 inline const MethodInfo& info_of(const MethodSettings& settings) {

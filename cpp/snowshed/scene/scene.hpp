@@ -13,6 +13,7 @@
 #include "snowshed/geometry/rigid_motion.hpp"
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/contact_law.hpp"
+#include "snowshed/methods/grains/loading.hpp"
 #include "snowshed/sampling/seeding.hpp"
 #include "snowshed/scene/method_settings.hpp"
 
@@ -128,6 +129,12 @@ struct TerrainSpec {
   std::vector<ResistanceSpec> resistance;
 };
 
+/// Segmented snow to be loaded.
+struct SampleSpec {
+  std::string file;       // NPY, integers (nz, ny, nx): 0 air, any other number a grain
+  double voxel_size = 0;  // m
+};
+
 struct Seeding {
   double particles_per_voxel = 0.0;  // 0: 6 in 2D, 8 in 3D
   SeedPattern pattern = SeedPattern::poisson;
@@ -167,6 +174,9 @@ struct Scene {
   std::optional<Slab> slab;
   std::optional<Ground> ground;
   std::optional<TerrainSpec> terrain;
+  std::optional<SampleSpec> sample;
+  std::vector<LoadingStage> loading;  // of the sample, one after another
+  std::optional<Cone> cone;           // none: the default one, if a stage asks for it
   std::vector<ObstacleSpec> obstacles;
   std::vector<BodySpec> bodies;
   std::optional<Domain> domain;  // its sides are sticky walls; none: unbounded

@@ -27,9 +27,13 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
+/// Absolute names stay, and so do those that are not given.
+void make_absolute(const std::filesystem::path& folder, std::string& file) {
+  if (!file.empty()) file = (folder / file).lexically_normal().string();
+}
+
 void with_absolute_files(const std::filesystem::path& folder, ShapeSpec& shape) {
-  if (!shape.file.empty())  // absolute ones stay
-    shape.file = (folder / shape.file).lexically_normal().string();
+  make_absolute(folder, shape.file);
   for (auto& part : shape.shapes) with_absolute_files(folder, part);
 }
 
@@ -77,7 +81,8 @@ Scene with_absolute_files(const std::filesystem::path& folder, Scene scene) {
   for (auto& body : scene.bodies) with_absolute_files(absolute, body.shape);
   if (scene.terrain)
     for (std::string* file : {&scene.terrain->file, &scene.terrain->thickness_file})
-      if (!file->empty()) *file = (absolute / *file).lexically_normal().string();
+      make_absolute(absolute, *file);
+  if (scene.sample) make_absolute(absolute, scene.sample->file);
   return scene;
 }
 

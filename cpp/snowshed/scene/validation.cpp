@@ -33,6 +33,7 @@ class SceneRules {
                                         path_and_value(scene_.events.max_time) + " s)");
     if (scene_.terrain) check_terrain(*scene_.terrain);
     if (scene_.uses<SlideSettings>()) return check_slide();
+    if (scene_.uses<GrainsSettings>()) return check_grains();
     if (!scene_.slab && scene_.bodies.empty())
       fail(scene_, "nothing holds snow: give " + path_of(scene_, scene_.slab) + " or " +
                        path_of(scene_, scene_.bodies));
@@ -181,6 +182,57 @@ class SceneRules {
       fail(s.explicit_friction, "only in the mode \"compatible\"");
   }
 
+  void check_grains() const {
+    if (!scene_.sample) fail(scene_, "grains need a " + path_of(scene_, scene_.sample));
+    if (scene_.loading.empty())
+      fail(scene_.loading,
+           "a sample is loaded in at least one stage, such as {\"kind\": "
+           "\"compress\"}");
+    if (!in_3d()) fail(scene_.dimension, "grains move in space; allowed: 3");
+    if (scene_.events.count != 1)
+      fail(scene_.events.count, show(scene_.events.count) + " events; a loading is 1");
+    check_loading();
+    const auto pushed_in = [](const LoadingStage& s) { return s.kind == LoadingKind::penetrate; };
+    if (scene_.cone && std::none_of(scene_.loading.begin(), scene_.loading.end(), pushed_in))
+      fail(*scene_.cone, "no stage pushes it in; give one of the kind \"penetrate\"");
+  }
+
+  /// Stages follow on each other: what a stage undoes must have been done.
+  void check_loading() const {
+    constexpr double most_shortening = 0.95;  // or nothing is left between the plates
+    double shortening = 0;
+    bool loaded = false, open = false;
+    for (const LoadingStage& stage : scene_.loading) {
+      const bool compresses =
+          stage.kind == LoadingKind::compress || stage.kind == LoadingKind::isotropic;
+      if (compresses) shortening += stage.strain;
+      if (shortening > most_shortening)
+        fail(stage.strain, "the sample would be compressed by " + show_rounded(shortening) +
+                               " of its height in all; allowed: up to " + show(most_shortening));
+      if (stage.kind == LoadingKind::unload && !loaded)
+        fail(stage.kind, "there is nothing to unload; compress the sample before");
+      if (open && stage.kind != LoadingKind::penetrate && stage.kind != LoadingKind::hold)
+        fail(stage.kind,
+             "the top plate is away since the stage \"penetrate\"; allowed: penetrate, "
+             "hold");
+      check_stage(stage);
+      loaded = loaded || compresses;
+      open = open || stage.kind == LoadingKind::penetrate;
+    }
+  }
+
+  void check_stage(const LoadingStage& stage) const {
+    const GrainsSettings& settings = std::get<GrainsSettings>(scene_.numerics);
+    const std::string kind = quote(name_of(stage.kind));
+    if (stage.kind == LoadingKind::stretch && !settings.bonded_plates)
+      fail(stage.kind,
+           kind + " pulls at the plates; set " + path_of(scene_, settings.bonded_plates));
+    const bool takes_stress = stage.kind != LoadingKind::stretch &&
+                              stage.kind != LoadingKind::penetrate &&
+                              stage.kind != LoadingKind::hold;
+    if (stage.stress > 0 && !takes_stress) fail(stage.stress, kind + " takes no stress");
+  }
+
   void check_terrain(const TerrainSpec& terrain) const {
     for (const AreaSpec& area : terrain.release) check_area(area);
     for (const AreaSpec& area : terrain.entrainment) check_area(area);
@@ -259,6 +311,9 @@ void check_parts(const Scene& scene, const MethodInfo& method) {
   check(scene.bodies, !scene.bodies.empty(), method.takes.bodies);
   check(scene.domain, scene.domain.has_value(), method.takes.domain);
   check(scene.terrain, scene.terrain.has_value(), method.takes.terrain);
+  check(scene.sample, scene.sample.has_value(), method.takes.sample);
+  check(scene.loading, !scene.loading.empty(), method.takes.sample);
+  check(scene.cone, scene.cone.has_value(), method.takes.sample);
 }
 
 void check_rules(const Scene& scene) { SceneRules(scene).check(); }

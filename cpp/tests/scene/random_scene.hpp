@@ -75,7 +75,9 @@ class Randomizer {
     std::visit([&](auto& own) { fill(own); }, settings);
   }
   void method_ahead(const char*, MethodSettings& settings) {
-    if (dimension_ == 3 && chance(0.3)) settings = SlideSettings();
+    if (dimension_ != 3) return;
+    if (chance(0.3)) settings = SlideSettings();
+    if (chance(0.2)) settings = GrainsSettings();
   }
   bool shows(const MethodSettings& settings, bool TakenParts::* part) {
     return info_of(settings).takes.*part;
@@ -126,6 +128,28 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   if (settings.mode == SlideMode::compatible) scene.terrain->thickness_file.clear();
 }
 
+/// Makes a scene one of grains: a sample that is loaded, in stages that may follow on each other.
+inline void mend_grains(Randomizer& randomizer, Scene& scene) {
+  scene.panel.reset();
+  scene.slab.reset();
+  scene.ground.reset();
+  scene.terrain.reset();
+  scene.obstacles.clear();
+  scene.bodies.clear();
+  scene.snow = {};
+  scene.seeding = {};
+  if (!scene.sample) describe(randomizer, scene.sample.emplace());
+  scene.events.count = 1;
+  std::get<GrainsSettings>(scene.numerics).bonded_plates = true;
+  scene.loading.insert(scene.loading.begin(), LoadingStage{});
+  for (LoadingStage& stage : scene.loading) {
+    stage.strain = std::min(stage.strain, 0.1);
+    if (stage.kind == LoadingKind::penetrate) stage.kind = LoadingKind::shear;
+    if (stage.kind == LoadingKind::stretch || stage.kind == LoadingKind::hold) stage.stress = 0;
+  }
+  if (scene.cone) scene.loading.push_back({LoadingKind::penetrate, 0.5, 0.2, 0});
+}
+
 /// Its fields are independent of each other, so what the rules between them demand is mended.
 inline Scene random_scene(std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -137,8 +161,16 @@ inline Scene random_scene(std::uint64_t seed) {
   scene.domain.reset();
   scene.seeding.allow_sparse = true;
   scene.events.rest_time = std::min(scene.events.rest_time, scene.events.max_time);
+  if (!scene.uses<GrainsSettings>()) {
+    scene.sample.reset();
+    scene.cone.reset();
+  }
   if (scene.uses<SlideSettings>()) {
     mend_slide(randomizer, scene);
+    return scene;
+  }
+  if (scene.uses<GrainsSettings>()) {
+    mend_grains(randomizer, scene);
     return scene;
   }
   scene.terrain.reset();

@@ -82,9 +82,25 @@ inline auto tied(const Domain& s) {
   auto& [a, b] = s;
   return std::tie(a, b);
 }
+inline auto tied(const SampleSpec& s) {
+  auto& [a, b] = s;
+  return std::tie(a, b);
+}
+inline auto tied(const LoadingStage& s) {
+  auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
+}
+inline auto tied(const Cone& s) {
+  auto& [a, b] = s;
+  return std::tie(a, b);
+}
+inline auto tied(const GrainsSettings& s) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
+}
 inline auto tied(const Scene& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
 }
 
 // Found by argument-dependent lookup from std::tuple, std::optional and std::vector.

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         {R"(, "numerics": {"flip_ratio": 1.5})", "/numerics/flip_ratio",
          "1.5 is outside the allowed range (0 <= value <= 1)"},
         {R"(, "method": "mps")", "/method",
-         R"("mps" is none of "mpm", "slide"; did you mean "mpm"?)"},
+         R"("mps" is none of "mpm", "slide", "grains"; did you mean "mpm"?)"},
         {R"(, "numerics": {"flip_ratio": 0.9, "damping_rate": 5})", "/numerics/damping_rate",
          "takes the place of /numerics/flip_ratio; give one of the two"},
         {R"(, "numerics": {"damping_rate": -1})", "/numerics/damping_rate",

@@ -75,6 +75,7 @@ def plan_rows(plan: dict[str, Any]) -> dict[str, str]:
         "left out": ", ".join(plan["left_out"]) or "nothing",
         "particles": f"{plan['particles_per_event']:,} per event",
         "particles in all": f"{plan['particles_total']:,}",
+        **{name: f"{count:,}" for name, count in plan["parts"].items()},
         "memory": f"{plan['memory_bytes'] / 1e6:,.1f} MB for particles and grid",
         "time step": f"{plan['time_step_s']:.3g} s",
         "steps": f"{plan['steps_per_event']:,} per event",

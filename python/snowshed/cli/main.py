@@ -1,8 +1,9 @@
 """The command line: the list of commands, and their exit codes.
 
-``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``scene|plan|schema`` describe a scene,
-``study`` computes many runs, and ``season`` a winter. ``compare|sensitivity|calibrate`` answer
-questions about runs, and ``geometry|regress|predict`` treat the data set of panels.
+``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``grains`` a loading test of segmented
+snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, and ``season`` a winter.
+``compare|sensitivity|calibrate`` answer questions about runs, and ``geometry|regress|predict``
+treat the data set of panels.
 
 Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted. Errors are one
 line on stderr.
@@ -32,6 +33,7 @@ DEFERRED = (
     ("panel", "run", "Run slide-offs from a panel described by options."),
     ("run", "run", "Run a scene file."),
     ("slide", "slide", "Run a small snow slide on terrain."),
+    ("grains", "grains", "Load segmented snow grain by grain."),
     ("plan", "scene", "Print the features and the cost of a scene file, without running it."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
     ("schema", "scene", "Print the JSON Schema of a scene."),

@@ -12,7 +12,7 @@ from snowshed.scene.scene import ResolvedScene
 
 def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
     """Run a scene into a folder with a progress bar, and print its results."""
-    run = _run_slide if ready.data.get(NAME_KEY) == "slide" else _run_events
+    run = RUNS.get(str(ready.data.get(NAME_KEY)), _run_events)
     try:
         run(ready, folder, resume, quiet)
     except Interrupted as interrupted:
@@ -39,3 +39,18 @@ def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) ->
         summary = run_slide(ready, folder, resume=resume, progress=progress)
     if not quiet:
         print_slide(summary, folder)
+
+
+def _run_grains(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
+    from snowshed.cli.display.grains import print_grains
+    from snowshed.cli.progress import progress_bar
+    from snowshed.run.grains import run_grains
+
+    with progress_bar(quiet=quiet) as progress:
+        summary = run_grains(ready, folder, resume=resume, progress=progress)
+    if not quiet:
+        print_grains(summary, folder)
+
+
+#: How scenes are run whose method does not make stacks.
+RUNS = {"slide": _run_slide, "grains": _run_grains}

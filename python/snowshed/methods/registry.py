@@ -12,15 +12,20 @@ from typing import Literal, Optional
 from snowshed._core import InputError
 from snowshed.io.json_file import JsonValue
 from snowshed.io.messages import suggestion
+from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
 from snowshed.methods.settings import MethodSettings
 from snowshed.methods.slide import SlideSettings
 
-MethodName = Literal["mpm", "slide"]
+MethodName = Literal["mpm", "slide", "grains"]
 DEFAULT: MethodName = "mpm"
 
 #: The class of the settings of every method, by its name in a scene.
-METHODS: Mapping[str, type[MethodSettings]] = {"mpm": MpmSettings, "slide": SlideSettings}
+METHODS: Mapping[str, type[MethodSettings]] = {
+    "mpm": MpmSettings,
+    "slide": SlideSettings,
+    "grains": GrainsSettings,
+}
 
 #: Where in a scene the name of the method and its settings stand.
 NAME_KEY = "method"
@@ -81,6 +86,8 @@ def resolution_of(scene: Mapping[str, JsonValue]) -> float:
     0.02
     """
     settings = settings_of(scene)
+    if not settings.RESOLUTION:
+        raise InputError(f"/{NAME_KEY}: the files that such a scene names decide its resolution")
     if settings.resolution is None:
         raise InputError(f"/{SETTINGS_KEY}/{settings.RESOLUTION}: missing")
     return float(settings.resolution)
@@ -89,9 +96,17 @@ def resolution_of(scene: Mapping[str, JsonValue]) -> float:
 def resolution_path(scene: Mapping[str, JsonValue]) -> str:
     """Return the dotted path of the setting that `resolution_of` returns.
 
+    Raises
+    ------
+    InputError
+        If the method has no such setting.
+
     Examples
     --------
     >>> resolution_path({})
     'numerics.dx'
     """
-    return f"{SETTINGS_KEY}.{settings_of(scene).RESOLUTION}"
+    name = settings_of(scene).RESOLUTION
+    if not name:
+        raise InputError(f"/{NAME_KEY}: the files that such a scene names decide its resolution")
+    return f"{SETTINGS_KEY}.{name}"

@@ -12,7 +12,8 @@ from snowshed.io.record import Record
 class MethodSettings(Record):
     """Settings of a method."""
 
-    #: The setting that is the size of the smallest thing the method resolves, m.
+    #: The setting that is the size of the smallest thing the method resolves, m; empty where files
+    #: that the scene names decide it.
     RESOLUTION: ClassVar[str]
 
     @property

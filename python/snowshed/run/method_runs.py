@@ -13,16 +13,21 @@ from types import MappingProxyType
 from typing import Optional, Protocol, Union
 
 from snowshed.io.json_file import JsonValue, read_object
+from snowshed.methods.grains.summary import GrainsSummary
 from snowshed.methods.registry import DEFAULT, NAME_KEY
 from snowshed.run.event_particles import read_event_particles
 from snowshed.run.events import run_events
+from snowshed.run.grains import CURVE, run_grains
 from snowshed.run.progress import Reporter
 from snowshed.run.results import EVENT_COLUMNS, WORDS, RunFolder
 from snowshed.run.slides import PACKED, SlideSummary, run_slide
 from snowshed.scene.scene import ResolvedScene
 
 Cell = Union[int, float, str, None]
-COUNTS = ("steps", "bonds_made", "bonds_broken", "final_particles")
+COUNTS = (
+    "steps", "bonds_made", "bonds_broken", "final_particles", "spheres", "bonds",
+    "broken_in_tension", "broken_in_shear",
+)  # fmt: skip
 #: Columns that say which event a row is of, and how long its computing took.
 ROW_KEYS = ("event", "wall_s")
 
@@ -64,20 +69,38 @@ class _StackRuns:
         return ((event, found.packed()) for event, found in read_event_particles(folder))
 
 
-#: What a table calls differently from slide.json: what other methods measure too, or mean by it.
-_RENAMED = {"duration_s": "sim_time_s", "particles": "final_particles"}
-#: The figures of a slide that are single values, with their columns.
-_FIGURES: Mapping[str, str] = {
-    field.name: _RENAMED.get(field.name, field.name)
-    for field in fields(SlideSummary)
-    if field.type in ("int", "float", "str")
-}
+#: What a table calls differently from a summary: what other methods measure too, or mean by it.
+_RENAMED = {
+    "duration_s": "sim_time_s", "particles": "final_particles", "grains": "final_particles"
+}  # fmt: skip
+
+
+def _figures(summary: type) -> Mapping[str, str]:
+    """Return the figures of a summary that are single values, with their columns."""
+    return {
+        field.name: _RENAMED.get(field.name, field.name)
+        for field in fields(summary)
+        if field.type in ("int", "float", "str", "Optional[float]")
+    }
+
+
+def _row_of(folder: Path, file: str, figures: Mapping[str, str]) -> list[dict[str, Cell]]:
+    """Return the row of a run with one event, whose figures stand in a JSON file."""
+    if not (folder / file).is_file():
+        return []
+    found = read_object(folder / file)
+    (event,) = RunFolder(folder).read_run()["finished_events"]
+    row = {column: found.get(name) for name, column in figures.items()}
+    return [{"event": 1, "wall_s": event["wall_s"], "steps": event["steps"], **row}]
+
+
+_SLIDE_FIGURES, _LOADING_FIGURES = _figures(SlideSummary), _figures(GrainsSummary)
 
 
 class _SlideRuns:
     """Slides, which leave maps."""
 
-    columns: Sequence[str] = ("steps", *_FIGURES.values())
+    columns: Sequence[str] = ("steps", *_SLIDE_FIGURES.values())
 
     def run(
         self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
@@ -86,19 +109,34 @@ class _SlideRuns:
         run_slide(scene, folder, resume=resume, progress=progress, **options)
 
     def rows(self, folder: Path) -> list[dict[str, Cell]]:
-        if not (folder / "slide.json").is_file():
-            return []
-        found = read_object(folder / "slide.json")
-        figures = {column: found.get(name) for name, column in _FIGURES.items()}
-        (event,) = RunFolder(folder).read_run()["finished_events"]
-        return [{"event": 1, "wall_s": event["wall_s"], "steps": event["steps"], **figures}]
+        return _row_of(folder, "slide.json", _SLIDE_FIGURES)
 
     def kept(self, folder: Path) -> Iterable[tuple[int, bytes]]:
         if (folder / "slide.json").is_file():
             yield 1, (folder / PACKED).read_bytes()
 
 
-_RUNS: Mapping[str, MethodRuns] = MappingProxyType({"mpm": _StackRuns(), "slide": _SlideRuns()})
+class _GrainsRuns:
+    """Loading tests, which leave curves."""
+
+    columns: Sequence[str] = ("steps", *_LOADING_FIGURES.values())
+
+    def run(
+        self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
+    ) -> None:
+        run_grains(scene, folder, resume=resume, progress=progress, pictures=False)
+
+    def rows(self, folder: Path) -> list[dict[str, Cell]]:
+        return _row_of(folder, "grains.json", _LOADING_FIGURES)
+
+    def kept(self, folder: Path) -> Iterable[tuple[int, bytes]]:
+        if (folder / "grains.json").is_file():
+            yield 1, (folder / CURVE).read_bytes()
+
+
+_RUNS: Mapping[str, MethodRuns] = MappingProxyType(
+    {"mpm": _StackRuns(), "slide": _SlideRuns(), "grains": _GrainsRuns()}
+)
 
 
 def runs_of(scene: Union[str, Mapping[str, JsonValue]]) -> MethodRuns:

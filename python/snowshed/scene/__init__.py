@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from snowshed.io.renamed import renamed
+from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.components import (
@@ -32,17 +33,21 @@ from snowshed.scene.components import (
     Snow,
     Terrain,
 )
+from snowshed.scene.loading import Cone, LoadingStage, Sample
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.shape import Shape
 
 __all__ = [
     "Area",
     "Body",
+    "Cone",
     "Domain",
     "Events",
+    "GrainsSettings",
     "Ground",
     "Hole",
     "Layer",
+    "LoadingStage",
     "Motion",
     "MpmSettings",
     "Obstacle",
@@ -50,6 +55,7 @@ __all__ = [
     "Panel",
     "ResistanceArea",
     "ResolvedScene",
+    "Sample",
     "Scene",
     "Seeding",
     "Shape",

@@ -23,6 +23,7 @@ from snowshed.io.input_file import read_input
 from snowshed.io.json_file import JsonObject, JsonValue
 from snowshed.io.paths import PathLike
 from snowshed.io.record import DEEPEST, Record, check_instead, check_once
+from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
 from snowshed.methods.registry import NAME_KEY, SETTINGS_KEY, MethodName, settings_class
 from snowshed.methods.slide import SlideSettings
@@ -39,6 +40,7 @@ from snowshed.scene.components import (
     Snow,
     Terrain,
 )
+from snowshed.scene.loading import Cone, LoadingStage, Sample
 
 __all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 
@@ -74,6 +76,12 @@ class Scene(Record):
         An inclined plane through the origin.
     terrain : Terrain
         Ground from a raster of elevations, and where snow lies on it.
+    sample : Sample
+        Segmented snow to be loaded.
+    loading : list of LoadingStage
+        How the sample is loaded, stage by stage.
+    cone : Cone
+        The tip that stages "penetrate" push in.
     obstacles : list of Obstacle
         Further solids that snow collides with.
     bodies : list of Body
@@ -82,7 +90,7 @@ class Scene(Record):
         A box with sticky sides; unbounded without it.
     seeding : Seeding
         How snow is filled with particles.
-    method : {"mpm", "slide"}
+    method : {"mpm", "slide", "grains"}
         The numerical method. Default "mpm".
     numerics : MpmSettings
         The method's settings.
@@ -109,12 +117,15 @@ class Scene(Record):
     slab: Optional[Slab] = None
     ground: Optional[Ground] = None
     terrain: Optional[Terrain] = None
+    sample: Optional[Sample] = None
+    loading: Optional[List[LoadingStage]] = None
+    cone: Optional[Cone] = None
     obstacles: Optional[List[Obstacle]] = None
     bodies: Optional[List[Body]] = None
     domain: Optional[Domain] = None
     seeding: Optional[Seeding] = None
     method: Optional[MethodName] = None
-    numerics: Optional[Union[MpmSettings, SlideSettings]] = None
+    numerics: Optional[Union[MpmSettings, SlideSettings, GrainsSettings]] = None
     events: Optional[Events] = None
     output: Optional[Output] = None
 

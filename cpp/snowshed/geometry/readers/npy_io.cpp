@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <regex>
 
+#include "snowshed/core/memory.hpp"
 #include "snowshed/geometry/readers/byte_reader.hpp"
 
 namespace snowshed {
@@ -15,6 +17,10 @@ struct ArrayHeader {
   std::string type;
   std::vector<std::size_t> shape;
   std::size_t data_offset;
+
+  /// The digit in a type such as '<f4'.
+  std::size_t value_size() const { return std::size_t(type[type.size() - 2] - '0'); }
+  bool is_signed() const { return type[type.size() - 3] == 'i'; }
 };
 
 [[noreturn]] void fail(const std::filesystem::path& path, std::size_t offset,
@@ -42,7 +48,18 @@ std::vector<std::size_t> parse_shape(const std::string& tuple) {
   return shape;
 }
 
-ArrayHeader parse_header(const std::filesystem::path& path, const std::string& bytes) {
+/// What an array may hold, as regular expressions and in words.
+struct Allowed {
+  const char *type, *types, *shape, *shapes;
+};
+
+constexpr Allowed samples{"'<f[48]'", "'<f4' and '<f8'",
+                          R"(\( *\d{1,9}( *, *\d{1,9}){1,2} *,? *\))", "two or three counts"};
+constexpr Allowed labels{"'(\\||<)[iu]1'|'<[iu][248]'", "integers of 1 to 8 bytes, little-endian",
+                         R"(\( *\d{1,9}( *, *\d{1,9}){2} *,? *\))", "three counts (nz, ny, nx)"};
+
+ArrayHeader parse_header(const std::filesystem::path& path, const std::string& bytes,
+                         const Allowed& allowed) {
   if (bytes.compare(0, 6, "\x93NUMPY", 6) != 0) fail(path, 0, "not a .npy file");
   ByteReader reader(path, bytes, 6, ByteOrder::little);
   const int major = reader.read<std::uint8_t>();
@@ -57,10 +74,9 @@ ArrayHeader parse_header(const std::filesystem::path& path, const std::string& b
   const std::size_t begin = bytes.size() - reader.remaining();
   const std::string text = bytes.substr(begin, length);
   ArrayHeader header;
-  header.type = entry(path, text, "descr", "'<f[48]'", "'<f4' and '<f8'");
+  header.type = entry(path, text, "descr", allowed.type, allowed.types);
   entry(path, text, "fortran_order", "False", "False (C order)");
-  header.shape = parse_shape(entry(path, text, "shape", R"(\( *\d{1,9}( *, *\d{1,9}){1,2} *,? *\))",
-                                   "two or three counts"));
+  header.shape = parse_shape(entry(path, text, "shape", allowed.shape, allowed.shapes));
   header.data_offset = begin + length;
   return header;
 }
@@ -68,7 +84,7 @@ ArrayHeader parse_header(const std::filesystem::path& path, const std::string& b
 /// Returns the number of values. They must fill the rest of the file.
 std::size_t checked_count(const std::filesystem::path& path, const ArrayHeader& header,
                           std::size_t bytes_left) {
-  const std::size_t value_size = header.type == "'<f4'" ? 4 : 8;
+  const std::size_t value_size = header.value_size();
   double count = 1;
   for (const std::size_t n : header.shape) count *= static_cast<double>(n);
   if (count * value_size != static_cast<double>(bytes_left))
@@ -78,11 +94,29 @@ std::size_t checked_count(const std::filesystem::path& path, const ArrayHeader& 
   return bytes_left / value_size;
 }
 
+/// The next of the reader's integers. One beyond 63 bits, which is not allowed, is negative.
+std::int64_t next_integer(ByteReader& reader, const ArrayHeader& header) {
+  const auto read = [&](auto with_sign, auto without) -> std::int64_t {
+    if (header.is_signed()) return reader.read<decltype(with_sign)>();
+    return std::int64_t(reader.read<decltype(without)>());
+  };
+  switch (header.value_size()) {
+    case 1:
+      return read(std::int8_t(), std::uint8_t());
+    case 2:
+      return read(std::int16_t(), std::uint16_t());
+    case 4:
+      return read(std::int32_t(), std::uint32_t());
+    default:
+      return read(std::int64_t(), std::uint64_t());
+  }
+}
+
 }  // namespace
 
 NpyArray read_npy(const std::filesystem::path& path) {
   const std::string bytes = read_bytes(path);
-  const ArrayHeader header = parse_header(path, bytes);
+  const ArrayHeader header = parse_header(path, bytes, samples);
   const std::size_t count = checked_count(path, header, bytes.size() - header.data_offset);
   ByteReader reader(path, bytes, header.data_offset, ByteOrder::little);
   NpyArray array{header.shape, std::vector<float>(count)};
@@ -90,6 +124,23 @@ NpyArray read_npy(const std::filesystem::path& path) {
     value =
         header.type == "'<f4'" ? reader.read<float>() : static_cast<float>(reader.read<double>());
     if (!std::isfinite(value)) reader.fail("the value before this byte is not finite");
+  }
+  return array;
+}
+
+NpyLabels read_npy_labels(const std::filesystem::path& path) {
+  const std::string bytes = read_bytes(path);
+  const ArrayHeader header = parse_header(path, bytes, labels);
+  const std::size_t count = checked_count(path, header, bytes.size() - header.data_offset);
+  if (count * sizeof(std::int32_t) > available_memory_bytes())
+    fail(path, header.data_offset, std::to_string(count) + " labels do not fit into memory");
+  ByteReader reader(path, bytes, header.data_offset, ByteOrder::little);
+  NpyLabels array{header.shape, std::vector<std::int32_t>(count)};
+  for (std::int32_t& label : array.values) {
+    const std::int64_t value = next_integer(reader, header);
+    if (value < 0 || value > std::numeric_limits<std::int32_t>::max())
+      reader.fail("the label before this byte is negative or above 2147483647");
+    label = std::int32_t(value);
   }
   return array;
 }

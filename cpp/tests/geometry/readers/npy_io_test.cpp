@@ -80,5 +80,45 @@ TEST_F(NpyIo, SurvivesDamage) {
   EXPECT_GT(refused, 50);
 }
 
+/// Labels of every type come out the same.
+template <class Integer>
+void expect_labels(const TempDir& dir, const std::string& type) {
+  const std::vector<Integer> values = {0, 1, 2, 127, 0, 3};
+  const std::string content = npy_file(1, npy_header(type, "(1, 2, 3)"), npy_data(values));
+  const NpyLabels labels = read_npy_labels(dir.write("a.npy", content));
+  EXPECT_EQ(labels.shape, (std::vector<std::size_t>{1, 2, 3})) << type;
+  EXPECT_EQ(labels.values, (std::vector<std::int32_t>{0, 1, 2, 127, 0, 3})) << type;
+}
+
+TEST_F(NpyIo, ReadsLabelsOfEveryType) {
+  expect_labels<std::int8_t>(dir, "|i1");
+  expect_labels<std::uint8_t>(dir, "|u1");
+  expect_labels<std::int16_t>(dir, "<i2");
+  expect_labels<std::uint16_t>(dir, "<u2");
+  expect_labels<std::int32_t>(dir, "<i4");
+  expect_labels<std::uint32_t>(dir, "<u4");
+  expect_labels<std::int64_t>(dir, "<i8");
+  expect_labels<std::uint64_t>(dir, "<u8");
+}
+
+TEST_F(NpyIo, RefusesWhatAreNoLabels) {
+  const auto expect_no_labels = [&](const std::string& content, const std::string& expected) {
+    expect_input_error([&] { read_npy_labels(dir.write("a.npy", content)); }, expected);
+  };
+  const std::vector<std::int64_t> two = {1, 2};
+  const auto of = [&](const std::string& type, const std::string& shape, std::int64_t last) {
+    return npy_file(1, npy_header(type, shape), npy_data<std::int64_t>({1, last}));
+  };
+  expect_no_labels(of("<f8", "(1, 1, 2)", 2), "allowed: integers of 1 to 8 bytes");
+  expect_no_labels(of(">i8", "(1, 1, 2)", 2), "descr");
+  expect_no_labels(of("<i8", "(1, 2)", 2), "three counts");
+  expect_no_labels(of("<i8", "(1, 1, 2)", -1), "negative or above");
+  expect_no_labels(of("<i8", "(1, 1, 2)", std::int64_t(1) << 31), "negative or above");
+  expect_no_labels(of("<u8", "(1, 1, 2)", -1), "negative or above");  // 2^64 - 1
+  expect_no_labels(of("<i8", "(999999999, 999999999, 999999999)", 1), "the shape asks for");
+  expect_no_labels(of("<i8", "(1, 1, 3)", 1), "the shape asks for");
+  expect_no_labels(npy_file(2, std::string(100000, ' '), npy_data(two)), "a header of");
+}
+
 }  // namespace
 }  // namespace snowshed

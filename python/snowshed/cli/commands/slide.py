@@ -16,33 +16,12 @@ from snowshed.cli.commands.slide_ranges import (
     run_ranges,
 )
 from snowshed.cli.run_scene import run_scene
+from snowshed.cli.settings_options import settings_options
 from snowshed.cli.slide_files import WAYS, SlideFiles, refuse_changed_areas, removing_copies
 from snowshed.cli.slide_project import run_project, write_particles
 from snowshed.scene.scene import ResolvedScene
-from snowshed.scene.schema import Parameter, scene_parameters
 
 PATH = click.Path(path_type=Path)
-KINDS = {"number": float, "integer": int}
-
-
-def _slide_options(command: Any) -> Any:
-    """Add an option for every setting of the method but its mode."""
-    for parameter in reversed(scene_parameters("slide")):
-        section, _, name = parameter.path.partition(".")
-        if section == "numerics" and name != "mode":
-            command = _option(parameter, name)(command)
-    return command
-
-
-def _option(parameter: Parameter, name: str) -> Any:
-    unit = f" [{parameter.unit}]" if parameter.unit else ""
-    text = f"{parameter.description}{unit}."
-    flag = "--" + name.replace("_", "-")
-    if parameter.kind == "boolean":
-        return click.option(f"{flag}/--no-{flag[2:]}", name, default=None, help=text)
-    if parameter.choices:
-        return click.option(flag, name, type=click.Choice(parameter.choices), help=text)
-    return click.option(flag, name, type=KINDS[parameter.kind], help=text)
 
 
 @click.command()
@@ -59,7 +38,7 @@ def _option(parameter: Parameter, name: str) -> Any:
 @click.option("--max-time", type=float, help="Longest duration of the slide [s].")
 @click.option("--particles-at", metavar="STEPS", help="Write the particles after these steps.")
 @range_options
-@_slide_options
+@settings_options("slide", without=["mode"])
 def slide(
     folder: Path,
     resume: bool,

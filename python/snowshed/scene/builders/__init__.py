@@ -6,6 +6,7 @@ it.
 
 from snowshed.io.raster import Raster, read_raster
 from snowshed.scene.builders.avaframe import avaframe_scene
+from snowshed.scene.builders.grains import example_grains, grains_scene
 from snowshed.scene.builders.meshes import mesh_structure
 from snowshed.scene.builders.panels import panel_rows, panel_table, single_panel
 from snowshed.scene.builders.roofs import gable_roof, shed_roof
@@ -16,8 +17,10 @@ from snowshed.scene.builders.tracker import tracker
 __all__ = [
     "Raster",
     "avaframe_scene",
+    "example_grains",
     "example_slide",
     "gable_roof",
+    "grains_scene",
     "mesh_structure",
     "on_terrain",
     "panel_rows",

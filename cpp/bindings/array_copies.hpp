@@ -1,0 +1,28 @@
+// Copies of C++ vectors as NumPy arrays.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <vector>
+
+#include "snowshed/core/vec.hpp"
+
+namespace snowshed {
+
+inline pybind11::array_t<double> rows(const std::vector<Vec3>& vectors) {
+  pybind11::array_t<double> a({pybind11::ssize_t(vectors.size()), pybind11::ssize_t(3)});
+  auto out = a.mutable_unchecked<2>();
+  for (pybind11::ssize_t i = 0; i < a.shape(0); ++i)
+    for (int k = 0; k < 3; ++k) out(i, k) = vectors[std::size_t(i)][k];
+  return a;
+}
+
+template <class To, class From>
+pybind11::array_t<To> column(const std::vector<From>& values) {
+  pybind11::array_t<To> a(pybind11::ssize_t(values.size()));
+  auto out = a.template mutable_unchecked<1>();
+  for (pybind11::ssize_t i = 0; i < a.shape(0); ++i) out(i) = To(values[std::size_t(i)]);
+  return a;
+}
+
+}  // namespace snowshed

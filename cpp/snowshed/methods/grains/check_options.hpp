@@ -1,0 +1,11 @@
+// Whether settings, sample and loading of grains fit each other.
+#pragma once
+
+#include "snowshed/methods/grains/solver.hpp"
+
+namespace snowshed {
+
+/// Throws InputError where they do not.
+void check_grains(const GrainsOptions&);
+
+}  // namespace snowshed

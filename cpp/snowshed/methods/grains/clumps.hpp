@@ -1,0 +1,46 @@
+// From a segmented image to rigid clumps of spheres.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/core/vec.hpp"
+#include "snowshed/methods/grains/label_image.hpp"
+
+namespace snowshed {
+
+/// A grain: a rigid body with spheres on its surface. Spheres are those of GrainSample from
+/// `first_sphere` on.
+struct Clump {
+  Vec3 centre = Vec3::Zero();   // m, of mass
+  double volume = 0;            // m3, of all its voxels
+  Mat3 inertia = Mat3::Zero();  // m5, over density, about the centre, in space
+  std::uint32_t first_sphere = 0, spheres = 0;
+};
+
+/// A pair of spheres of two grains that are bonded.
+struct BondedPair {
+  std::uint32_t first, second;
+};
+
+/// Clumps in a box that begins at the origin.
+struct GrainSample {
+  Vec3 box = Vec3::Zero();  // m
+  double radius = 0;        // m, of all spheres
+  std::vector<Clump> clumps;
+  std::vector<Vec3> spheres;  // m, centres in space
+  std::vector<BondedPair> bonds;
+};
+
+/// How large the sample of an image will be, to be told before it is made.
+struct SampleSize {
+  std::size_t grains = 0, spheres = 0, bonds = 0, bytes = 0;
+};
+SampleSize measure_sample(const LabelImage&);
+
+/// Every voxel at an interface, with air or another grain, becomes a sphere of the voxel's size
+/// with the voxel's centre; bonds join voxels of two grains that share a face. Mass and inertia are
+/// those of all voxels of a grain. Throws InputError without a grain.
+GrainSample make_sample(const LabelImage&);
+
+}  // namespace snowshed

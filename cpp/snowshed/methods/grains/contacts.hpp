@@ -1,0 +1,51 @@
+// The pairs of a list, one by one: for what is measured now and then.
+#pragma once
+
+#include "snowshed/methods/grains/state.hpp"
+
+namespace snowshed {
+
+/// Where a pair meets.
+struct PairGeometry {
+  double gap;         // m
+  Vec3 normal;        // from the first to the second
+  Vec3 arm_a, arm_b;  // m, from the centres of the bodies to the contact, in space
+};
+
+/// Of a sphere at `from_a` from the centre of its grain, whose pose is given, with whatever its
+/// group is paired with. `second` is the pose of the second grain, if it is one.
+PairGeometry pair_geometry(const GrainsModel&, const GrainsBoundary&, const PairList&,
+                           const PairGroup&, std::size_t pair, const Vec3& position_a,
+                           const Mat3& rotation_a, const GrainPose* second);
+
+/// Calls visit(group, pair, geometry) for all pairs of a list, but for those that only fill it up.
+template <class PoseOf, class Visit>
+void for_each_listed_pair(const GrainsModel& model, const GrainsBoundary& boundary,
+                          const PairList& list, const PoseOf& pose_of, const Visit& visit) {
+  for (const PairGroup& g : list.groups) {
+    const GrainPose first = pose_of(g.first);
+    const Mat3 rotation = first.orientation.toRotationMatrix();
+    const bool of_grain = g.second < model.grains.size();
+    const GrainPose second = of_grain ? pose_of(g.second) : GrainPose{};
+    for (std::size_t p = g.begin; p < g.end; ++p)
+      if (list.is_pair(p))
+        visit(g, p,
+              pair_geometry(model, boundary, list, g, p, first.position, rotation,
+                            of_grain ? &second : nullptr));
+  }
+}
+
+inline GrainPose pose_of(const GrainBody& body) { return {body.position, body.orientation}; }
+
+/// Calls visit(group, pair, geometry) for the pairs that touch now, or are bonded.
+template <class Visit>
+void for_each_touching(const GrainsModel& model, const GrainsState& state, const Visit& visit) {
+  for_each_listed_pair(
+      model, state.boundary, state.pairs,
+      [&](std::uint32_t body) { return pose_of(state.bodies[body]); },
+      [&](const PairGroup& g, std::size_t p, const PairGeometry& pair) {
+        if (pair.gap < 0 || state.pairs.bonded[p]) visit(g, p, pair);
+      });
+}
+
+}  // namespace snowshed

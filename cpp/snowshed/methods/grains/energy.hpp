@@ -1,0 +1,42 @@
+// Where the energy of grains went.
+#pragma once
+
+#include "snowshed/methods/energy_balance.hpp"
+
+namespace snowshed {
+
+struct GrainsModel;
+struct GrainsState;
+
+/// The energy of grains, J. The first four are the present store; the others are sums over all
+/// steps. The balance closes when `residual` is small beside the work.
+struct GrainsEnergy {
+  double kinetic = 0;            // with the scaled masses
+  double potential = 0;          // of the weight
+  double normal = 0, shear = 0;  // elastic
+  double friction = 0, damping = 0;
+  double broken = 0;    // that bonds held as they broke
+  double boundary = 0;  // work of plates, sides and the cone on the grains
+  double added = 0;     // brought by grains that were added, or taken with the top plate
+
+  double stored() const { return kinetic + potential + normal + shear; }
+  double spent() const { return friction + damping + broken; }
+  double residual() const { return stored() + spent() - boundary - added; }
+
+  /// Calls visit(value) for each of the sums over steps.
+  template <class Self, class Visit>
+  static void for_each_sum(Self& e, const Visit& visit) {
+    for (auto* sum : {&e.friction, &e.damping, &e.broken, &e.boundary, &e.added}) visit(*sum);
+  }
+};
+
+/// Returns the balance as tables have it, names with units.
+NamedEnergies named_energies(const GrainsEnergy&);
+
+/// The kinetic energy of all grains, J.
+double kinetic_energy(const GrainsModel&, const GrainsState&);
+
+/// Fills in what is stored now.
+void store_energy(const GrainsModel&, const GrainsState&, GrainsEnergy&);
+
+}  // namespace snowshed

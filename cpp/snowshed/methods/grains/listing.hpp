@@ -1,0 +1,29 @@
+// The list of near pairs, and what follows from it.
+#pragma once
+
+#include "snowshed/methods/grains/state.hpp"
+
+namespace snowshed {
+
+/// A list and all that has its sizes.
+struct Listing {
+  PairList pairs;
+  std::vector<GrainPose> poses;
+  BodyGroups groups_of;
+  std::vector<GroupForce> results;
+  double longest_step;  // s
+};
+
+/// Looks for the near pairs of these poses. Contacts keep their past.
+Listing listing_of(const GrainsModel&, std::vector<GrainPose>, const GrainsBoundary&,
+                   const std::vector<PairHistory>&);
+
+/// The pairs that are bonded at the beginning: those of the sample, those across the sides of a
+/// periodic sample, and with bonded plates those that touch a plate.
+std::vector<PairHistory> initial_bonds(const GrainsModel&, const std::vector<GrainPose>&,
+                                       const GrainsBoundary&);
+
+/// Poses of grains that stand in a state, or where they began.
+std::vector<GrainPose> poses_of(const std::vector<GrainBody>&);
+
+}  // namespace snowshed

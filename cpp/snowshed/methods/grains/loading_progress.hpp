@@ -1,0 +1,51 @@
+// Where a loading test stands, and how it moves what surrounds the grains.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/methods/grains/boundary.hpp"
+#include "snowshed/methods/grains/loading.hpp"
+
+namespace snowshed {
+
+struct LoadingProgress {
+  int stage = 0;            // the number of stages when all are done
+  double displacement = 0;  // m, since the stage began
+  double duration = 0;      // s, the same
+  double peak_kinetic = 0;  // J, the same
+};
+
+/// What a test measures to know when a stage ends.
+struct LoadingGauge {
+  double top_stress = 0, mean_stress = 0;  // Pa
+  double kinetic = 0;                      // J
+};
+
+/// What the loading knows of the sample.
+struct LoadedSample {
+  Vec3 box;                  // m, at the beginning
+  double radius;             // m, of the spheres
+  double contact_stiffness;  // N/m
+};
+
+/// A stage of holding ends when the kinetic energy has fallen to this share of its peak there.
+inline constexpr double rest_per_peak = 1e-4;
+
+/// The plates, sides and cone of a sample that is not loaded yet.
+GrainsBoundary initial_boundary(const LoadedSample&);
+
+/// Prepares what the present stage needs: penetration takes the top plate away and brings the cone.
+void begin_stage(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
+                 GrainsBoundary&);
+
+/// Sets the velocities for a step of this length. A normal stress in shear is kept by the top
+/// plate's speed: the error of the force over the stiffness of the plate's contacts is mended
+/// within five steps, at the stage's speed at most.
+void set_velocities(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
+                    double dt, GrainsBoundary&);
+
+/// Counts a step, and goes on to the next stage where this one has ended.
+void count_step(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingGauge&,
+                double dt, LoadingProgress&, GrainsBoundary&);
+
+}  // namespace snowshed

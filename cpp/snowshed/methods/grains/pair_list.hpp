@@ -1,0 +1,99 @@
+// Which spheres of two bodies are so near that they may touch before the list is made again.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/core/vec.hpp"
+#include "snowshed/methods/grains/boundary.hpp"
+#include "snowshed/methods/grains/kernel_api.hpp"
+#include "snowshed/methods/grains/rotor.hpp"
+
+namespace snowshed {
+
+/// Spheres as parts of rigid bodies.
+struct SphereBodies {
+  std::vector<Vec3> offsets;         // m, in the bodies' frames
+  std::vector<std::uint32_t> grain;  // of each sphere
+};
+
+struct GrainPose {
+  Vec3 position = Vec3::Zero();
+  Orientation orientation{1, 0, 0, 0};
+};
+
+/// Stands for the sphere of an entry that only fills up its group.
+inline constexpr std::uint32_t no_sphere_index = 0xffffffff;
+
+/// A pair by which it is found again: bodies (grains, then `Partner`s), periods by which the
+/// second's image is away, spheres. Spheres of plates are numbered by their places in the grid.
+struct PairKey {
+  std::uint32_t first, second;
+  std::int32_t shift[2];
+  std::uint32_t a, b;
+};
+bool operator<(const PairKey&, const PairKey&);
+bool operator==(const PairKey&, const PairKey&);
+
+/// A pair whose past matters.
+struct PairHistory {
+  PairKey key;
+  Vec3 shear = Vec3::Zero();  // m
+  bool bonded = false;
+  bool kept = false;  // in the list however far apart the spheres are
+};
+
+/// Groups ordered by bodies, pairs within them by spheres: the order does not tell how they were
+/// found.
+struct PairList {
+  std::vector<PairGroup> groups;
+  AlignedVector<double> ax, ay, az, bx, by, bz, ux, uy, uz;  // see GrainsView
+  AlignedVector<std::uint8_t> bonded;
+  std::vector<std::uint32_t> a, b;
+
+  std::size_t size() const { return a.size(); }
+  bool is_pair(std::size_t p) const { return a[p] != no_sphere_index; }
+  PairKey key(const PairGroup& g, std::size_t p) const {
+    return {g.first, g.second, {g.shift[0], g.shift[1]}, a[p], b[p]};
+  }
+  Vec3 shear(std::size_t p) const { return {ux[p], uy[p], uz[p]}; }
+  /// Those pairs that are bonded, which stay listed, or sheared; in order.
+  std::vector<PairHistory> histories() const;
+  /// All pairs, each to be listed again.
+  std::vector<PairHistory> all() const;
+  std::size_t bytes() const;
+};
+
+/// What the search needs to know.
+struct PairSearch {
+  const SphereBodies& spheres;
+  std::uint32_t grains;
+  double radius, skin;  // m
+  bool periodic;
+  Cone cone;
+  std::size_t most_pairs;  // that memory is taken for
+};
+
+/// The gap below which pairs are listed, as a share of the spheres' radius: twice as far as a
+/// sphere may move before the list is made anew.
+inline constexpr double skin_per_radius = 0.4;
+
+/// Where the centre of a plate's sphere lies from the plate's origin, m.
+Vec3 plate_sphere(std::uint32_t number, double radius);
+
+/// All pairs nearer than the skin, ordered. Throws SimulationError where they are more than
+/// `most_pairs`, or the period too short.
+std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&,
+                                const GrainsBoundary&);
+
+/// A list of these pairs, and of those to be kept, however far apart.
+PairList make_list(const PairSearch&, const std::vector<PairKey>&, const std::vector<PairHistory>&);
+
+/// For each grain, in the order of the list: twice the group, and one more where it is second.
+struct BodyGroups {
+  std::vector<std::uint32_t> begin, entry;
+};
+BodyGroups groups_of_bodies(const PairList&, std::size_t grains);
+
+}  // namespace snowshed

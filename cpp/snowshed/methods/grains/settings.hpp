@@ -1,0 +1,30 @@
+// What a scene may choose of the discrete elements of snow.
+#pragma once
+
+namespace snowshed {
+
+/// The four vertical sides of a sample: rigid walls without friction, or periodic in x and y.
+enum class GrainSides { walls, periodic };
+
+/// Settings of the grains: rigid clumps of spheres with bonds that break (Hagenmuller, Chambon and
+/// Naaim 2015, doi:10.5194/tc-9-1969-2015). Its table of parameters is not at hand; the defaults
+/// are of the literature, see docs/grains.md.
+struct GrainsSettings {
+  double elastic_modulus = 1e9;   // Pa, E of the contact law
+  double stiffness_ratio = 0.3;   // shear over normal stiffness of a contact
+  double tensile_strength = 1e6;  // Pa, of bonds
+  double shear_strength = 1e6;    // Pa, of bonds
+  double friction = 0.2;        // Coulomb coefficient between grains, and between grains and plates
+  double density = 917;         // kg/m3, of ice
+  double density_scaling = 1;   // of the grains' inertia, to take longer steps; not of their weight
+  double damping = 0.2;         // local, of unbalanced forces
+  double courant_factor = 0.3;  // time step over the root of mass over stiffness
+  GrainSides sides = GrainSides::walls;
+  bool bonded_plates = false;  // the snow is frozen to the plates
+  int threads = 0;             // 0: all
+
+  /// The size of the smallest thing the method resolves, m; 0 where the sample's file decides.
+  double resolution() const { return 0; }
+};
+
+}  // namespace snowshed

@@ -1,0 +1,293 @@
+#include "snowshed/methods/grains/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/methods/grains/check_options.hpp"
+#include "snowshed/methods/grains/forces.hpp"
+#include "snowshed/methods/grains/listing.hpp"
+#include "snowshed/methods/grains/solver_impl.hpp"
+#include "snowshed/methods/grains/time_step.hpp"
+
+namespace snowshed {
+
+std::unique_ptr<GrainsMethod> make_grains(GrainsOptions options) {
+  check_grains(options);
+  return std::make_unique<GrainsSolver>(std::move(options));
+}
+
+namespace {
+
+/// The state without grains.
+GrainsState empty_state(const GrainsModel& model) {
+  GrainsState state;
+  state.boundary = initial_boundary(model.loaded());
+  begin_stage(model.loading, model.loaded(), state.loading, state.boundary);
+  state.listed_boundary = state.boundary;
+  return state;
+}
+
+/// The work that velocities and a force do while it speeds a grain up, for half a step.
+double work_of(const Vec3& force, const Vec3& before, const Vec3& after, double half_step) {
+  return 0.5 * half_step * force.dot(before + after);
+}
+
+/// Lets force and torque act for half a step; returns what damping takes, J.
+double push(const GrainConstants& grain, GrainBody& body, double half_step) {
+  const Mat3 rotation = body.orientation.toRotationMatrix();
+  const auto spin = [&] { return angular_velocity(rotation, body.spin_momentum, grain.inertia); };
+  const Vec3 velocity = body.velocity, turning = spin();
+  body.velocity += (half_step / grain.inertial_mass) * body.force;
+  body.spin_momentum += half_step * body.torque;
+  return -work_of(body.damping, velocity, body.velocity, half_step) -
+         work_of(body.spin_damping, turning, spin(), half_step);
+}
+
+constexpr std::ptrdiff_t bodies_in_push = 32;
+
+/// What the grains do to their surroundings does work on them, for half a step.
+double boundary_work(const GrainsBoundary& b, double half_step) {
+  double power = b.cone_force.dot(b.tip_velocity);
+  for (int p = 0; p < 2; ++p) power += b.plate_force[p].dot(b.plate_velocity[p]);
+  for (int s = 0; s < 4; ++s) power += (s % 2 == 0 ? -1 : 1) * b.side_force[s] * b.side_velocity[s];
+  return -half_step * power;
+}
+
+}  // namespace
+
+GrainsSolver::GrainsSolver(GrainsOptions o) : model_(std::move(o)), state_(empty_state(model_)) {}
+
+void GrainsSolver::require_sound() const {
+  if (broken_) throw SimulationError("the grains have failed; load a checkpoint to go on");
+}
+
+void GrainsSolver::require_grains() const {
+  if (state_.bodies.empty()) throw SimulationError("there are no grains");
+}
+
+std::vector<ParticleBatch> GrainsSolver::seed() const {
+  ParticleBatch batch;
+  for (const GrainConstants& grain : model_.grains) {
+    batch.positions.push_back(grain.initial_position);
+    batch.masses.push_back(model_.settings.density * grain.volume);
+  }
+  return {std::move(batch)};
+}
+
+/// A fresh sample with velocities and events of the batches, which must be those of `seed`.
+GrainsState GrainsSolver::with_batches(const std::vector<ParticleBatch>& batches) const {
+  GrainsState next = empty_state(model_);
+  std::size_t i = 0;
+  for (const ParticleBatch& batch : batches) {
+    check_batch(batch, 1);
+    for (std::size_t k = 0; k < batch.positions.size(); ++k, ++i) {
+      if (i >= model_.grains.size() || batch.positions[k] != model_.grains[i].initial_position ||
+          batch.mass_of(k) != model_.settings.density * model_.grains[i].volume)
+        throw InputError("particles", "only the grains of the sample can be added, as they are");
+      GrainBody body;
+      body.position = model_.grains[i].initial_position;
+      body.orientation = model_.grains[i].initial_orientation;
+      body.velocity = batch.velocity;
+      next.bodies.push_back(body);
+      next.events.push_back(std::uint16_t(batch.event));
+    }
+  }
+  if (i != model_.grains.size())
+    throw InputError("particles", std::to_string(i) + " grains given; the sample has " +
+                                      std::to_string(model_.grains.size()));
+  return next;
+}
+
+/// Takes over a fresh sample: lists, forces, energies.
+void GrainsSolver::accept(GrainsState next, GrainsWork work) {
+  std::vector<GrainPose> poses = poses_of(next.bodies);
+  const std::vector<PairHistory> bonds = initial_bonds(model_, poses, next.boundary);
+  Listing listing = listing_of(model_, std::move(poses), next.boundary, bonds);
+  next.bonds = std::int64_t(bonds.size());
+  next.pairs = std::move(listing.pairs);
+  next.listed = std::move(listing.poses);
+  next.listed_boundary = next.boundary;
+  work.groups_of = std::move(listing.groups_of);
+  work.results = std::move(listing.results);
+  work.longest_step = listing.longest_step;
+  work.next = next.bodies;
+  work.frames.resize(next.bodies.size() + 2);
+  work.damped.resize(next.bodies.size());
+  evaluate_forces(model_, next, work, 0.0);
+  next.dt = next.counters.smallest_dt = choose_step(model_, next, work.longest_step);
+  std::vector<std::uint32_t> order(next.bodies.size());
+  std::iota(order.begin(), order.end(), 0u);
+  if (model_.keeps_energy) {
+    GrainsEnergy before = state_.energy, after = next.energy;
+    store_energy(model_, state_, before);
+    store_energy(model_, next, after);
+    next.energy.added += after.stored() - before.stored();
+  }
+  state_ = std::move(next);
+  work_ = std::move(work);
+  order_ = std::move(order);
+}
+
+void GrainsSolver::add(const std::vector<ParticleBatch>& batches) {
+  require_sound();
+  if (std::all_of(batches.begin(), batches.end(),
+                  [](const ParticleBatch& b) { return b.positions.empty(); }))
+    return;
+  if (!state_.bodies.empty()) throw InputError("particles", "the grains of the sample are there");
+  GrainsState next = with_batches(batches);
+  next.next_id = std::uint32_t(next.bodies.size());
+  accept(std::move(next), {});
+}
+
+void GrainsSolver::replace(const std::vector<ParticleBatch>& batches) {
+  require_sound();
+  GrainsState next = with_batches(batches);
+  next.time = state_.time;
+  next.counters = state_.counters;
+  next.energy = state_.energy;
+  next.first_id = state_.next_id;
+  next.next_id = state_.next_id + std::uint32_t(next.bodies.size());
+  accept(std::move(next), {});
+}
+
+void GrainsSolver::add_velocity(const std::vector<Vec3>& changes) {
+  require_sound();
+  if (changes.size() != size())
+    throw InputError("velocity_changes", std::to_string(changes.size()) + " given for " +
+                                             std::to_string(size()) + " grains");
+  double added = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (!changes[i].allFinite()) throw InputError("velocity_changes", "not finite");
+    const Vec3& v = state_.bodies[i].velocity;
+    added += 0.5 * model_.grains[i].inertial_mass * changes[i].dot(2 * v + changes[i]);
+  }
+  if (!std::isfinite(added)) throw InputError("velocity_changes", "too large");
+  for (std::size_t i = 0; i < size(); ++i) state_.bodies[i].velocity += changes[i];
+  state_.energy.added += added;
+}
+
+void GrainsSolver::settle(const std::vector<double>&, const std::vector<double>&) {
+  throw InputError("settling",
+                   "grains move as their forces say; they do not settle between events");
+}
+
+/// Half a step's forces, then a step's motion, into the workspace.
+void GrainsSolver::drift(double dt) {
+  parallel_pieces(std::ptrdiff_t(size()), model_.threads, bodies_in_push,
+                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+                      GrainBody& body = work_.next[i] = state_.bodies[i];
+                      work_.damped[i] = push(model_.grains[i], body, 0.5 * dt);
+                      body.position += dt * body.velocity;
+                      rotate_freely(body.orientation, body.spin_momentum, model_.grains[i].inertia,
+                                    dt);
+                    }
+                  });
+}
+
+/// Throws where a grain has gone astray.
+void GrainsSolver::check_places() const {
+  const double farthest = 5e4 * model_.radius + 10 * model_.box.maxCoeff();
+  for (std::size_t i = 0; i < work_.next.size(); ++i) {
+    const GrainBody& body = work_.next[i];
+    if (!(body.position.cwiseAbs().maxCoeff() < farthest) || !body.orientation.coeffs().allFinite())
+      throw SimulationError("grain " + std::to_string(state_.first_id + i) +
+                            " is lost: it has left the surroundings of the sample");
+  }
+}
+
+/// Whether a sphere may have moved more than half the skin since pairs were looked for.
+bool GrainsSolver::must_relist(const GrainsBoundary& moved) const {
+  const GrainsBoundary& then = state_.listed_boundary;
+  if (moved.has_top != then.has_top || moved.has_cone != then.has_cone) return true;
+  const double most = 0.5 * skin_per_radius * model_.radius;
+  if (!(moved.travel_since(then) < most)) return true;
+  for (std::size_t i = 0; i < work_.next.size(); ++i) {
+    const GrainPose& pose = state_.listed[i];
+    const GrainBody& body = work_.next[i];
+    // The chord of the rotation between the two: 2 sin(angle / 2).
+    const double chord = 2 * (pose.orientation.conjugate() * body.orientation).vec().norm();
+    if (!((body.position - pose.position).norm() + chord * model_.grains[i].reach < most))
+      return true;
+  }
+  return false;
+}
+
+/// All or nothing: the list for the poses in the workspace.
+void GrainsSolver::relist(const GrainsBoundary& moved) {
+  Listing listing = listing_of(model_, poses_of(work_.next), moved, state_.pairs.histories());
+  double gone = 0;  // J, with a plate that is taken away
+  if (model_.keeps_energy && moved.has_top != state_.listed_boundary.has_top) {
+    GrainsEnergy e;
+    store_energy(model_, state_, e);
+    gone = e.normal + e.shear;
+    std::swap(state_.pairs, listing.pairs);
+    store_energy(model_, state_, e);
+    std::swap(state_.pairs, listing.pairs);
+    gone -= e.normal + e.shear;
+  }
+  state_.energy.added -= gone;
+  state_.pairs = std::move(listing.pairs);
+  state_.listed = std::move(listing.poses);
+  state_.listed_boundary = moved;
+  work_.groups_of = std::move(listing.groups_of);
+  work_.results = std::move(listing.results);
+  work_.longest_step = listing.longest_step;
+  ++state_.counters.sorts;
+}
+
+void GrainsSolver::step() {
+  require_sound();
+  require_grains();
+  const double dt = choose_step(model_, state_, work_.longest_step);
+  GrainsBoundary moved = state_.boundary;
+  set_velocities(model_.loading, model_.loaded(), state_.loading, dt, moved);
+  moved.move(dt);
+  drift(dt);
+  check_places();
+  if (must_relist(moved)) relist(moved);
+  end_step(moved, dt);
+}
+
+/// From here on nothing throws but for forces that are not finite.
+void GrainsSolver::end_step(const GrainsBoundary& moved, double dt) {
+  state_.energy.boundary += boundary_work(moved, 0.5 * dt);  // with the forces of before
+  std::swap(state_.bodies, work_.next);
+  state_.boundary = moved;
+  evaluate_forces(model_, state_, work_, dt);
+  parallel_pieces(std::ptrdiff_t(size()), model_.threads, bodies_in_push,
+                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
+                      work_.damped[i] += push(model_.grains[i], state_.bodies[i], 0.5 * dt);
+                  });
+  state_.energy.boundary += boundary_work(state_.boundary, 0.5 * dt);
+  bool sound = true;
+  for (std::size_t i = 0; i < size(); ++i) {
+    state_.energy.damping += work_.damped[i];
+    const GrainBody& body = state_.bodies[i];
+    sound = sound && std::isfinite(body.velocity.squaredNorm() + body.spin_momentum.squaredNorm());
+  }
+  const GrainsBoundary& b = state_.boundary;
+  LoadingGauge gauge;
+  gauge.top_stress = b.plate_force[1].z() / model_.area();
+  const double sides[2] = {model_.box.y() * model_.box.z(), model_.box.x() * model_.box.z()};
+  gauge.mean_stress = gauge.top_stress / 3;
+  for (int s = 0; s < 4; ++s) gauge.mean_stress += b.side_force[s] / sides[s / 2] / 6;
+  gauge.kinetic = kinetic_energy(model_, state_);
+  count_step(model_.loading, model_.loaded(), gauge, dt, state_.loading, state_.boundary);
+  state_.time += dt;
+  state_.dt = dt;
+  StepCounters& c = state_.counters;
+  ++c.steps;
+  c.particle_updates += std::int64_t(size());
+  c.smallest_dt = std::min(c.smallest_dt, dt);
+  if (sound) return;
+  broken_ = true;
+  throw SimulationError("the forces on a grain are not finite");
+}
+
+}  // namespace snowshed

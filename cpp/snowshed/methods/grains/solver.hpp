@@ -1,0 +1,67 @@
+// Grains: discrete elements of snow, rigid clumps of spheres with bonds that break (Hagenmuller,
+// Chambon and Naaim 2015, doi:10.5194/tc-9-1969-2015).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "snowshed/core/vec.hpp"
+#include "snowshed/methods/grains/clumps.hpp"
+#include "snowshed/methods/grains/loading.hpp"
+#include "snowshed/methods/grains/settings.hpp"
+#include "snowshed/methods/method.hpp"
+
+namespace snowshed {
+
+struct GrainsOptions {
+  GrainsSettings settings;
+  double gravity = 0;  // m/s2, along -z
+  GrainSample sample;  // clumps, bonds between them, the box they lie in
+  std::vector<LoadingStage> loading;
+  Cone cone;
+  bool energy = false;  // whether to keep the energy balance
+};
+
+/// What a loading test measures, now. Stresses are positive in compression, over the initial area.
+struct LoadingMeasures {
+  int stage = 0;            // that is being loaded; the number of stages when all are done
+  double strain = 0;        // of this stage: displacement over the initial height
+  double axial_strain = 0;  // shortening over the initial height, since the beginning
+  double shear_strain = 0;
+  double top_stress = 0, bottom_stress = 0;  // Pa, along z
+  double shear_stress = 0;                   // Pa, of the top plate along x
+  double side_stress = 0;                    // Pa, mean over the four sides
+  double cone_force = 0;                     // N
+  std::int64_t bonds = 0;                    // pairs of spheres still bonded
+  std::int64_t broken_in_tension = 0, broken_in_shear = 0;
+  std::int64_t contacts = 0;  // pairs of spheres that touch
+  double coordination = 0;    // mean number of grains that a grain touches
+  double solid_fraction = 0;  // ice over the volume between the plates
+};
+
+/// A contact between two grains: the sum over its pairs of spheres.
+struct GrainContact {
+  std::uint32_t first, second;  // grains
+  Vec3 point, force;            // m; N, on the first
+  bool bonded;
+};
+
+/// Grains as a method, and what only they have. Its particles are the grains.
+class GrainsMethod : public Method {
+ public:
+  /// The grains of the sample, at rest; `add` takes these and no other.
+  virtual std::vector<ParticleBatch> seed() const = 0;
+  virtual std::size_t count_spheres() const = 0;
+  virtual LoadingMeasures measures() const = 0;
+  virtual int stage() const = 0;  ///< measures().stage, at once
+  virtual std::vector<GrainContact> grain_contacts() const = 0;  ///< ordered by grains
+  virtual std::vector<Vec3> sphere_positions() const = 0;        ///< m, in the order of the sample
+  virtual std::vector<std::uint32_t> sphere_grains() const = 0;
+};
+
+/// Throws InputError where settings, sample and loading do not fit each other.
+std::unique_ptr<GrainsMethod> make_grains(GrainsOptions);
+
+}  // namespace snowshed

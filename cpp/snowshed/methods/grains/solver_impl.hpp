@@ -1,0 +1,77 @@
+// The solver of grains: what it holds, and how its parts go together.
+#pragma once
+
+#include "snowshed/methods/grains/state.hpp"
+
+namespace snowshed {
+
+class GrainsSolver final : public GrainsMethod {
+ public:
+  explicit GrainsSolver(GrainsOptions);
+
+  using Method::add;
+  void add(const std::vector<ParticleBatch>&) override;
+  void replace(const std::vector<ParticleBatch>&) override;
+  void add_velocity(const std::vector<Vec3>&) override;
+  void settle(const std::vector<double>& drops, const std::vector<double>& plastic) override;
+
+  void step() override;
+  bool at_safe_point() const override { return true; }
+  std::optional<bool> at_rest() const override {
+    return state_.loading.stage >= int(model_.loading.size());
+  }
+  double time() const override { return state_.time; }
+  double time_step() const override { return state_.dt; }
+  const StepCounters& counters() const override { return state_.counters; }
+
+  std::vector<FieldInfo> fields() const override;
+  FieldView field(const std::string&) const override;
+  const std::vector<std::uint32_t>& order_by_id() const override { return order_; }
+
+  std::size_t size() const override { return state_.bodies.size(); }
+  ParticleState state() const override;
+  MotionSummary motion(double speed) const override;
+  EnergyBalance energy() const override { return {}; }
+  NamedEnergies energy_table() const override;
+  std::size_t bytes() const override;
+
+  void save(BinaryWriter&) const override;
+  void load(const BinaryReader&) override;
+  void check(const BinaryReader&) const override;
+
+  std::vector<ParticleBatch> seed() const override;
+  std::size_t count_spheres() const override { return model_.spheres.offsets.size(); }
+  LoadingMeasures measures() const override;
+  int stage() const override { return state_.loading.stage; }
+  std::vector<GrainContact> grain_contacts() const override;
+  std::vector<Vec3> sphere_positions() const override;
+  std::vector<std::uint32_t> sphere_grains() const override { return model_.spheres.grain; }
+
+ private:
+  /// What an archive holds.
+  struct Restored {
+    GrainsState state;
+    GrainsWork work;
+  };
+  Restored restored(const BinaryReader&) const;
+
+  GrainsState with_batches(const std::vector<ParticleBatch>&) const;
+  void accept(GrainsState, GrainsWork);
+  void require_sound() const;
+  void require_grains() const;
+  void drift(double dt);
+  void check_places() const;
+  bool must_relist(const GrainsBoundary&) const;
+  void relist(const GrainsBoundary&);
+  void end_step(const GrainsBoundary& moved, double dt);
+  template <class Visit>
+  void visit_fields(Visit) const;
+
+  GrainsModel model_;
+  GrainsState state_;
+  GrainsWork work_;
+  bool broken_ = false;  // a step has ended in a state that is not sound
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,84 @@
+// What grains are made of: a model that never changes, a state that steps change, and a workspace
+// that may be thrown away.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/methods/grains/bond_law.hpp"
+#include "snowshed/methods/grains/boundary.hpp"
+#include "snowshed/methods/grains/energy.hpp"
+#include "snowshed/methods/grains/loading_progress.hpp"
+#include "snowshed/methods/grains/pair_list.hpp"
+#include "snowshed/methods/grains/rotor.hpp"
+#include "snowshed/methods/grains/solver.hpp"
+
+namespace snowshed {
+
+/// What moves of a grain, and what acts on it.
+struct GrainBody {
+  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();  // m, m/s, of the centre of mass
+  Orientation orientation{1, 0, 0, 0};
+  Vec3 spin_momentum = Vec3::Zero();                         // kg m2/s, about the centre, in space
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();          // N, N m; damped
+  Vec3 damping = Vec3::Zero(), spin_damping = Vec3::Zero();  // N, N m; part of the above
+};
+
+/// What a grain is.
+struct GrainConstants {
+  double volume, inertial_mass, weight;  // m3; kg, scaled; N, downward
+  Vec3 inertia;                          // kg m2, principal, scaled
+  double reach;                          // m, of the farthest centre of a sphere
+  Vec3 initial_position;
+  Orientation initial_orientation;
+  std::uint32_t first_sphere, spheres;
+};
+
+struct GrainsModel {
+  explicit GrainsModel(GrainsOptions);
+
+  GrainsSettings settings;
+  double gravity;  // m/s2, along -z
+  std::vector<LoadingStage> loading;
+  Cone cone;
+  bool keeps_energy;
+  int threads;
+  double radius;  // m, of all spheres
+  Vec3 box;       // m
+  std::vector<GrainConstants> grains;
+  SphereBodies spheres;
+  std::vector<BondedPair> bonds;
+  BondLaw law;
+  double solid_volume;  // m3
+
+  double area() const { return box.x() * box.y(); }
+  LoadedSample loaded() const { return {box, radius, law.normal_stiffness}; }
+  bool periodic() const { return settings.sides == GrainSides::periodic; }
+};
+
+struct GrainsState {
+  std::vector<GrainBody> bodies;  // empty before the grains are added
+  std::vector<std::uint16_t> events;
+  std::uint32_t first_id = 0, next_id = 0;
+  GrainsBoundary boundary;
+  LoadingProgress loading;
+  PairList pairs;
+  std::vector<GrainPose> listed;  // of the grains as the pairs were looked for
+  GrainsBoundary listed_boundary;
+  double time = 0, dt = 0;  // s
+  std::int64_t bonds = 0, broken_in_tension = 0, broken_in_shear = 0;
+  StepCounters counters;
+  GrainsEnergy energy;  // its sums over steps
+};
+
+struct GrainsWork {
+  std::vector<GrainBody> next;      // where grains will be at the end of a step
+  std::vector<BodyFrame> frames;    // of grains and plates
+  std::vector<GroupForce> results;  // of the groups of pairs
+  BodyGroups groups_of;             // of each grain
+  double longest_step = 0;          // s, for the pairs that are listed
+  std::vector<double> damped;       // J, of each grain in a step
+};
+
+}  // namespace snowshed

@@ -1,0 +1,24 @@
+// What a loading test of grains will cost, by its time and its spheres.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/methods/grains/solver.hpp"
+#include "snowshed/run/cost_estimate.hpp"
+
+namespace snowshed {
+
+/// The time that the stages take on a sample of that height (m), if none ends before its strain, s;
+/// to hold takes none.
+double loading_time(const std::vector<LoadingStage>&, double height);
+
+/// Throws InputError where that is longer than the scene's events may be.
+void check_loading_time(const Scene&, double height);
+
+/// The part of the loading that is done: strain by strain, each weighted with the time it takes.
+double loading_progress(const std::vector<LoadingStage>&, const LoadingMeasures&);
+
+/// The first time step and the memory are those of `grains`, which hold the sample.
+CostEstimate estimate_grains_cost(const Scene&, const GrainSample&, const Method& grains);
+
+}  // namespace snowshed

@@ -1,0 +1,49 @@
+// What a loading test measures, as a table that grows while the test runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/methods/grains/solver.hpp"
+
+namespace snowshed {
+
+class BinaryReader;
+class BinaryWriter;
+
+/// Rows of instantaneous values at the beginning of the test, at `points` strains of each stage,
+/// and where a stage ends. The strains are (k / points)^2 of that at which the stage ends: a
+/// brittle sample is elastic for a thousandth of it only. The rows depend on the steps alone:
+/// neither on the number of threads nor on whether the run was resumed.
+class LoadingCurve {
+ public:
+  static constexpr int points = 300;
+
+  /// For the stages of a sample of that initial height (m); with the energies, if any are named.
+  LoadingCurve(std::vector<LoadingStage>, double height, const NamedEnergies& energies);
+
+  /// Adds the row that is due, if one is. To be called at the beginning and after each step.
+  void record(const GrainsMethod&);
+
+  const std::vector<std::string>& columns() const { return columns_; }
+  const std::vector<double>& values() const { return values_; }  ///< row by row
+
+  void save(BinaryWriter&) const;
+  /// Throws InputError where the rows are not those of such stages.
+  void load(const BinaryReader&);
+
+ private:
+  double next_time() const;
+  void add_row(const GrainsMethod&);
+
+  std::vector<LoadingStage> stages_;
+  double height_;
+  bool energy_;
+  std::vector<std::string> columns_;
+  std::vector<double> values_;
+  int stage_ = 0;         // that is being loaded
+  double begun_ = 0;      // s, when it began
+  int points_done_ = -1;  // of it; before the beginning of the test -1
+};
+
+}  // namespace snowshed

@@ -1,0 +1,44 @@
+#include "snowshed/scene/build_sample.hpp"
+
+#include <utility>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/memory.hpp"
+#include "snowshed/geometry/readers/npy_io.hpp"
+#include "snowshed/scene/message_format.hpp"
+
+namespace snowshed {
+
+namespace {
+
+/// Throws InputError where the image holds no grain, or its clumps do not fit into memory.
+void check_size(const LabelImage& image) {
+  const SampleSize size = image.labels.empty() ? SampleSize{} : measure_sample(image);
+  if (size.grains == 0)
+    throw InputError("", "no grain in the image: every voxel is 0, which is air");
+  const double available = double(available_memory_bytes());
+  if (double(size.bytes) > available)
+    throw InputError("", "its " + std::to_string(size.spheres) + " spheres need " +
+                             show_rounded(double(size.bytes) / 1e9) +
+                             " GB of memory, of which there are " + show_rounded(available / 1e9) +
+                             "; give a smaller image, or one of larger voxels");
+}
+
+}  // namespace
+
+GrainSample build_sample(const SampleSpec& spec, const std::filesystem::path& base_dir) {
+  const std::filesystem::path file = base_dir / spec.file;
+  NpyLabels array = read_npy_labels(file);
+  LabelImage image;
+  image.size = {array.shape[2], array.shape[1], array.shape[0]};
+  image.voxel_size = spec.voxel_size;
+  image.labels = std::move(array.values);
+  try {
+    check_size(image);
+    return make_sample(image);
+  } catch (const InputError& error) {
+    throw InputError(file.string(), error.what());
+  }
+}
+
+}  // namespace snowshed

@@ -1,0 +1,139 @@
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.hpp"
+#include "methods/grains/grains_testing.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/io/binary_archive.hpp"
+
+namespace snowshed {
+namespace {
+
+class GrainsCheckpoint : public TemporaryFolder {
+ protected:
+  void save(const GrainsMethod& grains) const {
+    BinaryWriter out;
+    grains.save(out);
+    out.save(path("c.bin"));
+  }
+  BinaryReader saved() const { return BinaryReader::load(path("c.bin")); }
+};
+
+GrainsOptions story(GrainSides sides) {
+  GrainsOptions o = grains_of(random_snow(15, 5));
+  o.settings.density_scaling = 1e3;
+  o.settings.damping = 0.2;
+  o.settings.sides = sides;
+  o.energy = true;
+  o.cone = {2e-4, 30};
+  o.loading = {{LoadingKind::compress, 2, 0.05, 0},
+               {LoadingKind::shear, 2, 0.02, 1e5},
+               {LoadingKind::penetrate, 2, 0.1, 0}};
+  return o;
+}
+
+TEST_F(GrainsCheckpoint, resumes_to_the_same_bits) {
+  for (const GrainSides sides : {GrainSides::walls, GrainSides::periodic})
+    for (const double strength : {1e6, 3e8}) {
+      GrainsOptions o = story(sides);
+      o.settings.tensile_strength = o.settings.shear_strength = strength;  // also far bonds
+      const auto whole = filled(o);
+      for (int part = 0; part < 4; ++part) {
+        take_steps(*whole, 57);
+        save(*whole);
+        const auto resumed = make_grains(o);
+        resumed->load(saved());
+        EXPECT_EQ(resumed->measures().contacts, whole->measures().contacts);
+        take_steps(*resumed, 120);
+        const auto same = make_grains(o);
+        same->load(saved());
+        take_steps(*same, 120);
+        take_steps(*whole, 120);
+        ASSERT_EQ(whole->time(), resumed->time());
+        ASSERT_EQ(whole->state().positions, resumed->state().positions);
+        ASSERT_EQ(whole->state().velocities, resumed->state().velocities);
+        ASSERT_EQ(whole->energy_table(), resumed->energy_table());
+        ASSERT_EQ(whole->measures().bonds, resumed->measures().bonds);
+        ASSERT_EQ(whole->measures().stage, resumed->measures().stage);
+        ASSERT_EQ(whole->measures().top_stress, resumed->measures().top_stress);
+      }
+    }
+}
+
+TEST_F(GrainsCheckpoint, without_grains_is_restored) {
+  const GrainsOptions o = story(GrainSides::walls);
+  save(*make_grains(o));
+  const auto other = filled(o);
+  other->load(saved());
+  EXPECT_EQ(other->size(), 0u);
+  other->add(other->seed());
+  take_steps(*other, 3);
+}
+
+TEST_F(GrainsCheckpoint, of_another_sample_is_refused_and_changes_nothing) {
+  save(*filled(story(GrainSides::walls)));
+  GrainsOptions o = story(GrainSides::walls);
+  o.sample = make_sample(random_snow(12, 4));
+  const auto other = filled(o);
+  const ParticleState before = other->state();
+  EXPECT_THROW(other->load(saved()), InputError);
+  EXPECT_EQ(other->state().positions, before.positions);
+  take_steps(*other, 3);
+}
+
+/// Copies an archive with one number of a section changed.
+template <class T>
+void forge(const BinaryReader& in, const std::string& section, std::size_t at, T value,
+           const std::filesystem::path& to) {
+  BinaryWriter out;
+  const auto copy = [&](const char* name, auto zero) {
+    auto values = in.get<decltype(zero)>(name);
+    if constexpr (std::is_same_v<decltype(zero), T>)
+      if (section == name) values.at(at) = value;
+    out.add(name, std::move(values));
+  };
+  for (const char* name : {"grains/bodies", "grains/listed", "pairs/shear", "boundary/now",
+                           "boundary/listed", "clock"})
+    copy(name, double());
+  copy("grains/event", std::uint16_t());
+  copy("pairs/keys", std::uint32_t());
+  copy("pairs/shifts", std::int32_t());
+  copy("pairs/bonded", std::uint8_t());
+  copy("counters", std::int64_t());
+  out.save(to);
+}
+
+TEST_F(GrainsCheckpoint, that_is_forged_is_refused) {
+  const GrainsOptions o = story(GrainSides::walls);
+  const auto grains = filled(o);
+  take_steps(*grains, 50);
+  save(*grains);
+  const BinaryReader sound = saved();
+  const double nan = std::nan("");
+  const auto refused = [&](const std::string& section, std::size_t at, auto value) {
+    forge(sound, section, at, value, path("forged.bin"));
+    const auto other = make_grains(o);
+    EXPECT_THROW(other->load(BinaryReader::load(path("forged.bin"))), InputError)
+        << section << " " << at;
+    EXPECT_EQ(other->size(), 0u);
+  };
+  refused("grains/bodies", 0, nan);
+  refused("grains/bodies", 0, 1e9);
+  refused("grains/bodies", 6, 0.1);   // the orientation
+  refused("grains/listed", 0, 1e-5);  // then other pairs are near
+  refused("grains/listed", 3, 0.7);
+  refused("pairs/keys", 0, std::uint32_t(4000000000));
+  refused("pairs/keys", 1, std::uint32_t(4000000000));
+  refused("pairs/keys", 2, std::uint32_t(4000000000));
+  refused("pairs/shifts", 0, std::int32_t(3));
+  refused("pairs/shear", 0, nan);
+  refused("pairs/bonded", 0, std::uint8_t(7));
+  refused("boundary/now", 2, 1e300);
+  refused("boundary/listed", 2, nan);
+  refused("clock", 0, nan);
+  refused("counters", 0, std::int64_t(1) << 60);
+  refused("counters", 4, std::int64_t(1));
+  refused("counters", 9, std::int64_t(99));
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,175 @@
+// Forces of grains in given poses, against closed forms.
+#include "snowshed/methods/grains/forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include "methods/grains/grains_testing.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double diameter = test_voxel, face = diameter * diameter;
+
+/// Two blocks of n x n x 2 voxels, one upon the other, in a wide box.
+GrainsOptions bonded_blocks(std::size_t n) {
+  return grains_of(image_of(n + 4, n + 4, 8, [n](std::size_t i, std::size_t j, std::size_t k) {
+    if (i < 2 || j < 2 || i >= n + 2 || j >= n + 2 || k < 2 || k >= 6) return 0;
+    return k < 4 ? 1 : 2;
+  }));
+}
+
+double normal_stiffness(const GrainsOptions& o) {
+  return o.settings.elastic_modulus * 0.5 * diameter;
+}
+
+TEST(GrainForces, of_a_stretched_bond_break_at_the_strength_times_its_area) {
+  for (const std::size_t n : {1, 3, 5}) {
+    const GrainsOptions o = bonded_blocks(n);
+    const double limit = o.settings.tensile_strength * face / normal_stiffness(o);
+    const double load = double(n * n) * face * o.settings.tensile_strength;
+    PosedGrains grains(o);
+    grains.state.bodies[1].position.z() += limit * (1 - 1e-10);
+    grains.evaluate();
+    EXPECT_NEAR(grains.state.bodies[0].force.z() / load, 1, 2e-10);
+    EXPECT_NEAR(grains.state.bodies[1].force.z() / load, -1, 2e-10);
+    EXPECT_EQ(grains.state.bonds, std::int64_t(n * n));
+    grains.state.bodies[1].position.z() += limit * 2e-10;
+    grains.evaluate();
+    EXPECT_EQ(grains.state.broken_in_tension, std::int64_t(n * n));
+    EXPECT_EQ(grains.state.bonds, 0);
+    EXPECT_EQ(grains.state.bodies[0].force, Vec3::Zero());
+    grains.state.bodies[1].position.z() -= 0.5 * limit;
+    grains.evaluate();
+    EXPECT_EQ(grains.state.bodies[0].force, Vec3::Zero()) << "it is lost for good";
+  }
+}
+
+TEST(GrainForces, of_a_compressed_contact_grow_with_the_overlap) {
+  const GrainsOptions o = bonded_blocks(3);
+  PosedGrains grains(o);
+  grains.state.bodies[1].position.z() -= 0.01 * diameter;
+  grains.evaluate();
+  EXPECT_NEAR(grains.state.bodies[1].force.z() / (9 * normal_stiffness(o) * 0.01 * diameter), 1,
+              1e-10);
+}
+
+TEST(GrainForces, of_a_bent_bond_begin_to_break_at_the_moment_of_its_outer_pairs) {
+  for (const std::size_t n : {2, 4, 7}) {
+    GrainsOptions o = bonded_blocks(n);
+    o.settings.tensile_strength = 20;  // Pa: angles so small that the geometry stays linear
+    const double side = double(n) * diameter;
+    const double moment =
+        double(n + 1) / double(n) * o.settings.tensile_strength * side * side * side / 6;
+    const double limit = o.settings.tensile_strength * face / normal_stiffness(o);
+    const double outer = 0.5 * double(n - 1) * diameter;
+    for (const bool beyond : {false, true}) {
+      PosedGrains grains(o);
+      GrainBody& upper = grains.state.bodies[1];
+      const Vec3 hinge = upper.position - Vec3(0, 0, diameter);  // the middle of the bond
+      const double angle = limit / outer * (beyond ? 1 + 1e-5 : 1 - 1e-5);
+      const Orientation turn(Eigen::AngleAxisd(angle, Vec3::UnitX()));
+      upper.position = hinge + turn * Vec3(upper.position - hinge);
+      upper.orientation = turn * upper.orientation;
+      grains.evaluate();
+      const Vec3& lower = grains.state.bodies[0].torque;
+      if (!beyond) {
+        EXPECT_NEAR(lower.x() / moment, 1, 3e-5);
+        EXPECT_EQ(grains.state.bonds, std::int64_t(n * n));
+      } else {
+        EXPECT_EQ(grains.state.broken_in_tension, std::int64_t(n)) << "one row";
+      }
+    }
+  }
+}
+
+TEST(GrainForces, of_a_sheared_bond_break_at_the_strength_times_its_area) {
+  for (const std::size_t n : {1, 4}) {
+    GrainsOptions o = bonded_blocks(n);
+    o.settings.shear_strength = 3e5;
+    const double limit =
+        o.settings.shear_strength * face / (o.settings.stiffness_ratio * normal_stiffness(o));
+    const double load = double(n * n) * face * o.settings.shear_strength;
+    for (const bool beyond : {false, true}) {
+      PosedGrains grains(o);
+      grains.state.bodies[1].velocity.x() = limit * (beyond ? 1 + 1e-10 : 1 - 1e-10);
+      grains.evaluate(1.0);
+      EXPECT_EQ(grains.state.broken_in_shear, beyond ? std::int64_t(n * n) : 0);
+      if (beyond)
+        EXPECT_EQ(grains.state.bodies[0].force, Vec3::Zero()) << "nothing presses, no friction";
+      else
+        EXPECT_NEAR(grains.state.bodies[0].force.x() / load, 1, 2e-10);
+    }
+  }
+}
+
+TEST(GrainForces, of_shear_under_pressure_are_raised_by_friction_and_fall_to_it) {
+  GrainsOptions o = bonded_blocks(3);
+  o.settings.friction = 0.4;
+  const double overlap = 1e-3 * diameter, push = normal_stiffness(o) * overlap;
+  const double shear_limit = o.settings.shear_strength * face + 0.4 * push;
+  const double reach = shear_limit / (o.settings.stiffness_ratio * normal_stiffness(o));
+  PosedGrains grains(o);
+  grains.state.bodies[1].position.z() -= overlap;
+  grains.state.bodies[1].velocity.x() = reach * (1 - 1e-9);
+  grains.evaluate(1.0);
+  EXPECT_EQ(grains.state.bonds, 9);
+  EXPECT_NEAR(grains.state.bodies[0].force.x() / (9 * shear_limit), 1, 2e-9);
+  grains.state.bodies[1].velocity.x() = reach * 2e-9;
+  grains.evaluate(1.0);
+  EXPECT_EQ(grains.state.broken_in_shear, 9);
+  EXPECT_NEAR(grains.state.bodies[0].force.x() / (9 * 0.4 * push), 1, 1e-10);
+}
+
+TEST(GrainForces, obey_newtons_third_law_and_balance_their_moments) {
+  PosedGrains grains(bonded_blocks(3));
+  GrainBody &a = grains.state.bodies[0], &b = grains.state.bodies[1];
+  b.position += Vec3(2e-8, -3e-8, 1e-8);
+  b.orientation = Orientation(Eigen::AngleAxisd(1e-4, Vec3(1, 2, 3).normalized())) * b.orientation;
+  b.velocity = Vec3(1e-8, 2e-8, 0);
+  grains.evaluate(1.0);
+  EXPECT_GT(a.force.norm(), 0);
+  EXPECT_LT((a.force + b.force).norm(), 1e-13 * a.force.norm());
+  const Vec3 moment = a.torque + b.torque + a.position.cross(a.force) + b.position.cross(b.force);
+  EXPECT_LT(moment.norm(), 1e-12 * a.torque.norm());
+}
+
+TEST(GrainForces, of_shear_turn_with_the_pair) {
+  const GrainsOptions o = bonded_blocks(2);
+  PosedGrains grains(o);
+  grains.state.bodies[1].velocity.x() = 1e-9;
+  grains.evaluate(1.0);
+  const double before = grains.state.bodies[0].force.x();
+  // Both turn together, in small steps, by a right angle about z: the force follows.
+  const int steps = 2000;
+  const double angle = 0.5 * 3.14159265358979323846 / steps;
+  for (GrainBody& body : grains.state.bodies) body.velocity.setZero();
+  for (int i = 0; i < steps; ++i) {
+    for (std::size_t g = 0; g < 2; ++g) {
+      GrainBody& body = grains.state.bodies[g];
+      body.orientation = Orientation(Eigen::AngleAxisd(angle, Vec3::UnitZ())) * body.orientation;
+      const Vec3 l = body.orientation.conjugate() * Vec3(0, 0, angle);
+      body.spin_momentum = body.orientation * Vec3(l.cwiseProduct(grains.model.grains[g].inertia));
+    }
+    grains.evaluate(1.0);
+  }
+  EXPECT_NEAR(grains.state.bodies[0].force.y() / before, 1, 1e-3);
+  EXPECT_NEAR(grains.state.bodies[0].force.x() / before, 0, 1e-3);
+}
+
+TEST(GrainForces, of_plates_and_walls_are_those_of_spheres_of_the_same_size) {
+  GrainsOptions o = grains_of(image_of(3, 3, 3, [](auto, auto, auto) { return 1; }));
+  PosedGrains grains(o);
+  grains.evaluate();
+  EXPECT_LT(grains.state.bodies[0].force.norm(), 1e-12);  // it fits exactly
+  const double push = 9 * normal_stiffness(o) * 1e-8;
+  grains.state.boundary.plate[1].z() -= 1e-8;
+  grains.state.boundary.side[0] += 1e-8;
+  grains.evaluate();
+  EXPECT_NEAR(grains.state.bodies[0].force.z() / push, -1, 1e-6);
+  EXPECT_NEAR(grains.state.bodies[0].force.x() / push, 1, 1e-6);
+  EXPECT_NEAR(grains.state.boundary.plate_force[1].z() / push, 1, 1e-6);
+  EXPECT_NEAR(grains.state.boundary.side_force[0] / push, 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,55 @@
+#include "snowshed/methods/grains/rotor.hpp"
+
+#include <gtest/gtest.h>
+
+namespace snowshed {
+namespace {
+
+const Vec3 moments(1.0, 2.3, 3.1);
+const Vec3 momentum(0.4, 2.0, -0.7);
+
+double energy_of(const Orientation& q) {
+  const Vec3 l = q.conjugate() * momentum;
+  return 0.5 * l.dot(l.cwiseQuotient(moments));
+}
+
+Orientation spun(double dt, int steps) {
+  Orientation q(Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2).normalized());
+  for (int i = 0; i < steps; ++i) rotate_freely(q, momentum, moments, dt);
+  return q;
+}
+
+TEST(Rotor, keeps_the_energy_of_an_asymmetric_body_over_1e5_steps) {
+  Orientation q = spun(0, 1);
+  const double before = energy_of(q);
+  double worst = 0;
+  for (int i = 0; i < 100000; ++i) {
+    rotate_freely(q, momentum, moments, 1e-3);
+    worst = std::max(worst, std::abs(energy_of(q) / before - 1));
+  }
+  EXPECT_LT(worst, 1e-6);
+  EXPECT_NEAR(q.norm(), 1, 1e-14);
+}
+
+TEST(Rotor, is_of_second_order) {
+  const Orientation exact = spun(1.0 / 8192, 16384);
+  const double coarse = exact.angularDistance(spun(1.0 / 32, 64));
+  const double fine = exact.angularDistance(spun(1.0 / 64, 128));
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.05);
+}
+
+TEST(Rotor, goes_back_the_way_it_came) {
+  Orientation q = spun(0.05, 100);
+  for (int i = 0; i < 100; ++i) rotate_freely(q, momentum, moments, -0.05);
+  EXPECT_LT(q.angularDistance(spun(0, 1)), 1e-13);
+}
+
+TEST(Rotor, of_a_ball_turns_about_its_momentum) {
+  Orientation q(1, 0, 0, 0);
+  // One axis at a time is exact where the momentum lies along it.
+  for (int i = 0; i < 10; ++i) rotate_freely(q, Vec3(0, 0, 2), Vec3(4, 4, 4), 0.1);
+  EXPECT_LT(q.angularDistance(Orientation(Eigen::AngleAxisd(0.5, Vec3::UnitZ()))), 1e-14);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,208 @@
+#include "snowshed/methods/grains/solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include "methods/grains/grains_testing.hpp"
+#include "snowshed/core/errors.hpp"
+
+namespace snowshed {
+namespace {
+
+/// One voxel, or a block, in the middle of a wide box.
+LabelImage lonely(std::size_t nx, std::size_t ny, std::size_t nz, std::size_t box = 20) {
+  return image_of(box, box, box, [=](std::size_t i, std::size_t j, std::size_t k) {
+    const std::size_t low = box / 3;
+    const auto in = [low](std::size_t x, std::size_t n) { return x >= low && x < low + n; };
+    return in(i, nx) && in(j, ny) && in(k, nz) ? 1 : 0;
+  });
+}
+
+TEST(Grains, fly_freely_with_constant_energy_and_velocity) {
+  GrainsOptions o = grains_of(lonely(5, 2, 3));
+  o.energy = true;
+  PosedGrains model(o);
+  const auto grains = filled(o);
+  grains->add_velocity({Vec3(1e-3, 2e-3, -1e-3)});
+  const double before = energies_of(*grains).at("kinetic_j");
+  take_steps(*grains, 20000);
+  EXPECT_NEAR(energies_of(*grains).at("kinetic_j") / before, 1, 1e-12);
+  const Vec3 way = grains->state().positions[0] - model.state.bodies[0].position;
+  EXPECT_TRUE(way.isApprox(grains->time() * Vec3(1e-3, 2e-3, -1e-3), 1e-7));
+}
+
+TEST(Grains, fall_as_newton_says) {
+  GrainsOptions o = grains_of(lonely(2, 2, 2));
+  o.gravity = 9.81;
+  o.settings.density_scaling = 1e4;  // of inertia: then weight moves it ten thousand times slower
+  const auto grains = filled(o);
+  take_steps(*grains, 500);
+  EXPECT_NEAR(grains->state().velocities[0].z() / (-9.81e-4 * grains->time()), 1, 1e-10);
+  o.settings.density_scaling = 1;
+  o.settings.damping = 0.3;
+  const auto damped = filled(o);
+  take_steps(*damped, 500);  // local damping takes a share of the weight
+  EXPECT_NEAR(damped->state().velocities[0].z() / (-0.7 * 9.81 * damped->time()), 1, 2e-3);
+}
+
+TEST(Grains, that_collide_keep_momentum_and_energy) {
+  GrainsOptions o = grains_of(image_of(24, 24, 24, [](auto i, auto j, auto k) {
+    const bool first = i >= 6 && i < 9 && j >= 8 && j < 11 && k >= 8 && k < 12;
+    const bool second = i >= 11 && i < 14 && j >= 10 && j < 14 && k >= 9 && k < 11;
+    return first ? 1 : second ? 2 : 0;
+  }));
+  o.settings.friction = 0;
+  o.settings.courant_factor = 0.03;
+  o.energy = true;
+  const auto grains = filled(o);
+  grains->add_velocity({Vec3(1, 0, 0), Vec3(-1, 0, 0)});
+  const auto momentum = [&] {
+    const ParticleState s = grains->state();
+    return Vec3(s.masses[0] * s.velocities[0] + s.masses[1] * s.velocities[1]);
+  };
+  const Vec3 before = momentum();
+  const double kinetic = energies_of(*grains).at("kinetic_j");
+  bool touched = false;
+  while (grains->time() < 8e-5) {
+    grains->step();
+    touched = touched || grains->measures().contacts > 0;
+  }
+  EXPECT_TRUE(touched);
+  EXPECT_LT(grains->state().velocities[0].x(), 0.5);
+  EXPECT_LT((momentum() - before).norm(), 1e-12 * grains->state().masses[0]);
+  EXPECT_NEAR(energies_of(*grains).at("kinetic_j") / kinetic, 1, 1e-3);
+}
+
+/// A voxel that its weight, upward, presses to a flat punch (a cone of 90 degrees).
+struct Slider {
+  explicit Slider(double friction, double speed) : v0(speed), mu(friction) {
+    GrainsOptions o = grains_of(image_of(
+        20, 20, 20, [](auto i, auto j, auto k) { return i == 5 && j == 10 && k == 19 ? 1 : 0; }));
+    o.settings.friction = friction;
+    o.gravity = -g;
+    o.loading = {{LoadingKind::penetrate, 1e-9, 1e-3, 0}};
+    o.cone = {0.01, 90};
+    grains = filled(o);
+    grains->add_velocity({Vec3(speed, 0, 0)});
+  }
+  Vec3 velocity() const { return grains->state().velocities[0]; }
+  double v0, mu, g = 1e4;
+  std::unique_ptr<GrainsMethod> grains;
+};
+
+TEST(Grains, slide_on_a_plane_as_coulomb_says) {
+  Slider s(0.2, 0.1);
+  const double until_it_rolls = s.v0 / (2.5 * s.mu * s.g);
+  while (s.grains->time() < 0.8 * until_it_rolls) s.grains->step();
+  // What presses is the weight, less what lifts the grain: its impulse is m (g t - v_z).
+  const double lost = s.mu * (s.g * s.grains->time() - s.velocity().z());
+  EXPECT_NEAR((s.v0 - s.velocity().x()) / lost, 1, 1e-3);
+}
+
+TEST(Grains, roll_on_after_sliding_with_three_fifths_of_their_speed) {
+  // With I = m (2 r)^2 / 6 the momentum about the line of contact gives v = v0 / (1 + 2/3).
+  Slider s(0.2, 0.1);
+  while (s.grains->time() < 3e-5) s.grains->step();
+  double mean = 0;  // the springs of the contact swing
+  for (int i = 0; i < 2000; ++i) {
+    s.grains->step();
+    mean += s.velocity().x() / 2000;
+  }
+  EXPECT_NEAR(mean / s.v0, 0.6, 0.0006);
+}
+
+TEST(Grains, do_the_same_on_any_number_of_threads) {
+  GrainsOptions o = grains_of(random_snow(18, 5));
+  o.settings.density_scaling = 1e3;
+  o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
+  o.energy = true;
+  const auto one = filled(o);
+  take_steps(*one, 300);
+  EXPECT_GT(one->measures().broken_in_shear, 0);
+  for (const int threads : {2, 3}) {
+    o.settings.threads = threads;
+    const auto more = filled(o);
+    take_steps(*more, 300);
+    EXPECT_EQ(one->state().positions, more->state().positions);
+    EXPECT_EQ(one->state().velocities, more->state().velocities);
+    EXPECT_EQ(one->sphere_positions(), more->sphere_positions());
+    EXPECT_EQ(one->energy_table(), more->energy_table());
+    EXPECT_EQ(one->measures().top_stress, more->measures().top_stress);
+  }
+}
+
+TEST(Grains, are_those_of_the_sample_and_no_others) {
+  const GrainsOptions o = grains_of(random_snow(12, 5));
+  const auto grains = make_grains(o);
+  EXPECT_THROW(grains->step(), SimulationError);
+  std::vector<ParticleBatch> batches = grains->seed();
+  batches[0].masses[0] *= 2;
+  EXPECT_THROW(grains->add(batches), InputError);
+  batches = grains->seed();
+  batches[0].positions.pop_back();
+  batches[0].masses.pop_back();
+  EXPECT_THROW(grains->add(batches), InputError);
+  EXPECT_EQ(grains->size(), 0u);
+  grains->add(grains->seed());
+  EXPECT_EQ(grains->size(), o.sample.clumps.size());
+  EXPECT_THROW(grains->add(grains->seed()), InputError);
+  EXPECT_THROW(grains->add_velocity({}), InputError);
+  EXPECT_THROW(grains->settle(std::vector<double>(grains->size()), {}), InputError);
+}
+
+TEST(Grains, that_are_replaced_begin_anew_with_other_numbers) {
+  GrainsOptions o = grains_of(random_snow(12, 5));
+  o.settings.density_scaling = 1e3;
+  o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
+  const auto grains = filled(o);
+  const std::uint32_t count = std::uint32_t(grains->size());
+  const ParticleState fresh = grains->state();
+  take_steps(*grains, 100);
+  const double time = grains->time();
+  grains->replace(grains->seed());
+  EXPECT_EQ(grains->state().positions, fresh.positions);
+  EXPECT_EQ(grains->state().ids[0], count);
+  EXPECT_EQ(grains->time(), time);
+  EXPECT_EQ(grains->measures().axial_strain, 0);
+}
+
+TEST(Grains, show_their_fields) {
+  const auto grains = filled(grains_of(random_snow(12, 5)));
+  for (const FieldInfo& info : grains->fields())
+    EXPECT_EQ(grains->field(info.name).count, grains->size()) << info.name;
+  const FieldView radius = grains->field("equivalent_radius"), mass = grains->field("mass");
+  const double r = *radius.at<double>(0);
+  EXPECT_NEAR(917 * 4.18879020478639 * r * r * r / *mass.at<double>(0), 1, 1e-12);
+  EXPECT_THROW(grains->field("thickness"), InputError);
+}
+
+TEST(Grains, stay_finite_whatever_the_settings) {
+  const LabelImage snow = random_snow(12, 4);
+  const LabelImage voxel = lonely(1, 1, 1, 4);
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const LabelImage* image : {&snow, &voxel})
+    for (const double modulus : {1e3, 1e9, 1e12})
+      for (const double friction : {0.0, 5.0})
+        for (const double strength : {0.0, infinite})
+          for (const double scaling : {1.0, 1e6}) {
+            GrainsOptions o = grains_of(*image);
+            o.settings.elastic_modulus = modulus;
+            o.settings.friction = friction;
+            o.settings.tensile_strength = o.settings.shear_strength = strength;
+            o.settings.density_scaling = scaling;
+            o.settings.damping = 0.2;
+            o.energy = true;
+            o.loading = {{LoadingKind::compress, 10, 0.5, 0}};
+            const auto grains = filled(o);
+            take_steps(*grains, 150);
+            SCOPED_TRACE("E " + std::to_string(modulus) + ", friction " + std::to_string(friction) +
+                         ", strength " + std::to_string(strength) + ", scaling " +
+                         std::to_string(scaling));
+            for (const auto& [name, joules] : grains->energy_table())
+              ASSERT_TRUE(std::isfinite(joules)) << name;
+            for (const Vec3& x : grains->sphere_positions()) ASSERT_TRUE(x.allFinite());
+            ASSERT_GT(grains->time_step(), 0);
+          }
+}
+
+}  // namespace
+}  // namespace snowshed

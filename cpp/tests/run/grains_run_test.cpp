@@ -1,0 +1,168 @@
+// Loading tests as simulations: their curve, resuming, and files that are not what they were.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "geometry/readers/npy_testing.hpp"
+#include "io/forged_archive.hpp"
+#include "io/temporary_folder.hpp"
+#include "snowshed/core/errors.hpp"
+#include "snowshed/methods/grains/solver.hpp"
+#include "snowshed/run/grains_cost.hpp"
+#include "snowshed/run/loading_curve.hpp"
+#include "snowshed/run/simulation.hpp"
+
+namespace snowshed {
+namespace {
+
+using geometry_testing::npy_data;
+using geometry_testing::npy_file;
+using geometry_testing::npy_header;
+
+constexpr int edge = 4;  // voxels
+
+/// Two grains, one on the other, that fill a cube.
+std::vector<std::uint8_t> two_grains() {
+  std::vector<std::uint8_t> labels(edge * edge * edge, 1);
+  std::fill(labels.begin() + edge * edge * edge / 2, labels.end(), 2);
+  return labels;
+}
+
+class GrainsRun : public TemporaryFolder {
+ protected:
+  void write_labels(const std::vector<std::uint8_t>& labels) const {
+    write_plainly(path("labels.npy"),
+                  npy_file(1, npy_header("|u1", "(4, 4, 4)"), npy_data(labels)));
+  }
+
+  /// Compressed by a thousandth and unloaded, in some hundred steps.
+  Scene scene() const {
+    write_labels(two_grains());
+    Scene s;
+    GrainsSettings settings;
+    settings.threads = 1;
+    settings.density_scaling = 100;
+    s.numerics = settings;
+    s.sample.emplace(SampleSpec{path("labels.npy").string(), 1e-4});
+    s.loading = {{LoadingKind::compress, 0.02, 1e-3, 0}, {LoadingKind::unload, 0.02, 2e-3, 1}};
+    s.gravity = 0;
+    s.events.max_time = 1;
+    return s;
+  }
+};
+
+const auto to_the_end = [](const RunReport&) { return true; };
+
+std::vector<double> column(const Simulation& sim, const std::string& name) {
+  const LoadingCurve& curve = sim.loading_curve();
+  const auto& names = curve.columns();
+  const auto place = std::find(names.begin(), names.end(), name) - names.begin();
+  std::vector<double> values;
+  for (std::size_t i = std::size_t(place); i < curve.values().size(); i += names.size())
+    values.push_back(curve.values()[i]);
+  return values;
+}
+
+TEST_F(GrainsRun, TheCurveBeginsAtRestAndEndsWithEachStage) {
+  Simulation sim(scene());
+  sim.begin_event();
+  EXPECT_EQ(sim.run(to_the_end, 1.0), RunEnd::rest);
+  const auto time = column(sim, "time_s"), stage = column(sim, "stage");
+  const auto strain = column(sim, "axial_strain");
+  EXPECT_EQ(time.front(), 0);
+  EXPECT_NEAR(strain.front(), 0, 1e-12);
+  EXPECT_TRUE(std::is_sorted(time.begin(), time.end()));
+  EXPECT_TRUE(std::is_sorted(stage.begin(), stage.end()));
+  const auto second = std::find(stage.begin(), stage.end(), 2.0) - stage.begin();
+  ASSERT_LT(std::size_t(second), stage.size());
+  EXPECT_NEAR(strain[std::size_t(second) - 1], 1e-3, 2e-5);  // a step too far at most
+  EXPECT_EQ(time.back(), sim.solver().time());
+}
+
+TEST_F(GrainsRun, AResumedRunHasTheSameBitsAndTheSameCurve) {
+  Simulation whole(scene());
+  whole.begin_event();
+  whole.run(to_the_end, 1.0);
+
+  Simulation first(scene());
+  first.begin_event();
+  const auto steps = whole.solver().counters().steps;
+  ASSERT_GT(steps, 20);
+  first.run([&](const RunReport& r) { return r.steps < steps / 2; }, 0.0);
+  first.save(path("checkpoint"));
+  const auto second = Simulation::load(path("checkpoint"));
+  EXPECT_EQ(second->run(to_the_end, 1.0), RunEnd::rest);
+  EXPECT_EQ(second->loading_curve().values(), whole.loading_curve().values());
+  EXPECT_TRUE(second->solver().state().positions == whole.solver().state().positions);
+  EXPECT_TRUE(second->solver().state().velocities == whole.solver().state().velocities);
+}
+
+TEST_F(GrainsRun, ResumingWithAnotherImageIsRefused) {
+  Simulation sim(scene());
+  sim.begin_event();
+  sim.save(path("checkpoint"));
+  auto labels = two_grains();
+  labels[0] = 0;
+  write_labels(labels);
+  const std::string said = message_of<InputError>([&] { Simulation::load(path("checkpoint")); });
+  EXPECT_NE(said.find("labels.npy: has changed since the checkpoint"), std::string::npos) << said;
+}
+
+TEST_F(GrainsRun, ADamagedCurveIsRefused) {
+  Simulation sim(scene());
+  sim.begin_event();
+  sim.save(path("good"));
+  const std::string bytes = content(path("good"));
+  for (const std::int64_t stage : {std::int64_t(-1), std::int64_t(3), std::int64_t(1) << 40}) {
+    const std::size_t data = bytes.find("curve/stage") + 16;  // the name fills two words
+    write_plainly(path("forged"), forged(bytes, data, stage));
+    const std::string said = message_of<InputError>([&] { Simulation::load(path("forged")); });
+    EXPECT_NE(said.find("not that of this loading"), std::string::npos) << said;
+  }
+}
+
+TEST_F(GrainsRun, AnImageWithoutGrainsIsRefused) {
+  const Scene s = scene();
+  write_labels(std::vector<std::uint8_t>(edge * edge * edge, 0));
+  const std::string said = message_of<InputError>([&] { Simulation sim(s); });
+  EXPECT_NE(said.find("labels.npy: no grain in the image"), std::string::npos) << said;
+}
+
+TEST_F(GrainsRun, StagesThatTakeLongerThanAnEventMayAreRefused) {
+  Scene s = scene();  // 4e-4 m, by a thousandth and two at 0.02 m/s
+  s.events.max_time = 6.1e-5;
+  s.events.rest_time = 0;
+  EXPECT_NO_THROW(Simulation{s});
+  s.events.max_time = 5.9e-5;
+  const std::string said = message_of<InputError>([&] { Simulation sim(s); });
+  EXPECT_EQ(said.find("/events/max_time: the stages take 6e-05 s"), 0u) << said;
+}
+
+TEST_F(GrainsRun, OnlyGrainsHaveACurve) {
+  Scene s;
+  s.ground.emplace();
+  s.bodies.emplace_back().shape.type = "sphere";
+  s.bodies.back().shape.radius = 0.1;
+  s.bodies.back().shape.center = {0, 0, 0.2};
+  EXPECT_THROW(Simulation(s).loading_curve(), InputError);
+}
+
+TEST(LoadingProgress, IsThatOfTheStrainWeightedWithTime) {
+  const std::vector<LoadingStage> stages = {{LoadingKind::compress, 0.1, 0.3, 0},
+                                            {LoadingKind::hold, 0.1, 0.3, 0},
+                                            {LoadingKind::shear, 0.2, 0.2, 0}};
+  EXPECT_DOUBLE_EQ(loading_time(stages, 0.01), 0.01 * (3 + 1));
+  LoadingMeasures now;
+  now.strain = 0.15;
+  EXPECT_DOUBLE_EQ(loading_progress(stages, now), 1.5 / 4);
+  now.stage = 1;
+  EXPECT_DOUBLE_EQ(loading_progress(stages, now), 3.0 / 4);
+  now.stage = 2;
+  now.strain = 0.1;
+  EXPECT_DOUBLE_EQ(loading_progress(stages, now), 3.5 / 4);
+  now.stage = 3;
+  EXPECT_DOUBLE_EQ(loading_progress(stages, now), 1.0);
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,136 @@
+"""The commands of grains: ``snowshed grains``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from snowshed.cli.commands.run import run_options
+from snowshed.cli.run_scene import run_scene
+from snowshed.cli.settings_options import settings_options
+from snowshed.methods.grains.settings import GrainsSettings
+from snowshed.scene.builders.grains import SAMPLE, example_grains, grains_scene
+from snowshed.scene.components import Output
+from snowshed.scene.loading import Cone, LoadingKind, LoadingStage
+from snowshed.scene.scene import ResolvedScene
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+PATH = click.Path(path_type=Path)
+
+
+@click.group()
+def grains() -> None:
+    """Load snow grain by grain, from a segmented image of its ice.
+
+    \b
+    Examples:
+      snowshed grains example -o example
+      snowshed grains compress labels.npy --voxel 5e-5 -o out
+    """  # noqa: D301 - click wants the control character
+
+
+def loading_command(
+    kind: LoadingKind, text: str, *, stress: str = "", speed: float = 0.02, strain: float = 0.3
+) -> click.Command:
+    """Return the command of tests of one stage.
+
+    Parameters
+    ----------
+    kind
+        Of the stage.
+    text
+        What the command does.
+    stress
+        What its option ``--stress`` is; empty: it has none.
+    speed, strain
+        Defaults of the stage: m/s, and way over height.
+    """
+
+    def run(
+        folder: Path, resume: bool, quiet: bool, labels: Path, voxel: float, energy: bool,
+        snapshots: float, speed: float, strain: float, stress: float = 0.0, **values: Any,
+    ) -> None:  # fmt: skip
+        cone = _given({"radius": values.pop("radius", None),
+                       "half_angle": values.pop("half_angle", None)})  # fmt: skip
+        stage = LoadingStage(kind=kind, speed=speed, strain=strain, stress=stress or None)
+        scene = grains_scene(
+            labels,
+            voxel,
+            [stage],
+            cone=Cone(**cone) if cone else None,
+            settings=GrainsSettings(**_given(values)),
+            output=Output(energy=energy, snapshot_interval=snapshots),
+        )
+        run_scene(scene.resolve(), folder, resume, quiet)
+
+    if kind == "penetrate":
+        run = settings_options("grains", "cone")(run)
+    run = settings_options("grains")(run)
+    if stress:
+        run = click.option("--stress", type=float, default=0.0, help=f"{stress} [Pa].")(run)
+    for option in (
+        click.option("--snapshots", type=float, default=0.0,
+                     help="Simulated time between snapshots of the spheres; 0: none [s]."),
+        click.option("--energy", is_flag=True, help="Keep the energy balance."),
+        click.option("--strain", type=float, default=strain, show_default=True,
+                     help="Way over the sample's height at which the test ends."),
+        click.option("--speed", type=float, default=speed, show_default=True,
+                     help="Speed of what moves [m/s]."),
+        click.option("--voxel", type=float, required=True, help="Edge of a voxel [m]."),
+    ):  # fmt: skip
+        run = option(run)
+    run = run_options(run)
+    run = click.argument("labels", type=PATH)(run)
+    return click.command(kind, help=text)(run)
+
+
+def _given(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value is not None}
+
+
+for command in (
+    loading_command(
+        "compress",
+        "Press the top plate down onto a sample.",
+        stress="Stress on the top plate at which the test ends before; 0: none",
+    ),
+    loading_command(
+        "stretch", "Pull the top plate up from a sample (with --bonded-plates).", strain=0.05
+    ),
+    loading_command(
+        "shear",
+        "Move the top plate along a sample.",
+        stress="Normal stress on the top plate; 0: constant height",
+    ),
+    loading_command(
+        "isotropic",
+        "Compress a sample from all six sides.",
+        stress="Stress at which the test ends before; 0: none",
+    ),
+    loading_command("penetrate", "Push a cone down into a sample.", strain=0.5),
+):
+    grains.add_command(command)
+
+
+@grains.command()
+@run_options
+def example(folder: Path, resume: bool, quiet: bool) -> None:
+    """Compress a small sample that is made for it, in seconds."""
+    if resume:
+        run_scene(ResolvedScene.load(folder / "scene.json"), folder, resume, quiet)
+        return
+    beside = folder.with_name(f"{folder.name}-sample")
+    existed = beside.exists()
+    scene = example_grains(beside)
+    labels = beside / SAMPLE
+    try:
+        run_scene(scene.resolve(), folder, resume, quiet)
+    except BaseException:
+        if not existed and not (folder / "scene.json").exists():
+            labels.unlink()
+            beside.rmdir()
+        raise

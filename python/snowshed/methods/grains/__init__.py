@@ -1,0 +1,1 @@
+"""Discrete elements of snow: images, grains and their settings."""

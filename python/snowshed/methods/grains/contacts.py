@@ -1,0 +1,70 @@
+"""The contacts between grains at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed.io.arrays import Booleans, Floats, Integers
+
+
+@dataclass(frozen=True)
+class GrainContacts:
+    """Grains that touch, and the spheres they consist of.
+
+    Attributes
+    ----------
+    spheres : (s, 3)
+        Centres, m.
+    sphere_grains : (s,)
+        The grain of each sphere.
+    grains : (n, 2)
+        The two grains of each contact.
+    points : (n, 3)
+        Where they touch, m.
+    forces : (n, 3)
+        On the first of the two, N.
+    bonded : (n,)
+        Whether a bond still holds them together.
+    """
+
+    spheres: Floats
+    sphere_grains: Integers
+    grains: Integers
+    points: Floats
+    forces: Floats
+    bonded: Booleans
+
+    @property
+    def centres(self) -> Floats:
+        """Mean of the spheres of each grain, (g, 3), m."""
+        count = np.bincount(self.sphere_grains)
+        sums = [np.bincount(self.sphere_grains, self.spheres[:, axis]) for axis in range(3)]
+        return np.asarray(np.stack(sums, axis=1) / count[:, None])
+
+    def arms(self, side: int) -> tuple[Floats, Booleans]:
+        """Return the ways from the centres of the first (0) or second (1) grains to the contacts.
+
+        Those that leave a periodic sample at one side and enter it at the other are none: the
+        second array tells which are ways, (n,).
+        """
+        ways = self.points - self.centres[self.grains[:, side]]
+        half = 0.5 * np.ptp(self.spheres, axis=0)
+        return ways, np.asarray((np.abs(ways) <= half).all(axis=1))
+
+    @property
+    def normal_forces(self) -> Floats:
+        """Force of each contact along the line of its grains' centres, pressing > 0, (n,), N."""
+        (to, first), (back, second) = self.arms(0), self.arms(1)
+        line = np.where(second[:, None], back, 0.0) - np.where(first[:, None], to, 0.0)
+        length = np.maximum(np.linalg.norm(line, axis=1), 1e-300)
+        return np.asarray(np.einsum("ij,ij->i", self.forces, line) / length)
+
+    def text(self) -> str:
+        """Return the contacts as CSV."""
+        lines = ["grain,other,x_m,y_m,z_m,force_x_n,force_y_n,force_z_n,bonded"]
+        for pair, point, force, bonded in zip(self.grains, self.points, self.forces, self.bonded):
+            numbers = (repr(float(value)) for value in (*point, *force))
+            lines.append(",".join([str(pair[0]), str(pair[1]), *numbers, str(int(bonded))]))
+        return "\n".join(lines) + "\n"

@@ -1,0 +1,122 @@
+"""The curve of a loading test, and what is read off it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.arrays import Floats
+from snowshed.io.csv_table import read_csv
+from snowshed.io.paths import PathLike
+
+#: What every curve has; energies follow where they are kept.
+COLUMNS = (
+    "time_s",
+    "stage",
+    "axial_strain",
+    "shear_strain",
+    "top_stress_pa",
+    "bottom_stress_pa",
+    "side_stress_pa",
+    "shear_stress_pa",
+    "cone_force_n",
+    "bonds",
+    "broken_in_tension",
+    "broken_in_shear",
+    "contacts",
+    "coordination",
+    "solid_fraction",
+)
+#: Columns of whole numbers.
+COUNTS = ("stage", "bonds", "broken_in_tension", "broken_in_shear", "contacts")
+
+
+@dataclass(frozen=True)
+class LoadingCurve:
+    """What a loading test measured, row by row.
+
+    Attributes
+    ----------
+    columns
+        Arrays of equal length by name: `COLUMNS`, and energies in joules if they were kept. Stages
+        count from 1; a row where a stage ends belongs to it. Stresses are positive in compression.
+    """
+
+    columns: Mapping[str, Floats]
+
+    def __getitem__(self, name: str) -> Floats:
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        return len(self.columns["time_s"])
+
+    @property
+    def broken(self) -> Floats:
+        """Bonds broken so far."""
+        broken: Floats = self["broken_in_tension"] + self["broken_in_shear"]
+        return broken
+
+    @property
+    def energies(self) -> tuple[str, ...]:
+        """Names of the energies, if they were kept."""
+        return tuple(name for name in self.columns if name.endswith("_j"))
+
+    def of_stage(self, stage: int) -> LoadingCurve:
+        """Return the rows of a stage, counted from 1, and the row before them.
+
+        Examples
+        --------
+        >>> curve = LoadingCurve({name: np.array([1.0, 1.0, 2.0]) for name in COLUMNS})
+        >>> len(curve.of_stage(2))
+        2
+        """
+        own = np.flatnonzero(self["stage"] == stage)
+        rows = np.arange(max(own[0] - 1, 0), own[-1] + 1) if own.size else own
+        return LoadingCurve({name: values[rows] for name, values in self.columns.items()})
+
+    @classmethod
+    def read(cls, path: PathLike) -> LoadingCurve:
+        """Read ``curve.csv``.
+
+        Raises
+        ------
+        InputError
+            If the file is no such table.
+        OSError
+            If it cannot be read.
+        """
+        table = read_csv(Path(path), as_text=True)  # pandas rounds its numbers
+        missing = [name for name in COLUMNS if name not in table]
+        if missing:
+            raise InputError(f"{path}: no curve of a loading test: no column {missing[0]}")
+        try:
+            return cls({str(name): table[name].to_numpy().astype(np.float64) for name in table})
+        except ValueError as error:
+            raise InputError(f"{path}: {error}") from None
+
+    def text(self) -> str:
+        """Return the table as CSV; every number reads back to the same bits."""
+        whole = [name in COUNTS for name in self.columns]
+        lines = [",".join(self.columns)]
+        for row in zip(*(values.tolist() for values in self.columns.values())):
+            cells = (str(int(cell)) if count else repr(cell) for cell, count in zip(row, whole))
+            lines.append(",".join(cells))
+        return "\n".join(lines) + "\n"
+
+
+def stage_stress(curve: LoadingCurve, kind: str) -> Floats:
+    """Return the stress that a stage of some kind builds up, positive as it grows, Pa."""
+    if kind == "shear":
+        return np.asarray(np.abs(curve["shear_stress_pa"]))
+    stress = curve["top_stress_pa"]
+    return -stress if kind == "stretch" else stress
+
+
+def stage_strain(curve: LoadingCurve, kind: str) -> Floats:
+    """Return the strain of a stage from its beginning, positive."""
+    strain = curve["shear_strain" if kind == "shear" else "axial_strain"]
+    return np.asarray(np.abs(strain - strain[0]))

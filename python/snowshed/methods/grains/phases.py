@@ -1,0 +1,156 @@
+"""The phases of a loading: elastic, brittle and frictional, hardening.
+
+Hagenmuller, Chambon and Naaim (2015, doi:10.5194/tc-9-1969-2015) describe them: stress first grows
+linearly and reversibly, without a broken bond; then bonds break and grains rearrange; at last,
+dense snow hardens, and the stress grows like an exponential. How the phases are told apart in
+numbers is our own choice, and stands with each function.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from snowshed.io.arrays import Floats
+from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
+
+BIN = 0.01  # of strain, over which stresses are averaged before hardening is looked for
+DOUBLED = math.log(2.0)  # the rise by which hardening counts as such
+#: Rows of the elastic phase without which no modulus is told.
+LEAST_ROWS = 4
+PEAK_BELOW = 0.05  # strain below which the peak of the brittle phase is looked for
+MEANS = ((0.05, 0.10), (0.10, 0.15), (0.25, 0.30))  # strains between which the stress is averaged
+
+
+@dataclass(frozen=True)
+class Phases:
+    """The phases of one stage; what the stage does not show is None.
+
+    Attributes
+    ----------
+    elastic_limit
+        Strain of the last row before the first bond breaks.
+    tangent_modulus
+        Slope of the least-squares line through the rows of the elastic phase, Pa.
+    linearity
+        Coefficient of determination R2 of this line.
+    hardening_onset
+        Strain at which the stress begins to grow like an exponential.
+    hardening_rate
+        Its growth: stress ~ exp(rate * strain).
+    strength
+        Largest stress, Pa: in compression that below a strain of 5 %.
+    """
+
+    elastic_limit: Optional[float]
+    tangent_modulus: Optional[float]
+    linearity: Optional[float]
+    hardening_onset: Optional[float]
+    hardening_rate: Optional[float]
+    strength: Optional[float]
+
+
+def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
+    """Return the phases of a stage.
+
+    Parameters
+    ----------
+    curve
+        The rows of the stage (`LoadingCurve.of_stage`).
+    kind
+        Of the stage, as scenes have it.
+
+    Examples
+    --------
+    >>> from snowshed.methods.grains.curve import COLUMNS
+    >>> strain = np.linspace(0.0, 0.3, 301)
+    >>> columns = {name: np.zeros(301) for name in COLUMNS}
+    >>> hardening = 1e5 * np.exp(20 * np.maximum(strain - 0.2, 0))
+    >>> stress = np.where(strain < 0.01, 1e7 * strain, hardening)
+    >>> broken = np.where(strain > 0.01, 5.0, 0.0)
+    >>> columns.update(axial_strain=strain, top_stress_pa=stress, broken_in_shear=broken)
+    >>> phases = find_phases(LoadingCurve(columns))
+    >>> round(phases.tangent_modulus), round(phases.hardening_onset, 2)
+    (10000000, 0.2)
+    """
+    if len(curve) < 2:
+        return Phases(None, None, None, None, None, None)
+    strain, stress = stage_strain(curve, kind), stage_stress(curve, kind)
+    limit, modulus, linearity = _elastic(strain, stress, curve.broken)
+    hardens = kind in ("compress", "isotropic")
+    onset, rate = _hardening(strain, stress, limit or 0.0) if hardens else (None, None)
+    below = strain <= (PEAK_BELOW if hardens else math.inf)
+    return Phases(limit, modulus, linearity, onset, rate, float(stress[below].max()))
+
+
+def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Optional[float]:
+    """Return the mean of the stress over a range of strain; None where the curve ends before it.
+
+    Parameters
+    ----------
+    strain : (n,)
+        In rising order.
+    stress : (n,)
+        At these strains; in between it is linear.
+
+    Examples
+    --------
+    >>> mean_stress(np.array([0.0, 0.1]), np.array([0.0, 2.0]), 0.0, 0.1)
+    1.0
+    """
+    end = float(strain[-1])
+    if end < high and not math.isclose(end, high, rel_tol=1e-3):
+        return None
+    high = min(high, end)
+    inside = (strain > low) & (strain < high)
+    at = np.concatenate(([low], strain[inside], [high]))
+    value = np.interp(at, strain, stress)
+    return float(np.sum(0.5 * (value[1:] + value[:-1]) * np.diff(at)) / (high - low))
+
+
+def _elastic(
+    strain: Floats, stress: Floats, broken: Floats
+) -> tuple[Optional[float], Optional[float], Optional[float]]:
+    whole = np.flatnonzero(broken > broken[0])
+    rows = slice(0, int(whole[0]) if whole.size else len(strain))
+    x, y = strain[rows], stress[rows]
+    limit = float(x[-1])
+    if len(x) < LEAST_ROWS or x[-1] <= x[0]:
+        return limit, None, None
+    slope, start = np.polyfit(x, y, 1)
+    scatter, spread = np.sum((y - start - slope * x) ** 2), np.sum((y - y.mean()) ** 2)
+    return limit, float(slope), float(1.0 - scatter / spread) if spread > 0 else None
+
+
+def _hardening(
+    strain: Floats, stress: Floats, limit: float
+) -> tuple[Optional[float], Optional[float]]:
+    """Return onset and rate of hardening.
+
+    The logarithm of the stress, averaged over bins of `BIN`, is fitted by a constant and a rising
+    line that meet; the onset is where they meet with the least squares. A rise to less than twice
+    the constant is none.
+    """
+    edges = np.arange(limit, strain[-1] + 1e-9, BIN)
+    if len(edges) < 6:
+        return None, None
+    means = [mean_stress(strain, stress, a, b) for a, b in zip(edges, edges[1:])]
+    pairs = [(a + BIN / 2, math.log(mean)) for a, mean in zip(edges, means) if mean and mean > 0]
+    if len(pairs) < 5:
+        return None, None
+    x, y = np.array(pairs).T
+    best = min((_hinge(x, y, float(onset)) for onset in edges[:-2]), key=lambda fit: fit[0])
+    _, onset, rate = best
+    if rate * (x[-1] - onset) < DOUBLED:
+        return None, None
+    return onset, rate
+
+
+def _hinge(x: Floats, y: Floats, onset: float) -> tuple[float, float, float]:
+    """Return the squared misfit of a constant and a line from an onset on, this, and the slope."""
+    design = np.column_stack([np.ones_like(x), np.maximum(x - onset, 0.0)])
+    found, *_ = np.linalg.lstsq(design, y, rcond=None)
+    return float(np.sum((design @ found - y) ** 2)), onset, float(found[1])

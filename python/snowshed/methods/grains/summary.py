@@ -1,0 +1,168 @@
+"""The figures of a loading test of grains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
+from snowshed.methods.grains.phases import MEANS, Phases, find_phases, mean_stress
+
+#: Grains below which one sample hardly stands for its snow.
+FEW_GRAINS = 1000
+#: Mean difference of the stresses on the two plates, over their mean, that inertia may make.
+UNBALANCED = 0.2
+#: R2 of the line through the elastic phase below which it is none.
+LINEAR = 0.95
+#: density_scaling times speed squared, m2/s2, up to which inertia was seen not to raise stresses.
+INERTIA = 0.004
+
+
+@dataclass(frozen=True)
+class GrainsSummary:
+    """What a loading test came to. Stresses of the first stage are those that it builds up.
+
+    Attributes
+    ----------
+    ended
+        "rest" where all stages were done, else "time_limit".
+    duration_s
+        Simulated time of the test.
+    grains, spheres
+        Of the sample.
+    density_kg_m3
+        Of the snow at the beginning.
+    solid_fraction, solid_fraction_at_end
+        Volume of ice over that between the plates.
+    axial_strain, shear_strain
+        At the end.
+    bonds, broken_in_tension, broken_in_shear
+        Pairs of spheres that were bonded, and how many of them broke.
+    coordination_at_end
+        Mean number of grains that a grain touches.
+    elastic_limit_strain, tangent_modulus_pa, linearity
+        Of the first stage: strain before the first broken bond, slope up to there and its R2.
+    strength_pa
+        Largest stress of the first stage, in compression below a strain of 5 %.
+    mean_stress_5_10_pa, mean_stress_10_15_pa, mean_stress_25_30_pa
+        Its mean stress between two strains in percent.
+    hardening_onset_strain, hardening_rate
+        Where its stress begins to grow like exp(rate * strain), and this rate.
+    largest_cone_force_n
+        Largest force on the cone.
+    notes
+        What should be known of these figures.
+    """
+
+    ended: str
+    duration_s: float
+    grains: int
+    spheres: int
+    density_kg_m3: float
+    solid_fraction: float
+    solid_fraction_at_end: float
+    axial_strain: float
+    shear_strain: float
+    bonds: int
+    broken_in_tension: int
+    broken_in_shear: int
+    coordination_at_end: float
+    elastic_limit_strain: Optional[float]
+    tangent_modulus_pa: Optional[float]
+    linearity: Optional[float]
+    strength_pa: Optional[float]
+    mean_stress_5_10_pa: Optional[float]
+    mean_stress_10_15_pa: Optional[float]
+    mean_stress_25_30_pa: Optional[float]
+    hardening_onset_strain: Optional[float]
+    hardening_rate: Optional[float]
+    largest_cone_force_n: float
+    notes: tuple[str, ...] = ()
+
+
+def summarise(
+    curve: LoadingCurve, scene: dict[str, Any], *, ended: str, grains: int, spheres: int
+) -> GrainsSummary:
+    """Return the figures of a loading test.
+
+    Parameters
+    ----------
+    curve
+        What it measured.
+    scene
+        The complete scene's data.
+    ended
+        How it ended.
+    grains, spheres
+        How many there are.
+    """
+    kind = str(scene["loading"][0]["kind"])
+    first = curve.of_stage(1)
+    phases = find_phases(first, kind) if kind != "penetrate" else NO_PHASES
+    strain, stress = stage_strain(first, kind), stage_stress(first, kind)
+    means = [mean_stress(strain, stress, *ends) for ends in MEANS]
+    density = float(scene["numerics"]["density"])
+    return GrainsSummary(
+        ended=ended,
+        duration_s=float(curve["time_s"][-1]),
+        grains=grains,
+        spheres=spheres,
+        density_kg_m3=density * float(curve["solid_fraction"][0]),
+        solid_fraction=float(curve["solid_fraction"][0]),
+        solid_fraction_at_end=float(curve["solid_fraction"][-1]),
+        axial_strain=float(curve["axial_strain"][-1]),
+        shear_strain=float(curve["shear_strain"][-1]),
+        bonds=int(curve["bonds"][0]),
+        broken_in_tension=int(curve["broken_in_tension"][-1]),
+        broken_in_shear=int(curve["broken_in_shear"][-1]),
+        coordination_at_end=float(curve["coordination"][-1]),
+        elastic_limit_strain=phases.elastic_limit,
+        tangent_modulus_pa=phases.tangent_modulus,
+        linearity=phases.linearity,
+        strength_pa=phases.strength,
+        mean_stress_5_10_pa=means[0],
+        mean_stress_10_15_pa=means[1],
+        mean_stress_25_30_pa=means[2],
+        hardening_onset_strain=phases.hardening_onset,
+        hardening_rate=phases.hardening_rate,
+        largest_cone_force_n=float(np.abs(curve["cone_force_n"]).max()),
+        notes=tuple(_notes(curve, first, kind, scene, grains)),
+    )
+
+
+NO_PHASES = Phases(None, None, None, None, None, None)
+
+
+def _notes(
+    curve: LoadingCurve, first: LoadingCurve, kind: str, scene: dict[str, Any], grains: int
+) -> list[str]:
+    notes = []
+    if grains < FEW_GRAINS:
+        notes.append(
+            f"{grains} grains: stresses of such a small sample depend on the sample; "
+            f"{FEW_GRAINS} or more stand for the snow"
+        )
+    if kind in ("compress", "stretch"):
+        top, bottom = first["top_stress_pa"], first["bottom_stress_pa"]
+        apart, mean = np.abs(top - bottom).mean(), 0.5 * np.abs(top + bottom).mean()
+        if mean > 0 and apart > UNBALANCED * mean:
+            notes.append(
+                f"the stresses on the two plates differ by {100 * apart / mean:.0f} % of their "
+                "mean: the test is not quasi-static; load more slowly, or with less density_scaling"
+            )
+    linearity = find_phases(first, kind).linearity if kind != "penetrate" else None
+    if linearity is not None and linearity < LINEAR:
+        notes.append(
+            f"the stress is not linear before the first bond breaks (R2 {linearity:.2f}), as waves "
+            "run through the sample; load more slowly to find the modulus"
+        )
+    scaling = float(scene["numerics"]["density_scaling"])
+    fastest = max(float(stage["speed"]) for stage in scene["loading"])
+    if scaling * fastest**2 > INERTIA * (1.0 + 1e-9):
+        notes.append(
+            f"density_scaling times speed squared is {scaling * fastest**2:g} m2/s2; compare with "
+            f"a run of {INERTIA:g} or less, as inertia may raise the stresses"
+        )
+    return notes

@@ -1,0 +1,103 @@
+"""The forces between the grains of a sample."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from snowshed.methods.grains.contacts import GrainContacts
+from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SLICE = 0.25  # of the sample's depth, about its middle, whose grains are drawn
+WIDEST = 7.0  # points, of a line
+ICE = ("#e3ebf1", "#cfdce6", "#bccdda", "#d9e0ea", "#c5d6d9")
+
+
+def force_figure(contacts: GrainContacts, voxel_size: float) -> Figure:
+    """Return the picture of a sample from the side, with the forces between its grains.
+
+    Lines join the centres of grains that touch by way of their contact; all contacts are drawn,
+    and the ice of a slice in the middle. Width is in proportion to the force.
+
+    Parameters
+    ----------
+    contacts
+        As they are at a time.
+    voxel_size
+        Diameter of the spheres, m.
+    """
+    from matplotlib import rc_context
+
+    with rc_context(STYLE):
+        width, _, height = np.ptp(contacts.spheres, axis=0) + voxel_size
+        figure = blank(6.4, 1.2 + 5.6 * min(height / width, 2.0))
+        axes = figure.subplots()
+        axes.grid(visible=False)
+        _draw_ice(axes, contacts, voxel_size)
+        _draw_forces(axes, contacts)
+        axes.set_aspect("equal")
+        axes.set(xlabel="x, mm", ylabel="z, mm")
+    return figure
+
+
+def _draw_ice(axes: Axes, contacts: GrainContacts, voxel_size: float) -> None:
+    from matplotlib.collections import EllipseCollection
+
+    depth = contacts.spheres[:, 1]
+    low, high = depth.min(), depth.max()
+    near = np.abs(depth - 0.5 * (low + high)) <= 0.5 * SLICE * (high - low) + 0.5 * voxel_size
+    shown = np.flatnonzero(near)
+    shown = shown[np.argsort(-depth[shown], kind="stable")]  # from the back to the front
+    centres = 1e3 * contacts.spheres[shown][:, [0, 2]]
+    size = np.full(len(shown), 1e3 * voxel_size)
+    colours = [ICE[grain % len(ICE)] for grain in contacts.sphere_grains[shown]]
+    discs = EllipseCollection(
+        size, size, np.zeros(len(shown)), units="xy", offsets=centres,
+        offset_transform=axes.transData, facecolors=colours, edgecolors="none",
+    )  # fmt: skip
+    axes.add_collection(discs)
+    edge = voxel_size
+    for set_limits, axis in ((axes.set_xlim, 0), (axes.set_ylim, 2)):
+        values = contacts.spheres[:, axis]
+        set_limits(1e3 * (values.min() - edge), 1e3 * (values.max() + edge))
+
+
+def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
+    from matplotlib.collections import LineCollection
+    from matplotlib.lines import Line2D
+
+    normal = contacts.normal_forces
+    size = np.linalg.norm(contacts.forces, axis=1)
+    largest = float(size.max(initial=0.0))
+    if largest == 0.0:
+        axes.set_title("No forces between the grains")
+        return
+    for pulls, colour in ((False, BODY), (True, STACK)):
+        chosen = (normal < 0.0) == pulls
+        for side in (0, 1):
+            ways, whole = contacts.arms(side)
+            shown = np.flatnonzero(chosen & whole)
+            ends = np.stack([contacts.points[shown] - ways[shown], contacts.points[shown]], axis=1)
+            lines, widths = 1e3 * ends[:, :, [0, 2]], WIDEST * size[shown] / largest
+            drawn = LineCollection(list(lines), linewidths=widths, colors=colour)
+            drawn.set(alpha=0.75, capstyle="round")
+            axes.add_collection(drawn)
+    axes.set_title("Forces between grains", color=INK)
+    key = [
+        Line2D([], [], color=BODY, lw=WIDEST, label=f"pressing, {_force_text(largest)}"),
+        Line2D([], [], color=BODY, lw=WIDEST / 4, label=f"pressing, {_force_text(largest / 4)}"),
+        Line2D([], [], color=STACK, lw=WIDEST / 4, label=f"pulling, {_force_text(largest / 4)}"),
+    ]
+    axes.figure.legend(handles=key, loc="outside lower center", ncols=3, edgecolor=FAINT)
+
+
+def _force_text(newtons: float) -> str:
+    for unit, factor in (("N", 1.0), ("mN", 1e3)):
+        if newtons * factor >= 1.0:
+            return f"{newtons * factor:.3g} {unit}"
+    return f"{newtons * 1e6:.3g} µN"

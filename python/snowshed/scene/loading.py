@@ -1,0 +1,72 @@
+"""The components of a scene of grains: the sample, and how it is loaded.
+
+As in `snowshed.scene.components`, a field that is None takes the core's default.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, Optional
+
+from snowshed.io.paths import PathLike
+from snowshed.io.record import Record
+
+LoadingKind = Literal["compress", "unload", "stretch", "shear", "isotropic", "penetrate", "hold"]
+
+
+@dataclass
+class Sample(Record):
+    """Segmented snow to be loaded.
+
+    Attributes
+    ----------
+    file : str or path
+        Segmented image: an NPY file of integers (nz, ny, nx), 0 air and any other number a grain;
+        relative to the scene file. Required.
+    voxel_size : float
+        Edge of a voxel [m]. 1e-09 <= value <= 1; required.
+    """
+
+    file: Optional[PathLike] = None
+    voxel_size: Optional[float] = None
+
+
+@dataclass
+class LoadingStage(Record):
+    """A stage of a loading.
+
+    Attributes
+    ----------
+    kind : {"compress", "unload", "stretch", "shear", "isotropic", "penetrate", "hold"}
+        What moves: the top plate down (compress), up until the stress has fallen (unload), up
+        (stretch) or along x (shear); all sides inward (isotropic); a cone down (penetrate);
+        nothing, until the snow rests (hold). Default "compress".
+    speed : float
+        Speed of what moves [m/s]. 0 < value <= 1000; default 0.02.
+    strain : float
+        Way over the sample's initial height at which the stage ends. 0 < value <= 10; default 0.3.
+    stress : float
+        Stress that ends the stage (compress, isotropic; 0: none; unload), or is kept on the top
+        plate (shear; 0: constant height) [Pa]. 0 <= value <= 1e+12; default 0.
+    """
+
+    kind: Optional[LoadingKind] = None
+    speed: Optional[float] = None
+    strain: Optional[float] = None
+    stress: Optional[float] = None
+
+
+@dataclass
+class Cone(Record):
+    """The tip of a penetrometer, with its shaft.
+
+    Attributes
+    ----------
+    radius : float
+        Of the cone's base and the shaft [m]. 1e-09 <= value <= 1; default 0.0025.
+    half_angle : float
+        Between the axis and the cone's side [degrees]. 0 < value <= 90; default 30.
+    """
+
+    radius: Optional[float] = None
+    half_angle: Optional[float] = None

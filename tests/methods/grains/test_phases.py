@@ -1,0 +1,99 @@
+"""Phases of curves that are made of formulas."""
+
+import numpy as np
+import pytest
+
+from snowshed import InputError
+from snowshed.methods.grains.curve import COLUMNS, LoadingCurve
+from snowshed.methods.grains.phases import find_phases, mean_stress
+from snowshed.methods.grains.summary import summarise
+
+STRAIN = 0.3 * (np.arange(301) / 300) ** 2
+NUMERICS = {"density": 917.0, "density_scaling": 1.0}
+
+
+def curve_of(strain=STRAIN, **columns):
+    blank = {name: np.zeros_like(strain) for name in COLUMNS}
+    return LoadingCurve({**blank, "stage": np.ones_like(strain), "axial_strain": strain, **columns})
+
+
+def brittle(noise=0.0):
+    """Linear to 0.001 and 20 kPa, a plateau of 8 kPa, then exp(30 strain) from 0.18 on."""
+    stress = np.where(
+        STRAIN <= 0.001, 2e7 * STRAIN, 8e3 * np.exp(30 * np.maximum(STRAIN - 0.18, 0))
+    )
+    scatter = np.exp(noise * np.random.default_rng(3).standard_normal(len(STRAIN)))
+    broken = np.where(STRAIN > 0.001, np.ceil(1000 * STRAIN), 0.0)
+    stress = np.where(STRAIN <= 0.001, stress, stress * scatter)
+    return curve_of(top_stress_pa=stress, broken_in_shear=broken)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.5])
+def test_the_phases_of_a_known_curve_are_found(noise):
+    phases = find_phases(brittle(noise))
+    assert phases.elastic_limit == pytest.approx(0.001, rel=0.15)
+    assert phases.tangent_modulus == pytest.approx(2e7, rel=1e-6)
+    assert phases.linearity == pytest.approx(1.0, abs=1e-9)
+    assert phases.hardening_onset == pytest.approx(0.18, abs=0.03)
+    assert phases.hardening_rate == pytest.approx(30, rel=0.3)
+
+
+def test_strength_in_compression_is_that_below_five_percent():
+    assert find_phases(brittle()).strength == pytest.approx(2e7 * 0.001, rel=0.05)
+
+
+def test_a_plateau_does_not_harden():
+    phases = find_phases(curve_of(top_stress_pa=np.full_like(STRAIN, 5e3)))
+    assert phases.hardening_onset is None and phases.hardening_rate is None
+
+
+def test_the_strength_of_a_pulled_sample_is_its_largest_tension():
+    strain = np.linspace(0.0, 0.02, 50)
+    stress = -np.where(strain < 0.01, 1e6 * strain, 0.0)
+    broken = np.where(strain < 0.01, 0.0, 9.0)
+    phases = find_phases(
+        curve_of(-strain, top_stress_pa=stress, broken_in_tension=broken), "stretch"
+    )
+    assert phases.strength == pytest.approx(1e6 * strain[strain < 0.01].max())
+    assert phases.tangent_modulus == pytest.approx(1e6)
+
+
+def test_means_are_over_strain_not_over_rows():
+    strain = np.array([0.0, 0.01, 0.02, 0.1])  # rows are dense where the stress is low
+    stress = np.array([0.0, 0.0, 0.0, 8.0])
+    assert mean_stress(strain, stress, 0.0, 0.1) == pytest.approx(0.5 * 0.08 * 8.0 / 0.1)
+    assert mean_stress(strain, stress, 0.05, 0.2) is None
+
+
+def test_a_short_curve_has_no_phases():
+    assert find_phases(curve_of(STRAIN[:1])).tangent_modulus is None
+    two = find_phases(curve_of(STRAIN[:2]))
+    assert two.tangent_modulus is None and two.hardening_onset is None
+
+
+def scene_of(kind="compress", speed=0.02, **numerics):
+    return {
+        "loading": [{"kind": kind, "speed": speed}],
+        "numerics": {**NUMERICS, **numerics},
+    }
+
+
+def test_the_summary_says_what_makes_its_figures_doubtful():
+    few = summarise(brittle(), scene_of(density_scaling=1000.0), ended="rest", grains=87, spheres=9)
+    said = " ".join(few.notes)
+    assert "87 grains" in said and "density_scaling times speed squared is 0.4" in said
+    assert "differ by 200 %" in said  # the bottom plate feels nothing in this curve
+    columns = dict(brittle().columns)
+    columns["bottom_stress_pa"] = columns["top_stress_pa"]
+    many = summarise(LoadingCurve(columns), scene_of(), ended="rest", grains=1000, spheres=9)
+    assert many.notes == ()
+
+
+def test_a_curve_survives_its_file(tmp_path):
+    curve = brittle(0.3)
+    (tmp_path / "curve.csv").write_text(curve.text())
+    read = LoadingCurve.read(tmp_path / "curve.csv")
+    assert all((read[name] == curve[name]).all() for name in COLUMNS)
+    (tmp_path / "other.csv").write_text("time_s,stage\n0,1\n")
+    with pytest.raises(InputError, match="no column axial_strain"):
+        LoadingCurve.read(tmp_path / "other.csv")

@@ -1,0 +1,74 @@
+"""Figures of loading tests show what was measured."""
+
+import numpy as np
+import pytest
+
+from snowshed.methods.grains.contacts import GrainContacts
+from snowshed.methods.grains.curve import COLUMNS, LoadingCurve
+from snowshed.plot.force_chains import WIDEST, force_figure
+from snowshed.plot.loading_figure import loading_figure
+
+
+def curve(**columns):
+    rows = 50
+    ramp = np.linspace(0.0, 0.1, rows)
+    blank = {name: np.zeros(rows) for name in COLUMNS}
+    return LoadingCurve({**blank, "stage": np.ones(rows), "time_s": ramp, **columns})
+
+
+RAMP = np.linspace(0.0, 0.1, 50)
+
+
+@pytest.mark.parametrize(
+    ("kinds", "columns", "label"),
+    [
+        (["compress"], {"axial_strain": RAMP, "top_stress_pa": 1e5 * RAMP}, "axial strain, %"),
+        (["stretch"], {"axial_strain": -RAMP, "top_stress_pa": -1e5 * RAMP}, "extension, %"),
+        (["shear"], {"shear_strain": RAMP, "shear_stress_pa": 1e5 * RAMP}, "shear strain, %"),
+        (["compress", "shear"], {"axial_strain": RAMP, "kinetic_j": RAMP}, "time, ms"),
+        (["penetrate"], {"cone_force_n": RAMP}, "time, ms"),
+    ],
+)
+def test_every_kind_of_test_is_drawn(kinds, columns, label):
+    figure = loading_figure(curve(**columns), kinds)
+    assert figure.axes[0].get_xlabel() == label
+    assert all(axes.lines or axes.collections for axes in figure.axes[1:])
+    if kinds == ["penetrate"]:
+        assert figure.axes[1].get_title("left") == "Force on the cone"
+
+
+def contacts(
+    forces, centres=((0, 0, 0), (1, 0, 0), (3.9, 0, 0)), points=((0.5, 0, 0), (-0.05, 0, 0))
+):
+    return GrainContacts(
+        spheres=np.array(centres, dtype=float),
+        sphere_grains=np.arange(3),
+        grains=np.array([[0, 1], [2, 0]]),
+        points=np.array(points, dtype=float),
+        forces=np.array(forces, dtype=float),
+        bonded=np.array([True, False]),
+    )
+
+
+def test_a_grain_is_pressed_away_from_the_other_and_pulled_to_it():
+    pressed = contacts([(-3, 0, 0), (0, 0, 0)])
+    assert pressed.normal_forces[0] == pytest.approx(3.0)
+    assert contacts([(3, 0, 0), (0, 0, 0)]).normal_forces[0] == pytest.approx(-3.0)
+    # Over the sides the last grain lies left of the first, and is pressed to the left.
+    assert contacts([(0, 0, 0), (-2, 0, 0)]).normal_forces[1] == pytest.approx(2.0)
+
+
+def test_lines_are_as_wide_as_forces_are_large_and_do_not_cross_the_picture():
+    from matplotlib.collections import LineCollection
+
+    figure = force_figure(contacts([(-4, 0, 0), (-1, 0, 0)]), voxel_size=0.1)
+    drawn = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
+    widths = np.concatenate([lines.get_linewidths() for lines in drawn if len(lines.get_paths())])
+    assert sorted(widths) == pytest.approx([WIDEST / 4, WIDEST, WIDEST])
+    segments = [s for lines in drawn for s in lines.get_segments()]
+    assert max(np.ptp(s[:, 0]) for s in segments) < 1e3 * 3.9 / 2
+
+
+def test_a_sample_without_forces_is_drawn_without_lines():
+    figure = force_figure(contacts([(0, 0, 0), (0, 0, 0)]), voxel_size=0.1)
+    assert figure.axes[0].get_title("left") == "No forces between the grains"

@@ -1,0 +1,106 @@
+"""Runs of loading tests: figures, curve, resuming, snapshots, energies."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from grain_files import VOXEL, column_of_grains, write_labels
+
+from snowshed import GrainsSettings, InputError, LoadingStage
+from snowshed.io.vtp import read_particles
+from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.run.grains import run_grains
+from snowshed.run.interrupt import Interrupted
+from snowshed.scene.builders import example_grains, grains_scene
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Three cubes on each other, pressed by a five-hundredth of their height."""
+    return grains_scene(
+        write_labels(tmp_path),
+        VOXEL,
+        [LoadingStage(kind="compress", strain=2e-3, speed=0.05)],
+        settings=GrainsSettings(density_scaling=100.0, threads=1),
+    ).update({"gravity": 0})
+
+
+def test_figures_and_curve_tell_the_same(scene, tmp_path):
+    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    curve = LoadingCurve.read(tmp_path / "out/curve.csv")
+    stored = json.loads((tmp_path / "out/grains.json").read_text())
+    assert stored["ended"] == summary.ended == "rest"
+    assert (summary.grains, summary.bonds) == (3, 2 * 16)
+    assert summary.spheres == 3 * (4**3 - 2**3)  # inner voxels are left out
+    assert summary.density_kg_m3 == pytest.approx(917.0)
+    assert curve["axial_strain"][0] == pytest.approx(0.0, abs=1e-12)
+    assert curve["axial_strain"][-1] == pytest.approx(2e-3, rel=0.02)
+    assert summary.axial_strain == curve["axial_strain"][-1]
+    assert 100 < len(curve) <= 302
+
+
+def test_an_interrupted_test_goes_on_to_the_same_files(scene, tmp_path):
+    run_grains(scene, tmp_path / "whole", pictures=False)
+
+    def stop(progress):
+        if progress.time > 0.0:
+            raise KeyboardInterrupt
+
+    with pytest.raises((Interrupted, KeyboardInterrupt)):
+        run_grains(scene, tmp_path / "two", progress=stop, pictures=False)
+    run_grains(scene, tmp_path / "two", resume=True, pictures=False)
+    for name in ("curve.csv", "grains.json", "contacts.csv"):
+        whole, two = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
+        assert whole == two
+
+
+def test_threads_do_not_change_the_curve(scene, tmp_path):
+    for threads in (1, 2):
+        scene.set("numerics.threads", threads)
+        run_grains(scene, tmp_path / str(threads), pictures=False)
+    one, two = ((tmp_path / f"{n}/curve.csv").read_bytes() for n in (1, 2))
+    assert one == two
+
+
+def test_the_energy_balance_is_written(scene, tmp_path):
+    run_grains(scene.set("output.energy", True), tmp_path / "out", pictures=False)
+    (row,) = list(csv.DictReader((tmp_path / "out/energy.csv").open()))
+    curve = LoadingCurve.read(tmp_path / "out/curve.csv")
+    assert set(curve.energies) == set(row) - {"event"}
+    for name in curve.energies:
+        assert curve[name][-1] == pytest.approx(float(row[name]), rel=1e-7, abs=1e-20)
+
+
+def test_snapshots_hold_the_spheres_of_the_grains(scene, tmp_path):
+    scene.set("output.snapshot_interval", 1e-5)
+    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    files = sorted((tmp_path / "out/snapshots").glob("*.vtp"))
+    assert len(files) > 3
+    found = read_particles(files[0])
+    assert len(found["grain"]) == summary.spheres
+    labels = column_of_grains()
+    assert (np.bincount(found["grain"]) == (labels == 1).sum() - 8).all()
+    assert (found["bonded_grains"][found["grain"] == 1] == 2).all()
+
+
+def test_the_example_draws_its_pictures(tmp_path):
+    scene = example_grains(tmp_path).set("loading.0.strain", 1e-3)
+    run_grains(scene, tmp_path / "out")
+    for name in ("grains.png", "forces.png"):
+        assert (tmp_path / "out" / name).stat().st_size > 10_000
+
+
+def test_progress_begins_at_once_and_names_the_stage(scene, tmp_path):
+    told = []
+    run_grains(scene, tmp_path / "out", progress=told.append, pictures=False)
+    assert told[0].fraction == 0.0 and told[-1].fraction == 1.0
+    assert told[0].doing.startswith("stage 1 of 1, compress: 0.0%")
+
+
+def test_other_methods_have_no_curve(tmp_path):
+    from snowshed import Scene, _core
+
+    ready = Scene.preset("lab-50").resolve()
+    with pytest.raises(InputError, match='/method: is not "grains"'):
+        _core.Simulation(ready.json).grains_curve()
