@@ -48,6 +48,10 @@ class PythonObserver : public EventObserver {
     py::gil_scoped_acquire gil;
     observer_.attr("event_ended")(facts_dict(facts));
   }
+  void before_checkpoint(const Simulation&) override {
+    py::gil_scoped_acquire gil;
+    observer_.attr("before_checkpoint")();
+  }
   bool stop_requested() override {
     py::gil_scoped_acquire gil;
     return observer_.attr("stop_requested")().cast<bool>();

@@ -3,12 +3,16 @@
 import csv
 import json
 import math
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
 
 from snowshed import InputError
 from snowshed.io.raster import Raster, read_raster, write_ascii_grid
+from snowshed.run import slides
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.slides import particles_at, run_slide
 from snowshed.scene import Area, Events, Scene, Terrain
@@ -143,3 +147,32 @@ def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
     offset = int(lines[0].attrib["offset"]) + 8
     ends = np.frombuffer(data, "<i4", 2 * len(state.bonds), offset).reshape(-1, 2)
     assert (ends == state.bonds).all()
+
+
+KILLED_RUN = """
+import sys
+from snowshed.run.slides import run_slide
+run_slide(sys.argv[1], sys.argv[2])
+"""
+
+
+def test_the_film_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkeypatch):
+    scene = example_slide(tmp_path).set("output.checkpoint_interval", 0.05)
+    (tmp_path / "scene.json").write_text(scene.resolve().json)
+    films = []
+    monkeypatch.setattr(slides, "_draw", lambda *args: films.append(args[-1].frames))
+    run_slide(tmp_path / "scene.json", tmp_path / "straight")
+
+    out = tmp_path / "killed"
+    command = [sys.executable, "-c", KILLED_RUN, tmp_path / "scene.json", out]
+    with subprocess.Popen(command) as process:
+        while not (out / "checkpoint.bin").exists():
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.kill()
+    run_slide(tmp_path / "scene.json", out, resume=True)
+
+    straight, resumed = films
+    assert [frame.time for frame in resumed] == [frame.time for frame in straight]
+    for one, other in zip(resumed, straight):
+        np.testing.assert_array_equal(one.thickness, other.thickness)

@@ -60,7 +60,7 @@ bool EventSequence::run(EventObserver& observer, double report_interval) {
       stopped = observer.stop_requested();
     }
     const RunEnd end = stopped ? RunEnd::paused : run_event(observer, report_interval);
-    if (end == RunEnd::paused) return checkpoint("interrupted"), false;
+    if (end == RunEnd::paused) return checkpoint(observer, "interrupted"), false;
     end_event(observer, end);
   }
   write_record("finished");
@@ -88,7 +88,7 @@ RunEnd EventSequence::run_event(EventObserver& observer, double report_interval)
     };
     const RunEnd end = sim_->run(go_on, report_interval);
     if (end != RunEnd::paused || stopped) return end;
-    checkpoint("running");
+    checkpoint(observer, "running");
   }
 }
 
@@ -108,10 +108,11 @@ void EventSequence::end_event(EventObserver& observer, RunEnd end) {
   steps_before_ += facts.steps;
   wall_before_ += facts.wall;
   record_.finished.push_back(std::move(facts));
-  checkpoint("running");
+  checkpoint(observer, "running");
 }
 
-void EventSequence::checkpoint(const std::string& status) {
+void EventSequence::checkpoint(EventObserver& observer, const std::string& status) {
+  observer.before_checkpoint(*sim_);
   write_record(status);
   sim_->save(folder_.checkpoint());
   since_checkpoint_.restart();

@@ -26,6 +26,8 @@ class EventObserver {
   virtual void progress(const Simulation&, const RunReport&) {}
   /// An event has ended and its particles are in the folder, but there is no checkpoint of it yet.
   virtual void event_ended(const Simulation&, const EventFacts&) {}
+  /// A checkpoint is about to be written: what must be as new as it is kept now.
+  virtual void before_checkpoint(const Simulation&) {}
   /// Asked at every report and between events; true interrupts the sequence.
   virtual bool stop_requested() { return false; }
 };
@@ -68,7 +70,7 @@ class EventSequence {
   void begin_event(EventObserver&);
   RunEnd run_event(EventObserver&, double report_interval);
   void end_event(EventObserver&, RunEnd);
-  void checkpoint(const std::string& status);
+  void checkpoint(EventObserver&, const std::string& status);
   void write_record(const std::string& status, const std::string& error = "");
   double wall() const { return earlier_wall_ + clock_.seconds(); }
 

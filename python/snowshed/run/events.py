@@ -162,6 +162,9 @@ class _Recorder:
         """Pass on how far the event has come."""
         self._tell(report["time_s"], report["progress"], report["updates_per_s"])
 
+    def before_checkpoint(self) -> None:
+        """Do nothing: tables are cut to the checkpoint when a run goes on."""
+
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
         return self.interrupt.requested

@@ -168,6 +168,9 @@ class _Recorder:
         """Report the end."""
         self._tell({"time_s": facts["sim_time_s"], "progress": 1.0, "updates_per_s": 0.0})
 
+    def before_checkpoint(self) -> None:
+        """Do nothing: the checkpoint holds the curve."""
+
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
         return self.interrupt.requested

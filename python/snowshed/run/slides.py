@@ -34,7 +34,7 @@ from snowshed.methods.peak_maps import PeakMaps
 from snowshed.methods.slide_frames import FrameSeries
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.methods.slide_validity import ReleaseArea, release_areas, validity_notes
-from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
+from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.sequence import REPORT_INTERVAL, open_sequence, run_sequence
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PACKED = "peaks.npz"  # the peak maps, where no rasters are wanted
-FRAMES = "frames.npz"  # the slide over time, while it is interrupted
+FRAMES = "frames.npz"  # the slide over time, as far as the checkpoint
 
 
 @dataclass(frozen=True)
@@ -177,13 +177,8 @@ def run_slide(
     with sequence, deferred_interrupts() as interrupt:
         sequence.describe_machine(machine_facts())
         frames = _frames(sequence.simulation, Path(out_dir)) if pictures else None
-        recorder = _Recorder(sequence.simulation, interrupt, progress, frames)
-        try:
-            run_sequence(sequence, recorder, out_dir, every_step=frames is not None)
-        except Interrupted:
-            if frames is not None:
-                frames.save(Path(out_dir) / FRAMES)
-            raise
+        recorder = _Recorder(sequence.simulation, Path(out_dir), interrupt, progress, frames)
+        run_sequence(sequence, recorder, out_dir, every_step=frames is not None)
         (facts,) = sequence.finished_events
         maps = slide_maps(sequence.simulation)
         areas = release_areas(maps.raster(maps.terrain), _release(sequence.simulation))
@@ -258,11 +253,13 @@ class _Recorder:
     def __init__(
         self,
         simulation: _core.Simulation,
+        folder: Path,
         interrupt: InterruptRequest,
         report: Optional[Reporter],
         frames: Optional[FrameSeries],
     ) -> None:
         self.simulation = simulation
+        self.folder = folder
         self.interrupt = interrupt
         self.report = report
         self.frames = frames
@@ -288,6 +285,11 @@ class _Recorder:
         if self.frames is not None:
             self.frames.add(facts["sim_time_s"], self.simulation.slide_maps()["thickness"])
         self._tell(facts["sim_time_s"], 1.0, 0.0)
+
+    def before_checkpoint(self) -> None:
+        """Keep the frames, so that the film is whole if the run goes on from there."""
+        if self.frames is not None:
+            self.frames.save(self.folder / FRAMES)
 
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
