@@ -53,6 +53,16 @@ def test_the_modulus_of_a_column_is_that_of_its_springs(scene, tmp_path):
     assert summary.broken_in_tension == summary.broken_in_shear == 0
 
 
+def test_a_column_is_as_strong_as_its_bonds(scene, tmp_path):
+    scene.update({"loading.0.kind": "stretch", "loading.0.strain": 1e-3, "loading.0.speed": 0.005})
+    scene.update({"numerics.density_scaling": 1.0, "numerics.damping": 0.5})
+    scene.update({"numerics.bonded_plates": True, "numerics.tensile_strength": 8e5})
+    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    assert summary.strength_pa == pytest.approx(8e5, rel=0.03)
+    assert summary.bonds == 4 * 16  # with those to the plates
+    assert summary.broken_in_tension > 0 and summary.broken_in_tension % 16 == 0
+
+
 def test_an_interrupted_test_goes_on_to_the_same_files(scene, tmp_path):
     run_grains(scene, tmp_path / "whole", pictures=False)
 
@@ -78,6 +88,7 @@ def test_threads_do_not_change_the_curve(scene, tmp_path):
 
 def test_the_energy_balance_is_written(scene, tmp_path):
     run_grains(scene.set("output.energy", True), tmp_path / "out", pictures=False)
+    run_grains(scene, tmp_path / "out", pictures=False, resume=True)  # adds no second row
     (row,) = list(csv.DictReader((tmp_path / "out/energy.csv").open()))
     curve = LoadingCurve.read(tmp_path / "out/curve.csv")
     assert set(curve.energies) == set(row) - {"event"}
