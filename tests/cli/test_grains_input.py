@@ -45,7 +45,7 @@ def test_what_are_no_labels_is_refused(tmp_path, capsys, labels, message):
 def test_a_missing_or_other_file_is_refused(tmp_path, capsys):
     refused(tmp_path, capsys, "labels.npy: no such file", files=())
     (tmp_path / "image.tif").write_bytes(b"II*\0")
-    refused(tmp_path, capsys, "snowshed grains segment", file="image.tif", files=["image.tif"])
+    refused(tmp_path, capsys, "image.tif: no NPY file", file="image.tif", files=["image.tif"])
     (tmp_path / "labels.npy").write_bytes(b"not an array")
     refused(tmp_path, capsys, "not a .npy file", files=["image.tif", "labels.npy"])
 

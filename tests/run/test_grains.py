@@ -40,6 +40,29 @@ def test_figures_and_curve_tell_the_same(scene, tmp_path):
     assert 100 < len(curve) <= 302
 
 
+def test_the_modulus_of_a_column_is_that_of_its_springs(scene, tmp_path):
+    """Between grains and at the plates lie 16 springs of E r each, four such layers in series."""
+    scene.update({"loading.0.strain": 2e-4, "loading.0.speed": 0.002})
+    scene.update({"numerics.density_scaling": 1.0, "numerics.damping": 0.5})
+    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    radius, modulus = VOXEL / 2, 1e9
+    stiffness = 16 * modulus * radius / 4
+    expected = stiffness * (24 * radius) / (8 * radius) ** 2
+    assert summary.tangent_modulus_pa == pytest.approx(expected, rel=0.005)
+    assert summary.linearity > 0.999
+    assert summary.broken_in_tension == summary.broken_in_shear == 0
+
+
+def test_a_column_is_as_strong_as_its_bonds(scene, tmp_path):
+    scene.update({"loading.0.kind": "stretch", "loading.0.strain": 1e-3, "loading.0.speed": 0.005})
+    scene.update({"numerics.density_scaling": 1.0, "numerics.damping": 0.5})
+    scene.update({"numerics.bonded_plates": True, "numerics.tensile_strength": 8e5})
+    summary = run_grains(scene, tmp_path / "out", pictures=False)
+    assert summary.strength_pa == pytest.approx(8e5, rel=0.03)
+    assert summary.bonds == 4 * 16  # with those to the plates
+    assert summary.broken_in_tension > 0 and summary.broken_in_tension % 16 == 0
+
+
 def test_an_interrupted_test_goes_on_to_the_same_files(scene, tmp_path):
     run_grains(scene, tmp_path / "whole", pictures=False)
 
@@ -65,11 +88,15 @@ def test_threads_do_not_change_the_curve(scene, tmp_path):
 
 def test_the_energy_balance_is_written(scene, tmp_path):
     run_grains(scene.set("output.energy", True), tmp_path / "out", pictures=False)
+    run_grains(scene, tmp_path / "out", pictures=False, resume=True)  # adds no second row
     (row,) = list(csv.DictReader((tmp_path / "out/energy.csv").open()))
     curve = LoadingCurve.read(tmp_path / "out/curve.csv")
     assert set(curve.energies) == set(row) - {"event"}
     for name in curve.energies:
+        # The table is rounded.
         assert curve[name][-1] == pytest.approx(float(row[name]), rel=1e-7, abs=1e-20)
+    assert curve["boundary_work_j"][-1] > 0
+    assert abs(curve["residual_j"]).max() < 0.01 * curve["boundary_work_j"][-1]
 
 
 def test_snapshots_hold_the_spheres_of_the_grains(scene, tmp_path):

@@ -91,6 +91,7 @@ void surface_forces(const GrainsModel& model, GrainsState& state, GrainsWork& wo
     if (!list.is_pair(p)) continue;
     const PairGeometry pair =
         pair_geometry(model, state.boundary, list, g, p, body.position, rotation, nullptr);
+    if (pair.gap >= 0 && list.shear(p).isZero(0.0)) continue;
     const Vec3 velocity = surface - body.velocity - spin.cross(pair.arm_a);
     const double along = velocity.dot(pair.normal);
     const ContactMotion<double> motion{pair.gap, dt * along, triple(pair.normal),

@@ -10,10 +10,10 @@ namespace {
 
 PairSearch search_of(const GrainsModel& model) {
   const std::size_t spheres = model.spheres.offsets.size();
-  return {model.spheres,     std::uint32_t(model.grains.size()),
-          model.radius,      skin_per_radius * model.radius,
-          model.periodic(),  model.cone,
-          64 * spheres + 256};
+  return {model.spheres,      std::uint32_t(model.grains.size()),
+          model.radius,       skin_per_radius * model.radius,
+          model.periodic(),   model.cone,
+          64 * spheres + 256, model.threads};
 }
 
 /// Whether a pair that touches at the beginning is ice there that the image cuts apart.

@@ -1,14 +1,9 @@
 #include "snowshed/methods/grains/pair_list.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 namespace snowshed {
 namespace {
-
-auto ordered(const PairKey& k) {
-  return std::tie(k.first, k.second, k.shift[0], k.shift[1], k.a, k.b);
-}
 
 bool same_group(const PairGroup& g, const PairKey& k) {
   return g.first == k.first && g.second == k.second && g.shift[0] == k.shift[0] &&
@@ -85,8 +80,15 @@ void for_each_listed(const std::vector<PairKey>& found, const std::vector<PairHi
 
 }  // namespace
 
-bool operator<(const PairKey& x, const PairKey& y) { return ordered(x) < ordered(y); }
-bool operator==(const PairKey& x, const PairKey& y) { return ordered(x) == ordered(y); }
+bool operator<(const PairKey& x, const PairKey& y) {
+  if (x.first != y.first) return x.first < y.first;
+  if (x.second != y.second) return x.second < y.second;
+  if (x.shift[0] != y.shift[0]) return x.shift[0] < y.shift[0];
+  if (x.shift[1] != y.shift[1]) return x.shift[1] < y.shift[1];
+  if (x.a != y.a) return x.a < y.a;
+  return x.b < y.b;
+}
+bool operator==(const PairKey& x, const PairKey& y) { return !(x < y) && !(y < x); }
 
 std::vector<PairHistory> PairList::histories() const {
   std::vector<PairHistory> past;

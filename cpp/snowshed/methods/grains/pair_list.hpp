@@ -73,6 +73,7 @@ struct PairSearch {
   bool periodic;
   Cone cone;
   std::size_t most_pairs;  // that memory is taken for
+  int threads;
 };
 
 /// The gap below which pairs are listed, as a share of the spheres' radius: twice as far as a

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/pair_list.hpp"
 
 namespace snowshed {
@@ -39,18 +40,18 @@ class SphereCells {
 
   int count(int axis) const { return count_[axis]; }
   std::uint32_t sphere(std::uint32_t entry) const { return spheres_[entry]; }
-  std::uint32_t begin(int i, int j, int k) const { return begin_[number(i, j, k)]; }
-  std::uint32_t end(int i, int j, int k) const { return begin_[number(i, j, k) + 1]; }
+  std::size_t number(int i, int j, int k) const {
+    return (std::size_t(k) * std::size_t(count_[1]) + std::size_t(j)) * std::size_t(count_[0]) +
+           std::size_t(i);
+  }
+  std::uint32_t begin(std::size_t cell) const { return begin_[cell]; }
+  std::uint32_t end(std::size_t cell) const { return begin_[cell + 1]; }
   /// By how many periods a sphere lies away from the box.
   int wrap(const Vec3& x, int axis) const {
     return periodic_ ? int(std::floor((x[axis] - low_[axis]) / boundary_.period(axis))) : 0;
   }
 
  private:
-  std::size_t number(int i, int j, int k) const {
-    return (std::size_t(k) * std::size_t(count_[1]) + std::size_t(j)) * std::size_t(count_[0]) +
-           std::size_t(i);
-  }
   /// Three cells along a period are enough, if they are as wide as pairs are far apart.
   void shorten(const Vec3& extent, double reach) {
     for (int axis = 0; axis < 2; ++axis) {
@@ -89,95 +90,127 @@ class SphereCells {
   std::vector<std::uint32_t> begin_, spheres_;
 };
 
+std::vector<Vec3> places_of(const PairSearch& s, const std::vector<GrainPose>& poses) {
+  std::vector<Mat3> rotations;
+  rotations.reserve(poses.size());
+  for (const GrainPose& pose : poses) rotations.push_back(pose.orientation.toRotationMatrix());
+  std::vector<Vec3> places(s.spheres.offsets.size());
+  parallel_for_each(std::ptrdiff_t(places.size()), s.threads, [&](std::ptrdiff_t i) {
+    const std::uint32_t g = s.spheres.grain[std::size_t(i)];
+    places[std::size_t(i)] = poses[g].position + rotations[g] * s.spheres.offsets[std::size_t(i)];
+  });
+  return places;
+}
+
+/// Sees the spheres in the order of their cells.
 class Finder {
  public:
   Finder(const PairSearch& s, const std::vector<GrainPose>& poses, const GrainsBoundary& b)
-      : s_(s), b_(b), reach_(2 * s.radius + s.skin), places_(s.spheres.offsets.size()) {
-    std::vector<Mat3> rotations;
-    rotations.reserve(poses.size());
-    for (const GrainPose& pose : poses) rotations.push_back(pose.orientation.toRotationMatrix());
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      const std::uint32_t g = s.spheres.grain[i];
-      places_[i] = poses[g].position + rotations[g] * s.spheres.offsets[i];
+      : s_(s),
+        b_(b),
+        reach_(2 * s.radius + s.skin),
+        places_(places_of(s, poses)),
+        cells_(s, places_, b, reach_),
+        grain_(places_.size()) {
+    std::vector<Vec3> sorted(places_.size());
+    for (std::uint32_t e = 0; e < sorted.size(); ++e) {
+      sorted[e] = places_[cells_.sphere(e)];
+      grain_[e] = s.spheres.grain[cells_.sphere(e)];
     }
+    places_ = std::move(sorted);
   }
 
   std::vector<PairKey> find() {
     find_grains();
-    for (std::uint32_t a = 0; a < places_.size(); ++a) {
-      find_plate(a, 0);
-      if (b_.has_top) find_plate(a, 1);
-      if (!s_.periodic) find_sides(a);
-      if (b_.has_cone) find_cone(a);
+    for (std::uint32_t e = 0; e < places_.size(); ++e) {
+      find_plate(e, 0);
+      if (b_.has_top) find_plate(e, 1);
+      if (!s_.periodic) find_sides(e);
+      if (b_.has_cone) find_cone(e);
     }
     std::sort(pairs_.begin(), pairs_.end());
     return std::move(pairs_);
   }
 
  private:
+  /// Layer by layer: what is found is sorted afterwards, whoever found it.
   void find_grains() {
-    const SphereCells cells(s_, places_, b_, reach_);
-    for (int k = 0; k < cells.count(2); ++k)
-      for (int j = 0; j < cells.count(1); ++j)
-        for (int i = 0; i < cells.count(0); ++i) {
-          const std::uint32_t begin = cells.begin(i, j, k), end = cells.end(i, j, k);
-          if (begin == end) continue;
-          for (std::uint32_t e = begin; e < end; ++e)
-            for (std::uint32_t f = e + 1; f < end; ++f)
-              meet(cells, cells.sphere(e), cells.sphere(f), 0, 0);
-          find_ahead(cells, i, j, k);
-        }
+    std::vector<std::vector<PairKey>> layers(std::size_t(cells_.count(2)));
+    parallel_for(cells_.count(2), s_.threads, 1, [&](std::ptrdiff_t k) {
+      for (int j = 0; j < cells_.count(1); ++j) find_along(j, int(k), layers[std::size_t(k)]);
+    });
+    std::size_t all = 0;
+    for (const std::vector<PairKey>& layer : layers) all += layer.size();
+    check_number(all);
+    pairs_.reserve(all + all / 8);
+    for (const std::vector<PairKey>& layer : layers)
+      pairs_.insert(pairs_.end(), layer.begin(), layer.end());
   }
 
-  /// The thirteen neighbours of a cell that come after it.
-  void find_ahead(const SphereCells& cells, int i, int j, int k) {
-    for (int dk = 0; dk <= 1; ++dk)
-      for (int dj = dk == 0 ? 0 : -1; dj <= 1; ++dj)
-        for (int di = dk == 0 && dj == 0 ? 1 : -1; di <= 1; ++di) {
-          int to[2] = {i + di, j + dj}, periods[2] = {0, 0};
-          if (k + dk >= cells.count(2) || !wrapped(cells, to, periods)) continue;
-          for (std::uint32_t e = cells.begin(i, j, k); e < cells.end(i, j, k); ++e)
-            for (std::uint32_t f = cells.begin(to[0], to[1], k + dk);
-                 f < cells.end(to[0], to[1], k + dk); ++f)
-              meet(cells, cells.sphere(e), cells.sphere(f), periods[0], periods[1]);
-        }
-  }
-
-  /// Brings a cell into the box, and tells by how many periods; false where there is none.
-  bool wrapped(const SphereCells& cells, int (&to)[2], int (&periods)[2]) const {
-    for (int axis = 0; axis < 2; ++axis) {
-      const int n = cells.count(axis);
-      if (to[axis] >= 0 && to[axis] < n) continue;
-      if (!s_.periodic) return false;
-      periods[axis] = to[axis] < 0 ? -1 : 1;
-      to[axis] -= periods[axis] * n;
+  /// A row of cells along x, whose spheres stand one after another, with itself and with the four
+  /// rows beside it that come after it.
+  void find_along(int j, int k, std::vector<PairKey>& found) const {
+    const int ahead[4][2] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+    find_between(j, k, j, 0, true, found);
+    for (const auto& [dj, dk] : ahead) {
+      if (k + dk >= cells_.count(2)) continue;
+      const int n = cells_.count(1), to = j + dj;
+      const int periods = to < 0 ? -1 : to >= n ? 1 : 0;
+      if (periods != 0 && !s_.periodic) continue;
+      find_between(j, k, to - periods * n, periods, false, found, k + dk);
     }
-    return true;
   }
 
-  void meet(const SphereCells& cells, std::uint32_t a, std::uint32_t b, int px, int py) {
-    const std::uint32_t of_a = s_.spheres.grain[a], of_b = s_.spheres.grain[b];
-    if (of_a == of_b && !s_.periodic) return;
+  /// Row (j, k) with row (to_j, to_k), `periods` away along y.
+  void find_between(int j, int k, int to_j, int periods, bool same, std::vector<PairKey>& found,
+                    int to_k = -1) const {
+    const int n = cells_.count(0), l = same ? k : to_k;
+    for (int i = 0; i < n; ++i) {
+      const std::size_t cell = cells_.number(i, j, k);
+      const std::uint32_t begin = cells_.begin(cell), end = cells_.end(cell);
+      if (begin == end) continue;
+      const std::uint32_t from = cells_.begin(cells_.number(std::max(i - 1, 0), to_j, l));
+      const std::uint32_t until = cells_.end(cells_.number(std::min(i + 1, n - 1), to_j, l));
+      for (std::uint32_t e = begin; e < end; ++e)
+        for (std::uint32_t f = same ? e + 1 : from; f < until; ++f) meet(e, f, 0, periods, found);
+      if (!s_.periodic) continue;
+      if (i == n - 1) meet_cells(cell, cells_.number(0, to_j, l), 1, periods, found);
+      if (i == 0 && !same) meet_cells(cell, cells_.number(n - 1, to_j, l), -1, periods, found);
+    }
+  }
+
+  void meet_cells(std::size_t cell, std::size_t other, int px, int py,
+                  std::vector<PairKey>& found) const {
+    for (std::uint32_t e = cells_.begin(cell); e < cells_.end(cell); ++e)
+      for (std::uint32_t f = cells_.begin(other); f < cells_.end(other); ++f)
+        meet(e, f, px, py, found);
+  }
+
+  void meet(std::uint32_t e, std::uint32_t f, int px, int py, std::vector<PairKey>& found) const {
+    const std::uint32_t of_e = grain_[e], of_f = grain_[f];
+    if (of_e == of_f && !s_.periodic) return;
     int shift[2] = {0, 0};
-    Vec3 way = places_[b] - places_[a];
+    Vec3 way = places_[f] - places_[e];
     if (s_.periodic) {
-      shift[0] = px + cells.wrap(places_[a], 0) - cells.wrap(places_[b], 0);
-      shift[1] = py + cells.wrap(places_[a], 1) - cells.wrap(places_[b], 1);
-      if (of_a == of_b && shift[0] == 0 && shift[1] == 0) return;
+      shift[0] = px + cells_.wrap(places_[e], 0) - cells_.wrap(places_[f], 0);
+      shift[1] = py + cells_.wrap(places_[e], 1) - cells_.wrap(places_[f], 1);
+      if (of_e == of_f && shift[0] == 0 && shift[1] == 0) return;
       way += Vec3(shift[0] * b_.period(0), shift[1] * b_.period(1), 0);
     }
     if (way.squaredNorm() >= reach_ * reach_) return;
-    const bool forward = of_a != of_b ? of_a < of_b : shift[0] != 0 ? shift[0] > 0 : shift[1] > 0;
+    const bool forward = of_e != of_f ? of_e < of_f : shift[0] != 0 ? shift[0] > 0 : shift[1] > 0;
+    check_number(found.size());
+    const std::uint32_t a = cells_.sphere(e), b = cells_.sphere(f);
     if (forward)
-      push({of_a, of_b, {shift[0], shift[1]}, a, b});
+      found.push_back({of_e, of_f, {shift[0], shift[1]}, a, b});
     else
-      push({of_b, of_a, {-shift[0], -shift[1]}, b, a});
+      found.push_back({of_f, of_e, {-shift[0], -shift[1]}, b, a});
   }
 
   std::uint32_t partner(Partner p) const { return s_.grains + std::uint32_t(p); }
 
-  void find_plate(std::uint32_t a, int plate) {
-    const Vec3 from = places_[a] - b_.plate[plate];
+  void find_plate(std::uint32_t e, int plate) {
+    const Vec3 from = places_[e] - b_.plate[plate];
     if (std::abs(from.z()) >= reach_) return;
     const double spacing = 2 * s_.radius, x = from.x() / spacing, y = from.y() / spacing;
     if (!(std::abs(x) < half_grid - 4 && std::abs(y) < half_grid - 4)) return;
@@ -185,36 +218,43 @@ class Finder {
       for (int j = int(std::floor(y)) - 2; j <= int(std::floor(y)) + 2; ++j) {
         const std::uint32_t number = plate_number(i, j);
         if ((plate_sphere(number, s_.radius) - from).squaredNorm() < reach_ * reach_)
-          push({s_.spheres.grain[a],
+          push({grain_[e],
                 partner(plate == 0 ? Partner::bottom_plate : Partner::top_plate),
                 {0, 0},
-                a,
+                cells_.sphere(e),
                 number});
       }
   }
 
-  void find_sides(std::uint32_t a) {
+  void find_sides(std::uint32_t e) {
     for (int side = 0; side < 4; ++side)
-      if (meet_side(b_, side, places_[a], s_.radius).gap < s_.skin)
-        push({s_.spheres.grain[a], partner(Partner::west) + std::uint32_t(side), {0, 0}, a, 0});
+      if (meet_side(b_, side, places_[e], s_.radius).gap < s_.skin)
+        push(
+            {grain_[e], partner(Partner::west) + std::uint32_t(side), {0, 0}, cells_.sphere(e), 0});
   }
 
-  void find_cone(std::uint32_t a) {
-    if (meet_cone(s_.cone, places_[a] - b_.tip, s_.radius).gap < s_.skin)
-      push({s_.spheres.grain[a], partner(Partner::cone), {0, 0}, a, 0});
+  void find_cone(std::uint32_t e) {
+    if (meet_cone(s_.cone, places_[e] - b_.tip, s_.radius).gap < s_.skin)
+      push({grain_[e], partner(Partner::cone), {0, 0}, cells_.sphere(e), 0});
   }
 
   void push(const PairKey& key) {
-    if (pairs_.size() == s_.most_pairs)
+    check_number(pairs_.size());
+    pairs_.push_back(key);
+  }
+
+  void check_number(std::size_t pairs) const {
+    if (pairs > s_.most_pairs)
       throw SimulationError("the grains overlap so much that more than " +
                             std::to_string(s_.most_pairs) + " pairs of spheres are near");
-    pairs_.push_back(key);
   }
 
   const PairSearch& s_;
   const GrainsBoundary& b_;
   double reach_;
   std::vector<Vec3> places_;
+  SphereCells cells_;
+  std::vector<std::uint32_t> grain_;
   std::vector<PairKey> pairs_;
 };
 

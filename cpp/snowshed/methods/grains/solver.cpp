@@ -118,7 +118,9 @@ void GrainsSolver::accept(GrainsState next, GrainsWork work) {
   work.frames.resize(next.bodies.size() + 2);
   work.damped.resize(next.bodies.size());
   evaluate_forces(model_, next, work, 0.0);
-  next.dt = next.counters.smallest_dt = choose_step(model_, next, work.longest_step);
+  next.dt = choose_step(model_, next, work.longest_step);
+  double& smallest = next.counters.smallest_dt;
+  smallest = smallest > 0 ? std::min(smallest, next.dt) : next.dt;
   std::vector<std::uint32_t> order(next.bodies.size());
   std::iota(order.begin(), order.end(), 0u);
   if (model_.keeps_energy) {

@@ -68,7 +68,7 @@ def grains_scene(
     file = Path(labels)
     if file.suffix.lower() != NPY:
         raise InputError(
-            f"{file}: no NPY file of labels; segment an image with: snowshed grains segment"
+            f"{file}: no NPY file; labels are whole numbers in one, 0 for air (numpy.save)"
         )
     return Scene(
         method="grains",

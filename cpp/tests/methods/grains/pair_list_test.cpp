@@ -1,0 +1,147 @@
+#include "snowshed/methods/grains/pair_list.hpp"
+
+#include <gtest/gtest.h>
+
+#include "methods/grains/grains_testing.hpp"
+#include "snowshed/core/errors.hpp"
+
+namespace snowshed {
+namespace {
+
+/// A sample whose grains are strewn about and turned, some beyond the box.
+struct Strewn {
+  explicit Strewn(bool periodic) : model(options(periodic)) {
+    Random random(3);
+    boundary = initial_boundary(model.loaded());
+    boundary.plate[1].z() -= 0.3 * model.box.z();
+    for (const GrainConstants& grain : model.grains) {
+      const auto between = [&](double low, double high) {
+        return low + (high - low) * random.uniform();
+      };
+      const Vec3 axis = Vec3(between(-1, 1), between(-1, 1), between(-1, 1)).normalized();
+      GrainPose pose;
+      for (int k = 0; k < 3; ++k) pose.position[k] = between(-0.5, 1.5) * model.box[k];
+      pose.orientation =
+          Orientation(Eigen::AngleAxisd(between(0, 3), axis)) * grain.initial_orientation;
+      poses.push_back(pose);
+    }
+  }
+  static GrainsOptions options(bool periodic) {
+    GrainsOptions o = grains_of(random_snow(16, 4));
+    if (periodic) o.settings.sides = GrainSides::periodic;
+    return o;
+  }
+  PairSearch search(int threads = 1) const {
+    return {model.spheres,    std::uint32_t(model.grains.size()),
+            model.radius,     0.4 * model.radius,
+            model.periodic(), model.cone,
+            1000000,          threads};
+  }
+  /// All pairs of spheres of grains, each with each, in all images near by.
+  std::vector<PairKey> by_brute_force() const {
+    std::vector<PairKey> found;
+    std::vector<Vec3> x;
+    const auto& spheres = model.spheres;
+    for (std::size_t s = 0; s < spheres.offsets.size(); ++s)
+      x.push_back(poses[spheres.grain[s]].position +
+                  poses[spheres.grain[s]].orientation * spheres.offsets[s]);
+    const int images = model.periodic() ? 4 : 0;
+    for (std::uint32_t a = 0; a < x.size(); ++a)
+      for (std::uint32_t b = 0; b < x.size(); ++b)
+        for (int i = -images; i <= images; ++i)
+          for (int j = -images; j <= images; ++j) {
+            const std::uint32_t of_a = spheres.grain[a], of_b = spheres.grain[b];
+            if (of_a > of_b || (of_a == of_b && (i < 0 || (i == 0 && j <= 0)))) continue;
+            const Vec3 shift(i * model.box.x(), j * model.box.y(), 0);
+            if ((x[b] + shift - x[a]).norm() < 2.4 * model.radius)
+              found.push_back({of_a, of_b, {i, j}, a, b});
+          }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  GrainsModel model;
+  std::vector<GrainPose> poses;
+  GrainsBoundary boundary;
+};
+
+TEST(GrainPairs, are_all_that_are_near) {
+  for (const bool periodic : {false, true}) {
+    const Strewn strewn(periodic);
+    std::vector<PairKey> found = find_pairs(strewn.search(), strewn.poses, strewn.boundary);
+    EXPECT_EQ(found, find_pairs(strewn.search(3), strewn.poses, strewn.boundary));
+    EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+    found.erase(std::remove_if(
+                    found.begin(), found.end(),
+                    [&](const PairKey& key) { return key.second >= strewn.model.grains.size(); }),
+                found.end());
+    EXPECT_GT(found.size(), 100u);
+    EXPECT_TRUE(found == strewn.by_brute_force());
+  }
+}
+
+TEST(GrainPairs, with_plates_and_walls_are_all_that_are_near) {
+  const Strewn strewn(false);
+  std::size_t expected = 0;
+  const double r = strewn.model.radius;
+  const auto& spheres = strewn.model.spheres;
+  for (std::size_t s = 0; s < spheres.offsets.size(); ++s) {
+    const GrainPose& pose = strewn.poses[spheres.grain[s]];
+    const Vec3 x = pose.position + pose.orientation * spheres.offsets[s];
+    for (int axis = 0; axis < 2; ++axis) {
+      expected += x[axis] - r < 0.4 * r;
+      expected += strewn.model.box[axis] - x[axis] - r < 0.4 * r;
+    }
+    for (const Vec3& plate : strewn.boundary.plate)
+      for (int i = -20; i < 40; ++i)
+        for (int j = -20; j < 40; ++j)
+          expected += (plate + Vec3((2 * i + 1) * r, (2 * j + 1) * r, 0) - x).norm() < 2.4 * r;
+  }
+  const auto found = find_pairs(strewn.search(), strewn.poses, strewn.boundary);
+  EXPECT_EQ(std::size_t(std::count_if(
+                found.begin(), found.end(),
+                [&](const PairKey& key) { return key.second >= strewn.model.grains.size(); })),
+            expected);
+}
+
+TEST(GrainPairs, keep_their_past_and_their_bonds_from_list_to_list) {
+  const Strewn strewn(true);
+  const auto found = find_pairs(strewn.search(), strewn.poses, strewn.boundary);
+  std::vector<PairHistory> past;
+  for (std::size_t i = 0; i < found.size(); i += 7)
+    past.push_back({found[i], Vec3(double(i), 1, 2), i % 2 == 0, i % 2 == 0});
+  // One that has come apart: kept if it is bonded.
+  PairKey far{0, 1, {9, 9}, 0, strewn.model.grains[1].first_sphere};
+  past.push_back({far, Vec3(5, 5, 5), true, true});
+  std::sort(past.begin(), past.end(),
+            [](const PairHistory& x, const PairHistory& y) { return x.key < y.key; });
+  const PairList list = make_list(strewn.search(), found, past);
+  EXPECT_EQ(list.size() % pairs_at_once, 0u);
+  EXPECT_EQ(list.all().size(), found.size() + 1);
+  const std::vector<PairHistory> kept = list.histories();
+  ASSERT_EQ(kept.size(), past.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    EXPECT_EQ(kept[i].key, past[i].key);
+    EXPECT_EQ(kept[i].shear, past[i].shear);
+    EXPECT_EQ(kept[i].bonded, past[i].bonded);
+  }
+  past.back().kept = past.back().bonded = false;
+  for (PairHistory& h : past) h.kept = false;
+  EXPECT_EQ(make_list(strewn.search(), found, past).all().size(), found.size());
+}
+
+TEST(GrainPairs, that_are_too_many_are_an_error) {
+  const Strewn strewn(false);
+  PairSearch search = strewn.search();
+  search.most_pairs = 10;
+  EXPECT_THROW(find_pairs(search, strewn.poses, strewn.boundary), SimulationError);
+}
+
+TEST(GrainPairs, of_a_period_as_short_as_a_sphere_are_an_error) {
+  Strewn strewn(true);
+  strewn.boundary.side[1] = 4 * strewn.model.radius;
+  EXPECT_THROW(find_pairs(strewn.search(), strewn.poses, strewn.boundary), SimulationError);
+}
+
+}  // namespace
+}  // namespace snowshed
