@@ -3,16 +3,23 @@
 import csv
 import json
 import math
+import signal
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
 
 from snowshed import InputError
 from snowshed.io.raster import Raster, read_raster, write_ascii_grid
+from snowshed.methods.slide_frames import FrameSeries
 from snowshed.run.interrupt import Interrupted
-from snowshed.run.slides import particles_at, run_slide
+from snowshed.run.sequence import open_sequence
+from snowshed.run.slides import FRAMES, particles_at, run_slide
 from snowshed.scene import Area, Events, Scene, Terrain
 from snowshed.scene.builders import example_slide
+from snowshed.scene.scene import resolve_scene
 
 OUTLINE = [(20.3, 18.3), (44.3, 18.3), (44.3, 42.3), (20.3, 42.3)]
 
@@ -143,3 +150,36 @@ def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
     offset = int(lines[0].attrib["offset"]) + 8
     ends = np.frombuffer(data, "<i4", 2 * len(state.bonds), offset).reshape(-1, 2)
     assert (ends == state.bonds).all()
+
+
+SLOW = """
+import sys, time
+from snowshed.run.slides import run_slide
+run_slide(sys.argv[1], sys.argv[2], progress=lambda _: time.sleep(0.05))
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="nothing kills like that here")
+def test_the_film_of_a_slide_that_was_killed_is_whole(slope, tmp_path):
+    """As of one that ran through: frames from before the checkpoint are not lost."""
+    scene = slope.update({"output.checkpoint_interval": 0.2, "events.max_time": 60.0})
+    scene = scene.update({"numerics.time_step": 0.0005})  # steps enough to be killed among
+    ready = resolve_scene(scene)
+    (tmp_path / "scene.json").write_text(ready.json)
+    out = tmp_path / "out"
+    run = subprocess.Popen([sys.executable, "-c", SLOW, tmp_path / "scene.json", out])
+    try:
+        while not (out / FRAMES).exists() or len(FrameSeries.load(out / FRAMES, 1e9).frames) < 3:
+            assert run.poll() is None
+            time.sleep(0.01)
+    finally:
+        run.kill()
+        run.wait()
+    kept = FrameSeries.load(out / FRAMES, 1e9)
+    sequence = open_sequence(ready, out, resume=True)
+    with sequence:
+        until = sequence.simulation.time_s
+    times = [frame.time for frame in kept.frames if frame.time < until]
+    assert times[0] == 0.0 and until > 0.5
+    assert times == pytest.approx([0.25 * n for n in range(len(times))], abs=0.01)
+    assert until - times[-1] < 0.26  # none is missing before the checkpoint

@@ -45,7 +45,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PACKED = "peaks.npz"  # the peak maps, where no rasters are wanted
-FRAMES = "frames.npz"  # the slide over time, while it is interrupted
+FRAMES = "frames.npz"  # the slide over time, as it was at the last checkpoint
+CHECKPOINT = "checkpoint.bin"
 
 
 @dataclass(frozen=True)
@@ -177,7 +178,7 @@ def run_slide(
     with sequence, deferred_interrupts() as interrupt:
         sequence.describe_machine(machine_facts())
         frames = _frames(sequence.simulation, Path(out_dir)) if pictures else None
-        recorder = _Recorder(sequence.simulation, interrupt, progress, frames)
+        recorder = _Recorder(sequence.simulation, interrupt, progress, frames, Path(out_dir))
         try:
             run_sequence(sequence, recorder, out_dir, every_step=frames is not None)
         except Interrupted:
@@ -261,7 +262,10 @@ class _Recorder:
         interrupt: InterruptRequest,
         report: Optional[Reporter],
         frames: Optional[FrameSeries],
+        folder: Path,
     ) -> None:
+        self.folder = folder
+        self.checkpoint = _written(folder / CHECKPOINT)
         self.simulation = simulation
         self.interrupt = interrupt
         self.report = report
@@ -278,6 +282,7 @@ class _Recorder:
 
     def progress(self, report: dict[str, Any]) -> None:
         """Pass on how far the slide has come, and look at the snow."""
+        self._keep()
         self._look(report["time_s"])
         if time.monotonic() >= self.told + REPORT_INTERVAL:
             self.told = time.monotonic()
@@ -292,6 +297,15 @@ class _Recorder:
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
         return self.interrupt.requested
+
+    def _keep(self) -> None:
+        """Save the frames once a checkpoint was written, since a run may end without a word."""
+        if self.frames is None:
+            return
+        written = _written(self.folder / CHECKPOINT)
+        if written != self.checkpoint:
+            self.frames.save(self.folder / FRAMES)
+            self.checkpoint = written
 
     def _look(self, time_s: float) -> None:
         if self.frames is not None and self.frames.due(time_s):
@@ -325,6 +339,14 @@ def _release_outlines(simulation: _core.Simulation) -> list[Outline]:
 def _release(simulation: _core.Simulation) -> list[dict[str, Any]]:
     areas: list[dict[str, Any]] = json.loads(simulation.scene)["terrain"]["release"]
     return areas
+
+
+def _written(file: Path) -> int:
+    """Return when a file was last written, ns; 0 if there is none."""
+    try:
+        return file.stat().st_mtime_ns
+    except FileNotFoundError:
+        return 0
 
 
 def _frames(simulation: _core.Simulation, folder: Path) -> FrameSeries:
