@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Literal
 
 import numpy as np
 
@@ -21,6 +22,8 @@ EAST, NORTH = 84.0, 48.0  # m, the terrain
 SLAB = ((9.0, 9.0), (39.0, 9.0), (39.0, 39.0), (9.0, 39.0))  # m
 MIDDLE = 3.0  # m, around the slab's middle; edges make themselves felt there only later
 SLIDING = 2.0  # s
+
+Law = Literal["coulomb", "voellmy"]
 
 
 def coulomb_error() -> float:
@@ -45,7 +48,7 @@ def _acceleration() -> float:
     return GRAVITY * (math.sin(tilt) - FRICTION * math.cos(tilt))
 
 
-def _slid(law: str) -> tuple[Drive, float]:
+def _slid(law: Law) -> tuple[Drive, float]:
     """Return a slab that has slid from rest, and the speed of its middle, m/s."""
     with TemporaryDirectory() as folder:
         drive = Drive(_scene(law, Path(folder) / "plane.asc"))
@@ -56,7 +59,7 @@ def _slid(law: str) -> tuple[Drive, float]:
     return drive, float(speeds.mean())
 
 
-def _scene(law: str, file: Path) -> Scene:
+def _scene(law: Law, file: Path) -> Scene:
     fall = math.tan(math.radians(TILT)) * np.arange(0.0, EAST + CELL, CELL)
     rows = round(NORTH / CELL) + 1
     write_ascii_grid(file, Raster(np.tile(1000.0 - fall, (rows, 1)), 0.0, 0.0, CELL))
