@@ -63,3 +63,11 @@ def test_a_slide_within_the_stated_range_has_no_warning():
 def test_every_way_out_of_it_is_said(release, settings, figures, said):
     (found,) = validity_notes([release], {**SETTINGS, **settings}, {**GOOD, **figures})
     assert said in found
+
+
+def test_a_release_by_a_raster_has_its_mean_thickness():
+    depth = Raster(np.tile(np.linspace(0.0, 1.0, 101), (101, 1)), 0.0, 0.0, 1.0)
+    release = {"name": "drift", "outline": OUTLINE, "thickness": 9.0}
+    (found,) = release_areas(plane(36.0), [release], depth)
+    assert found.thickness == pytest.approx(0.3, abs=0.006)  # in its middle, 30 m to the east
+    assert found.volume == pytest.approx(0.3 * 600.0 / math.cos(math.radians(36.0)), rel=0.02)

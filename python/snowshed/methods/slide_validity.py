@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, Optional
 
 import numpy as np
 
 from snowshed.io.arrays import Booleans, Floats
-from snowshed.io.raster import Raster
+from snowshed.io.raster import Raster, read_raster
 
 SLOPES = (28.0, 50.0)  # degrees
 ALTITUDES = (500.0, 1500.0)  # m
@@ -32,7 +33,7 @@ class ReleaseArea:
     name
         Of the area.
     thickness
-        Of its snow, m.
+        Of its snow, m; the mean where a raster gives it.
     area, sloping_area
         On the map, and along the ground, m2.
     lowest, highest
@@ -60,7 +61,30 @@ class ReleaseArea:
         return self.thickness * self.sloping_area
 
 
-def release_areas(ground: Raster, areas: Sequence[Mapping[str, Any]]) -> list[ReleaseArea]:
+def thickness_map(terrain: Mapping[str, Any], folder: Path) -> Optional[Raster]:
+    """Return the raster of the release's thickness, m, if a terrain has one.
+
+    Parameters
+    ----------
+    terrain
+        Of a complete scene.
+    folder
+        What its files are relative to.
+
+    Raises
+    ------
+    InputError
+        If the raster is none.
+    OSError
+        If it cannot be read.
+    """
+    file = terrain.get("thickness_file")
+    return read_raster(folder / file) if file else None
+
+
+def release_areas(
+    ground: Raster, areas: Sequence[Mapping[str, Any]], thickness: Optional[Raster] = None
+) -> list[ReleaseArea]:
     """Return what release areas are like on a terrain.
 
     Parameters
@@ -69,8 +93,12 @@ def release_areas(ground: Raster, areas: Sequence[Mapping[str, Any]]) -> list[Re
         Elevations.
     areas
         The areas of a complete scene: name, outline (map coordinates, m) and thickness, m.
+    thickness
+        In place of that of the areas, m.
     """
     inclination = _inclination(ground)
+    if thickness is not None:
+        areas = [{**area, "thickness": _mean_thickness(thickness, area)} for area in areas]
     return [_described(ground, inclination, area) for area in areas]
 
 
@@ -137,17 +165,13 @@ def _of_release(area: ReleaseArea, settings: Mapping[str, Any]) -> list[str]:
     return found
 
 
+def _mean_thickness(thickness: Raster, area: Mapping[str, Any]) -> float:
+    return float(np.nan_to_num(thickness.heights[_within(thickness, area)]).mean())
+
+
 def _described(ground: Raster, inclination: Floats, area: Mapping[str, Any]) -> ReleaseArea:
     outline = np.asarray(area["outline"], dtype=float)
-    inside = _inside(ground, outline)
-    for hole in area.get("holes") or ():
-        inside &= ~_inside(ground, np.asarray(hole["outline"], dtype=float))
-    if not inside.any():  # smaller than a cell: the node next to it
-        middle = outline.mean(axis=0)
-        column = round((middle[0] - ground.east) / ground.cell)
-        row = round((middle[1] - ground.north) / ground.cell)
-        rows, columns = ground.heights.shape
-        inside[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)] = True
+    inside = _within(ground, area)
     slopes, heights = inclination[inside], ground.heights[inside]
     flat = _ring_area(outline) - sum(
         _ring_area(np.asarray(hole["outline"], dtype=float)) for hole in area.get("holes") or ()
@@ -165,6 +189,21 @@ def _described(ground: Raster, inclination: Floats, area: Mapping[str, Any]) -> 
         flattest=float(slopes.min()),
         outside=float(outside.mean()),
     )
+
+
+def _within(ground: Raster, area: Mapping[str, Any]) -> Booleans:
+    """Return which nodes an area holds; of one that is smaller than a cell the node next to it."""
+    outline = np.asarray(area["outline"], dtype=float)
+    inside = _inside(ground, outline)
+    for hole in area.get("holes") or ():
+        inside &= ~_inside(ground, np.asarray(hole["outline"], dtype=float))
+    if not inside.any():
+        middle = outline.mean(axis=0)
+        column = round((middle[0] - ground.east) / ground.cell)
+        row = round((middle[1] - ground.north) / ground.cell)
+        rows, columns = ground.heights.shape
+        inside[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)] = True
+    return inside
 
 
 def _inclination(ground: Raster) -> Floats:

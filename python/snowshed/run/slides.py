@@ -33,7 +33,12 @@ from snowshed.io.raster_output import write_raster
 from snowshed.methods.peak_maps import PeakMaps
 from snowshed.methods.slide_frames import FrameSeries
 from snowshed.methods.slide_maps import SlideMaps
-from snowshed.methods.slide_validity import ReleaseArea, release_areas, validity_notes
+from snowshed.methods.slide_validity import (
+    ReleaseArea,
+    release_areas,
+    thickness_map,
+    validity_notes,
+)
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
@@ -181,7 +186,9 @@ def run_slide(
         run_sequence(sequence, recorder, out_dir, every_step=frames is not None)
         (facts,) = sequence.finished_events
         maps = slide_maps(sequence.simulation)
-        areas = release_areas(maps.raster(maps.terrain), _release(sequence.simulation))
+        terrain = json.loads(sequence.simulation.scene)["terrain"]
+        depth = thickness_map(terrain, Path(ready.base_dir))
+        areas = release_areas(maps.raster(maps.terrain), terrain["release"], depth)
         summary = _summary(sequence.simulation, facts, maps, areas)
         if rasters:
             _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
@@ -322,11 +329,6 @@ def release_outlines(scene: Mapping[str, Any]) -> list[Outline]:
 
 def _release_outlines(simulation: _core.Simulation) -> list[Outline]:
     return release_outlines(json.loads(simulation.scene))
-
-
-def _release(simulation: _core.Simulation) -> list[dict[str, Any]]:
-    areas: list[dict[str, Any]] = json.loads(simulation.scene)["terrain"]["release"]
-    return areas
 
 
 def _frames(simulation: _core.Simulation, folder: Path) -> FrameSeries:

@@ -7,7 +7,15 @@ import pytest
 import snowshed.run.self_test
 from snowshed import _core
 from snowshed.cli.main import main
-from snowshed.run.self_test import CHECKS, Check, motion, return_mapping, run_checks, same_bits
+from snowshed.run.self_test import (
+    CHECKS,
+    Check,
+    motion,
+    return_mapping,
+    run_checks,
+    same_bits,
+    slide,
+)
 
 BROKEN = Check("a broken core", 0.0, lambda: 0.5)
 
@@ -114,6 +122,19 @@ def test_wrong_friction_fails(core):
 def test_wrong_stress_in_a_column_fails(wrong, core):
     core(lambda data: data["snow"].update(wrong))
     assert not result_of(motion.column_error).holds
+
+
+@pytest.mark.parametrize(
+    ("measure", "wrong"),
+    [
+        (slide.coulomb_error, {"friction": 1.02 * slide.FRICTION}),
+        (slide.voellmy_error, {"friction": 1.02 * slide.FRICTION}),
+        (slide.voellmy_error, {"turbulence": 0.97 * slide.TURBULENCE}),
+    ],
+)
+def test_wrong_friction_of_a_snow_slide_fails(measure, wrong, core):
+    core(lambda data: data["numerics"].update(wrong))
+    assert not result_of(measure).holds
 
 
 def test_threads_that_change_a_bit_fail(core):
