@@ -131,8 +131,8 @@ SampleSize measure_sample(const LabelImage& image) {
     size.spheres += is_interface(image, i, j, k);
   });
   for_each_bond(image, [&](std::size_t, std::size_t) { ++size.bonds; });
-  // What the solver holds and needs while it looks for neighbours; see `GrainsMethod::bytes`.
-  size.bytes = 120 * size.spheres + 320 * size.bonds + 1500 * size.grains;
+  // What the solver holds, and as much again for pairs while it looks for them, as measured.
+  size.bytes = 160 * size.spheres + 450 * size.bonds + 1500 * size.grains;
   return size;
 }
 

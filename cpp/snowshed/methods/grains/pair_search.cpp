@@ -143,8 +143,10 @@ class Finder {
     for (const std::vector<PairKey>& layer : layers) all += layer.size();
     check_number(all);
     pairs_.reserve(all + all / 8);
-    for (const std::vector<PairKey>& layer : layers)
+    for (std::vector<PairKey>& layer : layers) {
       pairs_.insert(pairs_.end(), layer.begin(), layer.end());
+      layer = {};
+    }
   }
 
   /// A row of cells along x, whose spheres stand one after another, with itself and with the four

@@ -27,7 +27,7 @@ struct Strewn {
     }
   }
   static GrainsOptions options(bool periodic) {
-    GrainsOptions o = grains_of(random_snow(16, 4));
+    GrainsOptions o = grains_of(random_snow(12, 4));
     if (periodic) o.settings.sides = GrainSides::periodic;
     return o;
   }
@@ -45,7 +45,7 @@ struct Strewn {
     for (std::size_t s = 0; s < spheres.offsets.size(); ++s)
       x.push_back(poses[spheres.grain[s]].position +
                   poses[spheres.grain[s]].orientation * spheres.offsets[s]);
-    const int images = model.periodic() ? 4 : 0;
+    const int images = model.periodic() ? 3 : 0;
     for (std::uint32_t a = 0; a < x.size(); ++a)
       for (std::uint32_t b = 0; b < x.size(); ++b)
         for (int i = -images; i <= images; ++i)
@@ -75,7 +75,7 @@ TEST(GrainPairs, are_all_that_are_near) {
                     found.begin(), found.end(),
                     [&](const PairKey& key) { return key.second >= strewn.model.grains.size(); }),
                 found.end());
-    EXPECT_GT(found.size(), 100u);
+    EXPECT_GT(found.size(), 50u);
     EXPECT_TRUE(found == strewn.by_brute_force());
   }
 }
@@ -125,8 +125,11 @@ TEST(GrainPairs, keep_their_past_and_their_bonds_from_list_to_list) {
     EXPECT_EQ(kept[i].shear, past[i].shear);
     EXPECT_EQ(kept[i].bonded, past[i].bonded);
   }
-  past.back().kept = past.back().bonded = false;
-  for (PairHistory& h : past) h.kept = false;
+  // A bond that breaks while its spheres are far apart leaves a pair that is listed as before.
+  PairList broken = list;
+  std::fill(broken.bonded.begin(), broken.bonded.end(), std::uint8_t(0));
+  EXPECT_EQ(make_list(strewn.search(), found, broken.all()).a, list.a);
+  for (PairHistory& h : past) h.kept = h.bonded = false;
   EXPECT_EQ(make_list(strewn.search(), found, past).all().size(), found.size());
 }
 

@@ -111,12 +111,13 @@ TEST(Grains, roll_on_after_sliding_with_three_fifths_of_their_speed) {
 }
 
 TEST(Grains, do_the_same_on_any_number_of_threads) {
-  GrainsOptions o = grains_of(random_snow(18, 5));
+  GrainsOptions o = grains_of(random_snow(26, 6));
   o.settings.density_scaling = 1e3;
   o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
   o.energy = true;
   const auto one = filled(o);
   take_steps(*one, 300);
+  EXPECT_GT(one->measures().contacts, 3 * std::int64_t(pairs_per_thread)) << "or one works alone";
   EXPECT_GT(one->measures().broken_in_shear, 0);
   for (const int threads : {2, 3}) {
     o.settings.threads = threads;
