@@ -183,7 +183,8 @@ void sum_up(const GrainsModel& model, GrainsState& state, const GrainsWork& work
 
 void evaluate_forces(const GrainsModel& model, GrainsState& state, GrainsWork& work, double dt) {
   const std::size_t grains = state.bodies.size();
-  parallel_pieces(std::ptrdiff_t(grains), model.threads, bodies_in_piece,
+  const int threads = model.threads_for(state.pairs.size());
+  parallel_pieces(std::ptrdiff_t(grains), threads, bodies_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::ptrdiff_t i = begin; i < end; ++i)
                       work.frames[std::size_t(i)] = frame_of(state.bodies[std::size_t(i)],
@@ -194,7 +195,7 @@ void evaluate_forces(const GrainsModel& model, GrainsState& state, GrainsWork& w
   const GrainsView view = view_of(model, state, work, dt);
   const GrainsKernels& kernels = grains_kernels();
   const std::size_t first_surface = grains + std::size_t(Partner::west);
-  parallel_pieces(std::ptrdiff_t(state.pairs.groups.size()), model.threads, groups_in_piece,
+  parallel_pieces(std::ptrdiff_t(state.pairs.groups.size()), threads, groups_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::size_t g = std::size_t(begin); g < std::size_t(end); ++g)
                       if (state.pairs.groups[g].second < first_surface)
@@ -202,7 +203,7 @@ void evaluate_forces(const GrainsModel& model, GrainsState& state, GrainsWork& w
                       else
                         surface_forces(model, state, work, g, dt);
                   });
-  parallel_pieces(std::ptrdiff_t(grains), model.threads, bodies_in_piece,
+  parallel_pieces(std::ptrdiff_t(grains), threads, bodies_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::ptrdiff_t i = begin; i < end; ++i)
                       gather(model, state, work, std::size_t(i));

@@ -4,6 +4,9 @@
 namespace snowshed {
 
 /// What moves in a stage. Plates are at the bottom, fixed, and at the top; sides see GrainSides.
+/// `isotropic` has the speed as that of the height, and as stress the mean over top and sides.
+/// `hold` ends when the kinetic energy has fallen to 1e-4 of its peak in the stage, or after the
+/// time in which the speed would bring about the strain; `unload` ends at the strain, too.
 enum class LoadingKind {
   compress,   // the top plate moves down
   unload,     // the top plate moves up, until the stress on it falls to `stress`

@@ -18,7 +18,7 @@ struct LoadingProgress {
 /// What a test measures to know when a stage ends.
 struct LoadingGauge {
   double top_stress = 0, mean_stress = 0;  // Pa
-  double kinetic = 0;                      // J
+  double kinetic = 0;                      // J; only needed while a stage holds
 };
 
 /// What the loading knows of the sample.

@@ -179,7 +179,7 @@ void GrainsSolver::settle(const std::vector<double>&, const std::vector<double>&
 
 /// Half a step's forces, then a step's motion, into the workspace.
 void GrainsSolver::drift(double dt) {
-  parallel_pieces(std::ptrdiff_t(size()), model_.threads, bodies_in_push,
+  parallel_pieces(std::ptrdiff_t(size()), model_.threads_for(state_.pairs.size()), bodies_in_push,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
                       GrainBody& body = work_.next[i] = state_.bodies[i];
@@ -261,7 +261,7 @@ void GrainsSolver::end_step(const GrainsBoundary& moved, double dt) {
   std::swap(state_.bodies, work_.next);
   state_.boundary = moved;
   evaluate_forces(model_, state_, work_, dt);
-  parallel_pieces(std::ptrdiff_t(size()), model_.threads, bodies_in_push,
+  parallel_pieces(std::ptrdiff_t(size()), model_.threads_for(state_.pairs.size()), bodies_in_push,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
                       work_.damped[i] += push(model_.grains[i], state_.bodies[i], 0.5 * dt);
@@ -279,7 +279,9 @@ void GrainsSolver::end_step(const GrainsBoundary& moved, double dt) {
   const double sides[2] = {model_.box.y() * model_.box.z(), model_.box.x() * model_.box.z()};
   gauge.mean_stress = gauge.top_stress / 3;
   for (int s = 0; s < 4; ++s) gauge.mean_stress += b.side_force[s] / sides[s / 2] / 6;
-  gauge.kinetic = kinetic_energy(model_, state_);
+  const std::size_t stage = std::size_t(state_.loading.stage);
+  if (stage < model_.loading.size() && model_.loading[stage].kind == LoadingKind::hold)
+    gauge.kinetic = kinetic_energy(model_, state_);
   count_step(model_.loading, model_.loaded(), gauge, dt, state_.loading, state_.boundary);
   state_.time += dt;
   state_.dt = dt;

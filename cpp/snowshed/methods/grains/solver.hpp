@@ -24,7 +24,8 @@ struct GrainsOptions {
   bool energy = false;  // whether to keep the energy balance
 };
 
-/// What a loading test measures, now. Stresses are positive in compression, over the initial area.
+/// What a loading test measures, now. Stresses are positive in compression, over the initial area;
+/// they are those of the present moment, no means over time.
 struct LoadingMeasures {
   int stage = 0;            // that is being loaded; the number of stages when all are done
   double strain = 0;        // of this stage: displacement over the initial height

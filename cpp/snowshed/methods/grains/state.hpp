@@ -2,7 +2,7 @@
 // that may be thrown away.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -35,6 +35,9 @@ struct GrainConstants {
   std::uint32_t first_sphere, spheres;
 };
 
+/// The fewest pairs that a thread is started for.
+inline constexpr std::size_t pairs_per_thread = 512;
+
 struct GrainsModel {
   explicit GrainsModel(GrainsOptions);
 
@@ -52,6 +55,10 @@ struct GrainsModel {
   BondLaw law;
   double solid_volume;  // m3
 
+  /// Threads for steps of so many pairs: one that has little to do costs more time than it saves.
+  int threads_for(std::size_t pairs) const {
+    return int(std::clamp<std::size_t>(pairs / pairs_per_thread, 1, std::size_t(threads)));
+  }
   double area() const { return box.x() * box.y(); }
   LoadedSample loaded() const { return {box, radius, law.normal_stiffness}; }
   bool periodic() const { return settings.sides == GrainSides::periodic; }

@@ -1,0 +1,78 @@
+#include "snowshed/methods/grains/bond_law.hpp"
+
+#include <gtest/gtest.h>
+
+namespace snowshed {
+namespace {
+
+const BondLaw law{200, 50, 3, 2, 0.5};  // N/m, N/m, N, N, 1
+
+ContactMotion<double> motion(double gap, double parting, Triple<double> shear, double twist = 0) {
+  return {gap, parting, {0, 0, 1}, shear, twist};
+}
+
+TEST(BondLaw, loses_with_a_bond_what_it_stored_and_the_work_since) {
+  Triple<double> u{0.01, 0, 0};
+  bool bonded = true;
+  // From a gap of 0.01 to 0.02, where it pulls with 4 N and breaks.
+  const auto f = law(motion(0.02, 0.01, {0, 0, 0}), u, bonded);
+  EXPECT_TRUE(f.tension_break);
+  EXPECT_FALSE(bonded);
+  EXPECT_EQ(f.push, 0);
+  const double stored = 0.5 * 200 * 0.01 * 0.01 + 0.5 * 50 * 0.01 * 0.01;
+  const double work = 0.5 * (200 * 0.01 + 0) * 0.01;
+  EXPECT_NEAR(f.broken_energy, stored + work, 1e-15);
+  EXPECT_EQ(f.heat, 0);
+}
+
+TEST(BondLaw, slides_with_a_friction_that_warms) {
+  Triple<double> u{0, 0, 0};
+  bool bonded = false;
+  double heat = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto f = law(motion(-0.01, 0, {0, 1e-3, 0}), u, bonded);
+    heat += f.heat;
+    EXPECT_NEAR(f.push, 2, 1e-14);
+    EXPECT_LE(f.drag.y, 1 + 1e-14);
+  }
+  // It slips at 1 N, after the spring has taken 0.02 m.
+  EXPECT_NEAR(50 * u.y, 1, 1e-13);
+  EXPECT_NEAR(heat, 1 * (0.1 - 0.02), 1e-12);
+}
+
+TEST(BondLaw, lets_go_of_shear_where_spheres_part) {
+  Triple<double> u{0.01, 0, 0};
+  bool bonded = false;
+  const auto f = law(motion(0.001, 0.002, {0, 0, 0}), u, bonded);
+  EXPECT_FALSE(f.touching);
+  EXPECT_EQ(u.x, 0);
+  EXPECT_EQ(f.push, 0);
+  EXPECT_NEAR(f.heat, 0.5 * 50 * 1e-4, 1e-15);
+}
+
+TEST(BondLaw, turns_shear_with_the_contact) {
+  Triple<double> u{0.01, 0, 0};
+  bool bonded = true;
+  law(motion(0, 0, {0, 0, 0}, 0.1), u, bonded);
+  EXPECT_NEAR(u.y / u.x, 0.1, 1e-12);
+  EXPECT_NEAR(std::hypot(u.x, u.y), 0.01, 1e-15);
+  // The normal tilts toward x: shear goes down on the other side.
+  ContactMotion<double> tilted = motion(0, 0, {0, 0, 0});
+  tilted.normal = {std::sin(0.2), 0, std::cos(0.2)};
+  u = {0.01, 0, 0};
+  law(tilted, u, bonded);
+  EXPECT_NEAR(u.x, 0.01 * std::cos(0.2), 1e-15);
+  EXPECT_NEAR(u.z, -0.01 * std::sin(0.2), 1e-15);
+}
+
+TEST(BondLaw, without_strength_bears_no_tension) {
+  BondLaw weak = law;
+  weak.tension_limit = weak.shear_limit = 0;
+  Triple<double> u{0, 0, 0};
+  bool bonded = true;
+  EXPECT_FALSE(weak(motion(0, 0, {0, 0, 0}), u, bonded).tension_break) << "nothing pulls";
+  EXPECT_TRUE(weak(motion(1e-12, 0, {0, 0, 0}), u, bonded).tension_break);
+}
+
+}  // namespace
+}  // namespace snowshed
