@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 #include <vector>
 
@@ -21,6 +23,9 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
   }
   void* p = nullptr;
   if (posix_memalign(&p, alignment, bytes > 0 ? bytes : 1) != 0) throw std::bad_alloc();
+  // Numbers that are read before they are written are no numbers, in every test of this program:
+  // memory that happens to hold zeros would hide them.
+  std::memset(p, 0xff, bytes);
   return p;
 }
 
@@ -55,6 +60,11 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::fre
 
 namespace snowshed {
 namespace {
+
+TEST(FreshMemory, HoldsNoNumbers) {
+  AlignedVector<double> values(3);
+  for (const double value : values) EXPECT_TRUE(std::isnan(value));
+}
 
 TEST(AllocationFault, LetsTheNthAllocationFailAndNoOther) {
   std::vector<std::vector<int>> made(4);

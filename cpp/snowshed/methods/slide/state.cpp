@@ -67,6 +67,8 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   cells.reserve(most, model.terrain);
   if (!model.compatible()) {
     sorted_z.resize(now + sorted_padding);
+    // Lanes beyond the last particle have the weight 0, which must not meet infinity.
+    std::fill(sorted_z.end() - std::ptrdiff_t(sorted_padding), sorted_z.end(), 0.0);
     sorted_pressing.resize(now + sorted_padding);
   }
   fields.reserve(model.terrain);
