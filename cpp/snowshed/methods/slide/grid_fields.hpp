@@ -5,7 +5,6 @@
 
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/methods/slide/cells.hpp"
-#include "snowshed/methods/slide/particles.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
 namespace snowshed {
@@ -30,16 +29,13 @@ class GridFields {
   /// Makes room for snow anywhere on the terrain.
   void reserve(const Terrain& terrain);
 
-  /// `east` and `north` are where the particles lie within their cells.
-  void update(const Terrain& terrain, const SlideParticles& particles,
-              const AlignedVector<double>& east, const AlignedVector<double>& north,
-              const CellLists& cells, double density, int threads);
-
-  /// Raises the peaks to the fields where these are larger.
-  void raise(PeakFields& peaks, const Terrain& terrain) const;
+  /// Takes over the cells' rectangle; what is at its nodes is to be found (`sum_on_nodes` in
+  /// kernel_api.hpp).
+  void take_shape(const CellLists& cells);
 
   /// The nodes of the rectangle, row by row, and where it begins on the terrain.
   const Node* nodes() const { return nodes_.data(); }
+  Node* nodes() { return nodes_.data(); }
   int first_column() const { return first_column_; }
   int first_row() const { return first_row_; }
   int columns() const { return columns_; }

@@ -154,9 +154,8 @@ void SlideSolver::count_as_added(const SlideState& next, const SlideWork& work,
 /// Takes over a state whose workspace must follow.
 void SlideSolver::accept(SlideState next) {
   SlideWork work;
-  refresh(model_, next, work);
+  refresh(model_, next, work, &next.peaks);
   choose_step(next, work);
-  work.fields.raise(next.peaks, model_.terrain);
   count_as_added(next, work, next.energy);
   state_ = std::move(next);
   work_ = std::move(work);
@@ -238,8 +237,7 @@ void SlideSolver::step() {
   if (audited) audit.after_motion(model_, state_, work_, state_.energy);
   remove_marked(state_, work_);
   split_heavy(model_, state_, work_);
-  refresh_fields(model_, state_, work_);
-  work_.fields.raise(state_.peaks, model_.terrain);
+  refresh_fields(model_, state_, work_, &state_.peaks);
   state_.dt = state_.step;
   ++state_.counters.steps;
   const bool as_asked = state_.counters.smallest_dt == model_.settings.time_step;

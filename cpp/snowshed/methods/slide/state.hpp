@@ -141,12 +141,13 @@ void for_each_piece(const SlideModel& model, std::size_t particles, F f) {
   for_each_piece(model, particles, particles, f);
 }
 
-/// Makes the workspace follow from the particles: places, cells, fields, bonds.
-void refresh(const SlideModel&, const SlideState&, SlideWork&);
+/// Makes the workspace follow from the particles: places, cells, fields, bonds. The fields raise
+/// the peaks that are given.
+void refresh(const SlideModel&, const SlideState&, SlideWork&, PeakFields* raised = nullptr);
 /// The places of the particles [begin, end), which the workspace has room for.
 void refresh_places(const SlideModel&, const SlideState&, SlideWork&, std::size_t begin,
                     std::size_t end);
 /// The same as `refresh` where bonds and the particles' places are known already.
-void refresh_fields(const SlideModel&, const SlideState&, SlideWork&);
+void refresh_fields(const SlideModel&, const SlideState&, SlideWork&, PeakFields* raised);
 
 }  // namespace snowshed

@@ -6,26 +6,22 @@
 SNOWSHED_VARIANT_BEGIN
 
 /// The force of a bond is its modulus times its strain times its contact area, h L / sqrt 3.
-SNOWSHED_INLINE QuadMask stretch_lanes(const SlideView& s, const Lanes& l) {
-  Quad rows[4];
-  for (int i = 0; i < 4; ++i) {
+SNOWSHED_INLINE PackMask stretch_lanes(const SlideView& s, const Lanes& l) {
+  Quad rows[pack_lanes];
+  for (int i = 0; i < pack_lanes; ++i) {
     const std::ptrdiff_t b = l.first + (i < l.count ? i : 0);
     const Quad first = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_first[b]));
     const Quad second = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_second[b]));
     rows[i] = __builtin_shufflevector(Quad(second - first), Quad(second + first), 0, 1, 2, 7);
   }
-  transpose(rows[0], rows[1], rows[2], rows[3]);
-  const QuadVec d{rows[0], rows[1], rows[2]};
-  const Quad length = length_from(dot(d, d)), strain = length / l.load(s.rest_length) - 1.0;
-  const QuadMask acts = length > s.min_bond_length;
-  const QuadMask breaks = acts & (abs(strain) > s.max_strain);
+  const PackRecord r = taken_apart(rows);
+  const PackVec d{r.a, r.b, r.c};
+  const Pack length = length_from(dot(d, d)), strain = length / l.load(s.rest_length) - 1.0;
+  const PackMask acts = length > s.min_bond_length;
+  const PackMask breaks = acts & (abs(strain) > s.max_strain);
   const double stiffness = s.bond_modulus * 0.5 / 1.7320508075688772;
-  const Quad pull = select(QuadMask(acts & ~breaks), Quad(stiffness * strain * rows[3]), Quad{});
-  rows[0] = pull * d.x;
-  rows[1] = pull * d.y;
-  rows[2] = pull * d.z;
-  rows[3] = Quad{};
-  transpose(rows[0], rows[1], rows[2], rows[3]);
+  const Pack pull = select(PackMask(acts & ~breaks), Pack(stiffness * strain * r.d), Pack{});
+  put_together({pull * d.x, pull * d.y, pull * d.z, Pack{}}, rows);
   for (int i = 0; i < l.count; ++i) {
     store_row(s.bond_force + 4 * (l.first + i), rows[i]);
     s.broken[l.first + i] = breaks[i] != 0;

@@ -3,6 +3,7 @@
 #include "snowshed/methods/slide/kernels/ground.hpp"
 #include "snowshed/methods/slide/kernels/map_pressure.hpp"
 #include "snowshed/methods/slide/kernels/motion.hpp"
+#include "snowshed/methods/slide/kernels/node_sums.hpp"
 #include "snowshed/methods/slide/kernels/surface_pressure.hpp"
 
 SNOWSHED_VARIANT_BEGIN
@@ -10,9 +11,8 @@ namespace {
 
 void locate(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_lanes(begin, end, [&](const Lanes& l) {
-    const QuadPlace place = place_of(s, l.load(s.x), l.load(s.y));
-    const QuadRecord ground = interpolated(s.ground, s.columns, place);
-    store_place(s, l, place, upward(ground.b, ground.c));
+    const PackPlace place = place_of(s, l.load(s.x), l.load(s.y));
+    store_place(s, l, place, ground_at(s, place).normal);
   });
 }
 
@@ -35,9 +35,9 @@ void surface_pressure(const SlideView& s, int row) { surface_pressure_row(s, row
 void map_pressure(const SlideView& s, int row) { map_pressure_row(s, row); }
 
 bool stretch_bonds(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  QuadMask broken{};
+  PackMask broken{};
   for_each_lanes(begin, end, [&](const Lanes& l) { broken |= stretch_lanes(s, l); });
-  return any(broken);
+  return any_lane(broken);
 }
 
 void pull(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -50,6 +50,8 @@ double advance(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   return kinetic;
 }
 
+void sum_row_on_nodes(const SlideView& s, int row) { sum_on_nodes(s, row); }
+
 void thickness(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_lanes(begin, end,
                  [&](const Lanes& l) { l.store(s.thickness, flow_at(s, stored_place(s, l)).a); });
@@ -61,6 +63,6 @@ extern const SlideKernels slide_kernel_table;
 const SlideKernels slide_kernel_table{&locate,           &ground,         &show_heights,
                                       &count_neighbours, &weigh_pressure, &surface_pressure,
                                       &map_pressure,     &stretch_bonds,  &pull,
-                                      &advance,          &thickness};
+                                      &advance,          &sum_row_on_nodes, &thickness};
 
 SNOWSHED_VARIANT_END
