@@ -17,7 +17,9 @@ void locate(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
 }
 
 void ground(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  for_each_lanes(begin, end, [&](const Lanes& l) { ground_lanes(s, l); });
+  for_each_batch(begin, end, [&](std::ptrdiff_t first, std::ptrdiff_t last, int packs) {
+    ground_batch(s, first, last, packs);
+  });
 }
 
 void show_heights(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -46,7 +48,9 @@ void pull(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
 
 double advance(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   double kinetic = 0;
-  for_each_lanes(begin, end, [&](const Lanes& l) { kinetic += move_lanes(s, l); });
+  for_each_batch(begin, end, [&](std::ptrdiff_t first, std::ptrdiff_t last, int packs) {
+    kinetic += move_batch(s, first, last, packs);
+  });
   return kinetic;
 }
 

@@ -60,26 +60,51 @@ SNOWSHED_INLINE PackVec along_ground(const PackVec& u, const PackVec& normal, do
   return Pack(length_from(dot(u, u)) / (speed + added_speed)) * tangential;
 }
 
-/// Moves the particles of a pack; returns their kinetic energy, J.
-SNOWSHED_INLINE double move_lanes(const SlideView& s, const Lanes& l) {
+/// A velocity after all that acts, and where it leads.
+struct PackMotion {
+  PackVec velocity;
+  PackVec to;
+  PackReprojection on_ground;
+};
+
+SNOWSHED_INLINE void accelerate(const SlideView& s, const Lanes& l, PackMotion& motion) {
   const Pack dt = broadcast<Pack>(s.time_step);
   const PackVec before = l.load(s.ux, s.uy, s.uz);
   const PackSlowed slow = slowed_by(s, l, before + dt * l.load(s.ax, s.ay, s.az));
-  const PackVec to = l.load(s.x, s.y, s.z) + Pack(0.5 * slow.moving) * (before + slow.velocity);
-  PackReprojection r = reproject(s, to.x, to.y, to.z);
+  motion.velocity = slow.velocity;
+  motion.to = l.load(s.x, s.y, s.z) + Pack(0.5 * slow.moving) * (before + slow.velocity);
+}
+
+/// Puts particles where they came to; returns their kinetic energy, J.
+SNOWSHED_INLINE double arrive(const SlideView& s, const Lanes& l, const PackMotion& motion) {
+  const PackReprojection& r = motion.on_ground;
   const PackGround ground = ground_at(s, r.on_ground);
   const PackMask stays = r.on_ground.inside & ground.known;
-  const PackVec u = along_ground(slow.velocity, ground.normal, s.added_speed);
+  const PackVec u = along_ground(motion.velocity, ground.normal, s.added_speed);
   l.store(s.x, s.y, s.z, {r.x, r.y, ground.height});
   l.store(s.ux, s.uy, s.uz, u);
   store_place(s, l, r.on_ground, ground.normal);
-  const Pack kinetic = 0.5 * l.load(s.mass) * dot(slow.velocity, slow.velocity);
+  const Pack kinetic = 0.5 * l.load(s.mass) * dot(motion.velocity, motion.velocity);
   double sum = 0;
   for (int i = 0; i < l.count; ++i) {
     s.removed[l.first + i] = stays[i] == 0;
     if (stays[i]) sum += kinetic[i];
   }
   return sum;
+}
+
+/// Moves the particles of a batch; returns their kinetic energy, J.
+SNOWSHED_INLINE double move_batch(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end,
+                                  int packs) {
+  PackMotion motion[packs_in_batch];
+  for (int k = 0; k < packs; ++k) accelerate(s, lanes_of(begin, end, k), motion[k]);
+  for (int k = 0; k < packs; ++k) {
+    const PackVec& to = motion[k].to;
+    motion[k].on_ground = reproject(s, to.x, to.y, to.z);
+  }
+  double kinetic = 0;
+  for (int k = 0; k < packs; ++k) kinetic += arrive(s, lanes_of(begin, end, k), motion[k]);
+  return kinetic;
 }
 
 SNOWSHED_VARIANT_END

@@ -147,11 +147,30 @@ struct Lanes {
   }
 };
 
+/// The entries of a range from its k-th pack on.
+SNOWSHED_INLINE Lanes lanes_of(std::ptrdiff_t begin, std::ptrdiff_t end, int k) {
+  const std::ptrdiff_t first = begin + std::ptrdiff_t(k) * pack_lanes;
+  return {first, first + pack_lanes <= end ? pack_lanes : int(end - first)};
+}
+
 /// Calls f(lanes) for the entries of a range.
 template <class F>
 SNOWSHED_INLINE void for_each_lanes(std::ptrdiff_t begin, std::ptrdiff_t end, const F& f) {
-  for (std::ptrdiff_t i = begin; i < end; i += pack_lanes)
-    f(Lanes{i, i + pack_lanes <= end ? pack_lanes : int(end - i)});
+  for (; begin < end; begin += pack_lanes) f(lanes_of(begin, end, 0));
+}
+
+/// Packs that go through a kernel together, phase by phase. The phases of one pack wait for each
+/// other; those of several packs do not.
+inline constexpr int packs_in_batch = 64 / pack_lanes;
+
+/// Calls f(begin, end, packs) for batches of a range.
+template <class F>
+SNOWSHED_INLINE void for_each_batch(std::ptrdiff_t begin, std::ptrdiff_t end, const F& f) {
+  constexpr std::ptrdiff_t most = packs_in_batch * pack_lanes;
+  for (; begin < end; begin += most) {
+    const std::ptrdiff_t last = end - begin < most ? end : begin + most;
+    f(begin, last, int((last - begin + pack_lanes - 1) / pack_lanes));
+  }
 }
 
 /// Places in a grid. Those outside are given the first cell, so that reading there does no harm.
