@@ -1,72 +1,10 @@
 // Some particles at a time, a pack of them: where they lie on the ground, and what lies there.
 #pragma once
 
-#include "snowshed/core/simd_quad.hpp"
 #include "snowshed/methods/slide/kernel_api.hpp"
+#include "snowshed/methods/slide/kernels/node_records.hpp"
 
 SNOWSHED_VARIANT_BEGIN
-
-/// A pack holds one value of four particles, or of eight where a register has room for them: at
-/// least as many as the values of a record, which are taken apart into packs.
-inline constexpr int pack_bytes = simd_bytes > 32 ? simd_bytes : 32;
-inline constexpr int pack_lanes = pack_bytes / int(sizeof(double));
-typedef double Pack __attribute__((vector_size(pack_bytes), may_alias));
-typedef std::int64_t PackMask __attribute__((vector_size(pack_bytes), may_alias));
-typedef std::int32_t PackIndex __attribute__((vector_size(pack_bytes / 2), may_alias));
-
-inline constexpr PackMask all_lanes = ~PackMask{};
-
-SNOWSHED_INLINE bool any_lane(const PackMask& mask) {
-#ifdef __AVX512F__
-  return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
-#else
-  return any(mask);
-#endif
-}
-
-/// A record of each lane, taken apart into its four values, and put together again.
-struct PackRecord {
-  Pack a, b, c, d;
-};
-template <class Row>
-SNOWSHED_INLINE Pack joined(const Row& low, const Row& high) {
-  if constexpr (pack_lanes == 8)
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-  else
-    return low;
-}
-template <int half, class Values>
-SNOWSHED_INLINE Quad half_of(const Values& v) {
-  if constexpr (pack_lanes == 4)
-    return v;
-  else if constexpr (half == 0)
-    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
-  else
-    return __builtin_shufflevector(v, v, 4, 5, 6, 7);
-}
-SNOWSHED_INLINE PackRecord taken_apart(Quad (&rows)[pack_lanes]) {
-  constexpr int second = pack_lanes - 4;
-  transpose(rows[0], rows[1], rows[2], rows[3]);
-  if constexpr (second > 0)
-    transpose(rows[second], rows[second + 1], rows[second + 2], rows[second + 3]);
-  return {joined(rows[0], rows[second]), joined(rows[1], rows[second + 1]),
-          joined(rows[2], rows[second + 2]), joined(rows[3], rows[second + 3])};
-}
-SNOWSHED_INLINE void put_together(const PackRecord& r, Quad (&rows)[pack_lanes]) {
-  rows[0] = half_of<0>(r.a);
-  rows[1] = half_of<0>(r.b);
-  rows[2] = half_of<0>(r.c);
-  rows[3] = half_of<0>(r.d);
-  transpose(rows[0], rows[1], rows[2], rows[3]);
-  constexpr int second = pack_lanes - 4;
-  if constexpr (second > 0) {
-    rows[second] = half_of<1>(r.a);
-    rows[second + 1] = half_of<1>(r.b);
-    rows[second + 2] = half_of<1>(r.c);
-    rows[second + 3] = half_of<1>(r.d);
-    transpose(rows[second], rows[second + 1], rows[second + 2], rows[second + 3]);
-  }
-}
 
 struct PackVec {
   Pack x, y, z;
@@ -93,13 +31,6 @@ SNOWSHED_INLINE Pack length_from(const Pack& square) {
   const Pack s = max(square, broadcast<Pack>(least_square));
   return s * inverse_sqrt(s);
 }
-
-SNOWSHED_INLINE Pack load_pack(const double* p) {
-  Pack v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-SNOWSHED_INLINE void store_pack(double* p, const Pack& v) { std::memcpy(p, &v, sizeof v); }
 
 /// Up to a pack of neighbouring entries of an array; where there are fewer the first is repeated.
 struct Lanes {
@@ -199,42 +130,19 @@ SNOWSHED_INLINE PackPlace place_of(const SlideView& s, const Pack& x, const Pack
   return p;
 }
 
-/// The weights of the four nodes around, one row for each node.
-struct BilinearWeights {
-  alignas(pack_bytes) double w[4][pack_lanes];
-  SNOWSHED_INLINE explicit BilinearWeights(const PackPlace& p) {
-    const Pack west = 1.0 - p.east, south = 1.0 - p.north;
-    store_pack(w[0], west * south);
-    store_pack(w[1], p.east * south);
-    store_pack(w[2], west * p.north);
-    store_pack(w[3], p.east * p.north);
-  }
-};
-
-/// For each place record(mean of the four nodes around by their bilinear weights, those nodes), and
-/// these records taken apart.
-template <class Record>
-SNOWSHED_INLINE PackRecord records_at(const double* nodes, int columns, const PackPlace& p,
-                                      const Record& record) {
-  const BilinearWeights weights(p);
-  const PackIndex first = p.row * columns + p.column;
-  Quad rows[pack_lanes];
-  for (int i = 0; i < pack_lanes; ++i) {
-    const double* a = nodes + 4 * std::ptrdiff_t(first[i]);
-    const double* b = a + 4 * std::ptrdiff_t(columns);
-    const Quad n[4] = {load_row(a), load_row(a + 4), load_row(b), load_row(b + 4)};
-    const Quad here = weights.w[0][i] * n[0] + weights.w[1][i] * n[1] + weights.w[2][i] * n[2] +
-                      weights.w[3][i] * n[3];
-    rows[i] = record(here, n);
-  }
-  return taken_apart(rows);
+/// Records of a grid at some places: see NodeRecord.
+template <NodeRecord record>
+SNOWSHED_INLINE PackRecord records_at(const double* nodes, int columns, const PackPlace& p) {
+  const Pack west = 1.0 - p.east, south = 1.0 - p.north;
+  return records_of<record>(
+      nodes, columns, p.row * columns + p.column,
+      {{west * south, p.east * south, west * p.north, p.east * p.north}});
 }
 
 SNOWSHED_INLINE PackRecord flow_at(const SlideView& s, PackPlace p) {
   p.column -= s.flow_column;
   p.row -= s.flow_row;
-  return records_at(s.flow, s.flow_columns, p,
-                    [](const Quad& here, const Quad*) SNOWSHED_INLINE_LAMBDA { return here; });
+  return records_at<NodeRecord::mean>(s.flow, s.flow_columns, p);
 }
 
 /// The upward unit normal of a slope.
@@ -250,19 +158,12 @@ struct PackGround {
   PackMask known;
 };
 SNOWSHED_INLINE PackGround ground_at(const SlideView& s, const PackPlace& p) {
-  const PackRecord r =
-      records_at(s.ground, s.columns, p, [](const Quad& here, const Quad* n) SNOWSHED_INLINE_LAMBDA {
-        return __builtin_shufflevector(here, n[0], 0, 1, 2, 4);
-      });
+  const PackRecord r = records_at<NodeRecord::mean_and_known>(s.ground, s.columns, p);
   return {r.a, upward(r.b, r.c), r.d == r.d};
 }
 /// The same with the normal in the middle of the cell.
 SNOWSHED_INLINE PackGround cell_ground(const SlideView& s, const PackPlace& p) {
-  const PackRecord r =
-      records_at(s.ground, s.columns, p, [](const Quad& here, const Quad* n) SNOWSHED_INLINE_LAMBDA {
-        const Quad mean = 0.25 * (n[0] + n[1] + n[2] + n[3]);
-        return __builtin_shufflevector(here, mean, 0, 5, 6, 7);
-      });
+  const PackRecord r = records_at<NodeRecord::mean_and_middle>(s.ground, s.columns, p);
   return {r.a, upward(r.b, r.c), all_lanes};
 }
 
