@@ -7,34 +7,29 @@ SNOWSHED_VARIANT_BEGIN
 
 /// The force of a bond is its modulus times its strain times its contact area, h L / sqrt 3.
 SNOWSHED_INLINE PackMask stretch_lanes(const SlideView& s, const Lanes& l) {
-  Quad rows[pack_lanes];
-  for (int i = 0; i < pack_lanes; ++i) {
+  const PackRecord r = taken_apart([&](int i) SNOWSHED_INLINE_LAMBDA {
     const std::ptrdiff_t b = l.first + (i < l.count ? i : 0);
     const Quad first = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_first[b]));
     const Quad second = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_second[b]));
-    rows[i] = __builtin_shufflevector(Quad(second - first), Quad(second + first), 0, 1, 2, 7);
-  }
-  const PackRecord r = taken_apart(rows);
+    return __builtin_shufflevector(Quad(second - first), Quad(second + first), 0, 1, 2, 7);
+  });
   const PackVec d{r.a, r.b, r.c};
   const Pack length = length_from(dot(d, d)), strain = length / l.load(s.rest_length) - 1.0;
   const PackMask acts = length > s.min_bond_length;
   const PackMask breaks = acts & (abs(strain) > s.max_strain);
   const double stiffness = s.bond_modulus * 0.5 / 1.7320508075688772;
   const Pack pull = select(PackMask(acts & ~breaks), Pack(stiffness * strain * r.d), Pack{});
-  put_together({pull * d.x, pull * d.y, pull * d.z, Pack{}}, rows);
-  for (int i = 0; i < l.count; ++i) {
-    store_row(s.bond_force + 4 * (l.first + i), rows[i]);
-    s.broken[l.first + i] = breaks[i] != 0;
-  }
+  l.store_records(s.bond_force, {pull * d.x, pull * d.y, pull * d.z, Pack{}});
+  l.store_flags(s.broken, breaks);
   return breaks;
 }
 
 SNOWSHED_INLINE void pull_particle(const SlideView& s, std::ptrdiff_t i) {
+  static constexpr double signs[2] = {1, -1};
   Quad sum{};
   for (std::uint32_t e = s.bond_begin[i]; e < s.bond_begin[i + 1]; ++e) {
     const std::uint32_t entry = s.bond_entry[e];
-    const double sign = 1 - 2 * double(entry & 1);
-    sum += sign * load_row(s.bond_force + 4 * std::ptrdiff_t(entry >> 1));
+    sum += signs[entry & 1] * load_row(s.bond_force + 4 * std::ptrdiff_t(entry >> 1));
   }
   const double per_mass = 1 / s.mass[i];
   s.ax[i] += per_mass * sum[0];

@@ -32,9 +32,7 @@ SNOWSHED_INLINE void mix(const SlideView& s, const Lanes& l, PackAhead& ahead) {
   ahead.place = l.load(s.x, s.y, s.z) + broadcast<Pack>(s.time_step) * u;
   l.store(s.speed, length_from(dot(u, u)));
   l.store(s.ux, s.uy, s.uz, u);
-  Quad rows[pack_lanes];
-  put_together({ahead.place.x, ahead.place.y, ahead.place.z, thickness}, rows);
-  for (int i = 0; i < l.count; ++i) store_row(s.predicted + 4 * (l.first + i), rows[i]);
+  l.store_records(s.predicted, {ahead.place.x, ahead.place.y, ahead.place.z, thickness});
 }
 
 /// Weight and friction, with the mean of the ground's normals at both ends of the way.

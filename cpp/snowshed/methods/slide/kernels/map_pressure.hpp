@@ -6,7 +6,7 @@
 SNOWSHED_VARIANT_BEGIN
 
 template <int count>
-SNOWSHED_INLINE void map_pressure_on(const SlideView& s, std::uint32_t first,
+SNOWSHED_INLINE void map_pressure_on(const SlideView& s, double factor, std::uint32_t first,
                                      const Neighbourhood& around) {
   using V = SimdPack<double>;
   V gx[2]{}, gy[2]{};
@@ -20,7 +20,6 @@ SNOWSHED_INLINE void map_pressure_on(const SlideView& s, std::uint32_t first,
       gy[k] += w * dy;
     }
   });
-  const double factor = spiky_constant(s.cell) * s.gravity / s.density;
   const Quad sums = factor * sums_of(gx[0], gy[0], gx[1], gy[1]);
   for (int k = 0; k < count; ++k) {
     const std::uint32_t i = s.sorted_particle[first + k];
@@ -30,9 +29,10 @@ SNOWSHED_INLINE void map_pressure_on(const SlideView& s, std::uint32_t first,
 }
 
 SNOWSHED_INLINE void map_pressure_row(const SlideView& s, int row) {
+  const double factor = spiky_constant(s.cell) * s.gravity / s.density;
   for_each_neighbourhood(
       s, row, [&](std::uint32_t e, auto count, const Neighbourhood& around) SNOWSHED_INLINE_LAMBDA {
-        map_pressure_on<count>(s, e, around);
+        map_pressure_on<count>(s, factor, e, around);
       });
 }
 

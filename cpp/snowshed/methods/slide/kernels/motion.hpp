@@ -76,7 +76,7 @@ SNOWSHED_INLINE void accelerate(const SlideView& s, const Lanes& l, PackMotion& 
 }
 
 /// Puts particles where they came to; returns their kinetic energy, J.
-SNOWSHED_INLINE double arrive(const SlideView& s, const Lanes& l, const PackMotion& motion) {
+SNOWSHED_INLINE Pack arrive(const SlideView& s, const Lanes& l, const PackMotion& motion) {
   const PackReprojection& r = motion.on_ground;
   const PackGround ground = ground_at(s, r.on_ground);
   const PackMask stays = r.on_ground.inside & ground.known;
@@ -84,13 +84,9 @@ SNOWSHED_INLINE double arrive(const SlideView& s, const Lanes& l, const PackMoti
   l.store(s.x, s.y, s.z, {r.x, r.y, ground.height});
   l.store(s.ux, s.uy, s.uz, u);
   store_place(s, l, r.on_ground, ground.normal);
+  l.store_flags(s.removed, ~stays);
   const Pack kinetic = 0.5 * l.load(s.mass) * dot(motion.velocity, motion.velocity);
-  double sum = 0;
-  for (int i = 0; i < l.count; ++i) {
-    s.removed[l.first + i] = stays[i] == 0;
-    if (stays[i]) sum += kinetic[i];
-  }
-  return sum;
+  return select(PackMask(stays & l.filled()), kinetic, Pack{});
 }
 
 /// Moves the particles of a batch; returns their kinetic energy, J.
@@ -102,9 +98,9 @@ SNOWSHED_INLINE double move_batch(const SlideView& s, std::ptrdiff_t begin, std:
     const PackVec& to = motion[k].to;
     motion[k].on_ground = reproject(s, to.x, to.y, to.z);
   }
-  double kinetic = 0;
+  Pack kinetic{};
   for (int k = 0; k < packs; ++k) kinetic += arrive(s, lanes_of(begin, end, k), motion[k]);
-  return kinetic;
+  return sum_of_lanes(kinetic);
 }
 
 SNOWSHED_VARIANT_END

@@ -23,48 +23,60 @@ SNOWSHED_INLINE bool any_lane(const PackMask& mask) {
 #endif
 }
 
-/// A record of each lane, taken apart into its four values, and put together again.
+SNOWSHED_INLINE double sum_of_lanes(const Pack& v) {
+  double sum = 0;
+  for (int i = 0; i < pack_lanes; ++i) sum += v[i];
+  return sum;
+}
+
 struct PackRecord {
   Pack a, b, c, d;
 };
-template <class Row>
-SNOWSHED_INLINE Pack joined(const Row& low, const Row& high) {
-  if constexpr (pack_lanes == 8)
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-  else
-    return low;
+
+/// Exchanges rows and columns of four packs, within each half of a pack where it has eight lanes.
+SNOWSHED_INLINE PackRecord transposed(const PackRecord& r) {
+#ifdef __AVX512F__
+  const Pack even_ab = __builtin_shufflevector(r.a, r.b, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Pack odd_ab = __builtin_shufflevector(r.a, r.b, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Pack even_cd = __builtin_shufflevector(r.c, r.d, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Pack odd_cd = __builtin_shufflevector(r.c, r.d, 1, 9, 3, 11, 5, 13, 7, 15);
+  return {__builtin_shufflevector(even_ab, even_cd, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(even_ab, even_cd, 2, 3, 10, 11, 6, 7, 14, 15),
+          __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 10, 11, 6, 7, 14, 15)};
+#else
+  PackRecord t = r;
+  transpose(t.a, t.b, t.c, t.d);
+  return t;
+#endif
 }
-template <int half, class Values>
-SNOWSHED_INLINE Quad half_of(const Values& v) {
-  if constexpr (pack_lanes == 4)
-    return v;
-  else if constexpr (half == 0)
-    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
-  else
-    return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+
+/// A record of each lane, taken apart into its four values; record(i) is that of lane i.
+template <class RecordOf>
+SNOWSHED_INLINE PackRecord taken_apart(const RecordOf& record) {
+#ifdef __AVX512F__
+  const auto both = [&](int i) SNOWSHED_INLINE_LAMBDA {
+    return __builtin_shufflevector(record(i), record(i + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  return transposed({both(0), both(1), both(2), both(3)});
+#else
+  return transposed({record(0), record(1), record(2), record(3)});
+#endif
 }
-SNOWSHED_INLINE PackRecord taken_apart(Quad (&rows)[pack_lanes]) {
-  constexpr int second = pack_lanes - 4;
-  transpose(rows[0], rows[1], rows[2], rows[3]);
-  if constexpr (second > 0)
-    transpose(rows[second], rows[second + 1], rows[second + 2], rows[second + 3]);
-  return {joined(rows[0], rows[second]), joined(rows[1], rows[second + 1]),
-          joined(rows[2], rows[second + 2]), joined(rows[3], rows[second + 3])};
-}
-SNOWSHED_INLINE void put_together(const PackRecord& r, Quad (&rows)[pack_lanes]) {
-  rows[0] = half_of<0>(r.a);
-  rows[1] = half_of<0>(r.b);
-  rows[2] = half_of<0>(r.c);
-  rows[3] = half_of<0>(r.d);
-  transpose(rows[0], rows[1], rows[2], rows[3]);
-  constexpr int second = pack_lanes - 4;
-  if constexpr (second > 0) {
-    rows[second] = half_of<1>(r.a);
-    rows[second + 1] = half_of<1>(r.b);
-    rows[second + 2] = half_of<1>(r.c);
-    rows[second + 3] = half_of<1>(r.d);
-    transpose(rows[second], rows[second + 1], rows[second + 2], rows[second + 3]);
-  }
+
+/// The values of each lane, put together into a record.
+struct PackRows {
+  Quad of[pack_lanes];
+};
+SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
+  const PackRecord t = transposed(r);
+#ifdef __AVX512F__
+  const auto low = [](const Pack& v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); };
+  const auto high = [](const Pack& v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); };
+  return {{low(t.a), low(t.b), low(t.c), low(t.d), high(t.a), high(t.b), high(t.c), high(t.d)}};
+#else
+  return {{t.a, t.b, t.c, t.d}};
+#endif
 }
 
 SNOWSHED_INLINE Pack load_pack(const double* p) {
@@ -117,15 +129,7 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
     return Pack(__builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
                 __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15));
   };
-  const Pack r0 = whole(0), r1 = whole(1), r2 = whole(2), r3 = whole(3);
-  const Pack even01 = __builtin_shufflevector(r0, r1, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Pack odd01 = __builtin_shufflevector(r0, r1, 1, 9, 3, 11, 5, 13, 7, 15);
-  const Pack even23 = __builtin_shufflevector(r2, r3, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Pack odd23 = __builtin_shufflevector(r2, r3, 1, 9, 3, 11, 5, 13, 7, 15);
-  return {__builtin_shufflevector(even01, even23, 0, 1, 8, 9, 4, 5, 12, 13),
-          __builtin_shufflevector(odd01, odd23, 0, 1, 8, 9, 4, 5, 12, 13),
-          __builtin_shufflevector(even01, even23, 2, 3, 10, 11, 6, 7, 14, 15),
-          __builtin_shufflevector(odd01, odd23, 2, 3, 10, 11, 6, 7, 14, 15)};
+  return transposed({whole(0), whole(1), whole(2), whole(3)});
 }
 #else
 template <NodeRecord record>
@@ -144,14 +148,12 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
                                       const NodeWeights& weights) {
   alignas(pack_bytes) double w[4][pack_lanes];
   for (int k = 0; k < 4; ++k) store_pack(w[k], weights.of[k]);
-  Quad rows[pack_lanes];
-  for (int i = 0; i < pack_lanes; ++i) {
+  return taken_apart([&](int i) SNOWSHED_INLINE_LAMBDA {
     const double* a = nodes + 4 * std::ptrdiff_t(first[i]);
     const double* b = a + 4 * std::ptrdiff_t(columns);
-    rows[i] = node_record<record>({load_row(a), load_row(a + 4), load_row(b), load_row(b + 4)},
+    return node_record<record>({load_row(a), load_row(a + 4), load_row(b), load_row(b + 4)},
                                   {w[0][i], w[1][i], w[2][i], w[3][i]});
-  }
-  return taken_apart(rows);
+  });
 }
 #endif
 

@@ -44,6 +44,12 @@ struct Lanes {
     for (int i = 1; i < count; ++i) v[i] = p[i];
     return v;
   }
+  /// Those that hold an entry of their own.
+  SNOWSHED_INLINE PackMask filled() const {
+    PackMask lane{};
+    for (int i = 0; i < pack_lanes; ++i) lane[i] = i;
+    return lane < count;
+  }
   SNOWSHED_INLINE PackIndex load(const std::int32_t* p) const {
     p += first;
     PackIndex v;
@@ -70,6 +76,19 @@ struct Lanes {
       std::memcpy(p, &v, sizeof v);
     else
       for (int i = 0; i < count; ++i) p[i] = v[i];
+  }
+  SNOWSHED_INLINE void store_flags(char* p, const PackMask& set) const {
+    if (!any_lane(set))
+      std::memset(p + first, 0, std::size_t(count));
+    else
+      for (int i = 0; i < count; ++i) p[first + i] = set[i] != 0;
+  }
+  SNOWSHED_INLINE void store_records(double* p, const PackRecord& r) const {
+    const PackRows rows = put_together(r);
+    if (count == pack_lanes)
+      for (int i = 0; i < pack_lanes; ++i) store_row(p + 4 * (first + i), rows.of[i]);
+    else
+      for (int i = 0; i < count; ++i) store_row(p + 4 * (first + i), rows.of[i]);
   }
   SNOWSHED_INLINE void store(double* x, double* y, double* z, const PackVec& v) const {
     store(x, v.x);

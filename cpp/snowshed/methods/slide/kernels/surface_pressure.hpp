@@ -66,7 +66,7 @@ SNOWSHED_INLINE void weigh_entries(const SlideView& s, std::ptrdiff_t begin, std
 }
 
 template <int count>
-SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, std::uint32_t first,
+SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, double factor, std::uint32_t first,
                                          const Neighbourhood& around) {
   using V = SimdPack<double>;
   V sx[2]{}, sy[2]{}, sz[2]{};
@@ -83,7 +83,6 @@ SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, std::uint32_t first
       sz[k] += w * way.z;
     }
   });
-  const double factor = 0.5 * spiky_constant(s.cell) * s.gravity / s.density;
   for (int k = 0; k < count; ++k) {
     const std::uint32_t i = s.sorted_particle[first + k];
     const Quad p = factor * sums_of(sx[k], sy[k], sz[k], V{});
@@ -95,9 +94,10 @@ SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, std::uint32_t first
 }
 
 SNOWSHED_INLINE void surface_pressure_row(const SlideView& s, int row) {
+  const double factor = 0.5 * spiky_constant(s.cell) * s.gravity / s.density;
   for_each_neighbourhood(
       s, row, [&](std::uint32_t e, auto count, const Neighbourhood& around) SNOWSHED_INLINE_LAMBDA {
-        surface_pressure_on<count>(s, e, around);
+        surface_pressure_on<count>(s, factor, e, around);
       });
 }
 
