@@ -218,11 +218,18 @@ void SlideSolver::sort_now_and_then() {
   ++state_.counters.sorts;
 }
 
+void SlideSolver::choose_threads() {
+  const int most = model_.threads_for(size());
+  const bool by_trial = size() < particles_for_threads;
+  work_.threads = by_trial ? work_.thread_choice.begin(most) : most;
+}
+
 void SlideSolver::step() {
   require_sound();
   if (size() == 0) throw SimulationError("there is no snow on the terrain");
   work_.make_room(model_, state_);
   sort_now_and_then();
+  choose_threads();
   // Nothing from here on allocates.
   const bool audited = model_.keeps_energy;
   EnergyAudit& audit = work_.audit;
@@ -244,6 +251,7 @@ void SlideSolver::step() {
   state_.time = as_asked ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
   state_.counters.particle_updates += std::int64_t(size());
   order_known_ = false;
+  work_.thread_choice.end();
   if (size() == 0) state_.stopped = true;
   if (!std::isfinite(state_.kinetic_energy)) {
     broken_ = true;

@@ -180,7 +180,7 @@ void refresh_places(const SlideModel& model, const SlideState& state, SlideWork&
   view_model(model, view);
   view_places(work, view);
   view_particles(state, view);
-  for_each_piece(model, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+  for_each_piece(work, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
     const auto from = std::ptrdiff_t(begin);
     slide_kernels().locate(view, from + first, from + last);
   });
@@ -189,6 +189,7 @@ void refresh_places(const SlideModel& model, const SlideState& state, SlideWork&
 void refresh(const SlideModel& model, const SlideState& state, SlideWork& work,
              PeakFields* raised) {
   const std::size_t n = state.particles.size();
+  work.threads = model.threads_for(n);
   work.places.resize(n);
   refresh_places(model, state, work, 0, n);
   work.bond_lists.update(state.bonds, n);
@@ -198,8 +199,7 @@ void refresh(const SlideModel& model, const SlideState& state, SlideWork& work,
 void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork& work,
                     PeakFields* raised) {
   const SlideParticles& p = state.particles;
-  const int threads = model.threads_for(p.size());
-  work.cells.update(p, work.places.column, work.places.row, threads);
+  work.cells.update(p, work.places.column, work.places.row, work.threads);
   work.fields.take_shape(work.cells);
   work.thickness.resize(p.size());
   SlideView view{};
@@ -213,11 +213,11 @@ void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork&
   // Two rows of cells hand on to the same row of nodes: every other row at a time, so that no two
   // threads meet and the sums do not depend on how many there are.
   for (const int parity : {0, 1})
-    parallel_pieces((work.cells.rows() + 1 - parity) / 2, threads, 1,
+    parallel_pieces((work.cells.rows() + 1 - parity) / 2, work.threads, 1,
                     [&](std::ptrdiff_t pair, std::ptrdiff_t) {
                       slide_kernels().sum_on_nodes(view, int(2 * pair) + parity);
                     });
-  for_each_piece(model, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     slide_kernels().thickness(view, begin, end);
   });
 }
