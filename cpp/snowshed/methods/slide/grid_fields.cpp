@@ -3,8 +3,10 @@
 #include <cmath>
 
 namespace snowshed {
-void GridFields::reserve(const Terrain& terrain) {
-  nodes_.reserve((std::size_t(terrain.columns()) + 2) * (std::size_t(terrain.rows()) + 2));
+void GridFields::reserve(const Terrain& terrain, bool keeps_sums) {
+  const std::size_t most = (std::size_t(terrain.columns()) + 2) * (std::size_t(terrain.rows()) + 2);
+  nodes_.reserve(most);
+  if (keeps_sums) sums_.reserve(most);
 }
 
 void GridFields::take_shape(const CellLists& cells) {

@@ -44,6 +44,8 @@ struct SlideView {
   // The same records while they are found, and the peaks that they raise, at the nodes of the
   // terrain, or null.
   double *nodes, *peak_thickness, *peak_speed;
+  double* sums;        // default mode: mass and momentum on the nodes, kept for mean_speed.hpp
+  double fading_mass;  // kg, below which the mean speed there fades
 
   // Particles.
   double *x, *y, *z, *ux, *uy, *uz;
@@ -110,6 +112,9 @@ struct SlideKernels {
   /// Sums mass and momentum of the particles of a row of cells on the nodes. The odd rows follow when
   /// all even ones are done; they turn the sums into thickness and velocity, and raise the peaks.
   void (*sum_on_nodes)(const SlideView&, int row);
+  /// Default mode: raises the peak speed along a row of nodes, from two rows before the rectangle to
+  /// two rows after it, when all sums are done.
+  void (*raise_mean_speed)(const SlideView&, int row);
   /// Finds the thickness of the snow at the particles.
   void (*thickness)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
 };

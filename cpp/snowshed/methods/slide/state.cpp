@@ -71,7 +71,7 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
     std::fill(sorted_z.end() - std::ptrdiff_t(sorted_padding), sorted_z.end(), 0.0);
     sorted_pressing.resize(now + sorted_padding);
   }
-  fields.reserve(model.terrain);
+  fields.reserve(model.terrain, !model.compatible());
   if (model.keeps_energy) audit.reserve(now);
 }
 
@@ -196,6 +196,18 @@ void refresh(const SlideModel& model, const SlideState& state, SlideWork& work,
   refresh_fields(model, state, work, raised);
 }
 
+namespace {
+
+/// Of a particle's mass: where there is less snow around a node, its speed fades.
+constexpr double share_of_fading = 0.15;
+
+/// The mass of the lightest particle as it was seeded, kg; 0 without particles.
+double lightest(const SlideParticles& p) {
+  return p.size() == 0 ? 0.0 : *std::min_element(p.fresh_mass.begin(), p.fresh_mass.end());
+}
+
+}  // namespace
+
 void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork& work,
                     PeakFields* raised) {
   const SlideParticles& p = state.particles;
@@ -209,6 +221,7 @@ void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork&
   if (raised) {
     view.peak_thickness = raised->thickness.data();
     view.peak_speed = raised->speed.data();
+    if (!model.compatible()) view.sums = &work.fields.sums()->thickness;
   }
   // Two rows of cells hand on to the same row of nodes: every other row at a time, so that no two
   // threads meet and the sums do not depend on how many there are.
@@ -217,6 +230,13 @@ void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork&
                     [&](std::ptrdiff_t pair, std::ptrdiff_t) {
                       slide_kernels().sum_on_nodes(view, int(2 * pair) + parity);
                     });
+  if (view.sums) {
+    view.fading_mass = share_of_fading * lightest(p);
+    parallel_pieces(work.cells.rows() + 4, work.threads, 1,
+                    [&](std::ptrdiff_t row, std::ptrdiff_t) {
+                      slide_kernels().raise_mean_speed(view, int(row) - 2);
+                    });
+  }
   for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     slide_kernels().thickness(view, begin, end);
   });

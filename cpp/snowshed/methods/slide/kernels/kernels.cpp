@@ -2,6 +2,7 @@
 #include "snowshed/methods/slide/kernels/bond_forces.hpp"
 #include "snowshed/methods/slide/kernels/ground.hpp"
 #include "snowshed/methods/slide/kernels/map_pressure.hpp"
+#include "snowshed/methods/slide/kernels/mean_speed.hpp"
 #include "snowshed/methods/slide/kernels/motion.hpp"
 #include "snowshed/methods/slide/kernels/node_sums.hpp"
 #include "snowshed/methods/slide/kernels/surface_pressure.hpp"
@@ -56,6 +57,8 @@ double advance(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
 
 void sum_row_on_nodes(const SlideView& s, int row) { sum_on_nodes(s, row); }
 
+void raise_mean_speed_of_row(const SlideView& s, int row) { raise_mean_speed(s, row); }
+
 void thickness(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_lanes(begin, end,
                  [&](const Lanes& l) { l.store(s.thickness, flow_at(s, stored_place(s, l)).a); });
@@ -64,9 +67,18 @@ void thickness(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
 }  // namespace
 
 extern const SlideKernels slide_kernel_table;
-const SlideKernels slide_kernel_table{&locate,           &ground,         &show_heights,
-                                      &count_neighbours, &weigh_pressure, &surface_pressure,
-                                      &map_pressure,     &stretch_bonds,  &pull,
-                                      &advance,          &sum_row_on_nodes, &thickness};
+const SlideKernels slide_kernel_table{&locate,
+                                      &ground,
+                                      &show_heights,
+                                      &count_neighbours,
+                                      &weigh_pressure,
+                                      &surface_pressure,
+                                      &map_pressure,
+                                      &stretch_bonds,
+                                      &pull,
+                                      &advance,
+                                      &sum_row_on_nodes,
+                                      &raise_mean_speed_of_row,
+                                      &thickness};
 
 SNOWSHED_VARIANT_END

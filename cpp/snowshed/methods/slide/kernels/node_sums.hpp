@@ -27,6 +27,11 @@ SNOWSHED_INLINE void hand_on(const SlideView& s, std::uint32_t begin, std::uint3
   }
 }
 
+/// Raises the peak speed at a node of the terrain to the root of a square.
+SNOWSHED_INLINE void raise_speed(const SlideView& s, std::ptrdiff_t node, double square) {
+  if (square > s.peak_speed[node] * s.peak_speed[node]) s.peak_speed[node] = std::sqrt(square);
+}
+
 /// Turns the sums of a row of nodes into thickness and velocity, and raises the peaks.
 SNOWSHED_INLINE void finish_nodes(const SlideView& s, int row) {
   double* record = s.nodes + 4 * std::ptrdiff_t(row) * s.flow_columns;
@@ -34,6 +39,7 @@ SNOWSHED_INLINE void finish_nodes(const SlideView& s, int row) {
       std::ptrdiff_t(s.flow_row + row) * s.columns + s.flow_column;  // in the terrain
   for (int column = 0; column < s.flow_columns; ++column, record += 4) {
     const Quad sums = load_row(record);
+    if (s.sums) store_row(s.sums + (record - s.nodes), sums);
     const double mass = sums[0];
     if (!(mass > 0)) continue;
     const std::ptrdiff_t node = first + column;
@@ -44,9 +50,9 @@ SNOWSHED_INLINE void finish_nodes(const SlideView& s, int row) {
     const double thickness = mass * (share * mass);
     flow[0] = thickness;
     store_row(record, flow);
-    if (!s.peak_speed) continue;
+    if (!s.peak_thickness) continue;
     if (thickness > s.peak_thickness[node]) s.peak_thickness[node] = thickness;
-    if (square > s.peak_speed[node] * s.peak_speed[node]) s.peak_speed[node] = std::sqrt(square);
+    if (!s.sums) raise_speed(s, node, square);
   }
 }
 
