@@ -250,6 +250,8 @@ ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const Sl
                         std::size_t index) {
   const double cell = terrain.cell();
   const Ground ground = ground_under(terrain, area.polygon);
+  if (ground.points == 0)
+    refuse_area(index, area.name, "is too small: no point of a grid of half a cell lies in it");
   const double thickness = mean_thickness(area, terrain, index);
   const double mass = thickness * ground.stretch * map_area(area.polygon) * s.density;
   const double cell_mass = thickness * ground.stretch * cell * cell * s.density;

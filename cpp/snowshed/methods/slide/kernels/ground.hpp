@@ -61,7 +61,7 @@ SNOWSHED_INLINE void ground_batch(const SlideView& s, std::ptrdiff_t begin, std:
   for (int k = 0; k < packs; ++k) mix(s, lanes_of(begin, end, k), ahead[k]);
   for (int k = 0; k < packs; ++k) {
     const PackVec& x = ahead[k].place;
-    ahead[k].on_ground = reproject(s, x.x, x.y, x.z);
+    ahead[k].on_ground = reproject(s, x.x, x.y, x.z, all_lanes);
   }
   for (int k = 0; k < packs; ++k) ahead[k].ground = ground_at(s, ahead[k].on_ground.on_ground);
   for (int k = 0; k < packs; ++k) load_ground(s, lanes_of(begin, end, k), ahead[k]);

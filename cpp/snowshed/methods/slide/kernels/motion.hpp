@@ -64,6 +64,7 @@ SNOWSHED_INLINE PackVec along_ground(const PackVec& u, const PackVec& normal, do
 struct PackMotion {
   PackVec velocity;
   PackVec to;
+  PackMask moves;  // what rests stays where it is, to the last bit
   PackReprojection on_ground;
 };
 
@@ -71,8 +72,10 @@ SNOWSHED_INLINE void accelerate(const SlideView& s, const Lanes& l, PackMotion& 
   const Pack dt = broadcast<Pack>(s.time_step);
   const PackVec before = l.load(s.ux, s.uy, s.uz);
   const PackSlowed slow = slowed_by(s, l, before + dt * l.load(s.ax, s.ay, s.az));
+  const PackVec twice = before + slow.velocity;
   motion.velocity = slow.velocity;
-  motion.to = l.load(s.x, s.y, s.z) + Pack(0.5 * slow.moving) * (before + slow.velocity);
+  motion.moves = dot(twice, twice) > 0.0;
+  motion.to = l.load(s.x, s.y, s.z) + Pack(0.5 * slow.moving) * twice;
 }
 
 /// Puts particles where they came to; returns their kinetic energy, J.
@@ -81,7 +84,7 @@ SNOWSHED_INLINE Pack arrive(const SlideView& s, const Lanes& l, const PackMotion
   const PackGround ground = ground_at(s, r.on_ground);
   const PackMask stays = r.on_ground.inside & ground.known;
   const PackVec u = along_ground(motion.velocity, ground.normal, s.added_speed);
-  l.store(s.x, s.y, s.z, {r.x, r.y, ground.height});
+  l.store(s.x, s.y, s.z, {r.x, r.y, select(motion.moves, ground.height, motion.to.z)});
   l.store(s.ux, s.uy, s.uz, u);
   store_place(s, l, r.on_ground, ground.normal);
   l.store_flags(s.removed, ~stays);
@@ -96,7 +99,7 @@ SNOWSHED_INLINE double move_batch(const SlideView& s, std::ptrdiff_t begin, std:
   for (int k = 0; k < packs; ++k) accelerate(s, lanes_of(begin, end, k), motion[k]);
   for (int k = 0; k < packs; ++k) {
     const PackVec& to = motion[k].to;
-    motion[k].on_ground = reproject(s, to.x, to.y, to.z);
+    motion[k].on_ground = reproject(s, to.x, to.y, to.z, motion[k].moves);
   }
   Pack kinetic{};
   for (int k = 0; k < packs; ++k) kinetic += arrive(s, lanes_of(begin, end, k), motion[k]);

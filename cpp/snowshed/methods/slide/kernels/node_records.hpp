@@ -103,7 +103,9 @@ struct NodeWeights {
 template <NodeRecord record>
 SNOWSHED_INLINE Pack node_record(const Pack& south, const Pack& north, const Pack& south_weights,
                                  const Pack& north_weights) {
-  const Pack parts = south_weights * south + north_weights * north;
+  // The same height to the last bit, whatever else is read: snow at rest must not creep.
+  const Pack parts = (Pack)_mm512_fmadd_pd((__m512d)south_weights, (__m512d)south,
+                                           _mm512_mul_pd((__m512d)north_weights, (__m512d)north));
   if constexpr (record == NodeRecord::mean) return parts;
   if constexpr (record == NodeRecord::mean_and_known)  // areas are finite
     return __builtin_shufflevector(parts, south, 0, 1, 2, 8, 4, 5, 6, 15);

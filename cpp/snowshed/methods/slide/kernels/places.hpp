@@ -192,10 +192,11 @@ struct PackReprojection {
   Pack x, y;
   PackPlace on_ground;
 };
-SNOWSHED_INLINE PackReprojection reproject(const SlideView& s, Pack x, Pack y, Pack z) {
+SNOWSHED_INLINE PackReprojection reproject(const SlideView& s, Pack x, Pack y, Pack z,
+                                           const PackMask& moves) {
   PackPlace place = place_of(s, x, y);
   const PackIndex column = place.column, row = place.row;
-  PackMask moving = place.inside;
+  PackMask moving = moves & place.inside;
   for (int k = 0; k < 5 && any_lane(moving); ++k) {
     const PackGround ground = cell_ground(s, place);
     const Pack distance = (ground.height - z) * ground.normal.z;
