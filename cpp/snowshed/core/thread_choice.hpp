@@ -28,13 +28,14 @@ class ThreadChoice {
   void end() {
     if (!trial_) return;
     seconds_[slot_ % 2][slot_ / 2] = std::chrono::duration<double>(Clock::now() - begin_).count();
-    if (slot_ + 1 == 2 * trials) many_ = median(seconds_[1]) < median(seconds_[0]);
+    if (slot_ + 1 == 2 * trials) many_ = median(seconds_[1]) < worthwhile * median(seconds_[0]);
     trial_ = false;
   }
 
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::size_t period = 1024, trials = 9;  // steps
+  static constexpr double worthwhile = 0.9;  // of the time with one thread
   using Times = std::array<double, trials>;
 
   static double median(Times times) {
