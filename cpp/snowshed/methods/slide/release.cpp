@@ -183,17 +183,22 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
   double fall[2] = {0, 0};
   const Bounds b = bounds_of(polygon.outline);
   const double step = terrain.cell() / 2;
+  const auto look_at = [&](double x, double y) {
+    const GridPlace p = terrain.place(x, y);
+    if (!p.inside()) return;
+    const Vec3 n = terrain.normal(p);
+    g.stretch += 1 / n.z();
+    fall[0] += n.x();
+    fall[1] += n.y();
+    ++g.points;
+  };
   for (double y = b.low[1] + step / 2; y < b.high[1]; y += step)
-    for (double x = b.low[0] + step / 2; x < b.high[0]; x += step) {
-      const GridPlace p = terrain.place(x, y);
-      if (!p.inside() || !contains(polygon, {x, y})) continue;
-      const Vec3 n = terrain.normal(p);
-      g.stretch += 1 / n.z();
-      fall[0] += n.x();
-      fall[1] += n.y();
-      ++g.points;
-    }
-  if (g.points == 0) return g;
+    for (double x = b.low[0] + step / 2; x < b.high[0]; x += step)
+      if (contains(polygon, {x, y})) look_at(x, y);
+  // Areas narrower than the points are apart may lie between them.
+  if (g.points == 0)
+    for (const MapPoint& corner : polygon.outline) look_at(corner[0], corner[1]);
+  if (g.points == 0) return Ground{1.0, 1.0, 0.0, 0};
   g.stretch /= double(g.points);
   const double length = std::hypot(fall[0], fall[1]);
   if (length > 1e-6 * double(g.points)) {
@@ -250,8 +255,6 @@ ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const Sl
                         std::size_t index) {
   const double cell = terrain.cell();
   const Ground ground = ground_under(terrain, area.polygon);
-  if (ground.points == 0)
-    refuse_area(index, area.name, "is too small: no point of a grid of half a cell lies in it");
   const double thickness = mean_thickness(area, terrain, index);
   const double mass = thickness * ground.stretch * map_area(area.polygon) * s.density;
   const double cell_mass = thickness * ground.stretch * cell * cell * s.density;
