@@ -35,7 +35,7 @@ class ThreadChoice {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::size_t period = 1024, trials = 9;  // steps
-  static constexpr double worthwhile = 0.9;  // of the time with one thread
+  static constexpr double worthwhile = 0.9;                // of the time with one thread
   using Times = std::array<double, trials>;
 
   static double median(Times times) {

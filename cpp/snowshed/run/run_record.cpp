@@ -82,8 +82,7 @@ std::string text_of(const std::filesystem::path& file) {
 ordered_json balance_of(const SlideMethod& slide) {
   const MassBalance& m = slide.mass_balance();
   const FieldView masses = slide.field("mass");
-  const double on_terrain =
-      compensated_sum(masses.at<double>(0), slide.size());
+  const double on_terrain = compensated_sum(masses.at<double>(0), slide.size());
   return {{"released_kg", m.released},
           {"entrained_kg", m.entrained},
           {"left_terrain_kg", m.left},
@@ -130,7 +129,8 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   j["updates_per_s"] = wall > 0 ? double(c.particle_updates) / wall : 0.0;
   j["peak_memory_mb"] = double(peak_resident_bytes()) / 1e6;
   j["wall_s"] = wall;
-  if (const auto* slide = dynamic_cast<const SlideMethod*>(&method)) j["mass_balance"] = balance_of(*slide);
+  if (const auto* slide = dynamic_cast<const SlideMethod*>(&method))
+    j["mass_balance"] = balance_of(*slide);
   j["finished_events"] = ordered_json::array();
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
   j["status"] = status;

@@ -67,18 +67,10 @@ void thickness(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
 }  // namespace
 
 extern const SlideKernels slide_kernel_table;
-const SlideKernels slide_kernel_table{&locate,
-                                      &ground,
-                                      &show_heights,
-                                      &count_neighbours,
-                                      &weigh_pressure,
-                                      &surface_pressure,
-                                      &map_pressure,
-                                      &stretch_bonds,
-                                      &pull,
-                                      &advance,
-                                      &sum_row_on_nodes,
-                                      &raise_mean_speed_of_row,
-                                      &thickness};
+const SlideKernels slide_kernel_table{
+    &locate,         &ground,           &show_heights,     &count_neighbours,
+    &weigh_pressure, &surface_pressure, &map_pressure,     &stretch_bonds,
+    &pull,           &advance,          &sum_row_on_nodes, &raise_mean_speed_of_row,
+    &thickness};
 
 SNOWSHED_VARIANT_END

@@ -1,11 +1,11 @@
 // The speed of the snow around a node, for the peaks of the default mode.
 //
-// Where snow is thin, the velocity that few particles hand on to a node depends on where in its cells
-// they happen to be, and beyond the last particle it falls to zero from one node to the next. On
-// another grid they lie elsewhere. The speed that is kept is therefore a mean over the nodes around,
-// with binomial weights (1 4 6 4 1)/16 along both axes: nearly a Gaussian as wide as a cell, which has
-// no direction. It fades where the mean mass m around falls below a share of a particle's, m_0: with
-// the mean momentum q it is |q| m / (m^2 + m_0^2).
+// Where snow is thin, the velocity that few particles hand on to a node depends on where in its
+// cells they happen to be, and beyond the last particle it falls to zero from one node to the next.
+// On another grid they lie elsewhere. The speed that is kept is therefore a mean over the nodes
+// around, with binomial weights (1 4 6 4 1)/16 along both axes: nearly a Gaussian as wide as a
+// cell, which has no direction. It fades where the mean mass m around falls below a share of a
+// particle's, m_0: with the mean momentum q it is |q| m / (m^2 + m_0^2).
 #pragma once
 
 #include "snowshed/methods/slide/kernels/node_sums.hpp"

@@ -1,4 +1,5 @@
-// Packs of particles, and records of four values that nodes hold: read for a pack of places at once.
+// Packs of particles, and records of four values that nodes hold: read for a pack of places at
+// once.
 #pragma once
 
 #include "snowshed/core/simd_quad.hpp"
@@ -154,7 +155,7 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
     const double* a = nodes + 4 * std::ptrdiff_t(first[i]);
     const double* b = a + 4 * std::ptrdiff_t(columns);
     return node_record<record>({load_row(a), load_row(a + 4), load_row(b), load_row(b + 4)},
-                                  {w[0][i], w[1][i], w[2][i], w[3][i]});
+                               {w[0][i], w[1][i], w[2][i], w[3][i]});
   });
 }
 #endif

@@ -131,8 +131,7 @@ struct PackPlace {
 };
 
 SNOWSHED_INLINE PackPlace stored_place(const SlideView& s, const Lanes& l) {
-  return {l.load(s.column), l.load(s.row), l.load(s.east), l.load(s.north),
-          all_lanes};
+  return {l.load(s.column), l.load(s.row), l.load(s.east), l.load(s.north), all_lanes};
 }
 
 /// See `Terrain::place`.
@@ -153,9 +152,8 @@ SNOWSHED_INLINE PackPlace place_of(const SlideView& s, const Pack& x, const Pack
 template <NodeRecord record>
 SNOWSHED_INLINE PackRecord records_at(const double* nodes, int columns, const PackPlace& p) {
   const Pack west = 1.0 - p.east, south = 1.0 - p.north;
-  return records_of<record>(
-      nodes, columns, p.row * columns + p.column,
-      {{west * south, p.east * south, west * p.north, p.east * p.north}});
+  return records_of<record>(nodes, columns, p.row * columns + p.column,
+                            {{west * south, p.east * south, west * p.north, p.east * p.north}});
 }
 
 SNOWSHED_INLINE PackRecord flow_at(const SlideView& s, PackPlace p) {

@@ -32,23 +32,20 @@ SNOWSHED_INLINE void count_neighbours_of(const SlideView& s, std::uint32_t first
     const Neighbours<V> there(s, e);
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
     for (int k = 0; k < count; ++k) {
-      const V square =
-          max(Way<V>(s, first + k, there).square(), broadcast<V>(least_square));
+      const V square = max(Way<V>(s, first + k, there).square(), broadcast<V>(least_square));
       const V inside = max(V{}, V(s.cell - square * inverse_sqrt(square)));
       sum[k] += mass * inside * inside * inside;
     }
   });
   const double constant = 10 / (s.cell * s.cell * s.cell);  // of the kernel, over a disc's area
   const Quad sums = constant * sums_of(sum[0], sum[1], V{}, V{});
-  for (int k = 0; k < count; ++k)
-    s.sorted_pressing[first + k] = sums[k] / s.sorted_mass[first + k];
+  for (int k = 0; k < count; ++k) s.sorted_pressing[first + k] = sums[k] / s.sorted_mass[first + k];
 }
 
 SNOWSHED_INLINE void count_row(const SlideView& s, int row) {
-  for_each_neighbourhood(
-      s, row, [&](std::uint32_t e, auto count, const Neighbourhood& around) SNOWSHED_INLINE_LAMBDA {
-        count_neighbours_of<count>(s, e, around);
-      });
+  for_each_neighbourhood(s, row,
+                         [&](std::uint32_t e, auto count, const Neighbourhood& around)
+                             SNOWSHED_INLINE_LAMBDA { count_neighbours_of<count>(s, e, around); });
 }
 
 /// Turns these numbers into what pressure is multiplied by.
