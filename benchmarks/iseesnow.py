@@ -4,10 +4,10 @@ Usage: python benchmarks/iseesnow.py FOLDER [CASE ...]
 
 ISeeSnow is an intercomparison of avalanche models (doi:10.5194/egusphere-2025-6053), whose data are
 under EUPL-1.2 and not part of snowshed. FOLDER has one folder per case with the elevations
-(``DEM_*.asc``), the release (``*.shp``) and the peak rasters of a model (``*_pft.asc``, thickness in
-m, and ``*_pfv.asc``, speed in m/s); rasters may be packed (``.xz``). The release is 1.5 m thick and
-mu is 0.4; xi is 2000 m/s2, but for cases with Coulomb in their name, which have none. All else is the
-default mode's default, without bonds.
+(``DEM_*.asc``), the release (``*.shp``) and the peak rasters of a model (``*_pft.asc``, thickness
+in m, and ``*_pfv.asc``, speed in m/s); rasters may be packed (``.xz``). The release is 1.5 m thick
+and mu is 0.4; xi is 2000 m/s2, but for cases with Coulomb in their name, which have none. All else
+is the default mode's default, without bonds.
 
 Printed are, for both and as a ratio,
 
@@ -48,7 +48,7 @@ def unpacked(folder: Path, pattern: str, to: Path) -> Path:
     if found[0].suffix != ".xz":
         return found[0]
     copy = to / found[0].stem
-    with lzma.open(found[0]) as packed, open(copy, "wb") as plain:
+    with lzma.open(found[0]) as packed, copy.open("wb") as plain:
         shutil.copyfileobj(packed, plain)
     return copy
 
@@ -70,7 +70,8 @@ def our_peaks(case: Path, folder: Path, changes: dict[str, object]) -> tuple[Ras
         settings=SlideSettings.from_data(settings),
     )
     run_slide(scene, folder / "run", pictures=False)
-    return (read_raster(folder / "run" / "peaks" / f"{name}.asc") for name in ("pft", "pfv"))
+    peaks = folder / "run" / "peaks"
+    return read_raster(peaks / "pft.asc"), read_raster(peaks / "pfv.asc")
 
 
 def readings(thickness: Raster, speed: Raster) -> dict[str, float]:
@@ -95,12 +96,12 @@ def compare(case: Path, changes: dict[str, object]) -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         begin = time.perf_counter()
-        ours = tuple(our_peaks(case, folder, changes))
+        ours = our_peaks(case, folder, changes)
         spent = time.perf_counter() - begin
-        model = tuple(read_raster(unpacked(case, f"*_{n}.asc", folder)) for n in ("pft", "pfv"))
+        model = [read_raster(unpacked(case, f"*_{n}.asc", folder)) for n in ("pft", "pfv")]
     print(f"{case.name}: {spent:.0f} s")
     print(f"  {'':20} {'snowshed':>10} {'model':>10} {'change':>8}")
-    a, b = readings(*ours), readings(*model)
+    a, b = readings(*ours), readings(model[0], model[1])
     for key in a:
         change = f"{100 * (a[key] / b[key] - 1):+.1f} %" if "x" not in key.split()[1] else ""
         print(f"  {key:20} {a[key]:>10.4g} {b[key]:>10.4g} {change:>8}")

@@ -124,8 +124,8 @@ CASE = Case(
     A slab 1 m thick breaks loose on a slope of 35 degrees that runs out onto level ground, a plane
     or a channel, with Voellmy's friction and artificial viscosity. Terrain and release are turned
     by an angle. The peak fields, turned back, are compared with those of the slide that was not
-    turned, over the whole map: the norms L1 and L2 of the difference, over those of the error of the
-    cell's interpolation, which is what a map loses that is turned and turned back bilinearly.
+    turned, over the whole map: the norms L1 and L2 of the difference, over those of the error of
+    the cell's interpolation, which is what a map loses that is turned and turned back bilinearly.
     """,
     quantities=tuple(
         Quantity(
