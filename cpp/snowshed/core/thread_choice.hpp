@@ -16,19 +16,23 @@ class ThreadChoice {
   /// Returns the number of threads for the step that begins, 1 or `most`.
   int begin(int most) {
     if (most == 1) return 1;
-    const std::size_t step = steps_++ % period;
-    trial_ = step < 2 * trials;
+    step_ = steps_++ % period;
+    if (step_ == 0) many_ = gave_up_ = false;
+    trial_ = step_ < 2 * trials && !gave_up_;
     if (!trial_) return many_ ? most : 1;
-    slot_ = step;
     begin_ = Clock::now();
-    return step % 2 == 0 ? 1 : most;
+    return step_ < trials ? 1 : most;
   }
 
   /// To be called after each step that `begin` was called for.
   void end() {
     if (!trial_) return;
-    seconds_[slot_ % 2][slot_ / 2] = std::chrono::duration<double>(Clock::now() - begin_).count();
-    if (slot_ + 1 == 2 * trials) many_ = median(seconds_[1]) < worthwhile * median(seconds_[0]);
+    const double spent = std::chrono::duration<double>(Clock::now() - begin_).count();
+    seconds_[step_ / trials][step_ % trials] = spent;
+    if (step_ + 1 == trials) with_one_ = median(seconds_[0]);
+    // Cores that other programs use make threads wait for long: twice is enough.
+    if (step_ == trials + 1) gave_up_ = std::min(spent, seconds_[1][0]) > 2 * with_one_;
+    if (step_ + 1 == 2 * trials) many_ = median(seconds_[1]) < worthwhile * with_one_;
     trial_ = false;
   }
 
@@ -43,8 +47,9 @@ class ThreadChoice {
     return times[trials / 2];
   }
 
-  std::size_t steps_ = 0, slot_ = 0;
-  bool trial_ = false, many_ = false;
+  std::size_t steps_ = 0, step_ = 0;
+  bool trial_ = false, many_ = false, gave_up_ = false;
+  double with_one_ = 0;  // s
   Clock::time_point begin_;
   std::array<Times, 2> seconds_{};  // of the trials, s: with one thread and with many
 };

@@ -24,7 +24,7 @@
 namespace snowshed {
 
 /// The fewest particles that a thread is started for.
-inline constexpr std::size_t particles_per_thread = 128;
+inline constexpr std::size_t particles_per_thread = 400;
 /// Steps of fewer particles find out by trial whether threads make them faster.
 inline constexpr std::size_t particles_for_threads = 20000;
 
