@@ -2,8 +2,8 @@
 
 A surface of area S is crossed by lines of random direction S/2 times per area across the lines. On
 voxels there are 13 directions to the 26 neighbours. Each has the weight of the part of the sphere
-that is nearest to it (Ohser and Mücklich 2000, Statistical Analysis of Microstructures in Materials
-Science; Lehmann and Legland 2012, Efficient N-Dimensional surface estimation using Crofton formula).
+that is nearest to it (Ohser and Mücklich 2000, Statistical Analysis of Microstructures in
+Materials Science).
 
 Surfaces of all directions come out right within a percent. A plane along two axes comes out 7 %
 too small, because no direction but one crosses it at a right angle.

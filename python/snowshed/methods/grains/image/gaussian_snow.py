@@ -1,10 +1,10 @@
 """Synthetic snow: a Gaussian random field, cut at a level.
 
-The field is a sum of plane waves of random phase whose wave numbers lie in a shell around 2π/L. Where
-it is above the cut there is ice (Berk 1987, doi:10.1103/PhysRevLett.58.2718; Quiblier 1984). Of a
-field of unit variance whose derivative along a direction has the variance m, the level u has the
-surface 2/π √m exp(-u²/2) per volume (Adler and Taylor 2007, Random Fields and Geometry, chapter
-12), which is where the search for L begins.
+The field is a sum of plane waves of random phase whose wave numbers lie in a shell around 2π/L.
+Where it is above the cut there is ice (Berk 1987, doi:10.1103/PhysRevLett.58.2718). Of a field of
+unit variance whose derivative along a direction has the variance m, the level u has the surface
+2/π √m exp(-u²/2) per volume (Adler and Taylor 2007, Random Fields and Geometry, chapter 12), which
+is where the search for L begins.
 """
 
 from __future__ import annotations

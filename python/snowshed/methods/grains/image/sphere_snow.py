@@ -1,8 +1,8 @@
 """Synthetic snow: spheres that touch, joined by sintered necks.
 
-Spheres are added one after another at random. Each overlaps one that is there already, so that the
-two meet in a disc of the neck's radius; nearer to any other it never comes. So the ice is connected,
-and its grains are known.
+Spheres are added one after another at random. Each overlaps one that is there already, so that
+the two meet in a disc of the neck's radius; nearer to any other it never comes. So the ice is
+connected, and its grains are known.
 """
 
 from __future__ import annotations
