@@ -2,7 +2,8 @@
 
 The image is smoothed; the surface is a level of the smooth image. Where the smaller principal
 curvature is negative the surface is concave in a direction, as around a neck. What is left of the
-surface falls apart into convex zones. Each labels the ice that is nearest to it.
+surface falls apart into convex zones, a layer of voxels thick, whose voxels have common faces. Each
+labels the ice that is nearest to it.
 
 That grains are found by curvature and contiguity is published (Hagenmuller, Chambon and Naaim 2015).
 How the zones are found and extended is inferred.
@@ -42,9 +43,14 @@ def curvature_basins(ice: Booleans, smoothing: float, neck_curvature: float, thr
     smooth = ndimage.gaussian_filter(ice.astype(np.float32), smoothing, mode="nearest")
     smaller = principal_curvatures(smooth, surface)[0]
     del smooth
+    necks = smaller <= neck_curvature
     convex = np.zeros(ice.shape, dtype=bool)
-    convex[tuple(axis[smaller > neck_curvature] for axis in surface)] = True
-    seeds, count = ndimage.label(convex, structure=NEIGHBOURS, output=np.int32)
+    convex[tuple(axis[~necks] for axis in surface)] = True
+    # Voxels of a slanted surface have only edges in common; with the layer below they have faces.
+    convex = ndimage.binary_dilation(convex, NEIGHBOURS)
+    convex &= ice
+    convex[tuple(axis[necks] for axis in surface)] = False
+    seeds, count = ndimage.label(convex, output=np.int32)
     if not count:  # nothing is convex: all is one piece
         seeds[ice] = 1
         count = 1

@@ -51,7 +51,7 @@ class SegmentationSettings:
     """
 
     method: SegmentationMethod = "watershed"
-    depth: float = 0.5
+    depth: float = 0.75
     smoothing: float = 1.5
     neck_curvature: float = 0.0
     contiguity: float = 0.15
