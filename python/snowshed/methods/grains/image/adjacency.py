@@ -59,7 +59,7 @@ class Adjacency:
         new : (n + 1,)
             The label from 1 that each gets; 0 stays 0.
         """
-        air = np.bincount(new, self.air)
+        air = np.asarray(np.bincount(new, self.air), dtype=np.float64)
         touching = _PairValues(len(air))
         first, second = new[self.pairs].T
         apart = first != second
@@ -67,7 +67,7 @@ class Adjacency:
         return touching.adjacency(air)
 
     def _per_label(self, side: AnyIntegers) -> Floats:
-        return np.bincount(side, self.areas, minlength=len(self.air))
+        return np.asarray(np.bincount(side, self.areas, minlength=len(self.air)), dtype=np.float64)
 
     def _columns(self) -> Floats:
         return np.stack([self.areas, self.faces.astype(float), self.saddles], axis=1)

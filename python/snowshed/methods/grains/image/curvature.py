@@ -5,8 +5,8 @@ curvature is negative the surface is concave in a direction, as around a neck. W
 surface falls apart into convex zones, a layer of voxels thick, whose voxels have common faces. Each
 labels the ice that is nearest to it.
 
-That grains are found by curvature and contiguity is published (Hagenmuller, Chambon and Naaim 2015).
-How the zones are found and extended is inferred.
+That grains are found by curvature and contiguity is published (Hagenmuller, Chambon and Naaim
+2015). How the zones are found and extended is inferred.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ from snowshed.methods.grains.image.watershed import (
 CHUNK = 1 << 20  # voxels of the surface at a time
 
 
-def curvature_basins(ice: Booleans, smoothing: float, neck_curvature: float, threads: int) -> Basins:
+def curvature_basins(
+    ice: Booleans, smoothing: float, neck_curvature: float, threads: int
+) -> Basins:
     """Return the ice in pieces, one for each zone of the surface that is not concave.
 
     Parameters
@@ -102,17 +104,18 @@ def principal_curvatures(
 def _curvatures(smooth: SingleFloats, at: list[Integers]) -> tuple[Floats, Floats]:
     def near(*steps: int) -> Floats:
         place = [
-            np.clip(index + step, 0, size - 1)
-            for index, step, size in zip(at, steps, smooth.shape)
+            np.clip(index + step, 0, size - 1) for index, step, size in zip(at, steps, smooth.shape)
         ]
         return smooth[tuple(place)].astype(np.float64)
 
     def mixed(first: int, second: int) -> Floats:
-        return 0.25 * sum(
-            one * other * near(*(one * (axis == first) + other * (axis == second) for axis in range(3)))
+        corners = [
+            (one, other, [one * (axis == first) + other * (axis == second) for axis in range(3)])
             for one in (-1, 1)
             for other in (-1, 1)
-        )  # fmt: skip
+        ]
+        total = np.sum([one * other * near(*steps) for one, other, steps in corners], axis=0)
+        return np.asarray(0.25 * total)
 
     here = near(0, 0, 0)
     ahead = [near(*(int(axis == one) for axis in range(3))) for one in range(3)]

@@ -63,7 +63,7 @@ class SegmentationSettings:
             raise InputError(f"method {self.method!r}: watershed and curvature are allowed")
         positive("smoothing", self.smoothing)
         finite("neck_curvature", self.neck_curvature)
-        if not 0 <= finite("depth", self.depth):
+        if not finite("depth", self.depth) >= 0:
             raise InputError(f"depth {self.depth:g}: it must not be negative")
         if not 0 < finite("contiguity", self.contiguity) <= 1:
             raise InputError(f"contiguity {self.contiguity:g}: above 0 and up to 1 are allowed")
