@@ -18,9 +18,10 @@ DEFAULTS: Settings = {
     "courant_factor": 0.3,
     "density_scaling": 1.0,
 }
-#: Mean stress from 4 to 5 % of strain, Pa, by cells along an edge and voxels along a cell: the
-#: slowest tests that were made, at 0.02 m/s without scaled density. Recorded with this case.
-REFERENCE = {(3, 5): 1.0}
+SCALINGS = (1e4, 1e3, 100.0, 10.0, 1.0)
+#: Mean stress from 4 to 5 % of strain of the default snow, Pa, at 0.02 m/s without scaled density:
+#: recorded once with this case.
+REFERENCE = 2250477.8267052164
 
 
 def measure(settings: Settings) -> Outcome:
@@ -34,7 +35,7 @@ def measure(settings: Settings) -> Outcome:
     between = abs(float(curve["bottom_stress_pa"][-30:].mean()) / curve["top_stress_pa"][-30:].mean())
     return drive.outcome(
         [
-            relative("stress", stress, REFERENCE[DEFAULTS["across"], DEFAULTS["voxels"]]),
+            relative("stress", stress, REFERENCE),
             Measured("residual", missing, 0.0, missing),
             relative("bottom", float(between), 1.0),
         ]
@@ -46,13 +47,14 @@ def matrix(full: bool) -> list[Settings]:
     if not full:
         fast: Settings = {**DEFAULTS, "density_scaling": 100.0}
         return [fast, {**fast, "courant_factor": 0.6}, {**fast, "voxels": 4}]
-    listed: list[Settings] = [{**DEFAULTS, "courant_factor": f} for f in (0.1, 0.3, 0.6, 1.0)]
-    listed += [{**DEFAULTS, "density_scaling": s} for s in (10.0, 100.0, 1e3, 1e4)]
-    listed += [{**DEFAULTS, "speed": speed} for speed in (0.04, 0.3, 1.0)]
-    listed += [{**DEFAULTS, "density_scaling": 100.0, "voxels": v} for v in (3, 4, 6, 8)]
-    volumes = [{"across": a, "seed": s} for a in (3, 4, 6, 8) for s in (1, 2, 3)]
-    listed += [{**DEFAULTS, "density_scaling": 100.0, **volume} for volume in volumes]
-    return listed
+    fast = {**DEFAULTS, "density_scaling": 100.0}
+    listed: list[Settings] = [{**DEFAULTS, "density_scaling": s} for s in SCALINGS]
+    listed += [{**DEFAULTS, "speed": speed} for speed in (0.3, 1.0)]
+    listed += [{**fast, "courant_factor": factor} for factor in (0.05, 0.1, 0.6, 1.0)]
+    listed += [{**fast, "voxels": voxels} for voxels in (3, 4, 6, 8)]
+    listed += [{**fast, "across": across, "seed": s} for across in (3, 4, 6) for s in (1, 2, 3)]
+    slow: Settings = {**DEFAULTS, "speed": 0.02}
+    return [*listed, slow]
 
 
 CASE = Case(
