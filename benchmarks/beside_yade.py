@@ -1,9 +1,9 @@
 """Compare the speed of grains with Yade, side by side in one run.
 
-Usage: python benchmarks/beside_yade.py [--size 48] [--threads 2]
+Usage: python benchmarks/beside_yade.py [--size 40] [--threads 2]
 
 Both take steps of the same length in the same confined compression of the same clumps, bonds and
-plates (see benchmarks/engines); the best of three runs counts. A step of one sphere on the surface
+plates (see benchmarks/engines); the best of two runs counts. A step of one sphere on the surface
 of a grain is the unit. Writes benchmarks/results/DATE-grains.json. Nothing else should run on the
 machine meanwhile.
 """
@@ -28,6 +28,7 @@ from benchmarks.engines.press import Press  # noqa: E402
 from benchmarks.engines.random_snow import random_snow  # noqa: E402
 from benchmarks.engines.run import press_with_yade, yade_program  # noqa: E402
 from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
+
 from snowshed import GrainsSettings, LoadingStage  # noqa: E402
 from snowshed.run.machine import cpu_name  # noqa: E402
 from snowshed.run.simulation import Simulation  # noqa: E402
@@ -35,7 +36,7 @@ from snowshed.scene.builders import grains_scene  # noqa: E402
 
 VOXEL = 5e-5  # m
 GRAIN = 8  # voxels
-REPETITIONS = 3
+REPETITIONS = 2
 PRESS = Press(time_step=1e-8, strain=0.3, damping=0.2)
 
 
@@ -61,7 +62,7 @@ def our_speed(labels: np.ndarray, threads: int, steps: int, folder: Path) -> tup
 def main() -> None:
     """Measure both, print, and keep the numbers."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--size", type=int, default=48, help="voxels along an edge")
+    parser.add_argument("--size", type=int, default=40, help="voxels along an edge")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--steps", type=int, default=1000)
     options = parser.parse_args()
@@ -79,9 +80,7 @@ def main() -> None:
                 memory = max(memory, grown)
                 ours.append(speed)
                 steps = max(50, options.steps // 10)
-                record = press_with_yade(
-                    sample, PRESS, Path(name), steps=steps, threads=threads
-                )
+                record = press_with_yade(sample, PRESS, Path(name), steps=steps, threads=threads)
                 theirs.append(spheres * steps / record.wall_s)
             case = {
                 "threads": threads,

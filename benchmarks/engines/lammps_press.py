@@ -1,7 +1,7 @@
 """Confined compression of a sample with LAMMPS: python lammps_press.py SAMPLE PRESS OUT.
 
-SAMPLE is what `VoxelSample.save` writes, PRESS what `Press.save` writes, OUT an NPZ file with time_s,
-top_n (force on the top plate), bonds, and wall_s of the steps.
+SAMPLE is what `VoxelSample.save` writes, PRESS what `Press.save` writes, OUT an NPZ file with
+time_s, top_n (force on the top plate), bonds, and wall_s of the steps.
 
 Grains are bodies of fix rigid/small with the mass and inertia of their voxels, bonds are those of
 bpm/rotational without resistance to bending and twist, which break in tension only; other contacts

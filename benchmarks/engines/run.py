@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Optional
 
 import numpy as np
-
 from benchmarks.engines.press import Press
 from benchmarks.engines.voxel_sample import VoxelSample
 

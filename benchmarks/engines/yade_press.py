@@ -1,7 +1,7 @@
 """Confined compression of a sample with Yade: yade -n -x yade_press.py SAMPLE PRESS OUT [steps].
 
-SAMPLE is what `VoxelSample.save` writes, PRESS what `Press.save` writes, OUT an NPZ file with time_s,
-top_n (force on the top plate), bonds, and wall_s of the steps.
+SAMPLE is what `VoxelSample.save` writes, PRESS what `Press.save` writes, OUT an NPZ file with
+time_s, top_n (force on the top plate), bonds, and wall_s of the steps.
 
 Yade weighs a clump by its spheres. So all voxels become spheres here, also the inner ones, with the
 mass of a voxel. What is left of the inertia, that of a cube and not of a ball, is isotropic and is
@@ -18,14 +18,10 @@ import time
 from pathlib import Path
 
 import numpy as np
-
 from press import Press
 from voxel_sample import ICE_DENSITY, VoxelSample
-
 from yade import utils
 from yade import wrapper as y
-
-COUNTED = 10  # records between two counts of the bonds, which are slow
 
 
 def material(press: Press, friction: float) -> y.CohFrictMat:
@@ -143,8 +139,7 @@ def main() -> None:
         y.O.run(steps, wait=True)
     while not timed and y.O.iter < steps:
         y.O.run(press.every, wait=True)
-        bonds = rows[-1][2] if len(rows) % COUNTED else pressed.count_bonds()
-        rows.append((y.O.time, pressed.top_force(), bonds))
+        rows.append((y.O.time, pressed.top_force(), pressed.count_bonds()))
     wall = time.perf_counter() - begin
     times, forces, bonds = np.array(rows or [(0.0, 0.0, 0)]).T
     np.savez(

@@ -1,4 +1,4 @@
-"""Bonds between two grains that are pulled, sheared and pressed: closed forms, over time and speed."""
+"""Bonds between two grains that are pulled, sheared and pressed, against closed forms."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ DEFAULTS: Settings = {
     "shear_strength": STRENGTH,
     "friction": 0.0,
 }
-#: Springs in a row: at both plates and in the bond. A face of a voxel gives way by stress (2r)²/(E r).
-SPRINGS, COMPLIANCE = 3, 4 * (VOXEL / 2) / MODULUS  # 1, m/Pa
+#: Springs in a row, at both plates and in the bond; how far each gives way, m/Pa: (2 r)²/(E r).
+SPRINGS, COMPLIANCE = 3, 4 * (VOXEL / 2) / MODULUS
 
 
 def stage_of(test: str, speed: float) -> LoadingStage:

@@ -32,7 +32,9 @@ def measure(settings: Settings) -> Outcome:
     drive = grains_drive(labels, GRAIN / voxels, stages, settings, OWN)
     curve = load_all(drive, stages, across * GRAIN)
     stress, missing = mean_stress(curve, STRAIN - 0.01, STRAIN), residual(curve)
-    between = abs(float(curve["bottom_stress_pa"][-30:].mean()) / curve["top_stress_pa"][-30:].mean())
+    between = abs(
+        float(curve["bottom_stress_pa"][-30:].mean()) / curve["top_stress_pa"][-30:].mean()
+    )
     return drive.outcome(
         [
             relative("stress", stress, REFERENCE),

@@ -37,8 +37,8 @@ needs_lammps = pytest.mark.skipif(
 
 #: Where the laws are the same. Yade's friction lessens the strength of a pulled bond in shear, and
 #: LAMMPS adds the shares of both limits: so either friction or the limit in shear is left out.
-SMOOTH = Press(time_step=1e-8, strain=0.05, friction=0.0, damping=0.2)
-ROUGH = Press(time_step=1e-8, strain=0.05, friction=0.2, shear_strength=1e12, damping=0.2)
+SMOOTH = Press(time_step=1e-8, strain=0.03, friction=0.0, damping=0.2)
+ROUGH = Press(time_step=1e-8, strain=0.03, friction=0.2, shear_strength=1e12, damping=0.2)
 
 
 @pytest.fixture(scope="module")
