@@ -131,7 +131,7 @@ def main() -> None:
     timed = len(sys.argv) > 4
     pressed = Pressed(sample, press, hollow=timed)
     steps = int(sys.argv[4]) if timed else press.steps(sample.height)
-    rows = []
+    rows = [(0.0, 0.0, len(pressed.bonds))]  # nothing presses yet
     if timed:
         y.O.run(10, wait=True)  # looks for contacts
     begin = time.perf_counter()
@@ -141,7 +141,7 @@ def main() -> None:
         y.O.run(press.every, wait=True)
         rows.append((y.O.time, pressed.top_force(), pressed.count_bonds()))
     wall = time.perf_counter() - begin
-    times, forces, bonds = np.array(rows or [(0.0, 0.0, 0)]).T
+    times, forces, bonds = np.array(rows).T
     np.savez(
         sys.argv[3],
         time_s=times,
