@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import datetime
 import json
-import resource
 import sys
 import tempfile
 import time
@@ -40,23 +39,21 @@ REPETITIONS = 2
 PRESS = Press(time_step=1e-8, strain=0.3, damping=0.2)
 
 
-def our_speed(labels: np.ndarray, threads: int, steps: int, folder: Path) -> tuple[float, float]:
-    """Return sphere steps a second, and bytes a sphere that the process has grown by."""
+def our_speed(labels: np.ndarray, threads: int, steps: int, folder: Path) -> float:
+    """Return sphere steps a second."""
     file = folder / "labels.npy"
     np.save(file, labels)
     settings = GrainsSettings(damping=PRESS.damping, threads=threads)
     stage = LoadingStage(kind="compress", speed=PRESS.speed, strain=PRESS.strain)
     scene = grains_scene(file, VOXEL, [stage], settings=settings).update({"gravity": 0})
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     simulation = Simulation(scene)
     simulation.begin_event()
     simulation.step(10)
     begin = time.perf_counter()
     simulation.step(steps)
     wall = time.perf_counter() - begin
-    grown = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
     spheres = np.count_nonzero(VoxelSample.of_labels(labels, VOXEL).surface)
-    return spheres * steps / wall, grown / spheres
+    return spheres * steps / wall
 
 
 def main() -> None:
@@ -74,11 +71,9 @@ def main() -> None:
     cases = []
     with tempfile.TemporaryDirectory() as name:
         for threads in sorted({1, options.threads}):
-            ours, theirs, memory = [], [], 0.0
+            ours, theirs = [], []
             for _ in range(REPETITIONS):
-                speed, grown = our_speed(labels, threads, options.steps, Path(name))
-                memory = max(memory, grown)
-                ours.append(speed)
+                ours.append(our_speed(labels, threads, options.steps, Path(name)))
                 steps = max(50, options.steps // 10)
                 record = press_with_yade(sample, PRESS, Path(name), steps=steps, threads=threads)
                 theirs.append(spheres * steps / record.wall_s)
@@ -90,13 +85,11 @@ def main() -> None:
                 "snowshed_sphere_steps_per_s": max(ours),
                 "yade_sphere_steps_per_s": max(theirs),
                 "ratio": max(ours) / max(theirs),
-                "snowshed_bytes_per_sphere": memory,
             }
             cases.append(case)
             print(
                 f"{threads} threads, {spheres} spheres: snowshed {max(ours) / 1e6:.1f} M, "
-                f"Yade {max(theirs) / 1e6:.2f} M sphere steps a second, ratio {case['ratio']:.1f}; "
-                f"{memory:.0f} bytes a sphere"
+                f"Yade {max(theirs) / 1e6:.2f} M sphere steps a second, ratio {case['ratio']:.1f}"
             )
     date = datetime.date.today().isoformat()
     record = {"date": date, "cpu": cpu_name(), "cases": cases}

@@ -100,7 +100,11 @@ def load_all(drive: Drive, stages: Sequence[LoadingStage], height: float) -> Loa
     height
         Of the sample, m.
     """
-    longest = sum(stage.strain * height / stage.speed for stage in stages)
+    longest = 0.0
+    for stage in stages:
+        if stage.strain is None or stage.speed is None:
+            raise ValueError("a stage must have a strain and a speed")
+        longest += stage.strain * height / stage.speed
     drive.run_to(longest * (1 + 1e-6))
     return LoadingCurve(drive.core.grains_curve())
 
