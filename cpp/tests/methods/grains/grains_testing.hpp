@@ -74,8 +74,8 @@ inline GrainsOptions story_of_all_kinds() {
   o.settings.bonded_plates = true;
   o.energy = true;
   o.cone = {3e-4, 30};
-  o.loading = {{LoadingKind::compress, 2, 0.02, 0}, {LoadingKind::unload, 2, 0.01, 0},
-               {LoadingKind::shear, 2, 0.02, 1e5},  {LoadingKind::hold, 2, 0.01, 0},
+  o.loading = {{LoadingKind::compress, 2, 0.02, 0},  {LoadingKind::unload, 2, 0.01, 0},
+               {LoadingKind::shear, 2, 0.02, 1e5},   {LoadingKind::hold, 2, 0.01, 0},
                {LoadingKind::isotropic, 2, 0.02, 0}, {LoadingKind::stretch, 2, 0.02, 0},
                {LoadingKind::penetrate, 2, 0.05, 0}};
   return o;
