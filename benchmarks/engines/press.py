@@ -28,7 +28,7 @@ class Press:
     shear_strength: float = 1e6  # Pa
     friction: float = 0.2
     damping: float = 0.0  # local
-    every: int = 10
+    every: int = 5
 
     def steps(self, height: float) -> int:
         """Return how many steps a sample of this height needs."""
