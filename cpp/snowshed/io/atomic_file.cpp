@@ -135,7 +135,7 @@ void AtomicFile::discard() noexcept {
 void AtomicFile::fail(const char* action) {
   const int error = errno;  // `discard` may overwrite it
   discard();
-  throw FileError(path_.string() + ": " + action + ": " + reason(error));
+  throw FileError(path_.string(), std::string(action) + ": " + reason(error), error);
 }
 
 bool is_leftover(const std::filesystem::directory_entry& entry) {

@@ -34,7 +34,7 @@ auto with_file_errors(Action action) {
   try {
     return action();
   } catch (const fs::filesystem_error& error) {
-    throw FileError(error.path1().string() + ": " + error.code().message());
+    throw FileError(error.path1().string(), error.code().message(), error.code().value());
   }
 }
 

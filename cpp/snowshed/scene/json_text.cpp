@@ -88,7 +88,7 @@ class ValueBuilder {
                    const nlohmann::detail::exception& error) {
     constexpr int number_overflow = 406;
     if (error.id == number_overflow)
-      throw InputError(path(), last_read + " is too large for a number");
+      throw InputError(path(), quote(last_read) + " is too large for a number");
     throw InputError(place(text_, position, name_), plain_message(error.what(), last_read));
   }
 
@@ -168,6 +168,9 @@ void append(std::string& out, const ordered_json& value, const std::string& inde
 json parse_json(const std::string& text, const std::string& name) {
   if (text.size() > max_text_bytes)
     throw InputError(name, "longer than " + std::to_string(max_text_bytes >> 20) + " MB");
+  const std::size_t nul = text.find('\0');  // where the parser would take the text to end
+  if (nul != std::string::npos)
+    throw InputError(place(text, nul + 1, name), "not valid JSON: a NUL character");
   ValueBuilder builder(text, name);
   json::sax_parse(with_plain_blanks(text), &builder);
   return builder.take();

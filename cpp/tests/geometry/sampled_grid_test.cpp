@@ -1,5 +1,6 @@
 #include "snowshed/geometry/sampled_grid.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "geometry/geometry_testing.hpp"
@@ -27,7 +28,9 @@ TEST(SampledGrid, IsExactForAPlaneWithinTheGrid) {
   Random random(17);
   for (int n = 0; n < 1000; ++n) {
     const Vec3 x = random_point(random, 0.9);
-    ASSERT_NEAR(grid->distance(x), plane->distance(x), 1e-6);
+    const double border = x.cwiseAbs().maxCoeff() - 1;  // where the solid ends
+    ASSERT_NEAR(grid->distance(x), std::max(plane->distance(x), border), 1e-6);
+    if (border > plane->distance(x) - 0.1) continue;  // the edge between both
     ASSERT_LT((grid->normal(x) - plane->normal(x)).norm(), 1e-5);
   }
 }
@@ -54,6 +57,18 @@ TEST(SampledGrid, AddsTheDistanceBeyondTheGrid) {
   EXPECT_NEAR(grid->distance({4, 0, 0}), 3.5, 1e-6);
   EXPECT_NEAR(grid->distance({1, 1 + 3, 1 + 4}), std::sqrt(3.0) - 0.5 + 5, 1e-6);
   EXPECT_LT((grid->normal({4, 0, 0}) - Vec3::UnitX()).norm(), 1e-3);
+}
+
+TEST(SampledGrid, EndsAtTheBorderOfTheGrid) {
+  for (const std::size_t along_y : {std::size_t(5), std::size_t(1)}) {
+    const GridSamples all_inside{{0, 0, 0}, 0.1, {5, along_y, 5}, std::vector<float>(25 * along_y, -1)};
+    const Shape grid = make_sampled_grid(all_inside, "g");
+    const int dimension = along_y == 1 ? 2 : 3;
+    EXPECT_NEAR(measure(*grid, dimension, 0.02), std::pow(0.4, dimension), 1e-3);
+    EXPECT_NEAR(grid->inradius(), 0.2, 1e-6);
+    EXPECT_GT(grid->distance({0.5, 0.2, 0.2}), 0.09);
+    EXPECT_LE(grid->bounds().max.x(), 0.4 + 1e-12);
+  }
 }
 
 TEST(SampledGrid, OneSampleAlongYMeansConstantInY) {
