@@ -40,9 +40,11 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     if path.exists() and not path.is_file():
         raise InputError(f"{path}: not a file; what is written would destroy it")
     path = Path(os.path.realpath(path))
+    if path.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
     # Nobody can guess the name, so nobody can plant a link there; the core removes what a killed
     # process leaves in a results folder by this name.
-    beside = path.with_name(f".partial-{secrets.token_hex(8)}-{path.name}")
+    beside = path.with_name(f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}")
     try:
         os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield beside
@@ -55,6 +57,11 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
         raise
     finally:
         beside.unlink(missing_ok=True)
+
+
+def _end_of(name: str) -> str:
+    """Return the end of a name, which tells its kind, so short that more fits into a name."""
+    return os.fsdecode(os.fsencode(name)[-100:].lstrip(bytes(range(0x80, 0xC0))))
 
 
 def write_text(path: Union[str, os.PathLike[str]], text: str) -> None:

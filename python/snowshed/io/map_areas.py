@@ -14,6 +14,8 @@ from typing import Any, Optional
 from snowshed._core import InputError
 from snowshed.io.coordinate_systems import is_in_degrees
 from snowshed.io.extras import require
+from snowshed.io.messages import quoted
+from snowshed.io.number_text import number_in
 from snowshed.io.paths import PathLike
 
 Ring = Sequence[Sequence[float]]
@@ -118,11 +120,10 @@ def _thickness(named: dict[str, Any], where: str) -> Optional[float]:
         value = named.get(key)
         if value is None or str(value).strip() in ("", "None", "nan"):
             continue
-        try:
-            number = float(value)
-        except ValueError:
-            raise InputError(f"{where}: {key} {value!r} is not a number") from None
-        if not (math.isfinite(number) and number > 0):
+        number = number_in(str(value))
+        if math.isnan(number):
+            raise InputError(f"{where}: {key} {quoted(str(value))} is not a number")
+        if not number > 0:
             raise InputError(f"{where}: {key} is {number:g} m; give one above 0")
         return number
     return None
