@@ -81,7 +81,7 @@ class Table:
         """Return the sum of a column."""
         try:
             total = math.fsum(number_in(row[column]) for row in self.rows)
-        except KeyError:
+        except (KeyError, OverflowError):
             total = math.nan
         if not math.isfinite(total):
             raise self._damaged(f"no numbers in the column {column}")

@@ -71,7 +71,13 @@ def read_areas(path: PathLike) -> list[MapArea]:
     shapely: Any = require("shapely", "terrain", "reading polygons")
     try:
         meta, _, shapes, columns = pyogrio.raw.read(path, max_features=LARGEST + 1)
-    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError) as error:
+        shapes = [shapely.from_wkb(shape) for shape in shapes]
+    except (
+        pyogrio.errors.DataSourceError,
+        pyogrio.errors.DataLayerError,
+        shapely.errors.ShapelyError,
+        ValueError,
+    ) as error:
         raise InputError(f"{path}: not a file of polygons: {error}") from None
     if len(shapes) > LARGEST:
         raise InputError(f"{path}: more than {LARGEST} polygons")
@@ -81,7 +87,7 @@ def read_areas(path: PathLike) -> list[MapArea]:
     areas = [
         area
         for number, (shape, record) in enumerate(zip(shapes, records), 1)
-        for area in _areas_of(shapely.from_wkb(shape), record, number, crs, path, shapely)
+        for area in _areas_of(shape, record, number, crs, path, shapely)
     ]
     if not areas:
         raise InputError(f"{path}: holds no polygon")

@@ -168,7 +168,8 @@ class Store:
             If the store is damaged.
         """
         study = self.named(study)
-        ((text,),) = self.read("SELECT axes FROM study WHERE name = ?", (study,))
+        rows = self.read("SELECT axes FROM study WHERE name = ?", (study,))
+        text = rows[0][0] if rows else None
         try:
             axes = json.loads(text)
         except (ValueError, RecursionError, TypeError):

@@ -1,0 +1,84 @@
+"""A process that reads mutated files: ``child.py FOLDER TRIES FIRST MEMORY_MB READER...``.
+
+It prints a line of JSON before and after each file, from the FIRST of all readers' files on. It is killed by a file that takes too long or too much
+memory, and whoever started it goes on behind that.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import shutil
+import signal
+import sys
+import warnings
+from pathlib import Path
+
+HANG_S = 10.0
+LONGEST = 5000  # characters of a message
+
+
+def main() -> None:
+    """Read the files."""
+    folder, tries, first, memory = Path(sys.argv[1]), *map(int, sys.argv[2:5])
+    sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
+    from readers import tries_of
+
+    warnings.simplefilter("ignore")
+    every = [(name, seed) for name in sys.argv[5:] for seed in range(tries_of(name, tries))]
+    resource.setrlimit(resource.RLIMIT_AS, (used() + (memory << 20),) * 2)
+    good = None
+    for name, seed in every[first:]:
+        if good is None or good.name != name:
+            good = Good(name, folder / name.replace(" ", "-"))
+        tell(reader=name, seed=seed)
+        signal.setitimer(signal.ITIMER_REAL, HANG_S)  # ends the process, also in the core
+        outcome = good.outcome(seed)
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        tell(reader=name, seed=seed, outcome=outcome)
+
+
+def tell(**facts: object) -> None:
+    print(json.dumps(facts), flush=True)
+
+
+class Good:
+    """A reader with its good file, and what that holds."""
+
+    def __init__(self, name: str, folder: Path) -> None:
+        from readers import READERS
+
+        self.name = name
+        self.reader = READERS[name]
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        self.file = self.reader.make(folder)
+        self.content = self.file.read_bytes()
+        self.wanted = self.reader.read(self.file)
+
+    def outcome(self, seed: int) -> str:
+        """Return what becomes of the file with the changes of a seed."""
+        from mutate import mutated
+        from readers import REFUSED
+
+        content = mutated(self.content, seed)
+        self.file.write_bytes(content)
+        try:
+            found = self.reader.read(self.file)
+        except REFUSED as error:
+            return "refused" if len(str(error)) <= LONGEST else "LONG MESSAGE"
+        except MemoryError:
+            return "MEMORY"
+        except BaseException as error:
+            return f"TRACEBACK {type(error).__name__}: {error}"[:500]
+        return "SILENT" if self.reader.exact and found != self.wanted else "accepted"
+
+
+def used() -> int:
+    """Return the address space of this process, bytes."""
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    return pages * resource.getpagesize()
+
+
+if __name__ == "__main__":
+    main()
