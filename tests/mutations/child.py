@@ -1,7 +1,7 @@
 """A process that reads mutated files: ``child.py FOLDER TRIES FIRST MEMORY_MB READER...``.
 
-It prints a line of JSON before and after each file, from the FIRST of all readers' files on. It is killed by a file that takes too long or too much
-memory, and whoever started it goes on behind that.
+It prints a line of JSON before and after each file, from the FIRST of all readers' files on. It is
+killed by a file that takes too long or too much memory; whoever started it goes on behind that.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +13,8 @@ from typing import Union
 
 from snowshed._core import InputError
 
+#: How files begin that are still being written, or that a killed process left.
+LEFTOVER = re.compile(r"\.partial-[0-9a-f]{16}-")
 #: Errors of file systems that flush nothing.
 CANNOT_FLUSH = (errno.EINVAL, errno.ENOTSUP, errno.EROFS)
 
@@ -57,6 +60,14 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
         raise
     finally:
         beside.unlink(missing_ok=True)
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove from a folder what killed processes left half-written; nothing if there is none."""
+    if folder.is_dir():
+        for path in folder.iterdir():
+            if LEFTOVER.match(path.name) and path.is_file() and not path.is_symlink():
+                path.unlink(missing_ok=True)
 
 
 def _end_of(name: str) -> str:

@@ -33,7 +33,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.io.arrays import Floats
-from snowshed.io.atomic import write_text
+from snowshed.io.atomic import LEFTOVER, write_text
 from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.json_file import read_object
 from snowshed.run.ageing import AGEING_COLUMNS
@@ -214,7 +214,7 @@ def check_empty(folder: PathLike) -> None:
     folder = Path(folder)
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: not a folder")
-    if folder.is_dir() and any(folder.iterdir()):
+    if folder.is_dir() and any(not LEFTOVER.match(path.name) for path in folder.iterdir()):
         raise InputError(f"{folder}: not empty; choose a new folder, or go on with --resume")
 
 
