@@ -14,8 +14,8 @@ import sys
 import warnings
 from pathlib import Path
 
-HANG_S = 10.0
-LONGEST = 5000  # characters of a message
+HANG_S = 10.0  # of processor time, which a busy machine does not change
+LONGEST = 20_000  # characters of a message, which the command line cuts
 
 
 def main() -> None:
@@ -26,15 +26,16 @@ def main() -> None:
 
     warnings.simplefilter("ignore")
     every = [(name, seed) for name in sys.argv[5:] for seed in range(tries_of(name, tries))]
-    resource.setrlimit(resource.RLIMIT_AS, (used() + (memory << 20),) * 2)
     good = None
     for name, seed in every[first:]:
         if good is None or good.name != name:
+            limit_memory(resource.RLIM_INFINITY)
             good = Good(name, folder / name.replace(" ", "-"))
+            limit_memory(used() + (memory << 20))  # what it needs is imported by now
         tell(reader=name, seed=seed)
-        signal.setitimer(signal.ITIMER_REAL, HANG_S)  # ends the process, also in the core
+        signal.setitimer(signal.ITIMER_PROF, HANG_S)  # ends the process, also in the core
         outcome = good.outcome(seed)
-        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
         tell(reader=name, seed=seed, outcome=outcome)
 
 
@@ -72,6 +73,10 @@ class Good:
         except BaseException as error:
             return f"TRACEBACK {type(error).__name__}: {error}"[:500]
         return "SILENT" if self.reader.exact and found != self.wanted else "accepted"
+
+
+def limit_memory(limit: int) -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
 
 
 def used() -> int:

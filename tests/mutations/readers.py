@@ -315,14 +315,14 @@ MEASURED = "tilt_deg,event,height_m,height_std_m\n40,1,0.05,0.005\n50,2,0.08,0.0
 STUDY = """name = "a"
 dimension = 2
 events = 1
-seeds = 2
+seeds = [1]
 [scene]
 preset = "lab-50"
 [accuracy]
 dx = 0.02
 [axes]
 panel.friction = [0.1, 0.2]
-snow.density = { from = 100, to = 300, count = 3 }
+snow.density = { from = 100, to = 300, count = 2 }
 """
 LUA = 'preset "lab-50"\nmaterial{density = 200, M = 3}\nfor i = 1, 3 do panel{tilt = 40 + i} end\n'
 INI = "[GENERAL]\n[com1DFA_com1DFA_override]\nmuvoellmy = 0.3\ndt = 0.1\nrho = 200\n"

@@ -70,7 +70,7 @@ def test_the_name_of_an_owner_leads_nowhere(folder, tmp_path):
 @pytest.mark.parametrize(
     "query",
     [
-        "UPDATE run SET hash = '../../evil'",
+        "UPDATE run SET hash = '../../evil' WHERE rowid = 1",
         "UPDATE run SET scene = replace(scene, '9.81', '9.82')",
         "UPDATE run SET version = '0.0.0'",
         "UPDATE run SET status = 'pending'",

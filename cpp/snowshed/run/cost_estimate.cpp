@@ -32,10 +32,16 @@ constexpr Storage storage(int dimension, Precision precision) {
   return single ? Storage{150.0, 48.0} : Storage{300.0, 96.0};
 }
 
-/// Of a contact between a node and an obstacle, which is there twice while blocks are sorted.
-constexpr double bytes_per_contact = 2 * 48.0;
-/// Of an obstacle with its shape, apart from files.
-constexpr double bytes_per_obstacle = 1000.0;
+/// Of a contact between a node and an obstacle, which is there twice while blocks are sorted, and of
+/// an obstacle with its shape, apart from files.
+struct ObstacleStorage {
+  double bytes_per_contact, bytes_per_obstacle;
+};
+
+constexpr ObstacleStorage obstacle_storage(Precision precision) {
+  return precision == Precision::float32 ? ObstacleStorage{100.0, 500.0}
+                                         : ObstacleStorage{200.0, 1000.0};
+}
 
 /// Grid voxels in use for each voxel of snow: the splines reach beyond it, and it spreads.
 constexpr double grid_spread = 4.0;
@@ -91,8 +97,9 @@ double most_overlapping(const std::vector<ObstacleSpec>& obstacles) {
 /// Memory of the grid where snow is scattered, and of the obstacles and the contacts with them.
 double surroundings_bytes(const Scene& scene, double nodes) {
   const std::vector<ObstacleSpec> obstacles = assemble_obstacles(scene);
-  return nodes * most_overlapping(obstacles) * bytes_per_contact +
-         bytes_per_obstacle * double(obstacles.size());
+  const auto [per_contact, per_obstacle] = obstacle_storage(scene.mpm().precision);
+  return nodes * most_overlapping(obstacles) * per_contact +
+         per_obstacle * double(obstacles.size());
 }
 
 double snow_volume(const Scene& scene, int event) {

@@ -2,7 +2,7 @@
 
 Each is of one thing, by name: ``run HASH`` what is to be computed, ``study NAME`` the runs of a
 study, ``results HASH`` what was measured and ``particles HASH`` what is kept of the snow. What an
-earlier version wrote has none.
+earlier version wrote gets them when it is opened.
 """
 
 from __future__ import annotations
@@ -24,6 +24,42 @@ RESULTS = ("event", "event_timing", "run_timing")
 def note(write: sqlite3.Connection, name: str, content: object) -> None:
     """Store the checksum of something that is written in the same transaction."""
     write.execute("INSERT OR REPLACE INTO checksum VALUES (?, ?)", (name, digest(content)))
+
+
+def note_run(write: sqlite3.Connection, hash_: str) -> None:
+    """Store the checksum of a run that is to be computed."""
+    columns = "SELECT hash, version, scene FROM run WHERE hash = ?"
+    note(write, f"run {hash_}", write.execute(columns, (hash_,)).fetchone())
+
+
+def note_study(write: sqlite3.Connection, study: str) -> None:
+    """Store the checksum of the axes and the runs of a study."""
+    note(write, f"study {study}", study_of(write, study))
+
+
+def note_results(write: sqlite3.Connection, hash_: str) -> None:
+    """Store the checksums of the results of a run, and of its particles if it kept them."""
+    note(write, f"results {hash_}", results_of(write, hash_))
+    query = "SELECT event, data FROM event_particles WHERE hash = ? ORDER BY event"
+    if particles := write.execute(query, (hash_,)).fetchall():
+        note(write, f"particles {hash_}", particles)
+
+
+def note_all(write: sqlite3.Connection) -> None:
+    """Store the checksums of all that a store of an earlier version holds."""
+    for hash_, status in write.execute("SELECT hash, status FROM run").fetchall():
+        note_run(write, hash_)
+        if status != "pending":
+            note_results(write, hash_)
+    for (study,) in write.execute("SELECT name FROM study").fetchall():
+        note_study(write, study)
+
+
+def study_of(connection: sqlite3.Connection, study: str) -> Sequence[Any]:
+    """Return what a store holds of a study."""
+    axes = connection.execute("SELECT axes FROM study WHERE name = ?", (study,)).fetchall()
+    query = "SELECT position, hash FROM study_run WHERE study = ? ORDER BY position"
+    return [axes, connection.execute(query, (study,)).fetchall()]
 
 
 def digest(content: object) -> str:

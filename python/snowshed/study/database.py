@@ -143,10 +143,12 @@ def _add_what_is_new(connection: sqlite3.Connection) -> None:
     for name in STORED_TYPES.keys() - present:
         connection.execute(f"ALTER TABLE event ADD COLUMN {name} {STORED_TYPES[name]}")
     connection.execute(PARTICLES_TABLE)
-    connection.execute(checksums.TABLE)
     if "keep_particles" not in {row[1] for row in connection.execute("PRAGMA table_info(run)")}:
         kept = "keep_particles INTEGER NOT NULL DEFAULT 0"
         connection.execute(f"ALTER TABLE run ADD COLUMN {kept}")
+    if not connection.execute("PRAGMA table_info(checksum)").fetchone():
+        connection.execute(checksums.TABLE)
+        checksums.note_all(connection)
 
 
 def _pragma(connection: sqlite3.Connection, name: str) -> int:

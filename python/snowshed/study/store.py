@@ -152,8 +152,8 @@ class Store:
                 ((study, position, run.hash) for position, run in enumerate(runs)),
             )
             for run in runs:
-                _note_run(write, run.hash)
-            checksums.note(write, f"study {study}", [list(axes), [run.hash for run in runs]])
+                checksums.note_run(write, run.hash)
+            checksums.note_study(write, study)
 
     def studies(self) -> list[str]:
         """Return the names of the studies."""
@@ -176,9 +176,7 @@ class Store:
             axes = None
         if not isinstance(axes, list) or not all(isinstance(path, str) for path in axes):
             raise self.damaged(f"the axes of {study} are no list of names")
-        query = "SELECT hash FROM study_run WHERE study = ? ORDER BY position"
-        hashes = [hash_ for (hash_,) in self.read(query, (study,))]
-        self._check(f"study {study}", lambda: [axes, hashes])
+        self._check(f"study {study}", lambda: checksums.study_of(self._connection, study))
         return axes
 
     def named(self, study: Optional[str]) -> str:
@@ -206,6 +204,9 @@ class Store:
             " WHERE study = ? ORDER BY position",
             (study,),
         )
+        query = "SELECT count(*) FROM study_run WHERE study = ?"
+        if self.read(query, (study,)) != [(len(rows),)]:
+            raise self.damaged(f"{study}: not all of its runs are there")
         return [self._stored(row) for row in rows]
 
     def find(self, beginning: str) -> StoredRun:
@@ -231,8 +232,8 @@ class Store:
             raise self.damaged(f"run {run.hash!r}: {run.status!r}, or no content hash")
         where = f"{self.folder / FILE}: run {run.hash}: its scene"
         check_values(parse_object(run.scene, where), WHOLE_SCENE, where)
-        known = self._check(f"run {run.hash}", lambda: [run.hash, run.version, run.scene])
-        if known and (run.status != "pending") != (f"results {run.hash}" in self._digests):
+        self._check(f"run {run.hash}", lambda: [run.hash, run.version, run.scene])
+        if self._digests and (run.status != "pending") != (f"results {run.hash}" in self._digests):
             raise self.damaged(f"run {run.hash}: {run.status}, but for its results")
         return run
 
@@ -241,12 +242,10 @@ class Store:
         with translated(self.folder):
             self._check(f"results {hash_}", lambda: checksums.results_of(self._connection, hash_))
 
-    def _check(self, name: str, content: Callable[[], object]) -> bool:
-        """Return whether there is a checksum; raise InputError if it is not that of the content."""
-        known = self._digests.get(name)
-        if known is not None and known != checksums.digest(content()):
+    def _check(self, name: str, content: Callable[[], object]) -> None:
+        """Raise InputError if the checksum of the content is another; an old store has none."""
+        if self._digests and self._digests.get(name) != checksums.digest(content()):
             raise self.damaged(f"{name}: its checksum is wrong")
-        return known is not None
 
     @property
     def _digests(self) -> Mapping[str, str]:
@@ -303,10 +302,7 @@ class Store:
                 key = {"hash": outcome.hash, "event": event}
                 _insert(write, "event_particles", {**key, "data": data})
             _insert(write, "run_timing", {"hash": outcome.hash, **outcome.timing})
-            hash_ = outcome.hash
-            checksums.note(write, f"results {hash_}", checksums.results_of(write, hash_))
-            if outcome.particles:
-                checksums.note(write, f"particles {hash_}", sorted(outcome.particles.items()))
+            checksums.note_results(write, outcome.hash)
 
     def reset(self, hashes: Iterable[str]) -> None:
         """Set failed runs to pending."""
@@ -337,7 +333,8 @@ class Store:
         found = dict(self.read(query, (hash_,)))
         if not all(isinstance(data, bytes) for data in found.values()):
             raise self.damaged(f"run {hash_}: its particles are no bytes")
-        self._check(f"particles {hash_}", lambda: sorted(found.items()))
+        if found or f"particles {hash_}" in self._digests:
+            self._check(f"particles {hash_}", lambda: sorted(found.items()))
         return found
 
     def columns(self, table: str) -> set[str]:
@@ -364,11 +361,6 @@ class Store:
 
 def _make_folder(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-
-
-def _note_run(write: sqlite3.Connection, hash_: str) -> None:
-    columns = "SELECT hash, version, scene FROM run WHERE hash = ?"
-    checksums.note(write, f"run {hash_}", write.execute(columns, (hash_,)).fetchone())
 
 
 def _insert(write: sqlite3.Connection, table: str, row: Mapping[str, Any]) -> None:
