@@ -13,6 +13,7 @@ Examples
 import importlib as _importlib
 import os
 from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 
 # The solver's threads meet twice a step. By default OpenMP's runtime makes the early ones spin for
 # a long time, which on a busy machine takes the processor from the thread they wait for. The
@@ -149,12 +150,13 @@ if not _TYPE_CHECKING:
         if name in _FORMER:
             from snowshed.io.renamed import renamed
 
-            return renamed(__name__, {name: _imported(_FORMER[name])}, stacklevel=3)(name)
+            former = {name: _imported(_FORMER[name])}
+            return renamed(__name__, former, stacklevel=3)(name)
         if name not in _MODULES:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         return _imported(name)
 
-    def _imported(name: str) -> object:
+    def _imported(name: str) -> _Any:
         found = getattr(_importlib.import_module(_MODULES[name]), name)
         globals()[name] = found
         return found

@@ -169,7 +169,7 @@ class Store:
         """
         study = self.named(study)
         rows = self.read("SELECT axes FROM study WHERE name = ?", (study,))
-        text = rows[0][0] if rows else None
+        text: Any = rows[0][0] if rows else None
         try:
             axes = json.loads(text)
         except (ValueError, RecursionError, TypeError):
