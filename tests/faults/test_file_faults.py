@@ -92,6 +92,7 @@ def faults(tmp_path_factory):
 def inputs(tmp_path_factory):
     """The files that the commands take."""
     folder = tmp_path_factory.mktemp("inputs")
+    (folder / "slide").mkdir()
     short = {"output.snapshot_interval": 0.2, "numerics.threads": 1}
     tiny_scene(**short).resolve().save(folder / "scene.json")
     example_slide(folder / "slide").set("events.max_time", 0.4).resolve().save(

@@ -168,11 +168,11 @@ void append(std::string& out, const ordered_json& value, const std::string& inde
 json parse_json(const std::string& text, const std::string& name) {
   if (text.size() > max_text_bytes)
     throw InputError(name, "longer than " + std::to_string(max_text_bytes >> 20) + " MB");
-  const std::size_t nul = text.find('\0');  // where the parser would take the text to end
-  if (nul != std::string::npos)
-    throw InputError(place(text, nul + 1, name), "not valid JSON: a NUL character");
   ValueBuilder builder(text, name);
   json::sax_parse(with_plain_blanks(text), &builder);
+  const std::size_t nul = text.find('\0');  // where the parser takes the text to end
+  if (nul != std::string::npos)
+    throw InputError(place(text, nul + 1, name), "not valid JSON: a NUL character");
   return builder.take();
 }
 

@@ -171,6 +171,7 @@ class RunFolder:
         """
         if not known:
             return
+        self.missing_events(event)  # or they are not numbered one after another
         ended = _last_known(known.get(self.events.path.name, {}), len(self.events.rows))
         for table in self._tables():
             sums = known.get(table.path.name, {})
