@@ -126,8 +126,8 @@ int run(const Options& o) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) interrupt_on(signal);
   snowshed::EventSequence sequence = open(o);
   if (!run_all(sequence, o.quiet)) {
-    return fail("interrupted; go on with: snowshed-run " + o.scene + " -o " + o.folder + " --resume",
-                130);
+    return fail(
+        "interrupted; go on with: snowshed-run " + o.scene + " -o " + o.folder + " --resume", 130);
   }
   if (!o.quiet)
     std::fprintf(stderr, "for tables and pictures: snowshed run %s -o %s --resume\n",

@@ -1,9 +1,10 @@
 // The errors of the core as Python's.
+#include "snowshed/core/errors.hpp"
+
 #include <cstring>
 #include <filesystem>
 
 #include "bindings.hpp"
-#include "snowshed/core/errors.hpp"
 
 namespace py = pybind11;
 
@@ -12,8 +13,8 @@ namespace {
 
 /// A text that may name files, whose names need not be UTF-8.
 py::str text(const std::string& message) {
-  PyObject* made = PyUnicode_DecodeUTF8(message.data(), py::ssize_t(message.size()),
-                                        "surrogateescape");
+  PyObject* made =
+      PyUnicode_DecodeUTF8(message.data(), py::ssize_t(message.size()), "surrogateescape");
   if (!made) throw py::error_already_set();
   return py::reinterpret_steal<py::str>(made);
 }

@@ -245,7 +245,9 @@ void bind_files(SimulationClass& c) {
         return std::make_unique<SimulationHandle>(Simulation::load(path));
       },
       "path"_a);
-  c.reads("save", [](const Simulation& s, const std::filesystem::path& path) { s.save(path); }, "path"_a);
+  c.reads(
+      "save", [](const Simulation& s, const std::filesystem::path& path) { s.save(path); },
+      "path"_a);
   c.changes(
       "set_snapshots",
       [](Simulation& s, const std::filesystem::path& dir, double interval) {
@@ -253,8 +255,8 @@ void bind_files(SimulationClass& c) {
       },
       "dir"_a, "interval_s"_a);
   c.reads(
-      "write_vtk", [](const Simulation& s, const std::filesystem::path& path) { s.write_vtp(path); },
-      "path"_a);
+      "write_vtk",
+      [](const Simulation& s, const std::filesystem::path& path) { s.write_vtp(path); }, "path"_a);
 }
 
 void bind_fields(SimulationClass& c) {

@@ -186,7 +186,8 @@ void BinaryReader::read_file() {
   else if (file.open(path_, std::ios::binary); !file)
     error = std::error_code(errno, std::generic_category());
   if (!error) size_ = std::filesystem::file_size(path_, error);
-  if (error) throw FileError(path_.string(), "cannot read the file: " + error.message(), error.value());
+  if (error)
+    throw FileError(path_.string(), "cannot read the file: " + error.message(), error.value());
 
   Header header{};
   file.read(reinterpret_cast<char*>(&header), sizeof header);

@@ -61,8 +61,8 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
 
 /// Fills a body of snow with particles of equal mass; returns its mass, kg.
 double seed_body(const BodySpec& body, const Scene& scene, const std::string& path,
-                 const std::filesystem::path& base_dir, std::uint64_t seed,
-                 const StopRequest& stop, ParticleBatch& batch) {
+                 const std::filesystem::path& base_dir, std::uint64_t seed, const StopRequest& stop,
+                 ParticleBatch& batch) {
   const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
   const double dx = resolution(scene.numerics);
   const Snow& snow = snow_of(scene, body);
@@ -78,8 +78,7 @@ double seed_body(const BodySpec& body, const Scene& scene, const std::string& pa
 }  // namespace
 
 SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
-                      const PanelRegion& panel, int event, double lift,
-                      const StopRequest& stop) {
+                      const PanelRegion& panel, int event, double lift, const StopRequest& stop) {
   SeededSnow snow;
   const std::vector<BodySpec> bodies = assemble_bodies(scene, event, lift);
   const std::vector<std::string> paths = body_paths(scene, event);

@@ -32,8 +32,8 @@ constexpr Storage storage(int dimension, Precision precision) {
   return single ? Storage{150.0, 48.0} : Storage{300.0, 96.0};
 }
 
-/// Of a contact between a node and an obstacle, which is there twice while blocks are sorted, and of
-/// an obstacle with its shape, apart from files.
+/// Of a contact between a node and an obstacle, which is there twice while blocks are sorted, and
+/// of an obstacle with its shape, apart from files.
 struct ObstacleStorage {
   double bytes_per_contact, bytes_per_obstacle;
 };
@@ -59,11 +59,11 @@ double nodes_per_block(const Scene& scene) {
   return scene.dimension == 2 ? block_nodes<2> : block_nodes<3>;
 }
 
-/// Nodes of the grid blocks around the snow of an event, were each body compact: many small bodies far
-/// apart use more of them than the volume of their snow tells.
+/// Nodes of the grid blocks around the snow of an event, were each body compact: many small bodies
+/// far apart use more of them than the volume of their snow tells.
 double count_nodes(const Scene& scene, int event) {
   constexpr double reached = 1.5;  // blocks beyond its own that the splines of a body reach
-  const double edge = (scene.dimension == 2 ? block_edge<2> : block_edge<3>) * scene.mpm().dx;
+  const double edge = (scene.dimension == 2 ? block_edge<2> : block_edge<3>)*scene.mpm().dx;
   double blocks = 0;
   for (const BodySpec& body : assemble_bodies(scene, event)) {
     const double volume = shape_volume(body.shape, scene.dimension).value_or(0.0);
@@ -240,10 +240,8 @@ CostEstimate estimate_cost(const Scene& given, std::vector<double> particles) {
   estimate.updates = count_updates(scene, estimate);
   const auto [per_particle, per_voxel] = storage(scene.dimension, scene.mpm().precision);
   double nodes = 0;
-  for (int event = 1; event <= scene.events.count; ++event)
-    nodes += count_nodes(scene, event);
-  const double filled =
-      grid_spread * estimate.total_particles / scene.seeding.particles_per_voxel;
+  for (int event = 1; event <= scene.events.count; ++event) nodes += count_nodes(scene, event);
+  const double filled = grid_spread * estimate.total_particles / scene.seeding.particles_per_voxel;
   const double voxels = std::max(filled, nodes);
   estimate.bytes = per_particle * estimate.total_particles + per_voxel * voxels +
                    surroundings_bytes(scene, voxels);

@@ -37,8 +37,7 @@ class EventSequence {
   /// Begins a run in a folder that is new or empty. The first snow is laid before anything is
   /// written. Throws InputError, and Stopped on request.
   static EventSequence create(const Scene& scene, const std::filesystem::path& base_dir,
-                              const std::filesystem::path& folder,
-                              const StopRequest& stop = {});
+                              const std::filesystem::path& folder, const StopRequest& stop = {});
 
   /// Goes on from the last checkpoint in the folder of an earlier run of the same scene, whichever
   /// program began it, or begins where there is no checkpoint yet. Throws InputError.
@@ -47,9 +46,8 @@ class EventSequence {
 
   /// Runs the events that are left, with a report every `report_interval` seconds of wall time and
   /// checkpoints as the scene's output.checkpoint_interval asks, and after each event. Returns
-  /// false if the observer stopped it, after a checkpoint; amid seeding the last checkpoint is of the
-  /// same snow. What is thrown by the simulation or the
-  /// observer comes through.
+  /// false if the observer stopped it, after a checkpoint; amid seeding the last checkpoint is of
+  /// the same snow. What is thrown by the simulation or the observer comes through.
   bool run(EventObserver&, double report_interval);
 
   /// Records in the folder that the run cannot go on, with a checkpoint of its last good state.

@@ -52,7 +52,7 @@ class RunRecord {
   std::map<std::string, std::string> machine;  // further facts, by key
   /// Checksums of the tables that Python keeps: by name, of the rows through an event.
   std::map<std::string, std::map<std::string, std::string>> tables;
-  double wall = 0;                             // s, of the whole run so far
+  double wall = 0;  // s, of the whole run so far
 };
 
 }  // namespace snowshed

@@ -142,7 +142,7 @@ class Simulation {
   Scene scene_;
   // As checkpoints hold it, written ahead: lack of memory amid JSON would end the process.
   std::string scene_text_;
-  std::vector<Snow> snows_;  // by material_id
+  std::vector<Snow> snows_;                 // by material_id
   std::vector<std::int64_t> shape_prints_;  // of the files that shapes are read from
   std::filesystem::path base_dir_;
   CostEstimate cost_;

@@ -1,8 +1,8 @@
 // Saving and restoring a simulation: its scene, where it stands between events, and the solver.
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/binary_archive.hpp"
-#include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/run/fingerprint.hpp"
 #include "snowshed/run/loading_curve.hpp"
@@ -65,7 +65,8 @@ void check_kernels(const BinaryReader& in) {
   const std::string then = in.text("kernels"), now = kernel_variant();
   if (then != now)
     throw InputError(in.path().string(), "made with the kernels " + quote(then) + ", and " +
-                                             quote(now) + " are used now; set SNOWSHED_KERNELS to " +
+                                             quote(now) +
+                                             " are used now; set SNOWSHED_KERNELS to " +
                                              "those where the machine has them, or start anew");
 }
 

@@ -168,8 +168,9 @@ std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, doubl
   Random random(seed);
   if (pattern == SeedPattern::poisson)
     return seed_poisson(shape, dimension, voxel, per_voxel, random, stop);
-  std::vector<Vec3> points = seed_lattice(shape, dimension, spacing(dimension, voxel, per_voxel),
-                                          pattern == SeedPattern::jittered ? &random : nullptr, stop);
+  std::vector<Vec3> points =
+      seed_lattice(shape, dimension, spacing(dimension, voxel, per_voxel),
+                   pattern == SeedPattern::jittered ? &random : nullptr, stop);
   if (points.empty())
     throw InputError("", "the solid is too small for the voxel size to hold a particle");
   return points;

@@ -88,7 +88,9 @@ class ValueBuilder {
                    const nlohmann::detail::exception& error) {
     constexpr int number_overflow = 406;
     if (error.id == number_overflow)
-      throw InputError(path(), quote(last_read) + " is too large for a number");
+      throw InputError(path(),
+                       (last_read.size() > 60 ? last_read.substr(0, 60) + "..." : last_read) +
+                           " is too large for a number");
     throw InputError(place(text_, position, name_), plain_message(error.what(), last_read));
   }
 

@@ -61,7 +61,8 @@ TEST(SampledGrid, AddsTheDistanceBeyondTheGrid) {
 
 TEST(SampledGrid, EndsAtTheBorderOfTheGrid) {
   for (const std::size_t along_y : {std::size_t(5), std::size_t(1)}) {
-    const GridSamples all_inside{{0, 0, 0}, 0.1, {5, along_y, 5}, std::vector<float>(25 * along_y, -1)};
+    const GridSamples all_inside{
+        {0, 0, 0}, 0.1, {5, along_y, 5}, std::vector<float>(25 * along_y, -1)};
     const Shape grid = make_sampled_grid(all_inside, "g");
     const int dimension = along_y == 1 ? 2 : 3;
     EXPECT_NEAR(measure(*grid, dimension, 0.02), std::pow(0.4, dimension), 1e-3);
@@ -83,7 +84,8 @@ TEST(SampledGrid, OneSampleAlongYMeansConstantInY) {
 TEST(SampledGrid, BoundsHoldWhereTheSolidReachesTheEdgeOfTheGrid) {
   const Shape box = make_box(Vec3(0, 0, 0), Vec3(4, 1, 1));
   const Shape grid = make_sampled_grid(sampled(*box, {-1, -1, -1}, 0.1, {21, 21, 21}), "g");
-  EXPECT_LT(grid->distance({1.3, 0, 0}), 0);
+  EXPECT_LT(grid->distance({0.9, 0, 0}), 0);
+  EXPECT_GT(grid->distance({1.1, 0, 0}), 0);  // where there are no samples
   expect_bounds_hold(*grid, 2.0);
 }
 

@@ -184,7 +184,8 @@ TEST(CostEstimate, OverlappingObstaclesNeedMemoryAtEachNode) {
   sphere.shape.radius = 0.2;
   scene.obstacles.assign(10000, sphere);
   const double together = estimate_cost(scene).bytes;
-  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) scene.obstacles[i].shape.center.x() = double(i);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
+    scene.obstacles[i].shape.center.x() = double(i);
   const double apart = estimate_cost(scene).bytes;
   EXPECT_GT(together, 100 * without);
   EXPECT_LT(apart, without + 2e7);

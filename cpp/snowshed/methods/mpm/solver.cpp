@@ -121,8 +121,8 @@ template <class T, int D>
 void MpmSolver<T, D>::sort() {
   state_.arrange(model_, blocks_of_particles(state_.layout));
   work_.since_sort = 0;
-  const double share = contacts_per_particle * double(size()) /
-                       std::max(double(state_.contacts.size()), 1.0);
+  const double share =
+      contacts_per_particle * double(size()) / std::max(double(state_.contacts.size()), 1.0);
   work_.until_sort = int(steps_between_sorts * std::clamp(share, 1.0 / steps_between_sorts, 1.0));
   ++state_.progress.counters.sorts;
 }
