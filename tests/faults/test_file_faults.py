@@ -62,7 +62,7 @@ SAMPLES = {"snowshed-run": 16}
 #: Files that hold wall times.
 DIFFERENT = (
     *("run.json", "events.csv", "store.sqlite", "store.sqlite-shm", "store.sqlite-wal"),
-    *("measurements.jsonl", "results.csv", "results.json", "scores.csv"),
+    *("measurements.jsonl", "results.csv", "results.json", "scores.csv", "errors.csv"),
 )
 SEASON = "date,snowfall_m,temperature_c,density_kg_m3\n2024-12-01,0.05,-4,120\n2024-12-02,0,2,\n"
 STUDY = """name = "tiny"
