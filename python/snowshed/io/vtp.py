@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 
 from snowshed._core import InputError
 from snowshed.io.atomic import replacing
+from snowshed.io.input_file import read_regular
 
 TYPES = MappingProxyType(
     {
@@ -25,6 +28,9 @@ TYPES = MappingProxyType(
     }
 )
 APPENDED = b'<AppendedData encoding="raw">\n_'
+#: How a file ends, with the checksum of what stands before; and without.
+END = re.compile(rb"  <!-- crc32 ([0-9a-f]{8}) -->\n</VTKFile>\n\Z")
+OLD_END, LONGEST_END = b"\n  </AppendedData>\n</VTKFile>\n", 64
 LENGTH_BYTES = 8  # before each block
 
 
@@ -49,13 +55,12 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     OSError
         If it cannot be read.
     """
-    content = Path(path).read_bytes()
-    head, found, data = content.partition(APPENDED)
+    content = read_regular(Path(path))
     try:
+        _check_sum(content)
+        head, found, data = content.partition(APPENDED)
         if not found:
             raise ValueError("it has no appended raw data")
-        if not data.rstrip().endswith(b"</VTKFile>"):
-            raise ValueError("it ends too early")
         piece = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece")
         if piece is None:
             raise ValueError("it has no points")
@@ -64,6 +69,16 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
         return {array.attrib["Name"]: _values(array, data, count) for array in arrays}
     except (ValueError, LookupError, OverflowError, ElementTree.ParseError) as error:
         raise InputError(f"{path}: not particles that snowshed wrote: {error}") from None
+
+
+def _check_sum(content: bytes) -> None:
+    """Raise ValueError unless the checksum at the end is right; a version before wrote none."""
+    if content.endswith(OLD_END):
+        return
+    if not (end := END.search(content, max(0, len(content) - LONGEST_END))):
+        raise ValueError("it ends too early")
+    if zlib.crc32(memoryview(content)[: end.start()]) != int(end[1], 16):
+        raise ValueError("its checksum is wrong")
 
 
 def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]:
