@@ -10,6 +10,10 @@
 #include <type_traits>
 #include <utility>
 
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "snowshed/core/variant.hpp"
 
 SNOWSHED_VARIANT_BEGIN
@@ -198,27 +202,74 @@ SNOWSHED_INLINE void transpose(V (&rows)[n]) {
   }
 }
 
+/// In each lane whether it is one of the first n.
+template <class T, int... lane>
+SNOWSHED_INLINE SimdMask<T> first_lanes(int n, std::integer_sequence<int, lane...>) {
+  using Index = std::remove_reference_t<decltype(SimdMask<T>{}[0])>;
+  return SimdMask<T>{Index(lane)...} < Index(n) - SimdMask<T>{};
+}
+template <class T>
+SNOWSHED_INLINE SimdMask<T> first_lanes(int n) {
+  return first_lanes<T>(n, std::make_integer_sequence<int, simd_width<T>>());
+}
+
+/// The first n lanes from memory, the others from `rest`, without touching the memory behind them.
+template <class T>
+SNOWSHED_INLINE SimdPack<T> load_first(const T* p, int n, const SimdPack<T>& rest) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(T) == 4)
+    return (SimdPack<T>)_mm512_mask_loadu_ps((__m512)rest, __mmask16((1u << n) - 1), p);
+  else
+    return (SimdPack<T>)_mm512_mask_loadu_pd((__m512d)rest, __mmask8((1u << n) - 1), p);
+#elif defined(__AVX2__)
+  const SimdMask<T> lanes = first_lanes<T>(n);
+  if constexpr (sizeof(T) == 4)
+    return select(lanes, (SimdPack<T>)_mm256_maskload_ps(p, (__m256i)lanes), rest);
+  else
+    return select(lanes, (SimdPack<T>)_mm256_maskload_pd(p, (__m256i)lanes), rest);
+#else
+  SimdPack<T> v = rest;
+  for (int i = 0; i < n; ++i) v[i] = p[i];
+  return v;
+#endif
+}
+
+template <class T>
+SNOWSHED_INLINE void store_first(T* p, const SimdPack<T>& v, int n) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(T) == 4)
+    _mm512_mask_storeu_ps(p, __mmask16((1u << n) - 1), (__m512)v);
+  else
+    _mm512_mask_storeu_pd(p, __mmask8((1u << n) - 1), (__m512d)v);
+#elif defined(__AVX2__)
+  const SimdMask<T> lanes = first_lanes<T>(n);
+  if constexpr (sizeof(T) == 4)
+    _mm256_maskstore_ps(p, (__m256i)lanes, (__m256)v);
+  else
+    _mm256_maskstore_pd(p, (__m256i)lanes, (__m256d)v);
+#else
+  for (int i = 0; i < n; ++i) p[i] = v[i];
+#endif
+}
+
 /// Read the first n values at p; the lanes beyond repeat the first one, so that they hold
 /// harmless numbers without touching memory that belongs to somebody else.
 template <class T>
 SNOWSHED_INLINE SimdPack<T> load(const T* p, int n) {
   SimdPack<T> v;
-  if (n == simd_width<T>) {
+  if (n == simd_width<T>)
     std::memcpy(&v, p, sizeof v);
-  } else {
-    v = broadcast<SimdPack<T>>(p[0]);
-    for (int i = 1; i < n; ++i) v[i] = p[i];
-  }
+  else
+    v = load_first(p, n, broadcast<SimdPack<T>>(p[0]));
   return v;
 }
 
 template <class T>
 SNOWSHED_INLINE void store(T* p, const SimdPack<T>& v, int n) {
-  if (n == simd_width<T>) {
+  if (n == simd_width<T>)
     std::memcpy(p, &v, sizeof v);
-  } else {
-    for (int i = 0; i < n; ++i) p[i] = v[i];
-  }
+  else
+    store_first(p, v, n);
 }
 
 SNOWSHED_VARIANT_END

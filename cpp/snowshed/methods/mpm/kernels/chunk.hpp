@@ -58,6 +58,13 @@ struct Stencil {
   }
 };
 
+/// The same address, kept in a register: nodes are then addressed by constants from it.
+template <class P>
+SNOWSHED_INLINE P* in_register(P* address) {
+  asm("" : "+r"(address));
+  return address;
+}
+
 /// Weighted sums over a particle's nodes: of the weights, and of their derivative along each
 /// direction.
 template <class T, int D>
@@ -72,7 +79,7 @@ template <Halves derived, class T, int D, Basis basis, class Second>
 SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const Stencil<T, D, basis>& s, int l,
                                                  const T* tile, Second second) {
   constexpr int S = support(basis), N = tile_edge<D>(basis);
-  const T* nodes = tile + s.node[l] * node_values;
+  const T* nodes = in_register(tile + s.node[l] * node_values);
   NodeSums<T, D> r{};
   const auto along_last = [&](const T* row, Node<T>& a, Node<T>& b) SNOWSHED_INLINE_LAMBDA {
     for (int k = 0; k < S; ++k) {
@@ -113,7 +120,7 @@ template <Halves derived, class T, int D, Basis basis, class Second>
 SNOWSHED_INLINE void scatter_nodes(const Stencil<T, D, basis>& s, int l, const NodeSums<T, D>& p,
                                    T* tile, Second second) {
   constexpr int S = support(basis), N = tile_edge<D>(basis);
-  T* nodes = tile + s.node[l] * node_values;
+  T* nodes = in_register(tile + s.node[l] * node_values);
   const auto along_last = [&](T* row, const Node<T>& value,
                               const Node<T>& along_z) SNOWSHED_INLINE_LAMBDA {
     for (int k = 0; k < S; ++k) {
