@@ -6,11 +6,13 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "snowshed/core/compensated_sum.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/methods/grains/energy.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/slide/energy.hpp"
+#include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/scene/enum_names.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/json_value.hpp"
@@ -76,6 +78,18 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// What was released and taken up, and where it is: the sums differ by rounding alone.
+ordered_json balance_of(const SlideMethod& slide) {
+  const MassBalance& m = slide.mass_balance();
+  const FieldView masses = slide.field("mass");
+  const double on_terrain = compensated_sum(masses.at<double>(0), slide.size());
+  return {{"released_kg", m.released},
+          {"entrained_kg", m.entrained},
+          {"left_terrain_kg", m.left},
+          {"on_terrain_kg", on_terrain},
+          {"residual_kg", m.released + m.entrained - m.left - on_terrain}};
+}
+
 }  // namespace
 
 std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_limit"; }
@@ -115,6 +129,8 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   j["updates_per_s"] = wall > 0 ? double(c.particle_updates) / wall : 0.0;
   j["peak_memory_mb"] = double(peak_resident_bytes()) / 1e6;
   j["wall_s"] = wall;
+  if (const auto* slide = dynamic_cast<const SlideMethod*>(&method))
+    j["mass_balance"] = balance_of(*slide);
   j["finished_events"] = ordered_json::array();
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
   j["status"] = status;

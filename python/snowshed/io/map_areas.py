@@ -98,7 +98,8 @@ def _areas_of(
     if shape is None or shape.geom_type not in ("Polygon", "MultiPolygon"):
         raise InputError(f"{where}: not a polygon")
     if not shape.is_valid:
-        raise InputError(f"{where}: {shapely.is_valid_reason(shape)}")
+        reason = shapely.is_valid_reason(shape)
+        raise InputError(f"{where}: no valid outline: {reason}; draw it without crossings")
     named = {str(key).lower(): value for key, value in record.items()}
     name = str(named.get("name") or f"area {number}")
     thickness = _thickness(named, where)
