@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from thesis.claims import calibration, fixation, geometry, lab, regression, s_index
-from thesis.claims.hypothesis_tests import (
+from reproduction.hypothesis_tests import (
     CONFIRMED,
     CONTRADICTED,
     UNDECIDED,

@@ -11,7 +11,7 @@ from thesis.folder import ReproductionFolder
 from thesis.reproduction import Reproduction, compute
 from thesis.sections.regression import read_regressed
 from thesis.size import FULL, MIDDLE, QUICK
-from thesis.stage import State, StudyStage, choose
+from reproduction.stage import State, StudyStage, choose
 
 from snowshed import Scene
 from snowshed._core import InputError

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
+from snowshed.cli.commands.grains_studies import sensitivity
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
@@ -134,3 +135,6 @@ def example(folder: Path, resume: bool, quiet: bool) -> None:
             labels.unlink()
             beside.rmdir()
         raise
+
+
+grains.add_command(sensitivity)

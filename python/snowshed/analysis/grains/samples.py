@@ -1,0 +1,174 @@
+"""Samples of segmented snow for studies: coarser spheres, parts of a sample, other directions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.array_arguments import positive
+from snowshed.io.arrays import AnyIntegers, Integers
+from snowshed.io.paths import PathLike
+
+#: Voxels along an edge without which a sample is none.
+LEAST_VOXELS = 6
+
+
+@dataclass(frozen=True)
+class LabelledSample:
+    """Labels of grains with the size of their voxels, as a loading test takes them.
+
+    Attributes
+    ----------
+    name
+        Of the sample; its file is called so.
+    labels : (nz, ny, nx)
+        0 air, else a grain.
+    voxel_size
+        Edge of a voxel, m: the diameter of the spheres.
+    """
+
+    name: str
+    labels: AnyIntegers
+    voxel_size: float
+
+    @classmethod
+    def read(cls, file: PathLike, voxel_size: float) -> LabelledSample:
+        """Read the labels of a sample from an NPY file.
+
+        Raises
+        ------
+        InputError
+            If the file holds no labels, naming it.
+        OSError
+            If it cannot be read.
+        """
+        path = Path(file)
+        positive("voxel size", voxel_size)
+        try:
+            labels = np.load(path, mmap_mode="r", allow_pickle=False)
+        except (ValueError, EOFError) as error:
+            raise InputError(f"{path}: no NPY file: {error}") from None
+        if not isinstance(labels, np.ndarray) or labels.ndim != 3 or labels.dtype.kind not in "iu":
+            raise InputError(f"{path}: no labels; they are whole numbers (nz, ny, nx)")
+        return cls(path.stem, np.asarray(labels), voxel_size)
+
+    @property
+    def ice_fraction(self) -> float:
+        """Voxels of ice over all."""
+        return float(np.count_nonzero(self.labels) / self.labels.size)
+
+    def coarser(self, factor: int) -> LabelledSample:
+        """Return the sample with voxels `factor` times as large, and the same ice fraction.
+
+        Blocks of voxels become one. Those with the most ice are ice, as many as keep the fraction;
+        among blocks with equally much, those whose neighbourhood has more. A block belongs to the
+        grain that has most of it. What is left over at the ends is cut off.
+
+        Examples
+        --------
+        >>> labels = np.zeros((12, 12, 12), dtype=np.int32)
+        >>> labels[:6], labels[6:, :7] = 1, 2
+        >>> sample = LabelledSample("two", labels, 5e-5)
+        >>> coarse = sample.coarser(2)
+        >>> coarse.labels.shape, coarse.voxel_size
+        ((6, 6, 6), 0.0001)
+        >>> round(coarse.ice_fraction - sample.ice_fraction, 3)
+        0.002
+        """
+        if factor == 1:
+            return self
+        counts = [length // factor for length in self.labels.shape]
+        if factor < 1 or min(counts) < LEAST_VOXELS:
+            raise InputError(
+                f"{self.name}: {self.labels.shape} voxels cannot be made {factor} times coarser; "
+                f"at least {LEAST_VOXELS} must remain along each edge"
+            )
+        nz, ny, nx = counts
+        whole = self.labels[: nz * factor, : ny * factor, : nx * factor]
+        blocks = whole.reshape(nz, factor, ny, factor, nx, factor)
+        blocks = blocks.transpose(0, 2, 4, 1, 3, 5).reshape(-1, factor**3)
+        ice = np.count_nonzero(blocks, axis=1)
+        kept = _fullest(ice.reshape(nz, ny, nx), round(np.count_nonzero(whole) / factor**3))
+        labels = np.zeros(len(blocks), dtype=self.labels.dtype)
+        labels[kept] = _most_frequent(blocks[kept])
+        name = f"{self.name}-coarser{factor}"
+        return LabelledSample(name, labels.reshape(nz, ny, nx), self.voxel_size * factor)
+
+    def middle(self, part: float) -> LabelledSample:
+        """Return the middle of the sample, with edges that are a part of its edges.
+
+        Examples
+        --------
+        >>> LabelledSample("one", np.ones((20, 20, 20), dtype=int), 1e-4).middle(0.5).labels.shape
+        (10, 10, 10)
+        """
+        if not 0 < part <= 1:
+            raise InputError(f"part {part:g}: above 0 and up to 1 are allowed")
+        lengths = [round(part * length) for length in self.labels.shape]
+        if min(lengths) < LEAST_VOXELS:
+            raise InputError(
+                f"{self.name}: {part:g} of {self.labels.shape} voxels are fewer than "
+                f"{LEAST_VOXELS} along an edge"
+            )
+        cut = tuple(
+            slice((whole - length) // 2, (whole - length) // 2 + length)
+            for whole, length in zip(self.labels.shape, lengths)
+        )
+        return replace(self, name=f"{self.name}-middle{part:g}", labels=self.labels[cut])
+
+    def turned(self, axis: int) -> LabelledSample:
+        """Return the sample turned so that it is loaded along another axis of its array.
+
+        Examples
+        --------
+        >>> LabelledSample("one", np.ones((6, 7, 8), dtype=int), 1e-4).turned(2).labels.shape
+        (8, 6, 7)
+        """
+        if axis == 0:
+            return self
+        turned = np.ascontiguousarray(np.moveaxis(self.labels, axis, 0))
+        return replace(self, name=f"{self.name}-along-{'zyx'[axis]}", labels=turned)
+
+    def write(self, folder: Path) -> Path:
+        """Write the labels into a folder, and return their file.
+
+        Raises
+        ------
+        InputError
+            If another sample is there under this name.
+        """
+        folder.mkdir(parents=True, exist_ok=True)
+        file = folder / f"{self.name}.npy"
+        if not file.is_file():
+            beside = file.with_name(f".{self.name}.part.npy")
+            np.save(beside, self.labels)
+            beside.replace(file)
+        elif not np.array_equal(np.load(file, mmap_mode="r"), self.labels):
+            raise InputError(f"{file}: holds another sample; take a new folder")
+        return file.resolve()
+
+
+def _fullest(ice: Integers, count: int) -> Integers:
+    """Return the flat indices of the `count` blocks with the most ice."""
+    from scipy import ndimage
+
+    around = ndimage.uniform_filter(ice.astype(np.float64), 3, mode="nearest")
+    order = np.lexsort((-around.ravel(), -ice.ravel()))
+    return order[:count]
+
+
+def _most_frequent(blocks: AnyIntegers) -> AnyIntegers:
+    """Return the label other than 0 that each row has most often; the smaller of equals."""
+    rows = np.sort(blocks, axis=1)
+    best = np.zeros(len(rows), dtype=rows.dtype)
+    length = np.zeros(len(rows), dtype=np.int64)
+    run = np.zeros(len(rows), dtype=np.int64)
+    for column in range(rows.shape[1]):
+        same = rows[:, column] == rows[:, max(column - 1, 0)]
+        run = np.where(same & (column > 0), run + 1, 1)
+        longer = (run > length) & (rows[:, column] != 0)
+        best[longer], length[longer] = rows[longer, column], run[longer]
+    return best

@@ -1,0 +1,104 @@
+"""The commands of grains that compute many tests: ``snowshed grains sensitivity|material``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional, TypeVar
+
+import click
+
+from snowshed.cli.settings_options import settings_options
+
+if TYPE_CHECKING:
+    from snowshed.analysis.grains.samples import LabelledSample
+    from snowshed.methods.grains.settings import GrainsSettings
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+PATH = click.Path(path_type=Path)
+SAMPLES, RUNS = "samples", "runs"
+#: Inertia of the tests of a study unless it is given: that up to which stresses were seen to stay.
+DENSITY_SCALING = 10.0
+
+
+def study_options(command: Command) -> Command:
+    """Add the options of commands that load samples again and again."""
+    command = settings_options("grains", without=("threads",))(command)
+    for option in (
+        click.option("--voxel", type=float, required=True, help="Edge of a voxel [m]."),
+        click.option("--coarser", type=click.IntRange(1, 64), default=1, show_default=True,
+                     help="Voxels of the samples along the edge of a sphere; ice fraction kept."),
+        click.option("--turned", is_flag=True,
+                     help="Load each sample along x and y, too: more samples of the same snow."),
+        click.option("--jobs", type=int, help="Tests at once.  [default: the number of cores]"),
+        click.option("--plan", "plan_only", is_flag=True,
+                     help="Only say how many tests there are, and how long they take."),
+        click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
+        click.option("-o", "--output", "folder", type=PATH, required=True,
+                     help="Results folder, old or new."),
+    ):  # fmt: skip
+        command = option(command)
+    return click.argument("labels", type=PATH, nargs=-1, required=True)(command)
+
+
+@click.command()
+@click.option("--speed", type=float, default=0.02, show_default=True, help="Of the plate [m/s].")
+@click.option("--strain", type=float, default=0.3, show_default=True,
+              help="Way over the sample's height at which a test ends.")  # fmt: skip
+@study_options
+def sensitivity(
+    labels: Sequence[Path], voxel: float, coarser: int, turned: bool, speed: float, strain: float,
+    folder: Path, jobs: Optional[int], plan_only: bool, quiet: bool, **values: Any,
+) -> None:  # fmt: skip
+    """Find what matters for the strength in compression, compared with the scatter of samples.
+
+    LABELS are samples of one snow. Friction, elastic modulus, strength of bonds, density of ice
+    (by density_scaling), speed, sphere size and volume vary one at a time. After an interruption
+    the same command goes on.
+
+    \b
+    Example:
+      snowshed grains sensitivity a.npy b.npy --voxel 5e-5 --coarser 2 -o sensitivity
+    """  # noqa: D301 - click wants the control character
+    from snowshed.analysis.grains.sensitivity import evaluate_sensitivity
+    from snowshed.analysis.grains.variants import sensitivity_variants
+    from snowshed.cli.commands.study import compute_study, print_plan
+    from snowshed.cli.display.grains_studies import print_comparison
+    from snowshed.scene.loading import LoadingStage
+
+    samples = read_samples(labels, voxel, turned=turned)
+    stage = LoadingStage(kind="compress", speed=speed, strain=strain)
+    comparison = sensitivity_variants(
+        samples, folder / SAMPLES, stage, study_settings(values), coarser=coarser
+    )
+    study = comparison.study()
+    study.save(folder / "study.toml")
+    if plan_only:
+        print_plan(study, jobs)
+        return
+    compute_study(study, folder / RUNS, quiet=quiet, jobs=jobs)
+    found = evaluate_sensitivity(comparison, folder / RUNS, folder)
+    if not quiet:
+        print_comparison(found)
+        click.echo(f"tests.csv, sensitivity.csv and sensitivity.png in {folder}")
+
+
+def read_samples(files: Sequence[Path], voxel: float, *, turned: bool) -> list[LabelledSample]:
+    """Return the samples of some files; refuse two of one name."""
+    from snowshed.analysis.grains.samples import LabelledSample
+
+    names = [file.stem for file in files]
+    for name in names:
+        if names.count(name) > 1:
+            raise click.UsageError(f"two samples are called {name}; rename one of their files")
+    samples = [LabelledSample.read(file, voxel) for file in files]
+    return [one.turned(axis) for one in samples for axis in (range(3) if turned else (0,))]
+
+
+def study_settings(values: dict[str, Any]) -> GrainsSettings:
+    """Return the settings that the options give, with the inertia of studies."""
+    from snowshed.methods.grains.settings import GrainsSettings
+
+    given = {name: value for name, value in values.items() if value is not None}
+    return GrainsSettings(**{"density_scaling": DENSITY_SCALING, **given})
