@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Optional
 
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.array_arguments import positive
-from snowshed.io.arrays import AnyIntegers, Integers
+from snowshed.io.arrays import AnyIntegers
 from snowshed.io.paths import PathLike
+from snowshed.methods.grains.image.downscaling import downscaled
+from snowshed.methods.grains.image.ice_image import IceImage
+from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
 
 #: Voxels along an edge without which a sample is none.
 LEAST_VOXELS = 6
@@ -35,25 +38,33 @@ class LabelledSample:
     voxel_size: float
 
     @classmethod
-    def read(cls, file: PathLike, voxel_size: float) -> LabelledSample:
-        """Read the labels of a sample from an NPY file.
+    def read(cls, path: PathLike, voxel_size: Optional[float] = None) -> LabelledSample:
+        """Read the labels of a sample.
+
+        Parameters
+        ----------
+        path
+            A folder of ``snowshed grains segment`` or ``synthetic``, which names the sample, or an
+            NPY file.
+        voxel_size
+            Edge of a voxel, m; None: as the folder says.
 
         Raises
         ------
         InputError
-            If the file holds no labels, naming it.
+            If there are no labels, or nothing says how large a voxel is.
         OSError
-            If it cannot be read.
+            If the file cannot be read.
         """
-        path = Path(file)
-        positive("voxel size", voxel_size)
+        found = find_sample(path, voxel_size)
         try:
-            labels = np.load(path, mmap_mode="r", allow_pickle=False)
+            labels = np.load(found.labels, mmap_mode="r", allow_pickle=False)
         except (ValueError, EOFError) as error:
-            raise InputError(f"{path}: no NPY file: {error}") from None
+            raise InputError(f"{found.labels}: no NPY file: {error}") from None
         if not isinstance(labels, np.ndarray) or labels.ndim != 3 or labels.dtype.kind not in "iu":
-            raise InputError(f"{path}: no labels; they are whole numbers (nz, ny, nx)")
-        return cls(path.stem, np.asarray(labels), voxel_size)
+            raise InputError(f"{found.labels}: no labels; they are whole numbers (nz, ny, nx)")
+        named = found.labels.resolve().parent if found.labels.name == LABELS else found.labels
+        return cls(named.stem, np.asarray(labels), found.voxel_size)
 
     @property
     def ice_fraction(self) -> float:
@@ -63,9 +74,7 @@ class LabelledSample:
     def coarser(self, factor: int) -> LabelledSample:
         """Return the sample with voxels `factor` times as large, and the same ice fraction.
 
-        Blocks of voxels become one. Those with the most ice are ice, as many as keep the fraction;
-        among blocks with equally much, those whose neighbourhood has more. A block belongs to the
-        grain that has most of it. What is left over at the ends is cut off.
+        Where there is ice, `downscaled` decides; it belongs to the grain that has most of it there.
 
         Examples
         --------
@@ -86,16 +95,13 @@ class LabelledSample:
                 f"{self.name}: {self.labels.shape} voxels cannot be made {factor} times coarser; "
                 f"at least {LEAST_VOXELS} must remain along each edge"
             )
+        image = downscaled(IceImage(self.labels > 0, self.voxel_size, self.name), factor)
         nz, ny, nx = counts
         whole = self.labels[: nz * factor, : ny * factor, : nx * factor]
-        blocks = whole.reshape(nz, factor, ny, factor, nx, factor)
-        blocks = blocks.transpose(0, 2, 4, 1, 3, 5).reshape(-1, factor**3)
-        ice = np.count_nonzero(blocks, axis=1)
-        kept = _fullest(ice.reshape(nz, ny, nx), round(np.count_nonzero(whole) / factor**3))
-        labels = np.zeros(len(blocks), dtype=self.labels.dtype)
-        labels[kept] = _most_frequent(blocks[kept])
-        name = f"{self.name}-coarser{factor}"
-        return LabelledSample(name, labels.reshape(nz, ny, nx), self.voxel_size * factor)
+        blocks = whole.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
+        labels = np.zeros(image.ice.shape, dtype=self.labels.dtype)
+        labels[image.ice] = _most_frequent(blocks[image.ice].reshape(-1, factor**3))
+        return LabelledSample(f"{self.name}-coarser{factor}", labels, image.voxel_size)
 
     def middle(self, part: float) -> LabelledSample:
         """Return the middle of the sample, with edges that are a part of its edges.
@@ -149,15 +155,6 @@ class LabelledSample:
         elif not np.array_equal(np.load(file, mmap_mode="r"), self.labels):
             raise InputError(f"{file}: holds another sample; take a new folder")
         return file.resolve()
-
-
-def _fullest(ice: Integers, count: int) -> Integers:
-    """Return the flat indices of the `count` blocks with the most ice."""
-    from scipy import ndimage
-
-    around = ndimage.uniform_filter(ice.astype(np.float64), 3, mode="nearest")
-    order = np.lexsort((-around.ravel(), -ice.ravel()))
-    return order[:count]
 
 
 def _most_frequent(blocks: AnyIntegers) -> AnyIntegers:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Optional, TypeVar
 
 import click
 
+from snowshed.cli.commands.grain_images import segment_command, synthetic
 from snowshed.cli.commands.grains_studies import sensitivity
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
@@ -25,12 +26,13 @@ PATH = click.Path(path_type=Path)
 
 @click.group()
 def grains() -> None:
-    """Load snow grain by grain, from a segmented image of its ice.
+    """Find the grains in an image of snow, and load the snow grain by grain.
 
     \b
     Examples:
       snowshed grains example -o example
-      snowshed grains compress labels.npy --voxel 5e-5 -o out
+      snowshed grains segment slices --voxel 5e-5 -o sample
+      snowshed grains compress sample -o out
     """  # noqa: D301 - click wants the control character
 
 
@@ -52,7 +54,7 @@ def loading_command(
     """
 
     def run(
-        folder: Path, resume: bool, quiet: bool, labels: Path, voxel: float, energy: bool,
+        folder: Path, resume: bool, quiet: bool, labels: Path, voxel: Optional[float], energy: bool,
         snapshots: float, speed: float, strain: float, stress: float = 0.0, **values: Any,
     ) -> None:  # fmt: skip
         cone = _given({"radius": values.pop("radius", None),
@@ -81,7 +83,8 @@ def loading_command(
                      help="Way over the sample's height at which the test ends."),
         click.option("--speed", type=float, default=speed, show_default=True,
                      help="Speed of what moves [m/s]."),
-        click.option("--voxel", type=float, required=True, help="Edge of a voxel [m]."),
+        click.option("--voxel", type=float,
+                     help="Edge of a voxel; a folder of `grains segment` knows it [m]."),
     ):  # fmt: skip
         run = option(run)
     run = run_options(run)
@@ -115,6 +118,10 @@ for command in (
     loading_command("penetrate", "Push a cone down into a sample.", strain=0.5),
 ):
     grains.add_command(command)
+
+
+grains.add_command(synthetic)
+grains.add_command(segment_command)
 
 
 @grains.command()

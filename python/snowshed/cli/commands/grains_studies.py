@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import click
 
+from snowshed.cli.commands.grain_images import VOXEL
 from snowshed.cli.settings_options import settings_options
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def study_options(command: Command) -> Command:
     """Add the options of commands that load samples again and again."""
     command = settings_options("grains", without=("threads",))(command)
     for option in (
-        click.option("--voxel", type=float, required=True, help="Edge of a voxel [m]."),
+        click.option("--voxel", type=float, help=VOXEL),
         click.option("--coarser", type=click.IntRange(1, 64), default=1, show_default=True,
                      help="Voxels of the samples along the edge of a sphere; ice fraction kept."),
         click.option("--turned", is_flag=True,
@@ -48,7 +49,7 @@ def study_options(command: Command) -> Command:
               help="Way over the sample's height at which a test ends.")  # fmt: skip
 @study_options
 def sensitivity(
-    labels: Sequence[Path], voxel: float, coarser: int, turned: bool, speed: float, strain: float,
+    labels: Sequence[Path], voxel: Optional[float], coarser: int, turned: bool, speed: float, strain: float,
     folder: Path, jobs: Optional[int], plan_only: bool, quiet: bool, **values: Any,
 ) -> None:  # fmt: skip
     """Find what matters for the strength in compression, compared with the scatter of samples.
@@ -84,15 +85,19 @@ def sensitivity(
         click.echo(f"tests.csv, sensitivity.csv and sensitivity.png in {folder}")
 
 
-def read_samples(files: Sequence[Path], voxel: float, *, turned: bool) -> list[LabelledSample]:
-    """Return the samples of some files; refuse two of one name."""
+def read_samples(
+    paths: Sequence[Path], voxel: Optional[float], *, turned: bool
+) -> list[LabelledSample]:
+    """Return samples of one voxel size; refuse two of one name."""
     from snowshed.analysis.grains.samples import LabelledSample
 
-    names = [file.stem for file in files]
-    for name in names:
-        if names.count(name) > 1:
-            raise click.UsageError(f"two samples are called {name}; rename one of their files")
-    samples = [LabelledSample.read(file, voxel) for file in files]
+    samples = [LabelledSample.read(path, voxel) for path in paths]
+    names = [one.name for one in samples]
+    for one in samples:
+        if names.count(one.name) > 1:
+            raise click.UsageError(f"two samples are called {one.name}; rename one")
+        if one.voxel_size != samples[0].voxel_size:
+            raise click.UsageError(f"{one.name}: the voxels differ from those of {names[0]}")
     return [one.turned(axis) for one in samples for axis in (range(3) if turned else (0,))]
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.arrays import Integers
 from snowshed.io.paths import PathLike
+from snowshed.methods.grains.image.sample_folder import find_sample
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.components import Events, Output
 from snowshed.scene.loading import Cone, LoadingStage, Sample
@@ -24,7 +25,7 @@ EXAMPLE_VOXEL = 1e-4  # m
 
 def grains_scene(
     labels: PathLike,
-    voxel_size: float,
+    voxel_size: Optional[float] = None,
     loading: Sequence[LoadingStage] = (LoadingStage(kind="compress"),),
     *,
     cone: Optional[Cone] = None,
@@ -37,9 +38,10 @@ def grains_scene(
     Parameters
     ----------
     labels
-        An NPY file of integers (nz, ny, nx): 0 air, any other number a grain.
+        An NPY file of integers (nz, ny, nx): 0 air, any other number a grain; or the folder of
+        ``snowshed grains segment`` or ``synthetic`` that holds it.
     voxel_size
-        Edge of a voxel, m.
+        Edge of a voxel, m; None: as the folder says.
     loading
         The stages, one after another.
     cone
@@ -49,12 +51,12 @@ def grains_scene(
     output
         What is written during the run.
     title
-        What this scene is.
+        What this scene is; empty: how the sample was made, if it is known to be synthetic.
 
     Raises
     ------
     InputError
-        If `labels` is no NPY file by its name.
+        If `labels` is no NPY file by its name, or nothing says how large a voxel is.
 
     Examples
     --------
@@ -65,7 +67,8 @@ def grains_scene(
     >>> scene.resolve().data["loading"][0]["strain"]
     0.1
     """
-    file = Path(labels)
+    sample = find_sample(labels, voxel_size)
+    file = sample.labels
     if file.suffix.lower() != NPY:
         raise InputError(
             f"{file}: no NPY file; labels are whole numbers in one, 0 for air (numpy.save)"
@@ -73,8 +76,8 @@ def grains_scene(
     return Scene(
         method="grains",
         dimension=3,
-        title=title,
-        sample=Sample(file=file.resolve(), voxel_size=voxel_size),
+        title=title or sample.source,
+        sample=Sample(file=file.resolve(), voxel_size=sample.voxel_size),
         loading=list(loading),
         cone=cone,
         numerics=settings,

@@ -38,6 +38,8 @@ def downscaled(image: IceImage, factor: int) -> IceImage:
         )
     if min(image.ice.shape) < factor:
         raise InputError(f"{image.source}: {image.ice.shape} voxels; too few to join {factor}")
+    if factor == 1:
+        return image
     counts = _block_counts(image, factor)
     target = round(int(counts.sum(dtype=np.int64)) / factor**3)
     # Counts differ by at least one, means over neighbours within a block's count by less.

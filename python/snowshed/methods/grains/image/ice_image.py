@@ -77,3 +77,11 @@ class IceImage:
     def with_ice(self, ice: Booleans, **changes: float) -> IceImage:
         """Return the image with other voxels; the grains are then no longer known."""
         return replace(self, ice=ice, labels=None, **changes)  # type: ignore[arg-type]
+
+
+def check_phases(image: IceImage) -> None:
+    """Raise InputError if an image shows ice or air alone."""
+    if not image.ice.any():
+        raise InputError(f"{image.source}: no ice; is the threshold too high, or ice dark?")
+    if image.ice.all():
+        raise InputError(f"{image.source}: all is ice; is the threshold too low, or ice dark?")

@@ -9,8 +9,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.methods.grains.image.crofton import SLAB, surface_density
-from snowshed.methods.grains.image.ice_image import ICE_DENSITY, IceImage
-from snowshed.methods.grains.image.segmentation import check_phases
+from snowshed.methods.grains.image.ice_image import ICE_DENSITY, IceImage, check_phases
 
 #: Diameters of grains of snow, m: no grain of real snow is smaller or larger.
 SMALLEST_GRAIN, LARGEST_GRAIN = 2e-5, 1e-2
@@ -35,9 +34,8 @@ class Microstructure:
     density_kg_m3
         Of the sample, with ice of 917 kg/m3.
     specific_surface_m2_kg
-        Surface of the ice over its mass, by Crofton's formula in 13 directions: within 1 % for ice
-        without a preferred direction whose grains are 10 voxels wide, 7 % too small for layers along
-        the voxels.
+        Surface of the ice over its mass, by Crofton's formula in 13 directions: within 1 % for
+        spheres 10 voxels wide, 7 % too small for layers along the voxels.
     optical_diameter_m
         Diameter of spheres with this specific surface, 6 / (917 kg/m3 times it).
     correlation_length_x_m, correlation_length_y_m, correlation_length_z_m

@@ -13,7 +13,7 @@ from snowshed.io.array_arguments import finite, positive
 from snowshed.io.arrays import Labels
 from snowshed.methods.grains.image.adjacency import Adjacency, find_adjacency
 from snowshed.methods.grains.image.curvature import curvature_basins
-from snowshed.methods.grains.image.ice_image import IceImage
+from snowshed.methods.grains.image.ice_image import IceImage, check_phases
 from snowshed.methods.grains.image.region_merging import merge_contiguous, merge_shallow
 from snowshed.methods.grains.image.watershed import Basins, distance_basins, voxel_counts
 
@@ -165,14 +165,6 @@ def known_grains(image: IceImage) -> Segmentation:
     if image.labels is None:
         raise InputError(f"{image.source}: its grains are not known; they must be found")
     return Segmentation(image, None, image.labels, find_adjacency(image.labels))
-
-
-def check_phases(image: IceImage) -> None:
-    """Raise InputError if an image shows ice or air alone."""
-    if not image.ice.any():
-        raise InputError(f"{image.source}: no ice; is the threshold too high, or ice dark?")
-    if image.ice.all():
-        raise InputError(f"{image.source}: all is ice; is the threshold too low, or ice dark?")
 
 
 def _basins(image: IceImage, settings: SegmentationSettings) -> Basins:

@@ -15,9 +15,8 @@ from snowshed.io.extras import require
 from snowshed.io.formatting import number
 from snowshed.io.voxels.voxel_file import VoxelFile
 from snowshed.methods.grains.image.downscaling import downscaled
-from snowshed.methods.grains.image.ice_image import IceImage
+from snowshed.methods.grains.image.ice_image import IceImage, check_phases
 from snowshed.methods.grains.image.parts import largest_part
-from snowshed.methods.grains.image.segmentation import check_phases
 
 LAYERS = 16  # at a time
 BINS = 1024  # of a histogram of anything but small whole numbers
@@ -117,16 +116,27 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
         above = part > threshold
         ice[low : low + len(part)] = ~above if wanted.dark_ice else above
     image = IceImage(ice, size, file.name)
+    check_phases(image)  # before it is rounded away
+    image = downscaled(image, wanted.downscale)
     check_phases(image)
-    if wanted.downscale != 1:
-        image = downscaled(image, wanted.downscale)
-        check_phases(image)
     lost = 0.0
     if wanted.connected:
         kept = largest_part(image.ice)
         lost = 1.0 - float(np.count_nonzero(kept) / np.count_nonzero(image.ice))
         image = image.with_ice(kept)
     return ReadImage(image, threshold, chosen, lost)
+
+
+def cropped_shape(file: VoxelFile, crop: Optional[Crop]) -> tuple[int, int, int]:
+    """Return how many voxels along z, y and x a crop keeps.
+
+    Raises
+    ------
+    InputError
+        If it is not within the image.
+    """
+    nz, ny, nx = (high - low for low, high in _checked_crop(file, crop))
+    return nz, ny, nx
 
 
 def _checked_crop(file: VoxelFile, crop: Optional[Crop]) -> Crop:
