@@ -129,7 +129,7 @@ def hardens(tests: Tests) -> Finding:
         f"{found.sentence}; exponential from {100 * onset.mean():.2g} % in {seen} of {len(rows)}"
     )
     whole = seen == len(rows) or found.verdict != CONFIRMED
-    return Finding(found.verdict if whole else UNDECIDED, words)
+    return Finding(found.verdict if whole else UNDECIDED, f"{found.sentence}; {begins}")
 
 
 def rises(variant: str, base: str, stresses: Sequence[str], tests: Tests) -> Finding:
@@ -163,9 +163,8 @@ def as_much_as_yade(stress: str, tests: Tests) -> Finding:
     assert value is not None
     found = tests.log(BASE, stress)
     verdict = near(found, math.log(1e3 * value), HARDLY, "").verdict
-    kpa = math.exp(found.value) / 1e3
-    return Finding(verdict, factor(found - Estimate(math.log(1e3 * value), 0.0),
-                                   f"{STRESSES[stress]} {kpa:.3g} kPa, Yade {value:g} kPa"))  # fmt: skip
+    words = f"{STRESSES[stress]} {math.exp(found.value) / 1e3:.3g} kPa, Yade {value:g} kPa"
+    return Finding(verdict, factor(found - Estimate(math.log(1e3 * value), 0.0), words))
 
 
 def same_signs(variant: str, tests: Tests) -> Finding:

@@ -18,7 +18,13 @@ from hagenmuller.snows import (
     pack_snow,
 )
 from snowshed.analysis.grains.samples import LabelledSample
-from snowshed.analysis.grains.variants import BASE, Comparison, Variant, sensitivity_variants
+from snowshed.analysis.grains.variants import (
+    BASE,
+    Comparison,
+    Variant,
+    other_spheres,
+    sensitivity_variants,
+)
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
@@ -116,8 +122,18 @@ def _scene(base: Variant, stages: Sequence[LoadingStage]) -> Scene:
     return grains_scene(base.samples[0], base.voxel_size, stages, settings=SETTINGS)
 
 
+def spheres(made: Comparisons) -> Comparison:
+    """Return spheres half as large, which take ten times as long."""
+    samples = made.base_snow()
+    base = [one.coarser(COARSER) for one in samples]
+    same = Variant(BASE, BASE, [one.write(made.folder) for one in base], base[0].voxel_size)
+    finer = other_spheres(samples, made.folder, COARSER - 1)
+    return Comparison(_scene(same, [STAGE]), [same, finer], "hagenmuller-spheres")
+
+
 MAKERS: Mapping[str, Callable[[Comparisons], Comparison]] = {
     "elastic": elastic,
     "snows": snows,
     "sensitivity": sensitivity,
+    "spheres": spheres,
 }

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from snowshed._core import InputError
 from snowshed.analysis.grains.samples import LabelledSample
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.builders.grains import grains_scene
@@ -130,6 +131,7 @@ def sensitivity_variants(
     settings: GrainsSettings,
     *,
     coarser: int = 1,
+    finer: bool = False,
 ) -> Comparison:
     """Return the variants that tell what matters, and write their samples.
 
@@ -144,8 +146,10 @@ def sensitivity_variants(
     settings
         Of the base.
     coarser
-        By how much the base's voxels are larger than those of the samples. One more, and where it
-        is above 1 one less, are variants.
+        By how much the base's voxels are larger than those of the samples. One more is a variant.
+    finer
+        Whether one less is a variant, too, which takes far longer: spheres half as large are four
+        times as many, and take twice as many steps.
 
     Raises
     ------
@@ -180,15 +184,27 @@ def sensitivity_variants(
         speed = _scaled(full["loading"][0]["speed"], factor)
         words, path = f"speed {1e3 * speed:g} mm/s", {"loading.0.speed": speed}
         variants.append(Variant(words, "speed", files, voxel, path))
-    for times in dict.fromkeys((max(1, coarser - 1), coarser + 1)):
-        if times != coarser:
-            other = [one.coarser(times) for one in samples]
-            size = other[0].voxel_size
-            written = [one.write(folder) for one in other]
-            variants.append(Variant(f"spheres {1e6 * size:g} um", "sphere size", written, size))
+    for times in ([coarser - 1] if finer else []) + [coarser + 1]:
+        variants.append(other_spheres(samples, folder, times))
     small = [one.middle(HALF).write(folder) for one in base]
     variants.append(Variant("volume / 8", "volume", small, voxel))
     return Comparison(scene, variants, "grains-sensitivity")
+
+
+def other_spheres(samples: Sequence[LabelledSample], folder: Path, times: int) -> Variant:
+    """Return the variant whose spheres are some times as large as the samples' voxels.
+
+    Raises
+    ------
+    InputError
+        If `times` is not positive, or too large for the samples.
+    """
+    if times < 1:
+        raise InputError("finer spheres: the samples have no finer voxels; needs coarser above 1")
+    other = [one.coarser(times) for one in samples]
+    size = other[0].voxel_size
+    files = [one.write(folder) for one in other]
+    return Variant(f"spheres {1e6 * size:g} um", "sphere size", files, size)
 
 
 def _scaled(value: float, factor: float) -> float:

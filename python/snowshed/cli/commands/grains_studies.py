@@ -47,10 +47,13 @@ def study_options(command: Command) -> Command:
 @click.option("--speed", type=float, default=0.02, show_default=True, help="Of the plate [m/s].")
 @click.option("--strain", type=float, default=0.3, show_default=True,
               help="Way over the sample's height at which a test ends.")  # fmt: skip
+@click.option("--finer", is_flag=True,
+              help="Vary towards finer spheres, too (with --coarser): ten times the time.")  # fmt: skip
 @study_options
 def sensitivity(
-    labels: Sequence[Path], voxel: Optional[float], coarser: int, turned: bool, speed: float, strain: float,
-    folder: Path, jobs: Optional[int], plan_only: bool, quiet: bool, **values: Any,
+    labels: Sequence[Path], voxel: Optional[float], coarser: int, turned: bool, speed: float,
+    strain: float, finer: bool, folder: Path, jobs: Optional[int], plan_only: bool, quiet: bool,
+    **values: Any,
 ) -> None:  # fmt: skip
     """Find what matters for the strength in compression, compared with the scatter of samples.
 
@@ -71,7 +74,7 @@ def sensitivity(
     samples = read_samples(labels, voxel, turned=turned)
     stage = LoadingStage(kind="compress", speed=speed, strain=strain)
     comparison = sensitivity_variants(
-        samples, folder / SAMPLES, stage, study_settings(values), coarser=coarser
+        samples, folder / SAMPLES, stage, study_settings(values), coarser=coarser, finer=finer
     )
     study = comparison.study()
     study.save(folder / "study.toml")
