@@ -125,9 +125,7 @@ def hardens(tests: Tests) -> Finding:
     found = _factors(positive(rise - Estimate(MUCH, 0.0), ""), rise, "25 to 30 % over 10 to 15 %")
     onset = rows["hardening_onset_strain"].astype(float)
     seen = int(onset.notna().sum())
-    words = (
-        f"{found.sentence}; exponential from {100 * onset.mean():.2g} % in {seen} of {len(rows)}"
-    )
+    begins = f"exponential from {100 * onset.mean():.2g} % in {seen} of {len(rows)}"
     whole = seen == len(rows) or found.verdict != CONFIRMED
     return Finding(found.verdict if whole else UNDECIDED, f"{found.sentence}; {begins}")
 

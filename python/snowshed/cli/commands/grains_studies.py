@@ -47,8 +47,7 @@ def study_options(command: Command) -> Command:
 @click.option("--speed", type=float, default=0.02, show_default=True, help="Of the plate [m/s].")
 @click.option("--strain", type=float, default=0.3, show_default=True,
               help="Way over the sample's height at which a test ends.")  # fmt: skip
-@click.option("--finer", is_flag=True,
-              help="Vary towards finer spheres, too (with --coarser): ten times the time.")  # fmt: skip
+@click.option("--finer", is_flag=True, help="Vary towards finer spheres, too: ten times the time.")
 @study_options
 def sensitivity(
     labels: Sequence[Path], voxel: Optional[float], coarser: int, turned: bool, speed: float,
