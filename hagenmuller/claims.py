@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -302,7 +303,7 @@ ENGINE: list[Claim[Tests]] = [
             "base",
             f"{STRESSES[stress]} as with Yade, on a comparable sample",
             "within 30 % (a factor of 1.3)",
-            lambda tests, stress=stress: as_much_as_yade(stress, tests),
+            partial(as_much_as_yade, stress),
         )
         for stress in (PEAK, EARLY)
     ),
@@ -311,7 +312,7 @@ ENGINE: list[Claim[Tests]] = [
             "line",
             _words(variant),
             "for every stress that changes by more than a factor of 1.5 in Yade",
-            lambda tests, variant=variant: same_signs(variant, tests),
+            partial(same_signs, variant),
         )
         for variant in YADE
         if variant != BASE
@@ -321,7 +322,7 @@ ENGINE: list[Claim[Tests]] = [
             "column",
             f"{STRESSES[stress]}: the lines have Yade's order",
             "for all pairs of lines that are apart by more than a factor of 1.5 in Yade",
-            lambda tests, stress=stress: same_order(stress, tests),
+            partial(same_order, stress),
         )
         for stress in STRESSES
     ),

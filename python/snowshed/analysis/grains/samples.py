@@ -31,11 +31,14 @@ class LabelledSample:
         0 air, else a grain.
     voxel_size
         Edge of a voxel, m: the diameter of the spheres.
+    source
+        How it was made, if it is synthetic and that is known; else empty.
     """
 
     name: str
     labels: AnyIntegers
     voxel_size: float
+    source: str = ""
 
     @classmethod
     def read(cls, path: PathLike, voxel_size: Optional[float] = None) -> LabelledSample:
@@ -64,12 +67,17 @@ class LabelledSample:
         if not isinstance(labels, np.ndarray) or labels.ndim != 3 or labels.dtype.kind not in "iu":
             raise InputError(f"{found.labels}: no labels; they are whole numbers (nz, ny, nx)")
         named = found.labels.resolve().parent if found.labels.name == LABELS else found.labels
-        return cls(named.stem, np.asarray(labels), found.voxel_size)
+        return cls(named.stem, np.asarray(labels), found.voxel_size, found.source)
 
     @property
     def ice_fraction(self) -> float:
         """Voxels of ice over all."""
         return float(np.count_nonzero(self.labels) / self.labels.size)
+
+    @property
+    def grains(self) -> int:
+        """How many grains there are."""
+        return int(np.count_nonzero(np.unique(self.labels)))
 
     def coarser(self, factor: int) -> LabelledSample:
         """Return the sample with voxels `factor` times as large, and the same ice fraction.
@@ -101,7 +109,8 @@ class LabelledSample:
         blocks = whole.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
         labels = np.zeros(image.ice.shape, dtype=self.labels.dtype)
         labels[image.ice] = _most_frequent(blocks[image.ice].reshape(-1, factor**3))
-        return LabelledSample(f"{self.name}-coarser{factor}", labels, image.voxel_size)
+        name = f"{self.name}-coarser{factor}"
+        return LabelledSample(name, labels, image.voxel_size, self.source)
 
     def middle(self, part: float) -> LabelledSample:
         """Return the middle of the sample, with edges that are a part of its edges.

@@ -83,6 +83,14 @@ class Comparison:
         """Return the study that computes all variants."""
         return Study(self.scene, [one.part for one in self.variants], self.name)
 
+    def hashes(self) -> dict[tuple[str, int], str]:
+        """Return the hash of each test, by its variant's name and its sample's number."""
+        return {
+            (variant.name, sample): run.hash
+            for variant in self.variants
+            for sample, run in enumerate(Study(self.scene, [variant.part], self.name).runs())
+        }
+
     def table(self, runs: Path) -> pd.DataFrame:
         """Return the computed tests, one row per variant and sample.
 
@@ -103,13 +111,12 @@ class Comparison:
 
         done = read_table(runs, self.name)
         done = done[done["ended"].notna() & (done["ended"] != "failed")].set_index("hash")
-        rows = []
-        for variant in self.variants:
-            part = Study(self.scene, [variant.part], self.name)
-            for number, run in enumerate(part.runs()):
-                if run.hash in done.index:
-                    facts = dict(zip(KEYS, (variant.name, variant.varied, number)))
-                    rows.append({**facts, "hash": run.hash, **done.loc[run.hash].to_dict()})
+        varied = {variant.name: variant.varied for variant in self.variants}
+        rows = [
+            {**dict(zip(KEYS, (name, varied[name], sample))), "hash": hash_, **done.loc[hash_]}
+            for (name, sample), hash_ in self.hashes().items()
+            if hash_ in done.index
+        ]
         return pd.DataFrame(rows, columns=list(dict.fromkeys([*KEYS, "hash", *done.columns])))
 
 
@@ -170,7 +177,7 @@ def sensitivity_variants(
     files = [one.write(folder) for one in base]
     voxel = base[0].voxel_size
     scene = grains_scene(files[0], voxel, [stage], settings=settings)
-    full = scene.resolve().data
+    full: Any = scene.resolve().data
 
     variants = [Variant(BASE, BASE, files, voxel)]
     for varied, names, factors in SETTINGS:

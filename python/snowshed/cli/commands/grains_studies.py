@@ -109,3 +109,50 @@ def study_settings(values: dict[str, Any]) -> GrainsSettings:
 
     given = {name: value for name, value in values.items() if value is not None}
     return GrainsSettings(**{"density_scaling": DENSITY_SCALING, **given})
+
+
+@click.command()
+@click.option("--modulus", type=float, help="Young's modulus of the snow, for longer steps [Pa].")
+@study_options
+def material(
+    labels: Sequence[Path], voxel: Optional[float], coarser: int, turned: bool,
+    modulus: Optional[float], folder: Path, jobs: Optional[int], plan_only: bool, quiet: bool,
+    **values: Any,
+) -> None:  # fmt: skip
+    """Fit the snow of the material point method to loading tests: for panel --snow FILE.
+
+    LABELS are samples of one snow, or of several densities; those within a tenth are one snow.
+    Each is compressed with and without strain sideways, stretched, and sheared under two normal
+    stresses. After an interruption the same command goes on.
+
+    \b
+    Example:
+      snowshed grains material a b c --coarser 2 -o material
+      snowshed panel --preset lab-50 --dim 2 --snow material/snow-210.json -o stack
+    """  # noqa: D301 - click wants the control character
+    from snowshed.analysis.grains.material.run import MaterialFolder, by_density
+    from snowshed.cli.commands.study import compute_study, print_plan
+    from snowshed.cli.display.grains_studies import print_material
+    from snowshed.io.array_arguments import positive
+
+    if modulus is not None:
+        positive("--modulus", modulus)
+    samples = [one.coarser(coarser) for one in read_samples(labels, voxel, turned=turned)]
+    files = MaterialFolder(folder, study_settings(values), modulus)
+    fits = []
+    for tests in (files.tests(group) for group in by_density(samples)):
+        first = tests.without_shear().study()
+        if plan_only:
+            print_plan(first, jobs)
+            continue
+        compute_study(first, files.runs, quiet=quiet, jobs=jobs, keep_particles=True)
+        shear = tests.shear(files.strength(tests))
+        compute_study(shear.study(), files.runs, quiet=quiet, jobs=jobs, keep_particles=True)
+        fits.append(files.write(tests, shear))
+    if plan_only:
+        click.echo("and 2 shear tests of each sample, whose stresses follow from these")
+        return
+    files.write_table(fits)
+    if not quiet:
+        print_material(fits)
+        click.echo(f"snow-*.json, material-*.png and material.csv in {folder}")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from snowshed.analysis.grains.material.fit import FittedSnow, Range, exponents
 from snowshed.analysis.grains.ratios import STRESSES
 from snowshed.analysis.grains.variants import BASE
 from snowshed.cli.terminal import plain_table, wide_console
@@ -47,3 +49,43 @@ def _cell(row: Any, *, base: bool) -> str:
         return f"{row['ratio']:.3g}  "
     doubt = " " if row["distinct"] else "?"
     return f"{row['ratio']:.3g} ({row['low']:.2g} to {row['high']:.2g}) {doubt}"
+
+
+#: Parameters of a fitted snow: what they are called, their unit and its size in SI units.
+PARAMETERS = {
+    "youngs_modulus": ("E of the grains", "MPa", 1e6),
+    "poissons_ratio": ("nu", "", 1.0),
+    "preconsolidation_pressure": ("p0", "kPa", 1e3),
+    "critical_state_slope": ("M", "", 1.0),
+    "cohesion": ("beta", "", 1.0),
+    "hardening_factor": ("xi", "", 1.0),
+    "critical_ratio": ("q/p at the critical state", "", 1.0),
+    "tension_pa": ("tensile strength", "kPa", 1e3),
+    "hardening_residual": ("residual of the hardening", "", 1.0),
+    "confined_yield_over_law": ("confined peak over law", "", 1.0),
+}
+
+
+def print_material(fits: Sequence[FittedSnow]) -> None:
+    """Print the parameters of fitted snows with their intervals, and what to know of them."""
+    shown = plain_table("Snow of the grains (95 % interval of the mean, by the samples' scatter)")
+    shown.add_column("", no_wrap=True)
+    for one in fits:
+        shown.add_column(f"{one.law.density:.0f} kg/m3", justify="right", no_wrap=True)
+    for name, (words, unit, size) in PARAMETERS.items():
+        head = f"{words}, {unit}" if unit else words
+        shown.add_row(head, *(_range(one.ranges[name], size) for one in fits))
+    console = wide_console(100)
+    console.print(shown)
+    for name, exponent in exponents([one.law for one in fits]).items():
+        console.print(f"{PARAMETERS[name][0]} grows as density^{exponent:.2g}")
+    for one in fits:
+        for note in one.notes:
+            console.print(f"note, {one.law.density:.0f} kg/m3: {note}", soft_wrap=True)
+
+
+def _range(found: Range, size: float) -> str:
+    text = f"{found.value / size:.3g}"
+    if not np.isfinite(found.low):
+        return text
+    return f"{text} ({found.low / size:.2g} to {found.high / size:.2g})"
