@@ -6,7 +6,6 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from thesis.claims import calibration, fixation, geometry, lab, regression, s_index
 from reproduction.hypothesis_tests import (
     CONFIRMED,
     CONTRADICTED,
@@ -22,6 +21,7 @@ from reproduction.hypothesis_tests import (
     positive,
     small,
 )
+from thesis.claims import calibration, fixation, geometry, lab, regression, s_index
 
 ORDER = (CONFIRMED, CONTRADICTED, UNDECIDED)
 

@@ -124,8 +124,8 @@ def test_a_stage_of_real_snow(tmp_path, capsys, monkeypatch):
 
 
 def test_failed_simulations_have_an_exit_code(tmp_path, capsys, monkeypatch):
-    from thesis import command
     from reproduction.stage import State, StudyStage
+    from thesis import command
 
     table = geometry_table(tmp_path / "rows.csv")
     state = StudyStage.state

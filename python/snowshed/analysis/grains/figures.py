@@ -28,9 +28,10 @@ def sensitivity_figure(comparison: pd.DataFrame) -> Figure:
         From `compare_variants`.
     """
     names = [name for name in dict.fromkeys(comparison["variant"]) if name != BASE]
-    stresses = [name for name in STRESSES if name in set(comparison["stress"])]
     varied = list(dict.fromkeys(comparison["varied"]))
     base = comparison[comparison["variant"] == BASE].set_index("stress")
+    reached = set(base.index[np.isfinite(base["value_pa"])])  # before the tests end
+    stresses = [name for name in STRESSES if name in reached]
     with matplotlib.rc_context(STYLE):
         figure = blank(11.0, 1.6 + 0.3 * max(len(names), 4))
         headline(
@@ -71,6 +72,5 @@ def _finish(axes: Axes, base: Any, title: str) -> None:
     low, high = axes.get_xlim()
     axes.set_xlim(max(min(low, 0.4), 1 / LARGEST), min(max(high, 2.5), LARGEST))
     value = float(base["value_pa"])
-    text = f"{value / 1e3:.3g} kPa" if np.isfinite(value) else "no stress"
-    axes.set_title(f"{title}\nbase {text}")
+    axes.set_title(f"{title}\nbase {value / 1e3:.3g} kPa")
     axes.set_xlabel("ratio; grey: samples differ so")

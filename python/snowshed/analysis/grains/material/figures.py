@@ -54,7 +54,7 @@ def _draw_hardening(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
     for (name, _), curve in curves.items():
         if name == ISOTROPIC:
             compaction = -3.0 * np.log1p(-np.abs(curve["axial_strain"]))
-            p, _ = invariants(curve)
+            p, _ = invariants(curve, isotropic=True)
             axes.plot(100 * compaction, p / 1e3, color=INK, lw=0.9, alpha=0.7, label=words)
             words, end = "", max(end, float(compaction[-1]))
     law, bulk = fitted.law, fitted.law.elastic.bulk_modulus
@@ -98,7 +98,7 @@ def _draw_plane(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
 
 def _point(test: str, curve: LoadingCurve) -> tuple[float, float]:
     """Return p and q where a test's strength is read."""
-    p, q = invariants(curve)
+    p, q = invariants(curve, isotropic=test == ISOTROPIC)
     if test == SHEAR:
         rows = curve["shear_strain"] >= CRITICAL_FROM
         return float(p[rows].mean()), float(q[rows].mean())

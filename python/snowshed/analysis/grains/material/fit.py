@@ -22,7 +22,7 @@ from snowshed.analysis.grains.material.tests import (
 )
 from snowshed.analysis.grains.ratios import LogMean
 from snowshed.methods.grains.curve import LoadingCurve
-from snowshed.methods.grains.summary import LINEAR
+from snowshed.methods.grains.phases import LINEAR
 from snowshed.scene.components import Snow
 
 Reading = TypeVar("Reading")

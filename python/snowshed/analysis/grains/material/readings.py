@@ -51,9 +51,22 @@ def axial_stress(curve: LoadingCurve) -> Floats:
     return np.asarray(0.5 * (curve["top_stress_pa"] + curve["bottom_stress_pa"]))
 
 
-def invariants(curve: LoadingCurve) -> tuple[Floats, Floats]:
-    """Return p and q, Pa, row by row; the stress on x and y is that on the sides."""
-    side, along = curve["side_stress_pa"], axial_stress(curve)
+def invariants(curve: LoadingCurve, *, isotropic: bool = False) -> tuple[Floats, Floats]:
+    """Return p and q of the law, Pa, row by row; the stress on x and y is that on the sides.
+
+    The law's are Kirchhoff stresses: forces over initial areas, as curves have them, times the
+    stretch along the force.
+
+    Parameters
+    ----------
+    curve
+        Of a test.
+    isotropic
+        Whether the sides move inward as the plate does; else they stand still.
+    """
+    stretch = 1.0 - curve["axial_strain"]
+    along = stretch * axial_stress(curve)
+    side = (stretch if isotropic else 1.0) * curve["side_stress_pa"]
     shear = math.sqrt(3.0) * curve["shear_stress_pa"]
     return np.asarray((along + 2.0 * side) / 3.0), np.hypot(along - side, shear)
 
@@ -106,7 +119,7 @@ def isotropic_yield(curve: LoadingCurve) -> float:
     InputError
         If there is no pressure.
     """
-    pressure = invariants(curve)[0][curve["axial_strain"] <= PEAK_BELOW]
+    pressure = invariants(curve, isotropic=True)[0][curve["axial_strain"] <= PEAK_BELOW]
     peak = float(pressure.max(initial=0.0))
     if not peak > 0:
         raise InputError("no pressure in isotropic compression: no strength to be read")
@@ -146,8 +159,8 @@ def tension(curve: LoadingCurve) -> tuple[float, float]:
     row = int(np.argmin(along))
     if not along[row] < 0:
         raise InputError("no tension: is the snow frozen to the plates (bonded_plates)?")
-    side = float(curve["side_stress_pa"][row])
-    return (float(along[row]) + 2 * side) / 3, abs(float(along[row]) - side)
+    pressure, deviator = invariants(curve)
+    return float(pressure[row]), float(deviator[row])
 
 
 def cohesion(p: float, q: float, p0: float, slope: float) -> float:
@@ -225,13 +238,18 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     Raises
     ------
     InputError
-        If the sample is compacted too little for a fit.
+        If the sample is compacted too little for a fit, or E is too soft for its pressure.
     """
     from scipy.optimize import least_squares
 
-    pressure = invariants(curve)[0]
+    pressure = invariants(curve, isotropic=True)[0]
     compaction = -3.0 * np.log1p(-np.abs(curve["axial_strain"]))
     plastic = compaction - pressure / elastic.bulk_modulus
+    if plastic[-1] < 0.5 * compaction[-1]:
+        raise InputError(
+            f"E {elastic.youngs_modulus:.3g} Pa is too soft for the hardening: more than half of "
+            "the compaction would be elastic"
+        )
     bins = np.floor(plastic / HARDENING_BIN).astype(int)
     used = np.unique(bins[bins >= 0])
     if len(used) < LEAST_ROWS:
