@@ -41,14 +41,13 @@ from snowshed.methods.grains.image.microstructure import (
     Microstructure,
     measure,
 )
-from snowshed.methods.grains.image.sample_folder import LABELS, NUMBERS
+from snowshed.methods.grains.image.sample_folder import LABELS, NUMBERS, SNOW
 from snowshed.methods.grains.image.segmentation import Segmentation
 from snowshed.methods.grains.image.surface_mesh import write_surface
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SNOW = "snow.npy"
 Fact = Union[str, float, int, bool, None]
 
 
@@ -148,6 +147,7 @@ def write_grains(
     write_text(path / "grains.csv", csv_text(grains))
     write_text(path / "contacts.csv", csv_text(contacts))
     settings = {} if found.settings is None else asdict(found.settings)
+    settings.pop("threads", None)  # the grains do not depend on it
     _write_numbers(path, numbers, {**facts, **settings})
     _save(slices_figure(found.labels, numbers.ice, numbers.grains), path)
     if surface:
@@ -171,11 +171,15 @@ def _write_array(path: Path, array: AnyIntegers) -> None:
 
 def _write_numbers(path: Path, numbers: SampleNumbers, facts: Mapping[str, Fact]) -> None:
     found = {**asdict(numbers.ice), **(asdict(numbers.grains) if numbers.grains else {}), **facts}
-    sound = {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in found.items()
-    }
-    write_text(path / NUMBERS, json.dumps(sound, indent=2) + "\n")
+    text = json.dumps({name: _rounded(value) for name, value in found.items()}, indent=2)
+    write_text(path / NUMBERS, text + "\n")
+
+
+def _rounded(value: object) -> object:
+    """Return a value as it is written: numbers with nine digits, null for what is not finite."""
+    if not isinstance(value, float):
+        return value
+    return float(f"{value:.9g}") if math.isfinite(value) else None
 
 
 def _save(figure: Figure, path: Path) -> None:

@@ -148,7 +148,7 @@ def synthetic(
 
 @click.command("segment")
 @click.argument("image", type=PATH)
-@click.option("--voxel", type=float, help=f"{VOXEL[:-1]}; a .mhd or .mha file knows it.")
+@click.option("--voxel", type=float, help=f"{VOXEL[:-1]}; files with a header know it.")
 @click.option(
     "--threshold",
     type=float,
@@ -184,7 +184,7 @@ def segment_command(
     """Find the grains in an image of snow.
 
     IMAGE is a TIFF stack, a folder of numbered TIFF, PNG or BMP slices, or a .mhd, .mha, .raw or
-    .npy file.
+    .npy file, or a folder that ``grains synthetic`` wrote.
 
     \b
     Examples:
@@ -194,6 +194,7 @@ def segment_command(
     from snowshed.cli.display.grain_images import print_image, print_sample
     from snowshed.cli.progress import progress_bar
     from snowshed.io.voxels.open_voxels import open_voxels
+    from snowshed.methods.grains.image.sample_folder import SNOW, find_sample
     from snowshed.methods.grains.image.threshold import ImageSettings
     from snowshed.run.grain_images import check_new
     from snowshed.run.image_segmentation import plan_text, segment_image
@@ -204,16 +205,18 @@ def segment_command(
         threads=threads or os.cpu_count() or 1,
         **{name: value for name, value in options.items() if name in names},
     )
+    known = find_sample(image, SNOW)
     wanted = ImageSettings(
-        voxel_size=options["voxel"],
+        voxel_size=known.voxel_size if options["voxel"] is None else options["voxel"],
         threshold=options["threshold"],
         dark_ice=options["dark_ice"],
         crop=_crop(options["crop"]),
         downscale=options["downscale"],
         connected=not options["all_parts"],
+        synthetic_source=known.source,
     )
     raw_shape = options["raw_shape"]
-    file = open_voxels(image, raw_shape and raw_shape[::-1], options["raw_type"])
+    file = open_voxels(known.file, raw_shape and raw_shape[::-1], options["raw_type"])
     plan = plan_text(file, wanted)
     with progress_bar(quiet=quiet, announce=lambda _: plan) as progress:
         numbers, read = segment_image(

@@ -13,8 +13,9 @@ from snowshed.cli.commands.grains_studies import material, sensitivity
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
+from snowshed.methods.grains.image.sample_folder import LABELS
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.scene.builders.grains import SAMPLE, example_grains, grains_scene
+from snowshed.scene.builders.grains import example_grains, grains_scene
 from snowshed.scene.components import Output
 from snowshed.scene.loading import Cone, LoadingKind, LoadingStage
 from snowshed.scene.scene import ResolvedScene
@@ -134,7 +135,7 @@ def example(folder: Path, resume: bool, quiet: bool) -> None:
     beside = folder.with_name(f"{folder.name}-sample")
     existed = beside.exists()
     scene = example_grains(beside)
-    labels = beside / SAMPLE
+    labels = beside / LABELS
     try:
         run_scene(scene.resolve(), folder, resume, quiet)
     except BaseException:

@@ -11,7 +11,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.arrays import Integers
 from snowshed.io.paths import PathLike
-from snowshed.methods.grains.image.sample_folder import find_sample
+from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.components import Events, Output
 from snowshed.scene.loading import Cone, LoadingStage, Sample
@@ -19,7 +19,6 @@ from snowshed.scene.scene import Scene
 
 MAX_TIME = 1e4  # s; the stages end before
 NPY = ".npy"
-SAMPLE = "labels.npy"  # of the example
 EXAMPLE_VOXEL = 1e-4  # m
 
 
@@ -67,8 +66,11 @@ def grains_scene(
     >>> scene.resolve().data["loading"][0]["strain"]
     0.1
     """
-    sample = find_sample(labels, voxel_size)
-    file = sample.labels
+    sample = find_sample(labels, LABELS)
+    file = sample.file
+    size = voxel_size if voxel_size is not None else sample.voxel_size
+    if size is None:
+        raise InputError(f"{file}: the edge of a voxel is not known; give it (--voxel) in m")
     if file.suffix.lower() != NPY:
         raise InputError(
             f"{file}: no NPY file; labels are whole numbers in one, 0 for air (numpy.save)"
@@ -77,7 +79,7 @@ def grains_scene(
         method="grains",
         dimension=3,
         title=title or sample.source,
-        sample=Sample(file=file.resolve(), voxel_size=sample.voxel_size),
+        sample=Sample(file=file.resolve(), voxel_size=size),
         loading=list(loading),
         cone=cone,
         numerics=settings,
@@ -100,7 +102,7 @@ def example_grains(folder: PathLike) -> Scene:
     >>> scene.loading[0].kind
     'compress'
     """
-    file = Path(folder) / SAMPLE
+    file = Path(folder) / LABELS
     file.parent.mkdir(parents=True, exist_ok=True)
     np.save(file, _sintered_balls())
     return grains_scene(

@@ -1,4 +1,4 @@
-"""What loading tests take from a folder of grains."""
+"""Folders with images of snow: what loading tests and segmentation take from them."""
 
 from __future__ import annotations
 
@@ -6,60 +6,62 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
-from snowshed._core import InputError
 from snowshed.io.array_arguments import positive
 from snowshed.io.json_file import read_object
 from snowshed.io.paths import PathLike
 
+SNOW = "snow.npy"
 LABELS = "labels.npy"
 NUMBERS = "microstructure.json"
 
 
 @dataclass(frozen=True)
 class SampleFile:
-    """Labels, and what is known of them.
+    """An image or labels, and what is known of them.
 
     Attributes
     ----------
-    labels
-        The NPY file.
+    file
+        Where they are.
     voxel_size
-        Edge of a voxel, m.
+        Edge of a voxel, m; None: not known.
     source
-        What they show, if it is known and synthetic; else empty.
+        How they were made, if they are synthetic; else empty.
     """
 
-    labels: Path
-    voxel_size: float
+    file: Path
+    voxel_size: Optional[float]
     source: str = ""
 
 
-def find_sample(path: PathLike, voxel_size: Optional[float] = None) -> SampleFile:
-    """Return the labels at a path.
+def find_sample(path: PathLike, name: str) -> SampleFile:
+    """Return a file of a sample, and what ``microstructure.json`` beside it says.
 
     Parameters
     ----------
     path
-        A folder that ``snowshed grains segment`` or ``synthetic`` wrote, or an NPY file.
-    voxel_size
-        Edge of a voxel, m; None: as ``microstructure.json`` says, which stands beside the labels.
+        A folder that ``snowshed grains segment`` or ``synthetic`` wrote, or any other path.
+    name
+        What is looked for in such a folder, `SNOW` or `LABELS`.
 
     Raises
     ------
     InputError
-        If there are no labels, or nothing says how large a voxel is.
+        If ``microstructure.json`` is damaged.
+
+    Examples
+    --------
+    >>> find_sample("labels.npy", LABELS).voxel_size is None
+    True
     """
-    file = Path(path) / LABELS if Path(path).is_dir() else Path(path)
+    file = Path(path)
+    if (file / NUMBERS).is_file():
+        file = file / name
     numbers = file.with_name(NUMBERS)
-    if not numbers.is_file():
-        if voxel_size is None:
-            raise InputError(
-                f"{file}: no {NUMBERS} beside it; give the edge of a voxel (--voxel) in m"
-            )
-        return SampleFile(file, voxel_size)
+    if file.name not in (SNOW, LABELS) or not numbers.is_file():
+        return SampleFile(file, None)
     facts = read_object(numbers)
-    source = str(facts.get("source", "")) if facts.get("synthetic") is True else ""
-    if voxel_size is not None:
-        return SampleFile(file, voxel_size, source)
     size = positive(f"{numbers}: voxel_size_m", facts.get("voxel_size_m", float("nan")))
-    return SampleFile(file, size, source)
+    return SampleFile(
+        file, size, str(facts.get("source", "synthetic")) if facts.get("synthetic") is True else ""
+    )

@@ -42,6 +42,8 @@ class ImageSettings:
         How many voxels along an edge become one. The ice fraction stays.
     connected
         Whether only the largest connected part of the ice is kept.
+    synthetic_source
+        How the snow was made, if it is synthetic; else empty.
     """
 
     voxel_size: Optional[float] = None
@@ -50,6 +52,7 @@ class ImageSettings:
     crop: Optional[Crop] = None
     downscale: int = 1
     connected: bool = True
+    synthetic_source: str = ""
 
 
 @dataclass(frozen=True)
@@ -115,7 +118,8 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
     for low, part in _parts(file, crop):
         above = part > threshold
         ice[low : low + len(part)] = ~above if wanted.dark_ice else above
-    image = IceImage(ice, size, file.name)
+    source = wanted.synthetic_source
+    image = IceImage(ice, size, source or file.name, synthetic=bool(source))
     check_phases(image)  # before it is rounded away
     image = downscaled(image, wanted.downscale)
     check_phases(image)
