@@ -55,8 +55,9 @@ def made_up(noise=0.02, **changed):
                 math.nan if kpa is None else 1e3 * kpa * math.exp(noise * random.normal())
                 for kpa in line
             ]
-            rows.append({"variant": name, "varied": name, "sample": sample, "hash": name,
-                         **dict(zip(STRESSES, stresses)), "hardening_onset_strain": 0.12})  # fmt: skip
+            facts = {"variant": name, "varied": name, "sample": sample, "hash": name}
+            figures = {**dict(zip(STRESSES, stresses)), "hardening_onset_strain": 0.12}
+            rows.append({**facts, **figures})
     elastic = {"broken_in_tension": 0, "broken_in_shear": 0, "elastic_limit_strain": 1e-4,
                "axial_strain": 1e-7, "linearity": 0.99}  # fmt: skip
     rows += [{"variant": studies.ELASTIC, "sample": sample, **elastic} for sample in range(3)]

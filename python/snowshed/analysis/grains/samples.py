@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.io.array_arguments import positive
 from snowshed.io.arrays import AnyIntegers
 from snowshed.io.paths import PathLike
 from snowshed.methods.grains.image.downscaling import downscaled
@@ -59,15 +60,19 @@ class LabelledSample:
         OSError
             If the file cannot be read.
         """
-        found = find_sample(path, voxel_size)
+        found = find_sample(path, LABELS)
+        size = found.voxel_size if voxel_size is None else voxel_size
+        if size is None:
+            raise InputError(f"{found.file}: how large is a voxel? Give its edge in m (--voxel)")
+        positive("voxel size", size)
         try:
-            labels = np.load(found.labels, mmap_mode="r", allow_pickle=False)
+            labels = np.load(found.file, mmap_mode="r", allow_pickle=False)
         except (ValueError, EOFError) as error:
-            raise InputError(f"{found.labels}: no NPY file: {error}") from None
+            raise InputError(f"{found.file}: no NPY file: {error}") from None
         if not isinstance(labels, np.ndarray) or labels.ndim != 3 or labels.dtype.kind not in "iu":
-            raise InputError(f"{found.labels}: no labels; they are whole numbers (nz, ny, nx)")
-        named = found.labels.resolve().parent if found.labels.name == LABELS else found.labels
-        return cls(named.stem, np.asarray(labels), found.voxel_size, found.source)
+            raise InputError(f"{found.file}: no labels; they are whole numbers (nz, ny, nx)")
+        named = found.file.resolve().parent if found.file.name == LABELS else found.file
+        return cls(named.stem, np.asarray(labels), size, found.source)
 
     @property
     def ice_fraction(self) -> float:
