@@ -59,6 +59,8 @@ class Reproduction:
         """
         import pandas as pd
 
+        for stage in self.stages.values():
+            stage.state()  # enters its study, also if another stage was asked for
         tables = [self.comparisons[name].table(self.runs) for name in MAKERS]
         rows = pd.concat([one for one in tables if len(one)] or tables[:1])
         if "base" not in set(rows["variant"]):

@@ -15,7 +15,7 @@ def samples(tmp_path):
     files = [tmp_path / f"{name}.npy" for name in "ab"]
     for number, file in enumerate(files):
         labels = column_of_grains(4, 4).repeat(4, 1).repeat(4, 2)
-        labels[:3, 5 + number, 2] = 0
+        labels[:, 5 + number, 6] = 0
         np.save(file, labels)
     return [str(file) for file in files]
 
