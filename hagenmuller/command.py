@@ -20,7 +20,7 @@ PATH = click.Path(path_type=Path)
     "--quick", "size", flag_value="quick", default=True,
     help="Some 90 grains a sample: half an hour to an hour (default).",
 )  # fmt: skip
-@click.option("--full", "size", flag_value="full", help="1000 grains and more a sample: about a day.")
+@click.option("--full", "size", flag_value="full", help="1000 grains and more: about a day.")
 @click.option(
     "--stage", "names", multiple=True, metavar="NAME",
     help="Compute only this: elastic, snows, sensitivity or spheres; may be repeated.",

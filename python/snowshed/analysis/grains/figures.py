@@ -72,5 +72,6 @@ def _finish(axes: Axes, base: Any, title: str) -> None:
     low, high = axes.get_xlim()
     axes.set_xlim(max(min(low, 0.4), 1 / LARGEST), min(max(high, 2.5), LARGEST))
     value = float(base["value_pa"])
-    axes.set_title(f"{title}\nbase {value / 1e3:.3g} kPa")
+    unit, size = ("MPa", 1e6) if value >= 1e6 else ("kPa", 1e3)
+    axes.set_title(f"{title}\nbase {value / size:.3g} {unit}")
     axes.set_xlabel("ratio; grey: samples differ so")
