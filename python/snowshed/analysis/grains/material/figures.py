@@ -8,10 +8,22 @@ import matplotlib
 import numpy as np
 
 from snowshed.analysis.grains.material.fit import FittedSnow
-from snowshed.analysis.grains.material.readings import CRITICAL_FROM, axial_stress, invariants
-from snowshed.analysis.grains.material.tests import CONFINED, ISOTROPIC, SHEAR, TENSION, Curves
+from snowshed.analysis.grains.material.readings import (
+    CRITICAL_FROM,
+    PEAK_FROM,
+    axial_stress,
+    critical_ratio,
+    invariants,
+)
+from snowshed.analysis.grains.material.tests import (
+    COMPACTION,
+    CONFINED,
+    ISOTROPIC,
+    SHEAR,
+    TENSION,
+    Curves,
+)
 from snowshed.methods.grains.curve import LoadingCurve
-from snowshed.methods.grains.phases import PEAK_BELOW
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import label
 
@@ -52,7 +64,7 @@ def _draw_hardening(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
     words = "grains, isotropic compression"
     end = 0.0
     for (name, _), curve in curves.items():
-        if name == ISOTROPIC:
+        if name == COMPACTION:
             compaction = -3.0 * np.log1p(-np.abs(curve["axial_strain"]))
             p, _ = invariants(curve, isotropic=True)
             axes.plot(100 * compaction, p / 1e3, color=INK, lw=0.9, alpha=0.7, label=words)
@@ -99,9 +111,11 @@ def _draw_plane(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
 def _point(test: str, curve: LoadingCurve) -> tuple[float, float]:
     """Return p and q where a test's strength is read."""
     p, q = invariants(curve, isotropic=test == ISOTROPIC)
+    along = axial_stress(curve)
     if test == SHEAR:
-        rows = curve["shear_strain"] >= CRITICAL_FROM
-        return float(p[rows].mean()), float(q[rows].mean())
-    along = np.where(curve["axial_strain"] <= PEAK_BELOW, axial_stress(curve), -np.inf)
-    row = int(np.argmin(axial_stress(curve)) if test == TENSION else np.argmax(along))
+        normal = float(along[curve["shear_strain"] >= CRITICAL_FROM].mean())
+        return normal, critical_ratio(curve) * normal
+    counted = np.abs(curve["axial_strain"]) >= PEAK_FROM
+    along = np.where(counted, -along if test == TENSION else along, -np.inf)
+    row = int(np.argmax(along))
     return float(p[row]), float(q[row])

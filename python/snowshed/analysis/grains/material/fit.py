@@ -13,8 +13,8 @@ from snowshed._core import InputError
 from snowshed.analysis.grains.material import readings
 from snowshed.analysis.grains.material.law import CamClay, Elasticity
 from snowshed.analysis.grains.material.tests import (
+    COMPACTION,
     CONFINED,
-    ELASTIC,
     ISOTROPIC,
     SHEAR,
     TENSION,
@@ -132,7 +132,7 @@ def fit_material(
         If a parameter cannot be read from any sample, or the law would mean nothing.
     """
     notes: list[str] = []
-    found = _read(curves, ELASTIC, readings.elasticity, notes)
+    found = _read(curves, CONFINED, readings.elasticity, notes)
     ranges = {
         "youngs_modulus": Range.of([one.youngs_modulus for one, _ in found]),
         "poissons_ratio": Range.of([one.poissons_ratio for one, _ in found], logarithmic=False),
@@ -212,7 +212,7 @@ def _axial(p: float, q: float) -> float:
 def _read_hardening(
     curves: Curves, ranges: dict[str, Range], elastic: Elasticity, p0: float, notes: list[str]
 ) -> None:
-    found = _read(curves, ISOTROPIC, lambda curve: readings.hardening(curve, elastic, p0), notes)
+    found = _read(curves, COMPACTION, lambda curve: readings.hardening(curve, elastic, p0), notes)
     ranges["hardening_factor"] = Range.of([one.factor for one in found])
     ranges["hardening_residual"] = Range.of([one.residual for one in found])
     excess = max(one.excess for one in found)
@@ -228,7 +228,7 @@ def _check_confined(
 ) -> None:
     """Compare the peak of confined compression, to which nothing is fitted."""
     stress = law.confined_yield()
-    peaks = _read(curves, CONFINED, lambda curve: float(curve["bottom_stress_pa"].max()), notes)
+    peaks = _read(curves, CONFINED, readings.confined_peak, notes)
     ranges["confined_yield_over_law"] = found = Range.of([peak / stress for peak in peaks])
     if not 1 / POOR <= found.value <= POOR:
         notes.append(

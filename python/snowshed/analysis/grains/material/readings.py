@@ -20,6 +20,8 @@ from snowshed.methods.grains.phases import LEAST_ROWS, PEAK_BELOW
 
 #: Shear strain from which on the strength is that of the critical state.
 CRITICAL_FROM = 0.15
+#: Strain from which on a peak counts: before, it is that of the plate's impact.
+PEAK_FROM = 5e-4
 #: Plastic compactions, over which stresses are averaged before hardening is fitted.
 HARDENING_BIN = 0.02
 #: Ranges of the law's parameters as scenes take them (`snowshed.Snow`).
@@ -75,7 +77,8 @@ def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
     """Return E and nu, and R2 of the line, from confined compression before the first bond breaks.
 
     The stress has the slope E (1 - nu) / ((1 + nu)(1 - 2 nu)) over the strain, and that on the
-    sides nu/(1 - nu) over that on the plate. Both are slopes of least-squares lines.
+    sides nu/(1 - nu) over that on the plate. Lines are those of least squares through the origin,
+    to which waves at the beginning matter little.
 
     Raises
     ------
@@ -100,36 +103,46 @@ def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
         raise InputError(
             f"{len(strain)} rows before the first bond breaks; the elastic phase needs {LEAST_ROWS}"
         )
-    slope, start = np.polyfit(strain, along, 1)
-    missed = np.sum((along - start - slope * strain) ** 2)
-    linearity = 1.0 - missed / np.sum((along - along.mean()) ** 2) if np.ptp(along) > 0 else 0.0
+    slope = float(strain @ along / (strain @ strain))
+    spread = np.sum((along - along.mean()) ** 2)
+    linearity = 1.0 - np.sum((along - slope * strain) ** 2) / spread if spread > 0 else 0.0
     if not slope > 0:
         raise InputError("the stress does not grow in the elastic phase: no stiffness to be read")
-    ratio = max(float(np.polyfit(along, curve["side_stress_pa"][rows], 1)[0]), 0.0)
+    ratio = max(float(strain @ curve["side_stress_pa"][rows] / (strain @ along)), 0.0)
     nu = min(ratio / (1 + ratio), LARGEST_POISSON)
     modulus = float(slope) * (1 + nu) * (1 - 2 * nu) / (1 - nu)
     return Elasticity(modulus, nu), float(linearity)
 
 
 def isotropic_yield(curve: LoadingCurve) -> float:
-    """Return p0, Pa: the largest mean stress of isotropic compression below a strain of 5 %.
+    """Return p0, Pa: the largest mean stress of isotropic compression up to a strain of 5 %.
 
     Raises
     ------
     InputError
         If there is no pressure.
     """
-    pressure = invariants(curve, isotropic=True)[0][curve["axial_strain"] <= PEAK_BELOW]
+    strain = curve["axial_strain"]
+    counted = (strain >= PEAK_FROM) & (strain <= PEAK_BELOW)
+    pressure = invariants(curve, isotropic=True)[0][counted]
     peak = float(pressure.max(initial=0.0))
     if not peak > 0:
         raise InputError("no pressure in isotropic compression: no strength to be read")
     return peak
 
 
+def confined_peak(curve: LoadingCurve) -> float:
+    """Return the largest stress of confined compression, Pa, that is no impact."""
+    counted = curve["axial_strain"] >= PEAK_FROM
+    return float(axial_stress(curve)[counted].max(initial=0.0))
+
+
 def critical_ratio(curve: LoadingCurve) -> float:
     """Return q/p at the critical state: means over shear strains above `CRITICAL_FROM`.
 
-    The plate moves along x. The normal stress is that on the plates and, on x and y, on the sides.
+    There the law strains at constant volume in pure shear, and as its flow is associated, the
+    stress is shear alone beside an equal pressure on all sides: p is the normal stress, and q is
+    the shear stress times the root of 3. Stresses on the sides are not used.
 
     Raises
     ------
@@ -139,12 +152,13 @@ def critical_ratio(curve: LoadingCurve) -> float:
     rows = curve["shear_strain"] >= CRITICAL_FROM
     if not rows.any():
         raise InputError(f"sheared by less than {CRITICAL_FROM:.0%}: no critical state")
-    pressure = float(invariants(curve)[0][rows].mean())
-    across = float((axial_stress(curve) - curve["side_stress_pa"])[rows].mean())
+    pressure = float(axial_stress(curve)[rows].mean())
     shear = float(curve["shear_stress_pa"][rows].mean())
-    if not pressure > 0:
-        raise InputError("no pressure at the critical state: the plate has come off the snow")
-    return math.hypot(across, math.sqrt(3.0) * shear) / pressure
+    if not (pressure > 0 and shear > 0):
+        raise InputError(
+            "no shear under pressure at the critical state: the plate came off the snow"
+        )
+    return math.sqrt(3.0) * shear / pressure
 
 
 def tension(curve: LoadingCurve) -> tuple[float, float]:
@@ -155,7 +169,7 @@ def tension(curve: LoadingCurve) -> tuple[float, float]:
     InputError
         If there is no tension.
     """
-    along = axial_stress(curve)
+    along = np.where(curve["axial_strain"] <= -PEAK_FROM, axial_stress(curve), np.inf)
     row = int(np.argmin(along))
     if not along[row] < 0:
         raise InputError("no tension: is the snow frozen to the plates (bonded_plates)?")
