@@ -18,18 +18,20 @@ from snowshed.study.store import Store
 CONFINED, ISOTROPIC, COMPACTION, TENSION, SHEAR = (
     "confined", "isotropic", "compaction", "tension", "shear"
 )  # fmt: skip
+FROZEN: Mapping[str, Any] = {"numerics.bonded_plates": True}
 #: How each is loaded. What begins with a strength is slow: the plate's impact on soft snow is as
-#: large as its strength otherwise.
-SLOW: Mapping[str, Any] = {"loading.0.speed": 1e-3, "loading.0.strain": 0.01}
+#: large as its strength otherwise. The snow is frozen to the plates: else they touch a few spheres,
+#: whose contacts would be all that yields.
+SLOW: Mapping[str, Any] = {"loading.0.speed": 1e-3, "loading.0.strain": 0.01, **FROZEN}
 LOADINGS: Mapping[str, Mapping[str, Any]] = {
     CONFINED: {"loading.0.kind": "compress", **SLOW},
     ISOTROPIC: {"loading.0.kind": "isotropic", **SLOW},
-    COMPACTION: {"loading.0.kind": "isotropic", "loading.0.strain": 0.12},
-    TENSION: {"loading.0.kind": "stretch", **SLOW, "numerics.bonded_plates": True},
+    COMPACTION: {"loading.0.kind": "isotropic", "loading.0.strain": 0.12, **FROZEN},
+    TENSION: {"loading.0.kind": "stretch", **SLOW},
 }
 SHEARING: Mapping[str, Any] = {
     "loading.0.kind": "shear", "loading.0.strain": 0.25,
-    "numerics.bonded_plates": True, "numerics.sides": "periodic",
+    "numerics.sides": "periodic", **FROZEN,
 }  # fmt: skip
 #: Normal stresses of the shear tests, of the yield stress in isotropic compression.
 NORMAL_STRESSES = (0.1, 0.3)
