@@ -47,7 +47,7 @@ def slices_figure(
     ]
     with rc_context(STYLE):
         tallest = max(height / width for *_, width, height in cuts)
-        figure = blank(10.0, 1.05 + 2.85 * min(tallest, 2.5))
+        figure = blank(10.0, 1.3 + 2.85 * min(tallest, 2.5))
         describe(figure, _text(numbers, grains))
         for axes, (cut, across, up, width, height) in zip(figure.subplots(1, 3), cuts):
             _draw(axes, cut, numbers.voxel_size_m, (width, height))

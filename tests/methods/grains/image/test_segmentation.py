@@ -179,6 +179,15 @@ def test_the_area_of_a_slanted_contact_is_exact():
     assert relabelled.areas == pytest.approx(found.areas)
 
 
+def test_the_sides_of_a_peg_add_nothing_to_the_area_of_its_contact():
+    labels = np.ones((10, 8, 8), dtype=np.int32)
+    labels[5:] = 2
+    labels[5:8, 3:5, 3:5] = 1
+    found = find_adjacency(labels)
+    assert found.areas.tolist() == [64.0]
+    assert found.faces.tolist() == [64 + 4 * 2 * 3]
+
+
 def chain(areas, air, saddles=None):
     """Return labels in a row that touch the next one each."""
     count = len(areas)
