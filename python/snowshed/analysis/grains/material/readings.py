@@ -285,5 +285,10 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     factor = math.exp(float(found.x[0]))
     fitted = law(factor)
     residual = float(np.sqrt(np.sum((fitted - y) ** 2) / np.sum(y**2)))
+    if residual > 1.0:
+        raise InputError(
+            f"the hardening law misses the stresses by {residual:.2g} of their size: the snow stays "
+            f"weaker than its peak of {p0:.3g} Pa, which the law cannot"
+        )
     positive = y > 0
     return Hardening(factor, residual, float((fitted[positive] / y[positive]).max()))
