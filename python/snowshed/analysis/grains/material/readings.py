@@ -287,7 +287,7 @@ def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
     residual = float(np.sqrt(np.sum((fitted - y) ** 2) / np.sum(y**2)))
     if residual > 1.0:
         raise InputError(
-            f"the hardening law misses the stresses by {residual:.2g} of their size: the snow stays "
+            f"the hardening law misses the stresses by {residual:.2g} of their size: snow stays "
             f"weaker than its peak of {p0:.3g} Pa, which the law cannot"
         )
     positive = y > 0
