@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import click
+from reproduction.hypothesis_tests import SIGMAS
 
 from snowshed._core import InputError
 from snowshed.analysis.deviations import DEVIATIONS
@@ -27,7 +28,6 @@ from snowshed.io.atomic import write_text
 from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
-from thesis.claims.hypothesis_tests import SIGMAS
 from thesis.claims.regression import Regressed
 from thesis.scatter import read_scatter, scatter
 from thesis.sections import deviations as deviations_section

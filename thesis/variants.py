@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import numpy as np
+from reproduction.hypothesis_tests import Estimate, widening
 
 from snowshed._core import InputError
 from snowshed.analysis.deviations import DEVIATIONS, deviating_trimming
@@ -15,7 +16,6 @@ from snowshed.snow.stack.quantities import MEASURES
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.store import Store
 from snowshed.study.table import read_table
-from thesis.claims.hypothesis_tests import Estimate, widening
 from thesis.studies import DEFAULTS, PANEL, VARIANTS, study_of
 
 if TYPE_CHECKING:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Optional
 
 import numpy as np
+from reproduction.hypothesis_tests import SIGMAS, Estimate
+from reproduction.section import Section
 
 from snowshed.analysis.deviations import DEVIATIONS, FRAME_RATE
 from snowshed.analysis.regression.summary import THESIS_QUARTILES, THESIS_ROWS
@@ -12,9 +14,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.formatting import NOTHING
 from snowshed.plot.html_page import Grid
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
-from thesis.claims.hypothesis_tests import SIGMAS, Estimate
 from thesis.reproduction import Reproduction
-from thesis.section import Section
 from thesis.studies import DEFAULTS, PANEL, THESIS
 from thesis.variants import by_size, change, is_unswitched, quartiles, read_variants
 
