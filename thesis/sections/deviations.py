@@ -16,7 +16,14 @@ from thesis.claims.hypothesis_tests import SIGMAS, Estimate
 from thesis.reproduction import Reproduction
 from thesis.section import Section
 from thesis.studies import DEFAULTS, PANEL, THESIS
-from thesis.variants import by_size, change, is_unswitched, quartiles, read_variants
+from thesis.variants import (
+    by_size,
+    change,
+    is_unswitched,
+    quartiles,
+    read_variants,
+    with_runs_of_its_own,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -101,13 +108,12 @@ def quartiles_grid(stacks: pd.DataFrame) -> Grid:
     """Return the quartiles of H/L of each variant that has runs of its own, by both readings."""
     rows = [
         [
-            _title(stacks, str(name)),
+            _title(stacks, name),
             trimming,
             *(f"{one:.3f}" for one in quartiles(of_one, trimming)),
         ]
-        for name, of_one in stacks.groupby("variant", sort=False)
+        for name, of_one in with_runs_of_its_own(stacks)
         for trimming in TRIMMINGS
-        if name == DEFAULTS or not of_one["same_runs"].all()
     ]
     printed = [f"{one:.3f}" for one in THESIS_QUARTILES["rbf"]]
     rows.append(["Table 5.3.1, RBF", "not printed", *printed])
