@@ -49,8 +49,8 @@ def reproduce() -> None:
     "names",
     multiple=True,
     metavar="NAME",
-    help="Compute only this: lab, s-index, fixation, calibration, deviations, geometry (with "
-    "--full) or regression; may be repeated.",
+    help="Compute only this: lab, s-index, fixation, calibration, deviations, variations, "
+    "geometry (with --full) or regression; may be repeated.",
 )
 @click.option(
     "--table", type=PATH, help="Rows of panels to use for chapter 5 instead of simulating them."
