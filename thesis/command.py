@@ -36,8 +36,8 @@ PATH = click.Path(path_type=Path)
     "names",
     multiple=True,
     metavar="NAME",
-    help="Compute only this: lab, s-index, fixation, calibration, deviations, geometry (with "
-    "--full) or regression; may be repeated.",
+    help="Compute only this: lab, s-index, fixation, calibration, deviations, variations, "
+    "geometry (with --full) or regression; may be repeated.",
 )
 @click.option(
     "--table", type=PATH, help="Rows of panels to use for chapter 5 instead of simulating them."
@@ -68,7 +68,7 @@ def thesis(
 
     \b
     Example:
-      snowshed reproduce thesis --quick -o reproduction
+      snowshed reproduce thesis --quick -o report
     """  # noqa: D301 - click wants the control character
     from reproduction.display import print_claims
     from reproduction.stage import choose

@@ -15,13 +15,14 @@ from thesis.regression_stage import GeometryRows, RegressionStage
 from thesis.size import Size
 
 #: Stages of panels, whose measure is in doubt: their particles are kept.
-KEPT = ("deviations", "geometry")
+KEPT = ("deviations", "variations", "geometry")
 MAKERS = {
     "lab": studies.lab,
     "s-index": studies.index,
     "fixation": studies.fixation,
     "calibration": studies.calibration,
     "deviations": studies.deviations,
+    "variations": studies.variations,
     "geometry": studies.geometry,
 }
 

@@ -17,7 +17,8 @@ from snowshed import Scene
 from snowshed._core import InputError
 from snowshed.study import Study
 
-NAMES = ["lab", "s-index", "fixation", "calibration", "deviations", "geometry", "regression"]
+NAMES = ["lab", "s-index", "fixation", "calibration", "deviations", "variations"]
+NAMES += ["geometry", "regression"]
 
 
 def test_full_is_what_the_thesis_computes():
