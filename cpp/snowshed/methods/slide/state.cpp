@@ -66,10 +66,11 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   bond_lists.reserve(most, state.bonds.size());
   cells.reserve(most, model.terrain);
   if (!model.compatible()) {
-    sorted_z.resize(now + sorted_padding);
     // Lanes beyond the last particle have the weight 0, which must not meet infinity.
-    std::fill(sorted_z.end() - std::ptrdiff_t(sorted_padding), sorted_z.end(), 0.0);
-    sorted_pressing.resize(now + sorted_padding);
+    for (AlignedVector<double>* values : {&sorted_z, &sorted_pressing}) {
+      values->resize(now + sorted_padding);
+      std::fill(values->end() - std::ptrdiff_t(sorted_padding), values->end(), 0.0);
+    }
   }
   fields.reserve(model.terrain, !model.compatible());
   if (model.keeps_energy) audit.reserve(now);
