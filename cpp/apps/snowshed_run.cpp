@@ -17,7 +17,7 @@ constexpr const char* usage =
     "       snowshed-run --schema | --version | --help\n"
     "\n"
     "Runs the scene's events and writes into DIR scene.json, run.json,\n"
-    "particles.pvd (ParaView), particles/, snapshots/ and checkpoint.bin.\n"
+    "particles.pvd (ParaView), particles/, snapshots/, film.bin and checkpoint.bin.\n"
     "Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted.\n";
 
 struct Options {
