@@ -23,7 +23,7 @@ double automatic_interval(const Scene& scene, const CostEstimate& cost) {
 
 /// A power of two, so that positions in single precision are exact.
 double quantum_for(double resolution) {
-  return std::min(coarsest_quantum, std::exp2(std::floor(std::log2(resolution / 64))));
+  return std::min(coarsest_quantum, std::exp2(std::floor(std::log2(resolution / 16))));
 }
 
 const FieldInfo* find(const std::vector<FieldInfo>& fields, const std::string& name) {

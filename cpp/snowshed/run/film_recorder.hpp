@@ -17,7 +17,7 @@ struct RunPlace {
 };
 
 /// Chooses what a film holds of a run: of at most about `most_particles` particles, some, chosen by
-/// their ids; positions to a 64th of the resolution and to half a millimetre at least; frames at
+/// their ids; positions to a 32nd of the resolution, and to half a millimetre at least; frames at
 /// the scene's output.film_interval, or so that all events make some 600.
 FilmHeader film_header(const Scene&, const Method&, const CostEstimate&);
 

@@ -88,7 +88,7 @@ def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
         script="\n".join((VIEWER / one).read_text(encoding="utf-8") for one in SCRIPTS),
         data=_embedded(_data(film, summary, content)),
         film=base64.b64encode(film.path.read_bytes()).decode(),
-        colourings=[one.title for one in summary.colourings],
+        colourings=[one.option for one in summary.colourings],
         still=still_picture(film, summary, content.solids, content.focus),
         notes=[*content.notes, *_film_notes(film)],
         facts=[*content.facts, *_film_facts(film)],
@@ -101,12 +101,11 @@ def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
 
 
 def _data(film: Film, summary: FilmSummary, content: ViewContent) -> dict[str, Any]:
-    share = film.share ** (-1 / film.dimension)
     return {
         "dimension": film.dimension,
         "bounds": _box(summary.bounds),
         "focus": _box(content.focus),
-        "radius": summary.radius * (1.0 if share == 1.0 else 1.0),
+        "radius": summary.radius,
         "events": content.events,
         "meshes": [solid.data for solid in content.solids],
         "colourings": [_colouring(one) for one in summary.colourings],
@@ -122,8 +121,11 @@ def _box(box: Box) -> dict[str, list[float]]:
 
 
 def _colouring(one: Colouring) -> dict[str, Any]:
-    colours = np.round(255 * one.colours).astype(np.uint8).tobytes()
-    return {**asdict(one), "colours": base64.b64encode(colours).decode()}
+    tables = {
+        name: base64.b64encode(np.round(255 * one.colours(dark=dark)).astype(np.uint8).tobytes())
+        for name, dark in (("light", False), ("dark", True))
+    }
+    return {**asdict(one), "colours": {name: table.decode() for name, table in tables.items()}}
 
 
 def _embedded(data: Mapping[str, Any]) -> Any:

@@ -13,14 +13,15 @@ from scipy.spatial import cKDTree
 from snowshed._core import InputError
 from snowshed.io.arrays import Floats
 from snowshed.io.film import Film, FilmFrame
-from snowshed.plot.figure_style import FIRST, LAST
 from snowshed.plot.solids import Box
 
 COLOURS = "viridis"  # perceptually uniform, and safe for colour-blind eyes
+#: Parts of it that stand out from a light and from a dark ground.
+ON_LIGHT, ON_DARK = (0.0, 0.88), (0.25, 1.0)
 SHOWN_SHARES = (0.005, 0.995)  # of all values: what the scale of colours spans
 MOST_LABELS = 10  # of events; of more, a scale is shown
 SPACING_SAMPLE = 4000  # particles whose nearest neighbours are looked for
-BALL = 0.62  # radius over the distance of neighbours, so that snow looks closed
+BALL = 0.72  # radius over the distance of neighbours, so that snow looks closed
 SHIFT = 1 << 15  # codes lie between -711 and 711, and are counted with this shift
 
 
@@ -45,10 +46,16 @@ class Colouring:
     labels: Optional[Sequence[str]] = None
 
     @property
-    def colours(self) -> Floats:
-        """The colours, (256, 3), from 0 to 1."""
-        first, last = (FIRST, LAST) if self.name in ("event", "material") else (0.0, 1.0)
-        table: Floats = mpl.colormaps[COLOURS](np.linspace(first, last, 256))[:, :3]
+    def option(self) -> str:
+        """What a list to choose from says."""
+        if self.labels is not None or self.name == "event":
+            return {"event": "event", "material": "snow"}[self.name]
+        return self.title.partition(",")[0].lower()
+
+    def colours(self, *, dark: bool = False) -> Floats:
+        """Return the colours for a light or a dark ground, (256, 3), from 0 to 1."""
+        shown = np.linspace(*(ON_DARK if dark else ON_LIGHT), 256)
+        table: Floats = mpl.colormaps[COLOURS](shown)[:, :3]
         return table
 
     def of(self, frame: FilmFrame, film: Film) -> Floats:
@@ -61,7 +68,7 @@ class Colouring:
             which = [one.name for one in film.quantities].index(self.name)
             values = film.quantities[which].values(frame.codes[:, which]).astype(float)
         part = (values - self.low) / max(self.high - self.low, 1e-20)
-        chosen: Floats = self.colours[np.clip(255 * part, 0, 255).round().astype(int)]
+        chosen: Floats = self.colours()[np.clip(255 * part, 0, 255).round().astype(int)]
         return chosen
 
 

@@ -14,10 +14,8 @@ function listen(view) {
     again();
   });
   el("theme").addEventListener("click", () => {
-    const root = document.documentElement;
-    const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-    root.dataset.theme = dark ? "light" : "dark";
-    again();
+    document.documentElement.dataset.theme = isDark() ? "light" : "dark";
+    if (view.film) view.dress();
   });
   el("measured")?.addEventListener("change", () => {
     view.measures = el("measured").checked;
@@ -30,7 +28,7 @@ function listen(view) {
       again();
     });
   new ResizeObserver(again).observe(canvas);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => view.film && view.dress());
   listenToPointers(view, canvas, again);
   canvas.addEventListener("keydown", (event) => onKey(view, event, again));
 }

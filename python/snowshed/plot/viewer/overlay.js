@@ -14,9 +14,15 @@ function look() {
   };
 }
 
+/** Returns whether the page is dark: as its reader chose, or else as the system asks for. */
+function isDark() {
+  const { theme } = document.documentElement.dataset;
+  return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+}
+
 /** Draws the legend: a scale with three numbers, or a swatch for each label. */
-function drawLegend(colouring, labels) {
-  const bytes = bytesOfBase64(colouring.colours), legend = el("legend");
+function drawLegend(colouring, bytes) {
+  const legend = el("legend"), { labels } = colouring;
   const css = (k) => `rgb(${bytes[3 * k]}, ${bytes[3 * k + 1]}, ${bytes[3 * k + 2]})`;
   legend.replaceChildren();
   const title = document.createElement("p");

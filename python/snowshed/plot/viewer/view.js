@@ -73,15 +73,21 @@ class View {
   /** Chooses the colours. */
   choose(number) {
     this.colouring = this.data.colourings[number];
-    const { name, colours, low, high, labels } = this.colouring;
-    this.painter.setColours(bytesOfBase64(colours));
+    const { name, low, high } = this.colouring;
     const quantity = this.film.header.quantities.findIndex((q) => q.name === name);
     this.codesOf = quantity >= 0 ? (frame) => frame.codes[quantity]
       : (frame) => (frame.numbers ??= {})[name] ??= Int16Array.from(name === "event" ? frame.events : frame.materials);
     this.step = quantity >= 0 ? this.film.header.quantities[quantity].step : 0;
     this.range = [low, high];
-    drawLegend(this.colouring, labels);
     this.held = null;
+    this.dress();
+  }
+
+  /** Takes up the colours that suit the page, light or dark. */
+  dress() {
+    const colours = bytesOfBase64(this.colouring.colours[isDark() ? "dark" : "light"]);
+    this.painter.setColours(colours);
+    drawLegend(this.colouring, colours);
     this.render();
   }
 
