@@ -42,7 +42,7 @@ def test_frames_agree_with_snapshots_of_the_same_times(snapped):
         assert np.abs(frame.position - snapshot.position).max() <= HALF_MILLIMETRE
         speed = np.linalg.norm(snapshot.velocity, axis=1)
         for name, values in (("speed", speed), ("density", snapshot.density)):
-            step = {"speed": 0.01, "density": 1.0}[name]
+            step = {"speed": 0.05, "density": 1.0}[name]
             assert frame[name].to_numpy() == pytest.approx(np.asarray(values), abs=step, rel=0.009)
         compared += 1
     assert compared > 5
@@ -90,10 +90,10 @@ def test_without_a_film_there_is_none(tmp_path, tiny):
 
 
 def test_of_many_particles_some_are_recorded(tmp_path):
-    scene = tiny_scene(**{"numerics.dx": 0.0006, "events.count": 1, "events.max_time": 1e-6})
+    scene = tiny_scene(**{"numerics.dx": 0.0006, "events.count": 1, "events.max_time": 1e-6, "events.rest_time": 1e-7})
     run_events(scene, tmp_path, pictures=False)
     results = Results(tmp_path)
-    all_ids = results.particles(1).particle.to_numpy()
+    all_ids = results.particles(1).particle.to_numpy().astype(np.int64)
     (frame, *_) = results.film
     assert len(all_ids) > 45_000 and 38_000 < len(frame.ids) < 42_000
     share = results.film.share
@@ -102,6 +102,8 @@ def test_of_many_particles_some_are_recorded(tmp_path):
 
 
 def test_slides_and_grains_are_filmed_too(tmp_path):
+    for name in ("s", "g"):
+        (tmp_path / name).mkdir()
     slide = example_slide(tmp_path / "s").update({"events.max_time": 2.0})
     run_slide(slide, tmp_path / "slide", pictures=False, rasters=False)
     film = Film(tmp_path / "slide" / "film.bin")

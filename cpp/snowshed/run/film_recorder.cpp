@@ -9,8 +9,8 @@
 namespace snowshed {
 namespace {
 
-constexpr double frames_of_all_events = 600;
-constexpr double least_frames = 12, most_frames = 60;  // of one event, as long as it should last
+constexpr double frames_of_all_events = 400;
+constexpr double least_frames = 12, most_frames = 40;  // of one event, as long as it should last
 constexpr int frames_before_longer = 240;  // then the interval doubles: endless events stay small
 constexpr double coarsest_quantum = 1.0 / 1024;  // m
 constexpr double most_quanta = 1 << 30;
@@ -21,9 +21,20 @@ double automatic_interval(const Scene& scene, const CostEstimate& cost) {
   return std::max(cost.event_time, 1e-9) / frames;
 }
 
+/// The smallest length that matters in a picture, m: a part of a grain's radius, or the resolution;
+/// zero where a slide leaves it to its raster, which is coarse.
+double smallest_length(const Scene& scene, const Method& solver, bool has_radius) {
+  if (!has_radius || solver.size() == 0) return resolution(scene.numerics);
+  const FieldView radii = solver.field("equivalent_radius");
+  double smallest = *radii.at<double>(0);
+  for (std::size_t i = 1; i < radii.count; ++i) smallest = std::min(smallest, *radii.at<double>(i));
+  return smallest / 8;  // grains move little
+}
+
 /// A power of two, so that positions in single precision are exact.
 double quantum_for(double resolution) {
-  return std::min(coarsest_quantum, std::exp2(std::floor(std::log2(resolution / 16))));
+  if (!(resolution > 0)) return coarsest_quantum;
+  return std::min(coarsest_quantum, std::exp2(std::floor(std::log2(resolution / 8))));
 }
 
 const FieldInfo* find(const std::vector<FieldInfo>& fields, const std::string& name) {
@@ -110,12 +121,12 @@ FilmFrame frame_of(const Method& solver, const FilmHeader& header, int event) {
 FilmHeader film_header(const Scene& scene, const Method& solver, const CostEstimate& cost) {
   FilmHeader header;
   header.axes = scene.dimension;
-  header.quantum = quantum_for(resolution(scene.numerics));
   header.interval = scene.output.film_interval > 0 ? scene.output.film_interval
                                                    : automatic_interval(scene, cost);
   header.share = std::min(1.0, FilmRecorder::most_particles / std::max(cost.total_particles, 1.0));
   const std::vector<FieldInfo> fields = solver.fields();
   header.has_radius = find(fields, "equivalent_radius") != nullptr;
+  header.quantum = quantum_for(smallest_length(scene, solver, header.has_radius));
   for (const Quantity& q : quantities())
     if (q.film_step > 0 && find(fields, q.name == "speed" ? "velocity" : q.name))
       header.quantities.push_back({q.name, q.unit, q.meaning, q.film_step});
