@@ -1,4 +1,4 @@
-"""A film as a video file: MP4, GIF or animated PNG, drawn without a screen."""
+"""A film as a video file, MP4 or GIF, drawn without a screen."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from snowshed.run.results_reader import Results
 from snowshed.run.view import view_content
 from snowshed.scene.scene import PathLike
 
-RATE = {".mp4": 30.0, ".gif": 12.5, ".png": 12.5}  # pictures per second
+RATE = {".mp4": 30.0, ".gif": 12.5}  # pictures per second
 LONGEST = 12.0  # s, unless asked for
 HOLD = 0.6  # s that the end of an event is shown
 DPI = 100
@@ -46,7 +46,7 @@ def write_video(
     results
         The folder of a run of any method.
     video
-        The file: .mp4 (needs the extra ``video``), .gif or .png, which is animated.
+        The file: .mp4 (needs the extra ``video``) or .gif.
     seconds
         How long it is. [default: as long as the snow moves, 12 s at most]
     width
@@ -65,7 +65,7 @@ def write_video(
     file = Path(video)
     kind = file.suffix.lower()
     if kind not in RATE:
-        raise InputError(f"{file}: not a kind of video that can be written: .mp4, .gif, .png")
+        raise InputError(f"{file}: not a kind of video that can be written: .mp4 or .gif")
     if not 64 <= width <= 4096:
         raise InputError(f"width: {width}; 64 to 4096 pixels are allowed")
     if seconds is not None and not 0.1 <= seconds <= 600:
@@ -83,7 +83,7 @@ def write_video(
         if encoder is not None:
             _write_mp4(encoder, beside, pictures)
         else:
-            _write_animated(beside, pictures, kind)
+            _write_gif(beside, pictures)
     return file
 
 
@@ -141,16 +141,16 @@ def _between(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
     return replace(now, positions=now.positions + part * (after.positions - now.positions))
 
 
-def _write_animated(file: Path, pictures: Iterator[Image.Image], kind: str) -> None:
-    """Write a GIF or an animated PNG, which few colours keep small."""
+def _write_gif(file: Path, pictures: Iterator[Image.Image]) -> None:
+    """Write a GIF, which few colours keep small."""
     first = next(pictures).quantize(COLOURS_OF_GIF, dither=Image.Dither.NONE)
     others = (one.quantize(palette=first, dither=Image.Dither.NONE) for one in pictures)
     first.save(
         file,
-        format={".gif": "GIF", ".png": "PNG"}[kind],
+        format="GIF",
         save_all=True,
         append_images=others,
-        duration=round(1e3 / RATE[kind]),
+        duration=round(1e3 / RATE[".gif"]),
         loop=0,
         optimize=True,
     )
