@@ -87,8 +87,9 @@ class FilmPainter:
         for solid in solids:
             self._draw_solid(solid)
         points = 72.0 * width / (high[0] - low[0])
-        size = max(2.0 * summary.radius * points, 0.9) ** 2
-        self.dots = self.axes.scatter([], [], s=size, linewidths=0, zorder=3)
+        self.radius = summary.radius
+        self.size = max(2.0 * summary.radius * points, 0.9) ** 2
+        self.dots = self.axes.scatter([], [], linewidths=0, zorder=3)
 
     def _draw_solid(self, solid: Solid) -> None:
         seen = self.view(solid.corners)[solid.triangles]
@@ -115,14 +116,21 @@ class FilmPainter:
         """Return the figure with a frame in it."""
         seen = self.view(frame.positions)
         order = np.argsort(seen[:, 2], kind="stable")
-        self.dots.set_offsets(seen[order, :2])
         colours = colouring.of(frame, self.film)[order]
         depth = seen[order, 2]
         span = float(np.ptp(depth)) if len(depth) else 0.0
         if span > 0 and self.film.dimension == 3:  # what is farther away is darker
             colours = colours * (0.78 + 0.22 * ((depth - depth.min()) / span)[:, None])
-        self.dots.set_facecolor(colours)
+        self._draw_balls(seen[order, :2], colours)
         return self.figure
+
+    def _draw_balls(self, places: Floats, colours: Floats) -> None:
+        """Draw each ball as a disc with a lighter one on it, where the light falls."""
+        light = np.clip(0.92 * colours + 0.08, 0.0, 1.0)
+        lit = places + self.radius * np.array([-0.2, 0.25])
+        self.dots.set_offsets(np.stack([places, lit], axis=1).reshape(-1, 2))
+        self.dots.set_facecolor(np.stack([0.8 * colours, light], axis=1).reshape(-1, 3))
+        self.dots.set_sizes(np.tile([self.size, 0.42 * self.size], len(places)))
 
 
 def still_picture(

@@ -78,12 +78,13 @@ def write_video(
     content = view_content(found, film)
     painter = FilmPainter(film, summary, content.solids, content.focus, width=width / DPI)
     times = _times(film, seconds, RATE[kind])
+    palette = _picture(painter, summary.last, colouring)  # has all colours
     pictures = _pictures(film, painter, colouring, times, progress)
     with replacing(file) as beside:
         if encoder is not None:
             _write_mp4(encoder, beside, pictures)
         else:
-            _write_gif(beside, pictures)
+            _write_gif(beside, pictures, palette)
     return file
 
 
@@ -127,12 +128,15 @@ def _pictures(
         while number < int(place):
             now, after = after, next(frames, after)
             number += 1
-        figure = painter.draw(_between(now, after, place - number), colouring)
-        file = io.BytesIO()
-        figure.savefig(file, format="png", dpi=DPI)
-        yield Image.open(file).convert("RGB")
+        yield _picture(painter, _between(now, after, place - number), colouring)
         if progress is not None:
             progress(Progress((count + 1) / len(times), count + 1, len(times), "pictures"))
+
+
+def _picture(painter: FilmPainter, frame: FilmFrame, colouring: Colouring) -> Image.Image:
+    file = io.BytesIO()
+    painter.draw(frame, colouring).savefig(file, format="png", dpi=DPI)
+    return Image.open(file).convert("RGB")
 
 
 def _between(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
@@ -141,10 +145,11 @@ def _between(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
     return replace(now, positions=now.positions + part * (after.positions - now.positions))
 
 
-def _write_gif(file: Path, pictures: Iterator[Image.Image]) -> None:
-    """Write a GIF, which few colours keep small."""
-    first = next(pictures).quantize(COLOURS_OF_GIF, dither=Image.Dither.NONE)
-    others = (one.quantize(palette=first, dither=Image.Dither.NONE) for one in pictures)
+def _write_gif(file: Path, pictures: Iterator[Image.Image], palette: Image.Image) -> None:
+    """Write a GIF, which the few colours of one picture keep small."""
+    few = palette.quantize(COLOURS_OF_GIF, dither=Image.Dither.NONE)
+    quantized = (one.quantize(palette=few, dither=Image.Dither.NONE) for one in pictures)
+    first, others = next(quantized), quantized
     first.save(
         file,
         format="GIF",

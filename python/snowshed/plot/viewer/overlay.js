@@ -58,12 +58,12 @@ function shortNumber(value) {
   return size >= 1e5 || size < 1e-3 ? value.toExponential(1) : Number(value.toPrecision(3)).toLocaleString("en");
 }
 
-/** Draws the measures of the last event that has ended, as lines with their lengths. */
+/** Draws the measures of an event at its end, as lines with their lengths. */
 function drawMeasures(view, camera, frame, index) {
   const svg = el("measures"), { frames } = view.film;
   const ended = index === frames.length - 1 || frames[index + 1].event !== frame.event;
-  const event = ended ? frame.event : frame.event - 1;
-  const lines = view.measures ? view.data.measures.filter((line) => line.event === event) : [];
+  const { event } = frame, shown = ended && view.measures;
+  const lines = shown ? view.data.measures.filter((line) => line.event === event) : [];
   const { clientWidth: width, clientHeight: height } = el("picture");
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.replaceChildren();
