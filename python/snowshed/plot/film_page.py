@@ -13,7 +13,7 @@ import numpy as np
 
 from snowshed.io.atomic import write_text
 from snowshed.io.film import Film
-from snowshed.plot.film_picture import still_picture
+from snowshed.plot.film_picture import still_picture, view_lift
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
 from snowshed.plot.html_page import Grid, template
 from snowshed.plot.solids import Box, Solid
@@ -106,6 +106,7 @@ def _data(film: Film, summary: FilmSummary, content: ViewContent) -> dict[str, A
         "bounds": _box(summary.bounds),
         "focus": _box(content.focus),
         "radius": summary.radius,
+        "lift": view_lift(content.solids),
         "events": content.events,
         "meshes": [solid.data for solid in content.solids],
         "colourings": [_colouring(one) for one in summary.colourings],

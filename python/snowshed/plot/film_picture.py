@@ -18,9 +18,14 @@ from snowshed.plot.solids import Box, Solid
 
 PAINTS = {"ground": "#dfe5ea", "panel": "#33506b", "solid": "#9aa9b5"}
 SKY = "#f5f7f9"
-TURN, LIFT = -0.6, 0.28  # of the camera, as the page begins
+TURN, LIFT = -0.6, 0.28  # of the camera, as the page begins, radians
+TERRAIN_LIFT = 0.8  # steep ground is seen from higher up
 WIDTH = 8.0  # inches
-SLIDE_LIFT = 0.7
+
+
+def view_lift(solids: Sequence[Solid]) -> float:
+    """Return how high above the horizon the camera begins, radians."""
+    return TERRAIN_LIFT if any(one.name == "terrain" for one in solids) else LIFT
 
 
 @dataclass(frozen=True)
@@ -30,11 +35,11 @@ class Projection:
     axes: Floats
 
     @classmethod
-    def of(cls, film: Film) -> Projection:
+    def of(cls, film: Film, lift: float) -> Projection:
         """Return the view that suits a film: from the side in 2D, from above at a corner in 3D."""
         if film.dimension == 2:
             return cls(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]))
-        c, s, rise, level = np.cos(TURN), np.sin(TURN), np.sin(LIFT), np.cos(LIFT)
+        c, s, rise, level = np.cos(TURN), np.sin(TURN), np.sin(lift), np.cos(lift)
         back = np.array([s * level, -c * level, rise])
         right = np.array([c, s, 0.0])
         return cls(np.array([right, np.cross(back, right), back]))
@@ -74,7 +79,7 @@ class FilmPainter:
         width: float = WIDTH,
     ) -> None:
         self.film = film
-        self.view = Projection.of(film)
+        self.view = Projection.of(film, view_lift(solids))
         low, high = self.view.limits(focus)
         height = float(np.clip(width * (high[1] - low[1]) / (high[0] - low[0]), 0.3 * width, width))
         self.figure = blank(width, height)

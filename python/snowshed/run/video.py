@@ -27,7 +27,7 @@ RATE = {".mp4": 30.0, ".gif": 12.5}  # pictures per second
 LONGEST = 12.0  # s, unless asked for
 HOLD = 0.6  # s that the end of an event is shown
 DPI = 100
-COLOURS_OF_GIF = 64
+COLOURS_OF_GIF = 128
 
 
 def write_video(

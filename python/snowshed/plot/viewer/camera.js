@@ -9,9 +9,10 @@ const cross = (a, b) => [
 const unit = (a) => a.map((x) => x / Math.hypot(...a));
 
 class Camera {
-  /** @param {{low: number[], high: number[]}} focus what to show  @param {boolean} flat */
-  constructor(focus, flat) {
+  /** Looks at what `focus` ({low, high}) holds, from `lift` (radians) above the horizon. */
+  constructor(focus, flat, lift) {
     this.flat = flat;
+    this.firstLift = lift;
     this.focus = focus;
     this.aspect = 1;
     this.reset();
@@ -21,7 +22,7 @@ class Camera {
     const { low, high } = this.focus;
     this.target = low.map((x, k) => 0.5 * (x + high[k]));
     this.turn = this.flat ? 0 : -0.6; // about z; 0 looks along +y
-    this.lift = this.flat ? 0 : 0.28; // above the horizon
+    this.lift = this.flat ? 0 : this.firstLift; // above the horizon
     this.zoom = 1;
   }
 

@@ -8,7 +8,7 @@ class View {
   constructor(data) {
     this.data = data;
     this.flat = data.dimension === 2;
-    this.camera = new Camera(data.focus, this.flat);
+    this.camera = new Camera(data.focus, this.flat, data.lift);
     this.painter = new Painter(el("picture"), this.flat);
     this.playing = false;
     this.at = 0; // s of the page's own time, in which pauses and all frames count
