@@ -97,5 +97,7 @@ def falling_film(particles=200, frames=12, axes="xyz", seed=1, **facts):
         speed = np.where(x[:, 2] > 0.02, 9.81 * age, 0.0)
         codes = np.round(64 * np.arcsinh(speed / 0.64)).astype(int)[:, None]
         events = np.where(born > 0, 2, 1)
-        made.append((0.05 * (number - (event == 2)), event, np.arange(count), events, places, codes))
+        made.append(
+            (0.05 * (number - (event == 2)), event, np.arange(count), events, places, codes)
+        )
     return made

@@ -52,8 +52,7 @@ py::tuple mesh_arrays(const std::filesystem::path& path, double scale) {
   py::array_t<std::int64_t> triangles({py::ssize_t(mesh.triangles.size()), py::ssize_t(3)});
   auto out = triangles.mutable_unchecked<2>();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      out(py::ssize_t(t), py::ssize_t(k)) = mesh.triangles[t][k];
+    for (std::size_t k = 0; k < 3; ++k) out(py::ssize_t(t), py::ssize_t(k)) = mesh.triangles[t][k];
   return py::make_tuple(rows(mesh.vertices), triangles);
 }
 

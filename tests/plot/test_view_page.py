@@ -8,8 +8,8 @@ import film_files
 import numpy as np
 import pytest
 from pages import Page
-
 from plot.browser import open_page
+
 from snowshed import InputError, Results
 from snowshed.io.film import Film
 from snowshed.plot.film_page import VIEWER, MeasureLine, ViewContent, write_view_page
@@ -19,13 +19,15 @@ from snowshed.run.video import write_video
 from snowshed.run.view import view_content, write_view
 
 READY = "document.body.dataset.ready === 'true'"
+POST = {"type": "cylinder", "from": [0.9, 0, 0], "to": [0.9, 0, 0.5], "radius": 0.05}
+BLOCK = {"type": "box", "center": [0, 0.6, 0.1], "size": [0.2, 0.2, 0.2]}
 SCENE = {
     "dimension": 3, "numerics": {"dx": 0.02}, "ground": {"tilt": 0.0},
     "panel": {"height": 0.8, "length": 0.8, "width": 0.6, "tilt": 40.0, "thickness": 0.05},
     "obstacles": [
-        {"name": "post", "shape": {"type": "cylinder", "from": [0.9, 0, 0], "to": [0.9, 0, 0.5], "radius": 0.05}},
+        {"name": "post", "shape": POST},
         {"shape": {"type": "capsule", "from": [-1, 0, 0], "to": [-1, 0, 0.5], "radius": 0.1}},
-        {"shape": {"type": "box", "center": [0, 0.6, 0.1], "size": [0.2, 0.2, 0.2]}, "motion": {"velocity": [1, 0, 0]}},
+        {"shape": BLOCK, "motion": {"velocity": [1, 0, 0]}},
     ],
 }  # fmt: skip
 
@@ -96,7 +98,10 @@ def test_it_moves_and_obeys(page):
         assert len({*seen[-6:]}) == 6
         shown.click("#play")
         before = shown.inner_text("#clock")
-        shown.wait_for_function("text => document.getElementById('clock').textContent !== text", arg=before)
+        shown.wait_for_function(
+            "text => document.getElementById('clock').textContent !== text",
+            arg=before,
+        )
         shown.keyboard.press("Space")
         assert shown.inner_text("#play") in ("Play", "Pause")
         assert [one for one in told if not one.startswith("file:")] == []
@@ -115,7 +120,11 @@ def test_positions_in_the_browser_are_those_of_the_film(page):
             " const read = await new make.Film(make.bytesOfBase64(film), bounds).decode(() => {});"
             " const last = read.frames[read.frames.length - 1];"
             " return [Array.from(last.positions), Array.from(last.codes[0])]; }",
-            [source, base64.b64encode(film.path.read_bytes()).decode(), {"low": [-2, -2, -2], "high": [2, 2, 2]}],
+            [
+                source,
+                base64.b64encode(film.path.read_bytes()).decode(),
+                {"low": [-2, -2, -2], "high": [2, 2, 2]},
+            ],
         )
     found = np.array(places).reshape(-1, 3) * 4.0 / 65535 - 2.0
     assert np.abs(found - last.positions).max() < 4.0 / 65535

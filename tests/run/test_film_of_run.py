@@ -90,7 +90,14 @@ def test_without_a_film_there_is_none(tmp_path, tiny):
 
 
 def test_of_many_particles_some_are_recorded(tmp_path):
-    scene = tiny_scene(**{"numerics.dx": 0.0006, "events.count": 1, "events.max_time": 1e-6, "events.rest_time": 1e-7})
+    scene = tiny_scene(
+        **{
+            "numerics.dx": 0.0006,
+            "events.count": 1,
+            "events.max_time": 1e-6,
+            "events.rest_time": 1e-7,
+        }
+    )
     run_events(scene, tmp_path, pictures=False)
     results = Results(tmp_path)
     all_ids = results.particles(1).particle.to_numpy().astype(np.int64)

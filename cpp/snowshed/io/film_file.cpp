@@ -15,9 +15,9 @@ namespace snowshed {
 namespace {
 
 constexpr char film_magic[8] = {'S', 'N', 'O', 'W', 'F', 'I', 'L', 'M'};
-constexpr std::size_t film_text_start = 24;              // of the JSON text
+constexpr std::size_t film_text_start = 24;  // of the JSON text
 constexpr std::size_t most_header_bytes = 1u << 20;
-constexpr std::uint32_t frame_tag = 0x4d415246;       // "FRAM"
+constexpr std::uint32_t frame_tag = 0x4d415246;  // "FRAM"
 constexpr std::size_t record_head = 40;
 constexpr std::size_t most_raw_bytes = 1u << 31;
 constexpr std::uint32_t lists_flag = 1;
@@ -104,7 +104,8 @@ std::string FilmReader::at_byte(std::size_t at) const {
 }
 
 void FilmReader::read_header() {
-  if (bytes_.size() < film_text_start || std::memcmp(bytes_.data(), film_magic, sizeof film_magic) != 0)
+  if (bytes_.size() < film_text_start ||
+      std::memcmp(bytes_.data(), film_magic, sizeof film_magic) != 0)
     throw InputError(path_.string(), "not a film of snowshed");
   const auto version = read<std::uint32_t>(8);
   if (version != film_version)

@@ -75,9 +75,8 @@ class FilmWriter {
 
   /// Goes on with a film behind the frames that `keeps` wants, from the first on; the others are
   /// removed. Empty where there is no sound film to go on with.
-  static std::optional<FilmWriter> reopen(
-      const std::filesystem::path& path,
-      const std::function<bool(const FilmFrameFacts&)>& keeps);
+  static std::optional<FilmWriter> reopen(const std::filesystem::path& path,
+                                          const std::function<bool(const FilmFrameFacts&)>& keeps);
 
   const FilmHeader& header() const { return header_; }
   const std::vector<FilmFrameFacts>& frames() const { return facts_; }

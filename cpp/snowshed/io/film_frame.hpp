@@ -39,9 +39,9 @@ struct FilmFrame {
   double time = 0;  // s, through all events
   std::uint32_t event = 0;
   std::vector<std::uint32_t> ids;
-  std::vector<std::uint16_t> events;      // of the particles
-  std::vector<std::uint8_t> materials;    // of the particles
-  std::vector<std::int32_t> radii;        // in quanta; empty where the header has none
+  std::vector<std::uint16_t> events;                 // of the particles
+  std::vector<std::uint8_t> materials;               // of the particles
+  std::vector<std::int32_t> radii;                   // in quanta; empty where the header has none
   std::vector<std::vector<std::int32_t>> positions;  // by axis, in quanta
   std::vector<std::vector<std::int32_t>> values;     // by quantity, codes
 };

@@ -121,8 +121,8 @@ FilmFrame frame_of(const Method& solver, const FilmHeader& header, int event) {
 FilmHeader film_header(const Scene& scene, const Method& solver, const CostEstimate& cost) {
   FilmHeader header;
   header.axes = scene.dimension;
-  header.interval = scene.output.film_interval > 0 ? scene.output.film_interval
-                                                   : automatic_interval(scene, cost);
+  header.interval =
+      scene.output.film_interval > 0 ? scene.output.film_interval : automatic_interval(scene, cost);
   header.share = std::min(1.0, FilmRecorder::most_particles / std::max(cost.total_particles, 1.0));
   const std::vector<FieldInfo> fields = solver.fields();
   header.has_radius = find(fields, "equivalent_radius") != nullptr;

@@ -10,8 +10,8 @@
 namespace snowshed {
 
 /// Holds scene.json, run.json (`RunRecord`), checkpoint.bin, particles/event_NNN.vtp,
-/// particles.pvd, film.bin and snapshots/. It is locked: no other run writes into it meanwhile. What a killed
-/// run left half-written is removed when it is opened.
+/// particles.pvd, film.bin and snapshots/. It is locked: no other run writes into it meanwhile.
+/// What a killed run left half-written is removed when it is opened.
 class ResultsFolder {
  public:
   /// Makes the folder for a scene. Throws InputError where it holds anything.

@@ -45,6 +45,7 @@ class Projection:
         return cls(np.array([right, np.cross(back, right), back]))
 
     def __call__(self, points: Floats) -> Floats:
+        """Return points (n, 3) as they are seen: right, up and toward the viewer."""
         seen: Floats = points @ self.axes.T
         return seen
 
@@ -108,7 +109,7 @@ class FilmPainter:
         colours = np.clip(light[:, None] * paint, 0.0, 1.0)
         self.axes.add_collection(
             PolyCollection(
-                seen[order][:, :, :2],
+                list(seen[order][:, :, :2]),
                 facecolors=colours[order],
                 edgecolors=colours[order],
                 linewidths=0.4,
@@ -134,13 +135,12 @@ class FilmPainter:
         light = np.clip(0.92 * colours + 0.08, 0.0, 1.0)
         lit = places + self.radius * np.array([-0.2, 0.25])
         self.dots.set_offsets(np.stack([places, lit], axis=1).reshape(-1, 2))
-        self.dots.set_facecolor(np.stack([0.8 * colours, light], axis=1).reshape(-1, 3))
+        both = np.stack([0.8 * colours, light], axis=1).reshape(-1, 3).tolist()
+        self.dots.set_facecolor([tuple(one) for one in both])
         self.dots.set_sizes(np.tile([self.size, 0.42 * self.size], len(places)))
 
 
-def still_picture(
-    film: Film, summary: FilmSummary, solids: Sequence[Solid], focus: Box
-) -> Picture:
+def still_picture(film: Film, summary: FilmSummary, solids: Sequence[Solid], focus: Box) -> Picture:
     """Return the last frame of a film as a picture."""
     painter = FilmPainter(film, summary, solids, focus)
     colouring = summary.colourings[0]

@@ -160,7 +160,9 @@ def _width(part: Mapping[str, Any]) -> float:
 def _ground(tilt: float, focus: Box, flat: bool) -> Solid:
     size = float(focus.size.max())
     grid = float(10.0 ** np.floor(np.log10(max(size, 1e-9))))
-    low, high = (grid * np.round(edge / grid) for edge in (focus.low - 2 * size, focus.high + 2 * size))
+    low, high = (
+        grid * np.round(edge / grid) for edge in (focus.low - 2 * size, focus.high + 2 * size)
+    )
     x = np.array([low[0], high[0], high[0], low[0]])
     z = -x * np.tan(np.radians(tilt))
     if flat:
@@ -168,7 +170,9 @@ def _ground(tilt: float, focus: Box, flat: bool) -> Solid:
         corners = np.column_stack([x, np.zeros(4), z])
     else:
         corners = np.column_stack([x, [low[1], low[1], high[1], high[1]], z])
-    return Solid("ground", "ground", corners, np.array([[0, 1, 2], [0, 2, 3]]), grid=0 if flat else grid)
+    return Solid(
+        "ground", "ground", corners, np.array([[0, 1, 2], [0, 2, 3]]), grid=0 if flat else grid
+    )
 
 
 def _terrain(raster: Raster, focus: Box) -> Solid:
@@ -204,7 +208,9 @@ def _parts(
 ) -> Iterator[Solid]:
     """Yield the triangles of a shape; what has no simple form is sampled."""
     kind = shape["type"]
-    vector = {k: _in_space(shape[k]) for k in ("center", "size", "normal", "from", "to") if k in shape}
+    vector = {
+        k: _in_space(shape[k]) for k in ("center", "size", "normal", "from", "to") if k in shape
+    }
     if kind == "box":
         size = vector["size"]
         if scene["dimension"] == 2:
@@ -249,7 +255,9 @@ def _sampled(
     spacing = float(near.size.max()) / SAMPLES
     flat = scene["dimension"] == 2
     axes = [
-        np.zeros(1) if flat and axis == 1 else np.arange(near.low[axis], near.high[axis] + spacing, spacing)
+        np.zeros(1)
+        if flat and axis == 1
+        else np.arange(near.low[axis], near.high[axis] + spacing, spacing)
         for axis in range(3)
     ]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
@@ -331,7 +339,9 @@ def _motion(spec: Mapping[str, Any]) -> dict[str, Any]:
         raise InputError(f"motion: an angular velocity of {turning.size} numbers")
     return {
         "velocity": _in_space(spec.get("velocity", [0.0, 0.0, 0.0])).tolist(),
-        "angular_velocity": [0.0, float(turning[0]), 0.0] if turning.size == 1 else turning.tolist(),
+        "angular_velocity": [0.0, float(turning[0]), 0.0]
+        if turning.size == 1
+        else turning.tolist(),
         "pivot": _in_space(spec.get("pivot", [0.0, 0.0, 0.0])).tolist(),
         "start": float(spec.get("start", 0.0)),
         "end": float(spec.get("end", 1e9)),

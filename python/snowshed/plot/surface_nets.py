@@ -7,10 +7,7 @@ import numpy as np
 from snowshed.io.arrays import Floats, Integers
 
 EDGES = [
-    (a, b)
-    for a in range(8)
-    for b in range(a + 1, 8)
-    if (a ^ b) in (1, 2, 4)
+    (a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)
 ]  # of a cube whose corners are numbered by bits: x 4, y 2, z 1
 
 

@@ -163,12 +163,12 @@ def _write_gif(file: Path, pictures: Iterator[Image.Image], palette: Image.Image
 
 def _write_mp4(encoder: Any, file: Path, pictures: Iterator[Image.Image]) -> None:
     first = next(pictures)
-    size = tuple(side - side % 2 for side in first.size)  # as the encoder needs it
+    width, height = (side - side % 2 for side in first.size)  # as the encoder needs it
     stream = encoder.write_frames(
-        str(file), size, fps=RATE[".mp4"], codec="libx264", quality=7, macro_block_size=2,
+        str(file), (width, height), fps=RATE[".mp4"], codec="libx264", quality=7, macro_block_size=2,
         output_params=["-f", "mp4"],
     )  # fmt: skip
     stream.send(None)
     for picture in (first, *pictures):
-        stream.send(np.ascontiguousarray(np.asarray(picture.crop((0, 0, *size)))))
+        stream.send(np.ascontiguousarray(np.asarray(picture.crop((0, 0, width, height)))))
     stream.close()

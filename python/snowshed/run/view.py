@@ -144,7 +144,10 @@ def _measures(
         if row["height_m"] > 0:
             crest, head, tail = (float(row[k]) for k in ("crest_m", "head_m", "tail_m"))
             height = float(row["height_m"])
-            ends = [(crest, 0.0, 0.0), (crest, 0.0, height)], [(head, front, 0.0), (tail, front, 0.0)]
+            ends = (
+                [(crest, 0.0, 0.0), (crest, 0.0, height)],
+                [(head, front, 0.0), (tail, front, 0.0)],
+            )
             for points, label in zip(
                 ends, (f"height {height:.3g} m", f"length {row['length_m']:.3g} m")
             ):
@@ -179,7 +182,7 @@ def _profiles(folder: Path) -> dict[int, np.ndarray]:
     if not path.is_file():
         return {}
     table = Results(folder).outline
-    return {int(event): rows[["x", "z"]].to_numpy() for event, rows in table.groupby("event")}
+    return {int(str(event)): rows[["x", "z"]].to_numpy() for event, rows in table.groupby("event")}
 
 
 def _table(table: Optional[pd.DataFrame]) -> Optional[Grid]:
