@@ -136,7 +136,7 @@ class FilmPainter:
         lit = places + self.radius * np.array([-0.2, 0.25])
         self.dots.set_offsets(np.stack([places, lit], axis=1).reshape(-1, 2))
         both = np.stack([0.8 * colours, light], axis=1).reshape(-1, 3).tolist()
-        self.dots.set_facecolor([tuple(one) for one in both])
+        self.dots.set_facecolor([(red, green, blue) for red, green, blue in both])
         self.dots.set_sizes(np.tile([self.size, 0.42 * self.size], len(places)))
 
 

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from snowshed.methods.grains.contacts import GrainContacts
-from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank
+from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank, describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SLICE = 0.25  # of the sample's depth, about its middle, whose grains are drawn
+TITLE_WIDTH = 80  # characters
 WIDEST = 7.0  # points, of a line
 ICE = ("#e3ebf1", "#cfdce6", "#bccdda", "#d9e0ea", "#c5d6d9")
 
 
-def force_figure(contacts: GrainContacts, voxel_size: float) -> Figure:
+def force_figure(contacts: GrainContacts, voxel_size: float, title: str = "") -> Figure:
     """Return the picture of a sample from the side, with the forces between its grains.
 
     Lines join the centres of grains that touch by way of their contact; all contacts are drawn,
@@ -30,12 +32,16 @@ def force_figure(contacts: GrainContacts, voxel_size: float) -> Figure:
         As they are at a time.
     voxel_size
         Diameter of the spheres, m.
+    title
+        Written above, such as how a synthetic sample was made.
     """
     from matplotlib import rc_context
 
     with rc_context(STYLE):
         width, _, height = np.ptp(contacts.spheres, axis=0) + voxel_size
         figure = blank(6.4, 1.2 + 5.6 * min(height / width, 2.0))
+        if title:
+            describe(figure, fill(title, TITLE_WIDTH))
         axes = figure.subplots()
         axes.grid(visible=False)
         _draw_ice(axes, contacts, voxel_size)

@@ -165,8 +165,8 @@ def _write_mp4(encoder: Any, file: Path, pictures: Iterator[Image.Image]) -> Non
     first = next(pictures)
     width, height = (side - side % 2 for side in first.size)  # as the encoder needs it
     stream = encoder.write_frames(
-        str(file), (width, height), fps=RATE[".mp4"], codec="libx264", quality=7, macro_block_size=2,
-        output_params=["-f", "mp4"],
+        str(file), (width, height), fps=RATE[".mp4"], codec="libx264", quality=7,
+        macro_block_size=2, output_params=["-f", "mp4"],
     )  # fmt: skip
     stream.send(None)
     for picture in (first, *pictures):
