@@ -27,7 +27,6 @@ MODULES_OF = {
     "pandas": "pandas",
     "pyarrow": "pyarrow",
     "pyogrio": "pyogrio",
-    "playwright": "playwright",
     "rasterio": "rasterio",
     "rich": "rich",
     "SALib": "SALib",

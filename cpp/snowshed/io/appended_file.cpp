@@ -35,7 +35,8 @@ class Descriptor {
 };
 
 [[noreturn]] void fail_at(const std::filesystem::path& path, const char* action, int error) {
-  throw FileError(path.string() + ": " + action + ": " + std::generic_category().message(error));
+  throw FileError(path.string(),
+                  std::string(action) + ": " + std::generic_category().message(error), error);
 }
 
 }  // namespace

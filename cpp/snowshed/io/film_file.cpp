@@ -1,5 +1,6 @@
 #include "snowshed/io/film_file.hpp"
 
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -72,11 +73,11 @@ FilmHeader parsed_header(const std::string& text, const std::string& where) {
 
 std::vector<std::uint8_t> film_content(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) throw FileError(path.string() + ": cannot read the file");
+  if (!file) throw FileError(path.string(), "cannot read the file", errno);
   std::vector<std::uint8_t> bytes(std::size_t(file.tellg()));
   file.seekg(0);
   file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-  if (!file) throw FileError(path.string() + ": cannot read the file");
+  if (!file) throw FileError(path.string(), "cannot read the file", errno);
   return bytes;
 }
 

@@ -32,8 +32,9 @@ class FilmQuantity(NamedTuple):
 
         Examples
         --------
-        >>> FilmQuantity("speed", "m/s", "Speed", 0.01).values(np.array([0, 64])).round(3).tolist()
-        [0.0, 0.7520000338554382]
+        >>> speed = FilmQuantity("speed", "m/s", "Speed", 0.05)
+        >>> [round(float(one), 2) for one in speed.values(np.array([0, 1, 64]))]
+        [0.0, 0.05, 3.76]
         """
         scale = LINEAR_STEPS * self.step
         decoded: NDArray[np.float32] = (scale * np.sinh(codes / LINEAR_STEPS)).astype(np.float32)
