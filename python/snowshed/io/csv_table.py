@@ -269,16 +269,20 @@ def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     OSError
         If it cannot be read.
     """
+    return parse_csv(_decoded(path, LARGEST_TABLE), path, as_text=as_text)
+
+
+def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.DataFrame:
+    """Return a table from the text of a CSV file; see `read_csv`. Errors name `where` it was."""
     import pandas as pd
 
-    text = _decoded(path, LARGEST_TABLE)
-    for _ in _records(path, text):
+    for _ in _records(where, text):
         pass
     options: dict[str, Any] = {"dtype": str, "keep_default_na": False} if as_text else {}
     try:
         table: pd.DataFrame = pd.read_csv(io.StringIO(text), **options)
     except ValueError as error:  # of pandas all errors on content are ValueErrors
-        raise InputError(f"{path}: not a table: {error}") from None
+        raise InputError(f"{where}: not a table: {error}") from None
     return table
 
 
@@ -291,7 +295,7 @@ def _decoded(path: Path, largest: int) -> str:
         raise InputError(f"{path}, line {line}: not a table: not UTF-8 text") from None
 
 
-def _records(path: Path, text: str, comment: str = "") -> Iterator[tuple[int, list[str]]]:
+def _records(path: Path | str, text: str, comment: str = "") -> Iterator[tuple[int, list[str]]]:
     """Yield the first line and the cells of each record, which has as many as there are names."""
     pulled: list[int] = []
     reader = csv.reader(_numbered(text, comment, pulled), strict=True)

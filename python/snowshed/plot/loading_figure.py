@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
-from snowshed.methods.grains.phases import Phases, find_phases
+from snowshed.methods.grains.phases import LINEAR, Phases, find_phases
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STACK, STYLE, blank, describe
 
 if TYPE_CHECKING:
@@ -111,7 +111,10 @@ def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) 
     unit = _unit_of_strain(float(strain[shown].max(initial=0.0)))
     axes.plot(unit[1] * strain[shown], stress[shown] / 1e3, ".-", color=INK, lw=1.0, ms=4)
     title = "Beginning"
-    if phases.tangent_modulus is not None:
+    waves = phases.linearity is not None and phases.linearity < LINEAR
+    if waves:
+        title += f": not linear (R² {phases.linearity:.2f}), as waves run through the sample"
+    elif phases.tangent_modulus is not None:
         x = np.array([0.0, limit])
         fitted = np.polyfit(strain[strain <= limit], stress[strain <= limit], 1)
         axes.plot(unit[1] * x, np.polyval(fitted, x) / 1e3, color=BODY, lw=2.5, alpha=0.6)

@@ -9,6 +9,7 @@ from typing import Any, Optional, TypeVar
 import click
 
 from snowshed.cli.commands.grain_images import segment_command, synthetic
+from snowshed.cli.commands.grains_studies import material, sensitivity
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
@@ -142,3 +143,7 @@ def example(folder: Path, resume: bool, quiet: bool) -> None:
             labels.unlink()
             beside.rmdir()
         raise
+
+
+grains.add_command(sensitivity)
+grains.add_command(material)
