@@ -38,7 +38,7 @@ PYTHON_FOLDERS = $(wildcard python validation reproduction thesis hagenmuller te
 
 help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
-	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
+	@echo "make demo      the laboratory experiment: five slide-offs, table, pictures and a page that moves"
 	@echo "make verify    problems with known answers, a minute (VERIFY=--full: hours)"
 	@echo "make thesis    the thesis reproduced, some minutes (THESIS=--middle: hours, --full: days)"
 	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
@@ -83,6 +83,9 @@ demo: build
 	$(BIN)/snowshed panel --preset lab-50 --friction 0.3 -o $(DEMO)
 	@echo "Pictures:"
 	@ls $(DEMO)/*.png
+	$(BIN)/snowshed view $(DEMO) --quiet
+	@echo "The snow in motion; open it in a browser:"
+	@echo "$(CURDIR)/$(DEMO)/view.html"
 
 # Old results of the quick suite give way; those of the full one took hours and never do.
 verify: build $(VENV)/.dev-tools

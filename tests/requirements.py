@@ -21,6 +21,7 @@ MODULES_OF = {
     "distributed": "distributed",
     "emcee": "emcee",
     "jinja2": "jinja2",
+    "imageio-ffmpeg": "imageio_ffmpeg",
     "lupa": "lupa",
     "matplotlib": "matplotlib",
     "pandas": "pandas",

@@ -19,7 +19,7 @@ constexpr const char* usage =
     "       snowshed-run --schema | --version | --help\n"
     "\n"
     "Runs the scene's events and writes into DIR scene.json, run.json,\n"
-    "particles.pvd (ParaView), particles/, snapshots/ and checkpoint.bin.\n"
+    "particles.pvd (ParaView), particles/, snapshots/, film.bin and checkpoint.bin.\n"
     "Exit codes: 0 done; 2 bad input, nothing was written; 3 the run could not go on, for the\n"
     "simulation failed, the disk is full or memory is short; 130 interrupted.\n";
 

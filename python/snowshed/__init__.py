@@ -43,7 +43,6 @@ if _TYPE_CHECKING:
         Layer,
         Motion,
         Obstacle,
-        Output,
         Panel,
         Seeding,
         Slab,
@@ -51,6 +50,7 @@ if _TYPE_CHECKING:
         Terrain,
     )
     from snowshed.scene.loading import Cone, LoadingStage, Sample
+    from snowshed.scene.output import Output
     from snowshed.scene.scene import ResolvedScene, Scene
     from snowshed.scene.shape import Shape
     from snowshed.snow.stack.measure import Extent, StackMeasure, level, measure_stack
@@ -113,7 +113,7 @@ _MODULES = {
     "Motion": "snowshed.scene.components",
     "MpmSettings": "snowshed.methods.mpm",
     "Obstacle": "snowshed.scene.components",
-    "Output": "snowshed.scene.components",
+    "Output": "snowshed.scene.output",
     "Panel": "snowshed.scene.components",
     "Progress": "snowshed.run.progress",
     "ResolvedScene": "snowshed.scene.scene",

@@ -53,6 +53,7 @@ bool EventSequence::is_done() const {
 bool EventSequence::run(EventObserver& observer, double report_interval) {
   const double every = sim_->scene().output.snapshot_interval;
   if (every > 0) sim_->write_snapshots(folder_.snapshots(), every);
+  if (sim_->scene().output.film && !is_done()) sim_->record_film(folder_.film());
   while (!is_done()) {
     bool stopped = observer.stop_requested();
     if (!stopped) try {

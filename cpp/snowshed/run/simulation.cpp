@@ -10,6 +10,7 @@
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/methods/slide/solver.hpp"
+#include "snowshed/run/film_recorder.hpp"
 #include "snowshed/run/fingerprint.hpp"
 #include "snowshed/run/grains_cost.hpp"
 #include "snowshed/run/loading_curve.hpp"
@@ -164,8 +165,9 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
   bool pausing = false;
   while (true) {
     if (pausing && solver_->at_safe_point()) return RunEnd::paused;
-    if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
+    record();
     if (const auto end = event_end()) {
+      if (film_) film_->record_end(*solver_, event_);
       running_ = false;
       return *end;
     }
@@ -178,6 +180,12 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
       pausing = !observer(r);
     }
   }
+}
+
+/// Writes what is due now.
+void Simulation::record() {
+  if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
+  if (film_ && film_->due({event_, running_, solver_->time()})) film_->record(*solver_, event_);
 }
 
 /// How the event has ended now, if it has.
@@ -216,6 +224,11 @@ RunReport Simulation::report(double rms_speed) const {
 
 void Simulation::write_snapshots(const std::filesystem::path& folder, double interval) {
   snapshots_ = std::make_unique<SnapshotSeries>(folder, interval, solver_->time());
+}
+
+void Simulation::record_film(const std::filesystem::path& file) {
+  film_ = std::make_unique<FilmRecorder>(file, film_header(scene_, *solver_, cost_),
+                                         RunPlace{event_, running_, solver_->time()});
 }
 
 void Simulation::write_vtp(const std::filesystem::path& file) const {

@@ -21,6 +21,7 @@
 
 namespace snowshed {
 
+class FilmRecorder;
 class GrainsMethod;
 class LoadingCurve;
 class SlideMethod;
@@ -79,6 +80,10 @@ class Simulation {
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
+  /// Records the particles into a film from now on, or goes on with the film of the run that was
+  /// resumed: what it holds beyond the present state is recorded anew.
+  void record_film(const std::filesystem::path& file);
+
   /// Writes a checkpoint, which replaces an older one only once it has been read back. Throws
   /// SimulationError where the state could not be resumed from, FileError where it cannot be
   /// written; the older file stays then.
@@ -133,6 +138,7 @@ class Simulation {
   SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
   void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
   void advance();
+  void record();
   bool is_at_rest();
   std::optional<RunEnd> event_end();
   std::unique_ptr<Method> empty_method() const;
@@ -151,6 +157,7 @@ class Simulation {
   std::vector<Obstacle> listed_obstacles_;  // those of the scene's list
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
+  std::unique_ptr<FilmRecorder> film_;
   std::unique_ptr<LoadingCurve> curve_;  // of grains only
   RestDetector rest_;
   int event_ = 0;

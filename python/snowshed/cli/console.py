@@ -45,6 +45,7 @@ def print_events(table: pd.DataFrame, folder: Path) -> None:
     if residual is not None:
         console.print(f"energy balance: residual {residual:.2g} of the largest energy")
     console.print(f"results, stack.png and growth.png in {folder}")
+    console.print(f"the snow in motion: snowshed view {folder}")
 
 
 def energy_residual(folder: Path) -> Optional[float]:

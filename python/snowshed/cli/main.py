@@ -58,6 +58,7 @@ DEFERRED = (
     ("season", "season", "Simulate a winter: snow accumulates, is released and piles up."),
     ("sensitivity", "sensitivity", "Find the snow parameters that matter for the stack."),
     ("calibrate", "calibration", "Find the snow whose simulated stacks agree with measured ones."),
+    ("view", "view", "Write the moving view of a run as a page, or as a video."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
     ("verify", "verify", "Check this installation against known answers, in seconds."),
     ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),

@@ -11,6 +11,7 @@ energy.csv         energy balance at the end of each event (only with output.ene
 run.json           version, machine, size and speed of the run, how each event went, and its status
 checkpoint.bin     the state from which the run goes on
 particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series
+film.bin           the particles over time, for `snowshed view` (unless output.film = false)
 snapshots/         particle snapshots during the events (only with output.snapshot_interval)
 stack.png          side view of the last stack
 growth.png         height, length, head and tail against the event

@@ -25,7 +25,6 @@ from snowshed.scene.components import (
     Layer,
     Motion,
     Obstacle,
-    Output,
     Panel,
     ResistanceArea,
     Seeding,
@@ -34,6 +33,7 @@ from snowshed.scene.components import (
     Terrain,
 )
 from snowshed.scene.loading import Cone, LoadingStage, Sample
+from snowshed.scene.output import Output
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.shape import Shape
 

@@ -428,23 +428,3 @@ class Events(Record):
     max_time: Optional[float] = None
     rest_speed: Optional[float] = None
     rest_time: Optional[float] = None
-
-
-@dataclass
-class Output(Record):
-    """Files that a run writes besides its tables.
-
-    Attributes
-    ----------
-    snapshot_interval : float
-        Simulated time between particle snapshots; 0: only at the end of an event [s]. 0 <= value
-        <= 1e+09; default 0.
-    energy : bool
-        Keep the energy balance. Default False.
-    checkpoint_interval : float
-        Wall time between checkpoints; 0: none [s]. 0 <= value <= 1e+09; default 60.
-    """
-
-    snapshot_interval: Optional[float] = None
-    energy: Optional[bool] = None
-    checkpoint_interval: Optional[float] = None

@@ -33,7 +33,6 @@ from snowshed.scene.components import (
     Events,
     Ground,
     Obstacle,
-    Output,
     Panel,
     Seeding,
     Slab,
@@ -41,6 +40,7 @@ from snowshed.scene.components import (
     Terrain,
 )
 from snowshed.scene.loading import Cone, LoadingStage, Sample
+from snowshed.scene.output import Output
 
 __all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 

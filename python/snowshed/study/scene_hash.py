@@ -64,7 +64,7 @@ class Run:
         """
         data: dict[str, Any] = scene.data
         data["numerics"]["threads"] = 0
-        data["output"].update(snapshot_interval=0.0, energy=False)
+        data["output"].update(snapshot_interval=0.0, film=False, energy=False)
         return cls(content_hash(data), json.dumps(data))
 
 

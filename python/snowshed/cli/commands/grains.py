@@ -16,8 +16,8 @@ from snowshed.cli.settings_options import settings_options
 from snowshed.methods.grains.image.sample_folder import LABELS
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.builders.grains import example_grains, grains_scene
-from snowshed.scene.components import Output
 from snowshed.scene.loading import Cone, LoadingKind, LoadingStage
+from snowshed.scene.output import Output
 from snowshed.scene.scene import ResolvedScene
 
 Command = TypeVar("Command", bound=Callable[..., Any])

@@ -14,8 +14,9 @@ from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
 from snowshed.methods.grains.image.segmentation import known_grains
 from snowshed.methods.grains.image.sphere_snow import sphere_snow
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.scene.components import Events, Output
+from snowshed.scene.components import Events
 from snowshed.scene.loading import Cone, LoadingStage, Sample
+from snowshed.scene.output import Output
 from snowshed.scene.scene import Scene
 
 MAX_TIME = 1e4  # s; the stages end before
