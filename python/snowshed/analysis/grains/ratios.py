@@ -99,7 +99,7 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
     >>> table = pd.DataFrame(rows, columns=["variant", "sample", "strength_pa"])
     >>> found = compare_variants(table.assign(varied=table["variant"]))
     >>> found["ratio"].round(3).tolist(), found["distinct"].tolist()
-    ([1.0, 0.524], [None, False])
+    ([1.0, 0.524], [None, True])
     """
     import pandas as pd
 

@@ -60,7 +60,7 @@ class Range:
 
         Examples
         --------
-        >>> Range.of([1.0, 4.0]).value, Range.of([0.1, 0.3], logarithmic=False).value
+        >>> Range.of([1.0, 4.0]).value, round(Range.of([0.1, 0.3], logarithmic=False).value, 9)
         (2.0, 0.2)
         """
         if logarithmic:

@@ -112,7 +112,7 @@ class CamClay:
         Examples
         --------
         >>> round(CamClay(210, Elasticity(1e6, 0.3), 0.5, 7e3, 0.2, 0.1).confined_yield())
-        5535
+        3030
         """
         p0, beta = self.preconsolidation_pressure, self.cohesion
         side = self.elastic.poissons_ratio / (1 - self.elastic.poissons_ratio)
