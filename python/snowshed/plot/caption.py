@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 #: Parameters of the snow that are named.
 ELASTIC = ("youngs_modulus", "poissons_ratio")
 PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
+#: What becomes of the stack between events.
+BETWEEN = {"carry": "the stack stays", "reseed": "the stack is seeded anew"}
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
@@ -33,7 +35,7 @@ def scene_caption(scene: dict[str, Any], damping_rate: Optional[float] = None) -
     >>> from snowshed.scene.scene import Scene
     >>> print(scene_caption(Scene.preset("lab-50").resolve().data))
     3D · panel 0.245 m, tilt 50°, 0.33 m above ground, separate, friction 0.3 · slab 0.02 m thick
-    snow 210 kg/m³, E 1 MPa, nu 0.3, M 0.5, p₀ 7 kPa, β 0.2, ξ 0.1 · events carry
+    snow 210 kg/m³, E 1 MPa, nu 0.3, M 0.5, p₀ 7 kPa, β 0.2, ξ 0.1 · the stack stays
     dx 0.01 m · FLIP 0.99 a step
     """
     parts = [f"{scene['dimension']}D"]
@@ -50,7 +52,7 @@ def scene_caption(scene: dict[str, Any], damping_rate: Optional[float] = None) -
     method = [f"{settings.RESOLUTION} {settings.resolution:g} m"]
     if damping := settings.damping_text(damping_rate):
         method.append(damping)
-    snow = [_snow(scene), f"events {scene['events']['between']}"]
+    snow = [_snow(scene), BETWEEN[scene["events"]["between"]]]
     return "\n".join(" · ".join(line) for line in (parts, snow, method))
 
 

@@ -42,6 +42,8 @@ class Weather:
         Temperature of the air, degrees C, until the next row.
     friction, adhesion
         Friction and adhesion (Pa) of the panel on that day; None: those of the settings.
+    snow_depth
+        Depth of the natural snow cover, m; None: not measured.
     """
 
     line: int
@@ -51,6 +53,7 @@ class Weather:
     temperature: float
     friction: Optional[float] = None
     adhesion: Optional[float] = None
+    snow_depth: Optional[float] = None
 
 
 @dataclass(frozen=True)
@@ -62,14 +65,22 @@ class _Column:
     unit: str
     required: bool = False  # the column
     filled: bool = False  # every cell of it
+    hint: str = ""  # what a number beyond the range may be
 
 
+#: No more snow was measured in 24 hours than 1.93 m (Silver Lake, Colorado, 1921).
+MOST_SNOWFALL = 3.0  # m in a row
+#: Snowfalls of which half are deeper are not in metres.
+TYPICAL_SNOWFALL = 0.7  # m
 COLUMNS: Mapping[str, _Column] = {
-    "snowfall_m": _Column(0.0, 10.0, "m", required=True, filled=True),
+    "snowfall_m": _Column(
+        0.0, MOST_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
+    ),
     "temperature_c": _Column(-90.0, 40.0, "degrees C", required=True, filled=True),
     "density_kg_m3": _Column(10.0, 700.0, "kg/m3"),
     "friction": _Column(0.0, 10.0, ""),
     "adhesion_pa": _Column(0.0, 1e6, "Pa"),
+    "snow_depth_m": _Column(0.0, 15.0, "m", hint="; is it in cm, mm or inches?"),
 }
 ALLOWED = ("date", *COLUMNS)
 #: Other spellings of units.
@@ -88,7 +99,8 @@ def read_season(season: Season) -> list[Weather]:
     season
         A CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or timestamps,
         increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c`` and, if
-        known, ``density_kg_m3``, ``friction`` and ``adhesion_pa``. The names tell the units. If
+        known, ``density_kg_m3``, ``friction``, ``adhesion_pa`` and ``snow_depth_m`` (of the natural
+        snow cover). The names tell the units. If
         ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of `Weather`
         are returned unchanged.
 
@@ -157,6 +169,7 @@ def _weather(row: Row) -> Weather:
         number["temperature_c"] or 0.0,
         number["friction"],
         number["adhesion_pa"],
+        number["snow_depth_m"],
     )
 
 
@@ -170,7 +183,10 @@ def _number(text: str, column: _Column, where: str) -> Optional[float]:
     except ValueError:
         raise InputError(f"{where}: {quoted(text)} is not a number ({_range(column)})") from None
     if not (math.isfinite(value) and column.low <= value <= column.high):
-        raise InputError(f"{where}: {value:g} is outside the allowed range ({_range(column)})")
+        hint = column.hint if value > column.high else ""
+        raise InputError(
+            f"{where}: {value:g} is outside the allowed range ({_range(column)}){hint}"
+        )
     return value
 
 
@@ -200,5 +216,12 @@ def _check_season(season: Sequence[Weather], rows: Sequence[Row], name: str) -> 
                 f"{row.where}, column date: {later.date.isoformat(' ')} is not after "
                 f"{before.place}, {earlier.date.isoformat(' ')}"
             )
-    if not any(row.snowfall for row in season):
+    falls = sorted(row.snowfall for row in season if row.snowfall)
+    if not falls:
         raise InputError(f"{name}: it never snows; every snowfall_m is 0")
+    middle = falls[len(falls) // 2]
+    if len(falls) >= 3 and middle > TYPICAL_SNOWFALL:
+        raise InputError(
+            f"{name}, column snowfall_m: half of the snowfalls are of {middle:g} m and more; is it "
+            "in cm, mm or inches?"
+        )
