@@ -1,7 +1,8 @@
 """The command line: the list of commands, and their exit codes.
 
 ``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``grains`` a loading test of segmented
-snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, and ``season`` a winter.
+snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, ``season`` a winter, and
+``clearance`` many of them, to the height a panel needs.
 ``compare|sensitivity|calibrate`` answer questions about runs, and ``geometry|regress|predict``
 treat the data set of panels.
 
@@ -44,6 +45,7 @@ DEFERRED = (
     ("regress", "regression", "Regress stacks on panels: models, tables and figures."),
     ("predict", "regression", "Predict a stack's height and length without simulating it."),
     ("season", "season", "Simulate a winter: snow accumulates, is released and piles up."),
+    ("clearance", "clearance", "Find how high a panel's lower edge must be to stay clear."),
     ("sensitivity", "sensitivity", "Find the snow parameters that matter for the stack."),
     ("calibrate", "calibration", "Find the snow whose simulated stacks agree with measured ones."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),

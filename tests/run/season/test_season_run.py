@@ -103,7 +103,8 @@ def test_the_clearance_is_that_of_the_outline(finished):
     last = outline[outline["event"] == 2]
     edge = 0.5 * 0.245 * math.cos(math.radians(50.0))
     surface = np.interp(edge, last["x"], last["z"], left=0.0, right=0.0)
-    assert result.table["clearance_m"].iloc[-1] == pytest.approx(0.33 - surface)
+    cover = result.table["cover_m"].iloc[-1]
+    assert result.table["clearance_m"].iloc[-1] == pytest.approx(max(0.33 - cover - surface, 0.0))
     left = clearance(scene, last[["x", "z"]].to_numpy(), 0.2)
     assert left.crest == pytest.approx(0.13)
 

@@ -77,7 +77,7 @@ def levels_of(required: Floats, winters: Floats) -> list[Level]:
     tail = 0.5 * (1.0 - CONFIDENCE)
     found = []
     for probability in PROBABILITIES:
-        counted = len(names) * (1.0 - probability) >= 1.0
+        counted = len(names) * (1.0 - probability) >= 1.0 - 1e-9
         estimates = [_height(sample, probability, counted) for sample in samples]
         low, high = np.quantile(estimates, [tail, 1.0 - tail])
         height = _height(required, probability, counted)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.run.season.weather import Weather
+from snowshed.run.season.weather_row import Weather
 
 LEAST_DAYS = 60  # of a winter that counts
 

@@ -11,7 +11,7 @@ from snowshed.run.ageing import Interval
 from snowshed.run.season.column import SnowColumn
 from snowshed.run.season.release import Balance, balance
 from snowshed.run.season.settings import SeasonSettings
-from snowshed.run.season.weather import Weather
+from snowshed.run.season.weather_row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from snowshed.run.season.column import SnowColumn
 from snowshed.run.season.settings import SeasonSettings
-from snowshed.run.season.weather import Weather
+from snowshed.run.season.weather_row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 DAY = 86400.0  # s

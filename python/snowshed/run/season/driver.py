@@ -21,7 +21,7 @@ from snowshed.run.season.results import SeasonFolder
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
 from snowshed.run.season.table import season_table
-from snowshed.run.season.weather import Season, read_season
+from snowshed.run.season.weather import Season, read_weather
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def run_season(
     0
     """
     settings = settings or SeasonSettings()
-    rows = read_season(season)
+    rows, of_reading = read_weather(season)
     ready = resolve_scene(scene)
     data: dict[str, Any] = ready.data
     if "panel" not in data:
@@ -135,7 +135,7 @@ def run_season(
             pictures=pictures,
         )
     folder.folder.mkdir(parents=True, exist_ok=True)
-    result = _result(slides or ready, days, settings, folder)
+    result = _result(slides or ready, days, settings, folder, of_reading)
     _write(result, slides or ready, settings, folder, pictures=pictures)
     return result
 
@@ -145,6 +145,7 @@ def _result(
     days: Sequence[Day],
     settings: SeasonSettings,
     folder: SeasonFolder,
+    of_reading: Sequence[str],
 ) -> SeasonResult:
     import pandas as pd
 
@@ -162,7 +163,11 @@ def _result(
         burial_event=first_reached(simulated["clearance_m"].tolist(), dx),
         crest_event=first_reached(simulated["crest_clearance_m"].tolist(), dx),
         staying_event=staying,
-        notes=[*assumptions(table, days, settings), *notes(dx, days, settings, events, staying)],
+        notes=[
+            *of_reading,
+            *assumptions(table, days, settings),
+            *notes(dx, days, settings, events, staying),
+        ],
     )
 
 

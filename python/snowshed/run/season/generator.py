@@ -16,7 +16,7 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.run.season.weather import MOST_SNOWFALL, Weather
+from snowshed.run.season.weather_row import MOST_SNOWFALL, Weather
 
 LEAST_DAYS = 20  # of a month, to fit it
 LEAST_FALL = 0.005  # m; less is no snowfall day

@@ -18,42 +18,13 @@ from typing import TYPE_CHECKING, Optional, Union
 from snowshed._core import InputError
 from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.messages import quoted
+from snowshed.io.weather import Station, read_station
+from snowshed.run.season.observed import days_of
+from snowshed.run.season.weather_row import MOST_SNOWFALL, Weather
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-@dataclass(frozen=True)
-class Weather:
-    """One row of a season.
-
-    Attributes
-    ----------
-    line
-        Line in the file, or row in the table, from 1.
-    date
-        Date at which the snow had fallen.
-    snowfall
-        Depth of the new snow on level ground, m.
-    density
-        Density of the new snow, kg/m3; None: not measured.
-    temperature
-        Temperature of the air, degrees C, until the next row.
-    friction, adhesion
-        Friction and adhesion (Pa) of the panel on that day; None: those of the settings.
-    snow_depth
-        Depth of the natural snow cover, m; None: not measured.
-    """
-
-    line: int
-    date: datetime
-    snowfall: float
-    density: Optional[float]
-    temperature: float
-    friction: Optional[float] = None
-    adhesion: Optional[float] = None
-    snow_depth: Optional[float] = None
 
 
 @dataclass(frozen=True)
@@ -68,8 +39,6 @@ class _Column:
     hint: str = ""  # what a number beyond the range may be
 
 
-#: No more snow was measured in 24 hours than 1.93 m (Silver Lake, Colorado, 1921).
-MOST_SNOWFALL = 3.0  # m in a row
 #: Snowfalls of which half are deeper are not in metres.
 TYPICAL_SNOWFALL = 0.7  # m
 COLUMNS: Mapping[str, _Column] = {
@@ -97,7 +66,8 @@ def read_season(season: Season) -> list[Weather]:
     Parameters
     ----------
     season
-        A CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or timestamps,
+        A weather file in one of the formats of `snowshed.io.weather.FORMATS`, recognised by its
+        content, or a CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or timestamps,
         increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c`` and, if
         known, ``density_kg_m3``, ``friction``, ``adhesion_pa`` and ``snow_depth_m`` (of the natural
         snow cover). The names tell the units. If
@@ -120,18 +90,39 @@ def read_season(season: Season) -> list[Weather]:
     >>> [(row.snowfall, row.temperature) for row in read_season(table)]
     [(0.2, -4.0), (0.0, 1.5)]
     """
+    return read_weather(season)[0]
+
+
+def read_weather(season: Season) -> tuple[list[Weather], list[str]]:
+    """Return the rows of a season, as `read_season`, and notes on what was assumed in reading.
+
+    Parameters
+    ----------
+    season
+        As for `read_season`, which raises the same errors.
+    """
     if isinstance(season, (str, os.PathLike)):
+        station = read_station(Path(season))
+        if station is not None:
+            return _of_station(station, str(season))
         hint = f"the first line names the columns: {', '.join(ALLOWED)}"
         table, name = read_text_table(Path(season), hint, _check_columns), str(season)
     elif isinstance(season, Sequence):
-        return [*season]
+        return [*season], []
     else:
         table, name = frame_as_text(season, "the season", index="date"), "the season"
         _check_columns(table.columns, name)
         _check_units(season.attrs.get("units", {}))
     rows = [_weather(row) for row in table.rows]
     _check_season(rows, table.rows, name)
-    return rows
+    return rows, []
+
+
+def _of_station(station: Station, source: str) -> tuple[list[Weather], list[str]]:
+    rows, notes = days_of(station, source)
+    places = [Row(source, f"line {row.line}", row.line, {}) for row in rows]
+    _check_season(rows, places, source)
+    return rows, [f"the weather is of a file in the format {station.format}", *notes]
 
 
 def _check_columns(names: Sequence[str], where: str) -> None:
