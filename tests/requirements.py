@@ -24,6 +24,7 @@ MODULES_OF = {
     "lupa": "lupa",
     "matplotlib": "matplotlib",
     "pandas": "pandas",
+    "pvlib": "pvlib",
     "pyarrow": "pyarrow",
     "pyogrio": "pyogrio",
     "rasterio": "rasterio",

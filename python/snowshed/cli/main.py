@@ -79,6 +79,9 @@ def main(
 
 
 def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) -> int:
+    given = sys.argv[1:] if arguments is None else arguments
+    if not given and isinstance(command, click.Group):
+        arguments = ["--help"]
     try:
         settings = cli.context_settings
         return command.main(arguments, prog_name=name, standalone_mode=False, **settings) or 0

@@ -129,7 +129,7 @@ FILES = {
         ("  300  7", " lots  7", "line 4, column day 2: 'lots' is not a number"),
         ("  300  7", "30000  7", "line 4, column day 2: 30000 is outside the allowed range"),
         ("202401SNOW", "202413SNOW", "line 4, column month: '13'; allowed: 01 to 12"),
-        (DLY.splitlines()[4], DLY.splitlines()[4][:100], "line 5: 100 characters; needed:"),
+        (DLY.splitlines()[4], DLY.splitlines()[4][:98], "line 5: 98 characters; needed:"),
         ("\nUSC00050848202401TMIN", "\nTMIN", "line 2: does not begin with station"),
     ]),
     "GHCN-daily, by station": (BY_STATION, 0.3, [

@@ -20,6 +20,7 @@ from snowshed.analysis.clearance.seasons import Case, Outcome, cases_of
 from snowshed.analysis.clearance.statistics import Level, Share, levels_of, shares_of
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.io.arrays import Floats
+from snowshed.io.json_file import JsonValue
 from snowshed.run.progress import Reporter
 from snowshed.run.season.clearance import Contact
 from snowshed.run.season.settings import SeasonSettings
@@ -149,7 +150,7 @@ def clearance_of(
     *,
     ranges: Optional[Ranges] = None,
     settings: Optional[SeasonSettings] = None,
-    scene: Optional[Mapping[str, Any]] = None,
+    scene: Optional[Mapping[str, JsonValue]] = None,
     jobs: Optional[int] = None,
     progress: Optional[Reporter] = None,
 ) -> Answer:

@@ -43,7 +43,7 @@ def natural_cover(
     ...         Weather(3, datetime(2024, 12, 2), 0.0, None, 3.0),
     ...         Weather(4, datetime(2024, 12, 4), 0.0, None, 3.0)]
     >>> [round(depth, 2) for depth in natural_cover(rows, SeasonSettings())]
-    [0.4, 0.28, 0.09]
+    [0.4, 0.31, 0.1]
     """
     if settings.cover == "none":
         return [0.0] * len(season)
