@@ -132,9 +132,7 @@ def coverage_nrel(
     if not blocked.index.equals(temp_air.index):
         raise InputError("blocked: its index is not that of temp_air")
     cold = temp_air.where(~blocked.astype(bool), -1e6)
-    covered: pd.Series = snow.coverage_nrel(
-        snowfall, poa_irradiance, cold, surface_tilt, **options
-    )
+    covered: pd.Series = snow.coverage_nrel(snowfall, poa_irradiance, cold, surface_tilt, **options)
     return covered
 
 

@@ -38,7 +38,7 @@ DEFERRED = (
     ("plan", "scene", "Print the features and the cost of a scene file, without running it."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
     ("schema", "scene", "Print the JSON Schema of a scene."),
-    ("compare", "scene", "Compare the stack heights of a 3D and a 2D results folder."),
+    ("compare", "scene", "Compare the stack heights of two results folders."),
     ("lua", "lua", "Run a scene that Lua scripts describe, or write it as JSON."),
     ("study", "study", "Compute many runs of one scene whose parameters vary."),
     ("geometry", "regression", "Write the study of panel geometries that regress takes."),

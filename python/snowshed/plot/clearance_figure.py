@@ -14,9 +14,7 @@ from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, NOISE, STACK, 
 Band = tuple[float, float]
 
 
-def burial_figure(
-    required: Floats, levels: Sequence[tuple[float, float, float, float]]
-) -> Figure:
+def burial_figure(required: Floats, levels: Sequence[tuple[float, float, float, float]]) -> Figure:
     """Draw the probability that a winter's snow reaches the lower edge, over its height.
 
     Parameters
@@ -54,9 +52,7 @@ def burial_figure(
         return figure
 
 
-def design_figure(
-    found: Sequence[tuple[float, float, float, Band]], probability: float
-) -> Figure:
+def design_figure(found: Sequence[tuple[float, float, float, Band]], probability: float) -> Figure:
     """Draw the required height against slope length, a line for each tilt.
 
     Parameters

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -52,7 +52,7 @@ class EventParticles:
     dimension: int
     dx: float
     ground_tilt_deg: float
-    around: Surroundings = Surroundings()
+    around: Surroundings = field(default_factory=Surroundings)
 
     def measure(self, trimming: str = DEFAULT_TRIMMING) -> StackMeasure:
         """Measure the stack by a reading of A.4.2; see `snowshed.measure_stack`."""

@@ -32,9 +32,7 @@ HEIGHT = 0.45
 
 
 def answer_of(winters, folder, heights=(HEIGHT,), **options):
-    return clearance_of(
-        DESIGN, winters, heights, folder, ranges=KNOWN, settings=STILL, **options
-    )
+    return clearance_of(DESIGN, winters, heights, folder, ranges=KNOWN, settings=STILL, **options)
 
 
 @pytest.fixture(scope="module")
@@ -197,7 +195,9 @@ def test_the_same_seed_makes_the_same_winters():
 )
 def test_bad_questions_are_refused(options, message, tmp_path, capsys):
     file = tmp_path / "winters.csv"
-    rows = "".join(f"{r.date.date()},{r.snowfall},{r.temperature}\n" for r in SHORT.winters(1, seed=1))
+    rows = "".join(
+        f"{r.date.date()},{r.snowfall},{r.temperature}\n" for r in SHORT.winters(1, seed=1)
+    )
     file.write_text(f"date,snowfall_m,temperature_c\n{rows}")
     given = ["clearance", str(file), "--slope-length", "1", "--tilt", "60", *options]
     assert main([*given, "-o", str(tmp_path / "out")]) == 2

@@ -82,4 +82,7 @@ def test_between_all_snow_and_all_rain_the_part_of_snow_falls():
 
 
 def test_no_station_is_a_plain_table(tmp_path):
-    assert read_station(written(tmp_path, "date,snowfall_m,temperature_c\n2024-01-01,0.1,-3\n")) is None
+    assert (
+        read_station(written(tmp_path, "date,snowfall_m,temperature_c\n2024-01-01,0.1,-3\n"))
+        is None
+    )

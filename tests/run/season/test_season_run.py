@@ -13,7 +13,12 @@ import pytest
 from snowshed import InputError, Scene, _core
 from snowshed.cli.main import main
 from snowshed.run.season import SeasonSettings, accumulate, read_season, run_season
-from snowshed.run.season.clearance import Contact, below_panel, clearance, first_contact, first_reached
+from snowshed.run.season.clearance import (
+    Contact,
+    below_panel,
+    clearance,
+    first_reached,
+)
 from snowshed.run.season.driver import drawn, verdict
 from snowshed.run.season.slabs import season_scene
 from snowshed.scene.builders.panel_edge import panel_edge

@@ -56,8 +56,6 @@ def test_heights_are_those_above_the_ground_below():
     hill = 0.4 * PILE[:, 0]
     raised = PILE + np.column_stack([0 * hill, 0 * hill, hill - 2.0])
     ones = np.ones(len(PILE))
-    on_hill = measure_stack(
-        raised, ones, 200 * ones, dimension=2, dx=DX, ground=hill - 2.0
-    )
+    on_hill = measure_stack(raised, ones, 200 * ones, dimension=2, dx=DX, ground=hill - 2.0)
     assert on_hill.height == pytest.approx(measure(PILE).height)
     assert np.allclose(on_hill.ground, 0.4 * on_hill.outline[:, 0] - 2.0)

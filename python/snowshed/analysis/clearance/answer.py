@@ -22,7 +22,6 @@ from snowshed.analysis.clearance.winters import Winter
 from snowshed.io.arrays import Floats
 from snowshed.io.json_file import JsonValue
 from snowshed.run.progress import Reporter
-from snowshed.run.season.clearance import Contact
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.study.session import compute_runs, expected_duration
 from snowshed.study.table import read_table

@@ -127,7 +127,9 @@ class Ranges:
 
 def season_settings(base: SeasonSettings, values: Mapping[str, float], dx: float) -> SeasonSettings:
     """Return the settings of a season with drawn values; thin releases slide together."""
-    known = {name: values[name] for name in ("friction", "adhesion", "catch") if name in values}
+    known: dict[str, Any] = {
+        name: values[name] for name in ("friction", "adhesion", "catch") if name in values
+    }
     return replace(base, **known, pool_below=max(base.pool_below, 1.5 * dx))
 
 
@@ -162,7 +164,8 @@ def scene_of(
         }
     )
     strength = values.get("strength", 1.0)
-    snow = scene.resolve().data["snow"]
+    data: dict[str, Any] = scene.resolve().data
+    snow = data["snow"]
     if "preconsolidation_pressure" in snow:
         scene.set("snow.preconsolidation_pressure", strength * snow["preconsolidation_pressure"])
     return scene.resolve()

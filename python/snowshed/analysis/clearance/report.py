@@ -62,8 +62,7 @@ def summary(answers: Sequence[Answer], ranges: Ranges) -> dict[str, Any]:
                 "winters": list(answer.winters),
                 "levels": [vars(level) for level in answer.levels],
                 "heights": [
-                    {"height": height, "buried": answer.buried(height)}
-                    for height in answer.heights
+                    {"height": height, "buried": answer.buried(height)} for height in answer.heights
                 ],
                 "shares": {share.cause: share.part for share in answer.shares},
             }

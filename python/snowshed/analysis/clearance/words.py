@@ -34,15 +34,13 @@ def advice(answer: Answer) -> str:
     """Return what would reduce the uncertainty of the required height most."""
     shares = [share for share in answer.shares if share.cause in MEANING]
     if not shares:
-        return (
-            "There are too few seasons to tell the causes apart; take more winters, or --draws."
-        )
+        return "There are too few seasons to tell the causes apart; take more winters, or --draws."
     first = shares[0]
     winter = next((share.part for share in answer.shares if share.cause == "winter"), 0.0)
     return (
         f"To know the {MEANING[first.cause]} would reduce the uncertainty most: "
-        f"{100 * first.part:.0f} % of the variance goes with it. {100 * winter:.0f} % goes with the "
-        "winter, which no measurement reduces."
+        f"{100 * first.part:.0f} % of the variance goes with it. {100 * winter:.0f} % goes with "
+        "the winter, which no measurement reduces."
     )
 
 
@@ -54,8 +52,8 @@ def warnings(answers: Sequence[Answer]) -> list[str]:
         for level in answer.levels:
             if level.height > answer.heights[-1]:
                 found.append(
-                    f"{name}: {level.height:.1f} m for {100 * level.probability:g} % lies above all "
-                    f"candidate heights (up to {answer.heights[-1]:g} m); give higher --heights"
+                    f"{name}: {level.height:.1f} m for {100 * level.probability:g} % lies above "
+                    f"all candidate heights (up to {answer.heights[-1]:g} m); give higher --heights"
                 )
             elif not level.counted:
                 found.append(
@@ -64,7 +62,9 @@ def warnings(answers: Sequence[Answer]) -> list[str]:
                     "needed to count it"
                 )
         if answer.failed:
-            found.append(f"{name}: {answer.failed} seasons could not be simulated, and are left out")
+            found.append(
+                f"{name}: {answer.failed} seasons could not be simulated, and are left out"
+            )
     return found
 
 
@@ -88,6 +88,4 @@ def assumptions(answer: Answer) -> list[str]:
 
 def range_rows(ranges: Ranges) -> list[tuple[str, str, str]]:
     """Return what varies, from where to where."""
-    return [
-        (MEANING[name], f"{low:g}", f"{high:g}") for name, (low, high) in ranges.spans.items()
-    ]
+    return [(MEANING[name], f"{low:g}", f"{high:g}") for name, (low, high) in ranges.spans.items()]

@@ -13,7 +13,9 @@ from snowshed.io.formatting import about
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance import Answer, Design, Ranges, Winter
+    from snowshed.run.season.weather_row import Weather as WeatherRow
 
+EXAMPLE = "example"  # in place of a file: made winters
 PATH = click.Path(path_type=Path)
 
 
@@ -56,8 +58,8 @@ def clearance(
 ) -> None:
     """Find how high the lower edge must be, so that shed snow does not reach it.
 
-    WEATHER holds years of daily data, in any format that ``snowshed season`` reads. The seasons of
-    all its winters are simulated over the ranges of what nobody knows of the snow. The same command
+    WEATHER holds years of daily data, in any format that ``snowshed season`` reads, or is the word
+    example: ten made winters. The seasons of all its winters are simulated over the ranges of what nobody knows of the snow. The same command
     goes on with an interrupted answer.
 
     \b
@@ -76,7 +78,7 @@ def clearance(
         for angle in numbers("--tilt", tilt)
     ]
     candidates = numbers("--heights", heights)
-    rows, notes = read_weather(weather)
+    rows, notes = read_weather(weather) if str(weather) != EXAMPLE else _example()
     winters = winters_of(rows)
     if dry_run or not quiet:
         plans = [forecast(one, winters, candidates, ranges=ranges, jobs=jobs) for one in designs]
@@ -128,6 +130,13 @@ def _answers(
     return found
 
 
+def _example() -> tuple[list[WeatherRow], list[str]]:
+    from snowshed.run.season.generator import EXAMPLE_CLIMATE
+
+    rows = EXAMPLE_CLIMATE.winters(10, seed=7)
+    return rows, ["the weather is that of ten made winters (generator of Richardson 1981)"]
+
+
 def numbers(option: str, text: str) -> list[float]:
     """Return the numbers of an option: one, some with commas, or FROM:TO:STEP.
 
@@ -141,7 +150,7 @@ def numbers(option: str, text: str) -> list[float]:
             return [float(part) for part in text.split(",")]
         low, high, step = (float(part) for part in text.split(":"))
         count = int((high - low) / step + 1e-9) + 1
-        if not (0 < step and 1 <= count <= 1000):
+        if not (step > 0 and 1 <= count <= 1000):
             raise ValueError
         return [round(low + n * step, 9) for n in range(count)]
     except (ValueError, ZeroDivisionError, OverflowError):

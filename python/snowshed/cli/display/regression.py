@@ -77,9 +77,7 @@ def print_prediction(prediction: Prediction, title: str) -> None:
     wide_console().print(shown)
     label = measure_named(prediction.measure).label
     wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].", markup=False)
-    wide_console().print(
-        f" The stack is {'; '.join(filter(None, [label, _scene(prediction)]))}."
-    )
+    wide_console().print(f" The stack is {'; '.join(filter(None, [label, _scene(prediction)]))}.")
 
 
 def _scene(prediction: Prediction) -> str:

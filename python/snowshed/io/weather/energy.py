@@ -29,8 +29,10 @@ def is_epw(lines: Sequence[str]) -> bool:
 def read_epw(name: str, lines: Sequence[str]) -> Station:
     """Return an EPW file's observations; raises InputError naming line and column."""
     if len(lines) <= EPW_HEADER or not lines[EPW_HEADER - 1].startswith("DATA PERIODS"):
-        raise InputError(f"{name}, line {min(len(lines), EPW_HEADER)}: no line DATA PERIODS, which "
-                         "ends the header of an EPW file")
+        raise InputError(
+            f"{name}, line {min(len(lines), EPW_HEADER)}: no line DATA PERIODS, which "
+            "ends the header of an EPW file"
+        )
     columns = (
         (EPW_TEMPERATURE, "dry bulb temperature", Quantity("temperature", "degrees C"), "99.9"),
         (EPW_DEPTH, "snow depth", Quantity("snow_depth", "cm", 0.01), "999"),

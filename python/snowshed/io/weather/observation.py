@@ -184,10 +184,12 @@ def cells_of(line: str, count: int, where: str, separator: Optional[str] = ",") 
     """
     import csv
 
-    if separator is None:
-        cells = line.split()
-    else:
-        cells = next(csv.reader([line], delimiter=separator), [])
+    try:
+        cells = (
+            line.split() if separator is None else next(csv.reader([line], delimiter=separator), [])
+        )
+    except csv.Error as error:  # a cell without end
+        raise InputError(f"{where}: not a table: {error}") from None
     if len(cells) != count:
         raise InputError(f"{where}: {len(cells)} cells in {count} columns")
     return [cell.strip() for cell in cells]

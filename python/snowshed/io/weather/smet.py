@@ -108,7 +108,9 @@ def _station(
     separator: str | None,
 ) -> Station:
     if "timestamp" not in fields:
-        raise InputError(f"{name}: no field timestamp; its fields are {', '.join(fields) or 'none'}")
+        raise InputError(
+            f"{name}: no field timestamp; its fields are {', '.join(fields) or 'none'}"
+        )
     when = fields.index("timestamp")
     missing = ("", header.get("nodata", "-999"))
     rows = []

@@ -74,9 +74,7 @@ def _read(
         raise InputError(f"{name}, line {start + 1}: no column {' or '.join(times)}")
     columns = _best(head, parameters)
     if not columns:
-        raise InputError(
-            f"{name}, line {start + 1}: none of the columns {', '.join(parameters)}"
-        )
+        raise InputError(f"{name}, line {start + 1}: none of the columns {', '.join(parameters)}")
     rows, station = [], ""
     for number, line in enumerate(lines[start + 1 :], start + 2):
         if not line.strip():

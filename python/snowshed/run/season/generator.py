@@ -16,6 +16,7 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.io.arrays import Booleans
 from snowshed.run.season.weather_row import MOST_SNOWFALL, Weather
 
 LEAST_DAYS = 20  # of a month, to fit it
@@ -142,7 +143,7 @@ class Climate:
         return rows
 
 
-def _share(flags: np.ndarray) -> float:  # type: ignore[type-arg]
+def _share(flags: Booleans) -> float:
     return float(flags.mean()) if len(flags) else 0.0
 
 

@@ -47,6 +47,7 @@ def season_scene(
         raise InputError(f"{len(released)} releases; a scene has at most {MOST_EVENTS} events")
     if scene.get("bodies"):
         raise InputError("/bodies: a season lays its own snow; leave further bodies out")
+    natural: dict[str, Any] = scene["snow"]
     slab = scene.pop("slab", None) or {}
     strength = (settings or SeasonSettings()).strength
     made = Scene.from_data(scene)
@@ -55,8 +56,11 @@ def season_scene(
         length=slab.get("length"),
         width=slab.get("width"),
         layers=[
-            Layer(day.slab_load / density, snow_of_density(base.data["snow"], density, strength),
-                  day.event)
+            Layer(
+                day.slab_load / density,
+                snow_of_density(natural, density, strength),
+                day.event,
+            )
             for day, density in zip(released, _densities(released))
         ],
     )

@@ -67,10 +67,10 @@ def read_season(season: Season) -> list[Weather]:
     ----------
     season
         A weather file in one of the formats of `snowshed.io.weather.FORMATS`, recognised by its
-        content, or a CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or timestamps,
-        increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c`` and, if
-        known, ``density_kg_m3``, ``friction``, ``adhesion_pa`` and ``snow_depth_m`` (of the natural
-        snow cover). The names tell the units. If
+        content, or a CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or
+        timestamps, increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c``
+        and, if known, ``density_kg_m3``, ``friction``, ``adhesion_pa`` and ``snow_depth_m`` (of the
+        natural snow cover). The names tell the units. If
         ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of `Weather`
         are returned unchanged.
 

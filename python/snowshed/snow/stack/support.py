@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.io.arrays import Booleans, Floats, Integers
 from snowshed.snow.stack.connected_components import connected_bodies
 
 AGROUND = 2.0  # cells between the ground and the lowest snow of a body that lies on it
@@ -82,7 +82,7 @@ def supports(
     return Support(by_panel[bodies], by_structure[bodies], aloft[bodies], joined)
 
 
-def _has(bodies: Floats, marked: Booleans) -> Booleans:
+def _has(bodies: Integers, marked: Booleans) -> Booleans:
     """Return which bodies have a marked particle."""
     has: Booleans = np.bincount(bodies, weights=marked) > 0
     return has
