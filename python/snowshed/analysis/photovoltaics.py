@@ -109,7 +109,7 @@ def coverage_nrel(
     temp_air: pd.Series,
     surface_tilt: float,
     blocked: pd.Series,
-    **options: Any,
+    **options: float,
 ) -> pd.Series:
     """Return the covered part of a row by the NREL model, whose snow cannot slide onto a pile.
 

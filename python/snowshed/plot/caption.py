@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.methods.registry import settings_of
-from snowshed.plot.labels import label, settings
+from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -91,10 +91,11 @@ def _slab(slab: dict[str, Any]) -> str:
     return f"layers {', '.join(thicknesses)} m"
 
 
-def _densities(scene: dict[str, Any]) -> str:
+def _span(scene: dict[str, Any], name: str) -> str:
+    """Return a parameter of the snow with its unit; from where to where, if layers differ."""
     layers = (scene.get("slab") or {}).get("layers") or [{}]
-    found = [layer.get("snow", scene["snow"])["density"] for layer in layers]
-    known = label("snow.density")
+    found = [layer.get("snow", scene["snow"])[name] for layer in layers]
+    known = label(f"snow.{name}")
     ends = sorted({min(found), max(found)})
     return " to ".join([*map(known.value, ends[:-1]), known.quantity(ends[-1])])
 
@@ -102,5 +103,5 @@ def _densities(scene: dict[str, Any]) -> str:
 def _snow(scene: dict[str, Any]) -> str:
     elastic = scene["snow"]["model"] == "elastic"
     shown = ELASTIC if elastic else (*ELASTIC, *PLASTIC)
-    values = {f"snow.{name}": scene["snow"][name] for name in shown}
-    return f"snow {_densities(scene)}, {settings(values)}" + (", elastic" if elastic else "")
+    values = [f"{label(f'snow.{name}').symbol} {_span(scene, name)}" for name in shown]
+    return ", ".join([f"snow {_span(scene, 'density')}", *values, *["elastic"] * elastic])

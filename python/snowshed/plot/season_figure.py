@@ -78,7 +78,7 @@ def season_figure(
     dates: Floats = date2num(moments)  # type: ignore[no-untyped-call]
     _draw_panel_snow(load, dates, table)
     _draw_stack(stack, dates, table, float(panel[1][1]), contact)
-    _draw_outlines(side, outlines, panel)
+    _draw_outlines(side, outlines, table, panel)
     for axes in (load, stack):
         locator: Any = AutoDateLocator()  # type: ignore[no-untyped-call]
         formatter: Any = ConciseDateFormatter(locator, show_offset=False)  # type: ignore[no-untyped-call]
@@ -127,11 +127,11 @@ def _draw_stack(
     axes.axhline(edge, color=INK, linewidth=1.2, linestyle=(0, (4, 3)))
     axes.annotate(
         "lower edge of the panel",
-        (1.0, edge),
-        (-2, 4),
+        (0.0, edge),
+        (4, 4),
         xycoords=axes.get_yaxis_transform(),
         textcoords="offset points",
-        ha="right",
+        ha="left",
         color=INK,
         fontsize=9,
     )
@@ -170,8 +170,11 @@ def _mark_contact(axes: Axes, date: float, edge: float, contact: _Contact) -> No
     )
 
 
-def _draw_outlines(axes: Axes, outlines: pd.DataFrame, panel: Sequence[Sequence[float]]) -> None:
-    """Draw the profile of the stack after every event, and the panel above it."""
+def _draw_outlines(
+    axes: Axes, outlines: pd.DataFrame, table: pd.DataFrame, panel: Sequence[Sequence[float]]
+) -> None:
+    """Draw the stack's profile on the snow cover of its day, event by event, below the panel."""
+    covers = table.dropna(subset=["event"]).groupby("event")["cover_m"].first()
     axes.plot(*zip(*panel), color=INK, linewidth=3.5, solid_capstyle="round")
     axes.axhline(0.0, color=FAINT, linewidth=1.2)
     events = sorted(set(outlines["event"]))
@@ -180,12 +183,18 @@ def _draw_outlines(axes: Axes, outlines: pd.DataFrame, panel: Sequence[Sequence[
     for number, (event, shade) in enumerate(zip(events, shades), 1):
         profile = outlines[outlines["event"] == event]
         name = f"after event {event}" if number in named else None
-        axes.plot(profile["x"], profile["z"], color=shade, linewidth=1.6, label=name)
+        cover = float(covers.get(event, 0.0))
+        axes.plot(profile["x"], cover + profile["z"], color=shade, linewidth=1.6, label=name)
     if events:
         columns = 1 + (len(named) - 1) // ROWS
         axes.legend(frameon=False, fontsize=9, loc="upper right", ncols=columns)
+        deepest = float(covers.max())
+        if deepest > 0.0:
+            axes.axhspan(0.0, deepest, color=GRID, linewidth=0, zorder=0)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title("Outlines, from the side, m", loc="left", color=INK, fontsize=11)
+    axes.set_title(
+        "Outlines on the natural snow cover, from the side, m", loc="left", color=INK, fontsize=11
+    )
     axes.set_xlabel("along the ground from the panel's centre, m", color=INK, fontsize=9)
 
 

@@ -125,6 +125,7 @@ def required_height(found: Sequence[Outcome]) -> float:
 
     Examples
     --------
+    >>> from snowshed.run.season.clearance import Contact
     >>> touched = Contact("2024-12-24", 1, "crest")
     >>> required_height([Outcome(1.0, -0.1, touched), Outcome(2.0, 0.9, None)])
     1.1

@@ -59,8 +59,8 @@ def clearance(
     """Find how high the lower edge must be, so that shed snow does not reach it.
 
     WEATHER holds years of daily data, in any format that ``snowshed season`` reads, or is the word
-    example: ten made winters. The seasons of all its winters are simulated over the ranges of what nobody knows of the snow. The same command
-    goes on with an interrupted answer.
+    example: ten made winters. The seasons of all its winters are simulated over the ranges of what
+    nobody knows of the snow. The same command goes on with an interrupted answer.
 
     \b
     Example:

@@ -67,7 +67,7 @@ def compare(one: Path, other: Path) -> None:
     from snowshed.cli import console
 
     if same_dimension(one, other):
-        console.print_heights(height_ratio(one, other), str(one), str(other))
+        console.print_heights(height_ratio(one, other), one.name, other.name)
     else:
         console.print_ratios(compare_folders(one, other))
 
