@@ -10,6 +10,7 @@ namespace snowshed {
 struct Reseeding;
 struct RunReport;
 
+void register_errors(pybind11::module_&);
 void bind_scene(pybind11::module_&);
 void bind_simulation(pybind11::module_&);
 void bind_event_sequence(pybind11::module_&);

@@ -10,6 +10,7 @@
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/methods/slide/solver.hpp"
+#include "snowshed/run/fingerprint.hpp"
 #include "snowshed/run/grains_cost.hpp"
 #include "snowshed/run/loading_curve.hpp"
 #include "snowshed/run/slide_cost.hpp"
@@ -31,6 +32,7 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
     cost_ = estimate_cost(scene_, count_particles(scene_, base_dir));
     check_memory(cost_.bytes);
   }
+  shape_prints_ = fingerprints_of_shapes(scene_, base_dir_);
   surroundings_ = build_surroundings(scene_, base_dir_);
   listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
   solver_ = empty_method();
@@ -77,13 +79,13 @@ const LoadingCurve& Simulation::loading_curve() const {
 
 int Simulation::threads() const { return threads_to_use(wanted_threads(scene_.numerics)); }
 
-std::optional<Reseeding> Simulation::begin_event() {
+std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   if (running_) throw SimulationError("the present event has not ended yet");
   std::optional<Reseeding> reseeding;
   if (event_ > 0 && scene_.events.between == Between::reseed)
-    reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_);
+    reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_, stop);
   const double lift = lift_of_next_slab(reseeding);
-  SeededSnow snow = seed_next_event(lift);
+  SeededSnow snow = seed_next_event(lift, stop);
   change_snow(reseeding, std::move(snow.batches));
   event_mass_ = snow.mass;
   laid_height_ += snow.height_on_panel;
@@ -95,10 +97,10 @@ std::optional<Reseeding> Simulation::begin_event() {
   return reseeding;
 }
 
-SeededSnow Simulation::seed_next_event(double lift) const {
+SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) const {
   if (scene_.uses<SlideSettings>()) return seeded(slide().seed());
   if (scene_.uses<GrainsSettings>()) return seeded(grains().seed());
-  return seed_event(scene_, base_dir_, panel_, event_ + 1, lift);
+  return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
 
 /// Takes a step of the present event.

@@ -51,8 +51,9 @@ class Simulation {
   /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
   /// "reseed", from the second event on the stack is first seeded afresh (`reseed_stack`). All or
   /// nothing: throws InputError where the snow of this event cannot be seeded, SimulationError
-  /// where the stack cannot be converted or an event still runs, and leaves everything as it was.
-  std::optional<Reseeding> begin_event();
+  /// where the stack cannot be converted or an event still runs, Stopped on request, and leaves
+  /// everything as it was.
+  std::optional<Reseeding> begin_event(const StopRequest& stop = {});
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
   /// `interval` seconds of wall time, returns false; then it goes on to the next safe point, so
@@ -129,7 +130,7 @@ class Simulation {
  private:
   double lift_of_next_slab(const std::optional<Reseeding>&) const;
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
-  SeededSnow seed_next_event(double lift) const;
+  SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
   void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
   void advance();
   bool is_at_rest();
@@ -141,7 +142,8 @@ class Simulation {
   Scene scene_;
   // As checkpoints hold it, written ahead: lack of memory amid JSON would end the process.
   std::string scene_text_;
-  std::vector<Snow> snows_;  // by material_id
+  std::vector<Snow> snows_;                 // by material_id
+  std::vector<std::int64_t> shape_prints_;  // of the files that shapes are read from
   std::filesystem::path base_dir_;
   CostEstimate cost_;
   PanelRegion panel_;

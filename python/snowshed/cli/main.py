@@ -6,12 +6,14 @@ snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, ``se
 ``compare|sensitivity|calibrate`` answer questions about runs, and ``geometry|regress|predict``
 treat the data set of panels.
 
-Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted. Errors are one
-line on stderr.
+Exit codes: 0 done; 2 bad input, nothing was written; 3 what was begun could not go on, for the
+simulation failed, the disk is full or memory is short; 130 interrupted. Errors are one line on
+stderr.
 """
 
 from __future__ import annotations
 
+import errno
 import sys
 import warnings
 from collections.abc import Sequence
@@ -21,6 +23,16 @@ import click
 
 import snowshed._core as _core
 from snowshed.cli.deferred import Deferred
+from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_GO_ON, INTERRUPTED
+from snowshed.io.messages import shortened
+from snowshed.io.printable import printable
+
+#: What is wrong with files as the user named them.
+OF_NAMES = (
+    *(errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENOTEMPTY, errno.EACCES),
+    *(errno.EPERM, errno.ENAMETOOLONG, errno.ELOOP, errno.EINVAL, errno.ENXIO, errno.EROFS),
+)
+LONGEST_MESSAGE = 4000  # characters
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -84,18 +96,32 @@ def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) 
         arguments = ["--help"]
     try:
         settings = cli.context_settings
+        _refuse_bytes(sys.argv[1:] if arguments is None else arguments)
         return command.main(arguments, prog_name=name, standalone_mode=False, **settings) or 0
     except click.ClickException as error:
         return _fail(error.format_message(), max(error.exit_code, 2))
     except OSError as error:
-        return _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error), 2)
+        said = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+        named = not error.errno or error.errno in OF_NAMES
+        return _fail(said, BAD_INPUT if named else COULD_NOT_GO_ON)
     except _core.InputError as error:
-        return _fail(str(error), 2)
+        return _fail(str(error), BAD_INPUT)
     except _core.SimulationError as error:
-        return _fail(str(error), 3)
+        return _fail(str(error), COULD_NOT_GO_ON)
+    except MemoryError:
+        return _fail("out of memory; give fewer particles or a larger dx", COULD_NOT_GO_ON)
     except (KeyboardInterrupt, click.Abort):
-        return _fail("interrupted", 130)
+        return _fail("interrupted", INTERRUPTED)
     return 0
+
+
+def _refuse_bytes(arguments: Sequence[str]) -> None:
+    """Refuse names that are no UTF-8 before any work: scenes and tables could not hold them."""
+    for argument in arguments:
+        try:
+            argument.encode()
+        except UnicodeEncodeError:
+            raise _core.InputError(f"{argument}: this name is not UTF-8") from None
 
 
 def _note(
@@ -111,9 +137,10 @@ def _note(
         text = f"note: {message}\n"
     else:
         text = warnings.formatwarning(message, category, filename, lineno, line)
-    (file or sys.stderr).write(text)
+    (file or sys.stderr).write(printable(text))
 
 
 def _fail(message: str, code: int) -> int:
-    print("error:", " ".join(message.split()), file=sys.stderr)
+    line = printable(" ".join(message.split()))
+    print("error:", shortened(line, LONGEST_MESSAGE), file=sys.stderr)
     return code

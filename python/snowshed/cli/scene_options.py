@@ -90,7 +90,10 @@ def scene_options(command: Command) -> Command:
             command = _option(replace(parameter, path=path), hidden=True)(command)
         command = _option(parameter, hidden=parameter.path not in BASIC)(command)
     command = click.option(
-        "--snow", "snow_preset", metavar="NAME", help="Snow of the thesis: calibrated, reference."
+        "--snow",
+        "snow_preset",
+        metavar="NAME",
+        help="Snow of the thesis (calibrated, reference), or a JSON file of a snow.",
     )(command)
     return click.option(
         "--preset",
@@ -105,7 +108,7 @@ def scene_from_options(
     """Build a scene: the preset (or a bare panel), then the snow, then single options."""
     scene = Scene.preset(preset) if preset else Scene(panel=Panel(), slab=Slab(), ground=Ground())
     if snow_preset:
-        scene.update({"snow": Snow.preset(snow_preset).to_data()})
+        scene.update({"snow": Snow.named(snow_preset).to_data()})
     given = {k.replace("__", "."): v for k, v in options.items() if v is not None and v != ()}
     return scene.update(given)
 

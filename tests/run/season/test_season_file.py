@@ -55,10 +55,10 @@ BAD_ROWS = [
     ("2024-12-01,0.2,100,-4", "line 3, column date: 2024-12-01 00:00:00 is not after line 2"),
     ("2024-12-02,much,100,-4", "line 3, column snowfall_m: 'much' is not a number"),
     ("2024-12-02,-0.1,100,-4", r"column snowfall_m: -0.1 is outside the allowed range \(0 <= "),
-    ("2024-12-02,nan,100,-4", "line 3, column snowfall_m: nan is outside"),
+    ("2024-12-02,nan,100,-4", "line 3, column snowfall_m: 'nan' is not a number"),
     ("2024-12-02,,100,-4", "line 3, column snowfall_m: empty; give a number"),
     ("2024-12-02,0.2,5000,-4", "line 3, column density_kg_m3: 5000 is outside .* <= 700 kg/m3"),
-    ("2024-12-02,0.2,100,inf", "line 3, column temperature_c: inf is outside"),
+    ("2024-12-02,0.2,100,inf", "line 3, column temperature_c: 'inf' is not a number"),
     ('2024-12-02,"0.2,100,-4', "line 3: not a table: unexpected end"),
 ]
 

@@ -19,6 +19,7 @@ from snowshed._core import InputError
 from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.messages import quoted
 from snowshed.io.weather import Station, read_station
+from snowshed.io.number_text import number_in
 from snowshed.run.season.observed import days_of
 from snowshed.run.season.weather_row import MOST_SNOWFALL, Weather
 from snowshed.scene.scene import PathLike
@@ -169,11 +170,10 @@ def _number(text: str, column: _Column, where: str) -> Optional[float]:
         if column.filled:
             raise InputError(f"{where}: empty; give a number ({_range(column)})")
         return None
-    try:
-        value = float(text)
-    except ValueError:
-        raise InputError(f"{where}: {quoted(text)} is not a number ({_range(column)})") from None
-    if not (math.isfinite(value) and column.low <= value <= column.high):
+    value = number_in(text)
+    if math.isnan(value):
+        raise InputError(f"{where}: {quoted(text)} is not a number ({_range(column)})")
+    if not column.low <= value <= column.high:
         hint = column.hint if value > column.high else ""
         raise InputError(
             f"{where}: {value:g} is outside the allowed range ({_range(column)}){hint}"
@@ -189,11 +189,13 @@ def _date(text: str, where: str) -> datetime:
     """Read a date or a time; one with an offset is turned into universal time."""
     try:
         date = datetime.fromisoformat(text.replace("Z", "+00:00"))
-    except ValueError:
+        if date.tzinfo is not None:
+            date = date.astimezone(timezone.utc).replace(tzinfo=None)
+    except (ValueError, OverflowError):
         raise InputError(
             f"{where}: {quoted(text)} is not a date such as 2024-12-31 or 2024-12-31T18:00"
         ) from None
-    return date if date.tzinfo is None else date.astimezone(timezone.utc).replace(tzinfo=None)
+    return date
 
 
 def _check_season(season: Sequence[Weather], rows: Sequence[Row], name: str) -> None:

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Optional
 
+from reproduction.hypothesis_tests import CONTRADICTED, UNDECIDED, Judged
 from snowshed.cli import progress as bar
 from snowshed.cli.terminal import plain_table, wide_console
 from snowshed.io.formatting import about
 from snowshed.run.progress import Progress, Reporter
-from thesis.claims.hypothesis_tests import CONTRADICTED, UNDECIDED, Judged
 
 WIDTH = 140  # columns, of what is not a terminal
 STYLES = {CONTRADICTED: "bold red", UNDECIDED: "dim"}
@@ -29,9 +29,9 @@ def _announcement(progress: Progress) -> str:
     return f"{progress.count} stages; expected time: {expected}"
 
 
-def print_claims(claims: Sequence[Judged]) -> None:
-    """Print the verdicts, and how many there are of each."""
-    table = plain_table("Claims of the thesis")
+def print_claims(claims: Sequence[Judged], author: str) -> None:
+    """Print the verdicts on what an author claims, and how many there are of each."""
+    table = plain_table(f"Claims of {author}")
     for title in ("", "section", "claim", "finding"):
         table.add_column(title, no_wrap=not title)
     for one in claims:

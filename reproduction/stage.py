@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Optional, Protocol
 
 from snowshed._core import InputError
-from snowshed.run.progress import Progress
+from snowshed.run.progress import Progress, Reporter
 from snowshed.study import Study, cost_estimate
 from snowshed.study.session import Resources, resume
 from snowshed.study.store import Store, StoredRun
@@ -154,3 +154,38 @@ def choose(stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
         if name not in known:
             raise InputError(f"stage: {name!r} is unknown; allowed: {', '.join(known)}")
     return [stage for stage in stages if not names or stage.name in names]
+
+
+def compute(
+    stages: Sequence[Stage], *, jobs: Optional[int] = None, progress: Optional[Reporter] = None
+) -> None:
+    """Compute what is left of some stages.
+
+    Parameters
+    ----------
+    stages
+        From `choose`.
+    jobs
+        Processes at once; None: as many as there are cores.
+    progress
+        Called a few times a second.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        After Ctrl-C (such as StudyInterrupted); what is done is kept.
+    InputError, StudyError
+        If a stage cannot be computed.
+    """
+    expected = [stage.expected_s(jobs) for stage in stages]
+    whole = sum(expected) or 1.0
+    for number, stage in enumerate(stages):
+        before = sum(expected[:number])
+
+        def tell(fraction: float, doing: str, number: int = number, before: float = before) -> None:
+            if progress is not None:
+                done = (before + fraction * expected[number]) / whole
+                count = len(stages)
+                progress(Progress(done, number, count, "stages", doing, expected_s=whole))
+
+        stage.compute(jobs, tell)

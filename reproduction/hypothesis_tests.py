@@ -91,7 +91,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Claim(Generic[Data]):
-    """A claim of the thesis.
+    """A claim of a publication.
 
     Attributes
     ----------
