@@ -10,6 +10,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
+from snowshed.io.number_text import number_in
 
 ZERO_CELSIUS = 273.15  # K
 
@@ -114,13 +115,12 @@ class Quantity:
         cell = text.strip()
         if cell in missing:
             return None
-        try:
-            number = float(cell)
-        except ValueError:
+        number = number_in(cell)
+        if math.isnan(number):
             raise InputError(
                 f"{where}: {quoted(cell)} is not a number ({self._allowed(low, high)})"
-            ) from None
-        if any(_is_number(one) and float(one) == number for one in missing):
+            )
+        if any(number_in(one) == number for one in missing):
             return None
         value = self.factor * number + self.offset
         if not (math.isfinite(value) and low <= value <= high):
@@ -142,13 +142,6 @@ RANGES = {
     "snowfall": (0.0, 3.0),
     "snow_depth": (0.0, 15.0),
 }
-
-
-def _is_number(text: str) -> bool:
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
 
 
 def time_of(text: str, where: str, *formats: str) -> datetime:

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Optional, Union
 from snowshed._core import InputError
 from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.messages import quoted
-from snowshed.io.weather import Station, read_station
 from snowshed.io.number_text import number_in
+from snowshed.io.weather import Station, read_station
 from snowshed.run.season.observed import days_of
 from snowshed.run.season.weather_row import MOST_SNOWFALL, Weather
 from snowshed.scene.scene import PathLike
