@@ -211,7 +211,7 @@ def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
 def _draw_panel(axes: Axes, frame: dict[str, Any], tilt: float, *, measured: bool) -> None:
     """Draw the panel's face, and the height of its lower edge above the ground if `measured`."""
     upper, lower = _panel_ends(frame)
-    axes.plot(*zip(upper, lower), color=INK, linewidth=3.5, solid_capstyle="round", zorder=4)
+    axes.plot(*zip(upper, lower), color=INK, linewidth=3.5, solid_capstyle="round", zorder=2)
     if not measured:
         return
     foot = np.array([lower[0], -lower[0] * np.tan(np.radians(tilt))])
