@@ -27,6 +27,7 @@ MODULES_OF = {
     "matplotlib": "matplotlib",
     "pandas": "pandas",
     "pillow": "PIL",
+    "pvlib": "pvlib",
     "pyarrow": "pyarrow",
     "pyogrio": "pyogrio",
     "rasterio": "rasterio",

@@ -39,7 +39,7 @@ def snow_labels(across: int, voxels: int, seed: int = 1) -> Integers:
     Examples
     --------
     >>> labels = snow_labels(2, 4)
-    >>> labels.shape, 0.2 < (labels > 0).mean() < 0.5
+    >>> labels.shape, bool(0.2 < (labels > 0).mean() < 0.5)
     ((8, 8, 8), True)
     """
     random = np.random.default_rng(seed)

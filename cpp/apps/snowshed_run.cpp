@@ -1,4 +1,6 @@
 // snowshed-run: a JSON scene in, results out. No Python.
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -64,7 +66,7 @@ class Display : public snowshed::EventObserver {
   explicit Display(bool quiet) : quiet_(quiet) {}
 
   void progress(const snowshed::Simulation& sim, const snowshed::RunReport& r) override {
-    if (!quiet_)
+    if (!quiet_ && terminal_)
       std::fprintf(stderr, "\revent %d  %3.0f %%  t = %.3f s  %.1f M updates/s ", sim.event(),
                    100 * r.progress, r.time, r.updates_per_s / 1e6);
   }
@@ -73,13 +75,15 @@ class Display : public snowshed::EventObserver {
       std::fprintf(stderr, "\rnote: event %d: the energy balance has a residual of %.2g %%\n",
                    facts.event, 100 * *lost);
     if (!quiet_)
-      std::fprintf(stderr, "\revent %d  %s after %.3f s of snow time%30s\n", facts.event,
-                   facts.ended == "rest" ? "at rest" : "time limit", facts.sim_time, "");
+      std::fprintf(stderr, "%sevent %d  %s after %.3f s of snow time%s\n", terminal_ ? "\r" : "",
+                   facts.event, facts.ended == "rest" ? "at rest" : "time limit", facts.sim_time,
+                   terminal_ ? "                              " : "");
   }
   bool stop_requested() override { return interrupted != 0; }
 
  private:
   bool quiet_;
+  bool terminal_ = isatty(STDERR_FILENO) != 0;  // a file or a pipe gets whole lines only
 };
 
 /// What time does to the stack between events is the Python package's to compute.

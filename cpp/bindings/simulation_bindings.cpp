@@ -135,6 +135,7 @@ py::object frame(const Simulation& sim) {
   d["slope"] = vector(f.slope);
   d["length"] = f.length;
   d["width"] = f.width;
+  d["board"] = f.board;
   return d;
 }
 

@@ -196,6 +196,7 @@ def test_units_of_measures_are_known():
     units = _units()
     assert units["panel.tilt"] == "degrees" and units["volume_m3"] == "m3"
     assert {name for name in MEASURED_TYPES if name not in units} == {
+        "joined",
         "steps",
         "ended",
         "trimming",

@@ -106,3 +106,11 @@ def print_ratios(ratios: pd.DataFrame) -> None:
         cells = (f"{three:.3f}", f"{two:.3f}", f"{ratio:.2f}", f"{RULE_OF_THUMB:.2f}")
         shown.add_row(str(event), *cells)
     wide_console(120).print(shown)
+
+
+def print_heights(ratios: pd.DataFrame, one: str, other: str) -> None:
+    """Print the heights of two runs, event by event, and their ratio."""
+    shown = plain_table("Stack heights", ("event", f"{one}, m", f"{other}, m", "ratio"), padding=0)
+    for event, first, second, ratio in ratios.itertuples(index=False):
+        shown.add_row(str(event), f"{first:.3f}", f"{second:.3f}", f"{ratio:.2f}")
+    wide_console(120).print(shown)

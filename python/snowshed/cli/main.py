@@ -1,7 +1,8 @@
 """The command line: the list of commands, and their exit codes.
 
 ``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``grains`` a loading test of segmented
-snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, and ``season`` a winter.
+snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, ``season`` a winter, and
+``clearance`` many of them, to the height a panel needs.
 ``compare|sensitivity|calibrate`` answer questions about runs, and ``geometry|regress|predict``
 treat the data set of panels.
 
@@ -49,13 +50,14 @@ DEFERRED = (
     ("plan", "scene", "Print the features and the cost of a scene file, without running it."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
     ("schema", "scene", "Print the JSON Schema of a scene."),
-    ("compare", "scene", "Compare the stack heights of a 3D and a 2D results folder."),
+    ("compare", "scene", "Compare the stack heights of two results folders."),
     ("lua", "lua", "Run a scene that Lua scripts describe, or write it as JSON."),
     ("study", "study", "Compute many runs of one scene whose parameters vary."),
     ("geometry", "regression", "Write the study of panel geometries that regress takes."),
     ("regress", "regression", "Regress stacks on panels: models, tables and figures."),
     ("predict", "regression", "Predict a stack's height and length without simulating it."),
     ("season", "season", "Simulate a winter: snow accumulates, is released and piles up."),
+    ("clearance", "clearance", "Find how high a panel's lower edge must be to stay clear."),
     ("sensitivity", "sensitivity", "Find the snow parameters that matter for the stack."),
     ("calibrate", "calibration", "Find the snow whose simulated stacks agree with measured ones."),
     ("view", "view", "Write the moving view of a run as a page, or as a video."),
@@ -90,6 +92,9 @@ def main(
 
 
 def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) -> int:
+    given = sys.argv[1:] if arguments is None else arguments
+    if not given and isinstance(command, click.Group):
+        arguments = ["--help"]
     try:
         settings = cli.context_settings
         _refuse_bytes(sys.argv[1:] if arguments is None else arguments)

@@ -35,10 +35,28 @@ SHORT_NAMES = {
     "obstacles": "obstacle",
     "bodies": "body",
 }
+#: What ``--help`` shows.
+BASIC = (
+    "dimension", "panel.height", "panel.length", "panel.width", "panel.tilt", "panel.friction",
+    "panel.condition", "slab.thickness", "slab.layers", "ground.tilt", "snow.density",
+    "snow.youngs_modulus", "snow.preconsolidation_pressure", "snow.cohesion", "numerics.dx",
+    "numerics.threads", "events.count", "events.max_time", "output.snapshot_interval",
+)  # fmt: skip
 PREFIXED = ("panel", "slab", "ground", "domain")
 TYPES: Mapping[str, Any] = {"number": float, "integer": int, "string": str}
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def _show_all(context: click.Context, parameter: click.Parameter, given: bool) -> None:
+    if not given or context.resilient_parsing:
+        return
+    aliases = {option_name(path) for one in scene_parameters() for path in one.aliases}
+    for option in context.command.params:
+        if isinstance(option, click.Option):
+            option.hidden = bool(aliases & set(option.opts))
+    click.echo(context.get_help())
+    context.exit()
 
 
 def option_name(path: str) -> str:
@@ -55,11 +73,22 @@ def option_name(path: str) -> str:
 
 
 def scene_options(command: Command) -> Command:
-    """Add all options that describe a scene to a click command."""
+    """Add all options that describe a scene to a click command.
+
+    ``--help`` shows those of `BASIC`, ``--help-all`` all of them.
+    """
+    command = click.option(
+        "--help-all",
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        callback=_show_all,
+        help="Show all options, also those of the snow and the method, and exit.",
+    )(command)
     for parameter in reversed(scene_parameters()):
         for path in parameter.aliases:
             command = _option(replace(parameter, path=path), hidden=True)(command)
-        command = _option(parameter)(command)
+        command = _option(parameter, hidden=parameter.path not in BASIC)(command)
     command = click.option(
         "--snow",
         "snow_preset",

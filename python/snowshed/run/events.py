@@ -28,8 +28,9 @@ from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
 from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
-from snowshed.snow.stack.measure import StackMeasure, measure_stack
+from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -241,15 +242,7 @@ class _Recorder:
     def _measure_of(
         self, positions: Floats, masses: Floats, density: Floats, on_panel: Booleans
     ) -> StackMeasure:
-        return measure_stack(
-            positions,
-            masses,
-            density,
-            dimension=self.simulation.dimension,
-            dx=self.simulation.resolution,
-            ground_tilt_deg=self.simulation.ground_tilt_deg,
-            exclude=on_panel,
-        )
+        return measure_particles(self.simulation, positions, masses, density, on_panel)
 
     def _tell(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
         """Report where the run is; `fraction` is the part of the event that is done."""

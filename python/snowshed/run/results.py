@@ -71,6 +71,8 @@ EVENT_COLUMNS = (
     "damping_rate_per_s",
     "trimming",
     *(MEASURES[name].column(quantity) for name in TRIMMINGS for quantity in QUANTITIES),
+    "on_structures_kg",
+    "joined",
 )
 #: Checksums of tables, by name: of the rows through an event, by its number.
 Checksums = Mapping[str, Mapping[str, str]]
@@ -102,6 +104,8 @@ def measured_columns(stack: StackMeasure) -> dict[str, Union[float, str]]:
             for name, extent in stack.trimmed.items()
             for quantity in QUANTITIES
         },
+        "on_structures_kg": stack.on_structures_mass,
+        "joined": int(stack.joined),
     }
 
 

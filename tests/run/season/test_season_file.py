@@ -135,3 +135,15 @@ def test_units_that_a_table_tells_must_be_those_of_its_columns():
     table.attrs["units"] = {"snowfall_m": "cm"}
     with pytest.raises(InputError, match="column snowfall_m: its units are 'cm'; convert it to m"):
         read_season(table)
+
+
+def test_snowfall_in_centimetres_is_not_taken_for_metres(tmp_path):
+    file = tmp_path / "season.csv"
+    file.write_text("date,snowfall_m,temperature_c\n2024-12-01,8,-3\n")
+    with pytest.raises(InputError, match=r"column snowfall_m: 8 is outside .*is it in cm, mm or"):
+        read_season(file)
+    file.write_text(
+        "date,snowfall_m,temperature_c\n2024-12-01,2,-3\n2024-12-02,1.5,-3\n2024-12-03,1,-3\n"
+    )
+    with pytest.raises(InputError, match=r"half of the snowfalls are of 1.5 m and more"):
+        read_season(file)

@@ -60,11 +60,17 @@ def schema() -> None:
 @click.argument("one", type=PATH)
 @click.argument("other", type=PATH)
 def compare(one: Path, other: Path) -> None:
-    """Compare the stack heights of a 3D and a 2D results folder."""
-    from snowshed.analysis.dimension_ratio import compare_folders
+    """Compare the stack heights of two results folders.
+
+    Of a 3D and a 2D run the ratio stands beside the rule of thumb of the thesis.
+    """
+    from snowshed.analysis.dimension_ratio import compare_folders, height_ratio, same_dimension
     from snowshed.cli import console
 
-    console.print_ratios(compare_folders(one, other))
+    if same_dimension(one, other):
+        console.print_heights(height_ratio(one, other), one.name, other.name)
+    else:
+        console.print_ratios(compare_folders(one, other))
 
 
 def resolve_options(

@@ -74,10 +74,9 @@ def print_prediction(prediction: Prediction, title: str) -> None:
         mark = "\nEXTRAPOLATED" if prediction.extrapolated else ""
         shown.add_row(f"{event}{mark}", *cells)
     wide_console().print(shown)
+    label = measure_named(prediction.measure).label
     wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].")
-    wide_console().print(
-        f" The stack is {measure_named(prediction.measure).label}; {_scene(prediction)}."
-    )
+    wide_console().print(f" The stack is {'; '.join(filter(None, [label, _scene(prediction)]))}.")
 
 
 def _scene(prediction: Prediction) -> str:

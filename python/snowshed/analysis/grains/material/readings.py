@@ -191,7 +191,7 @@ def cohesion(p: float, q: float, p0: float, slope: float) -> float:
     --------
     >>> beta, m, p0, p = 0.2, 0.5, 7e3, -1e3
     >>> q = m * np.sqrt((p + beta * p0) * (p0 - p) / (1 + 2 * beta))
-    >>> round(cohesion(p, q, p0, m), 6)
+    >>> round(float(cohesion(p, q, p0, m)), 6)
     0.2
     """
     outside = q**2 + slope**2 * p * (p - p0)
