@@ -211,8 +211,7 @@ const std::vector<MatrixSnow>& matrix_snows() {
       {"elastic", [](MpmOptions& o) { o.snows[0].model = SnowModel::elastic; }},
       {"cam_clay", [](MpmOptions&) {}},
       {"several", [](MpmOptions& o) { o.snows.assign(2, Snow()); }},
-      {"energy",
-       [](MpmOptions& o) {
+      {"energy", [](MpmOptions& o) {
          o.snows.assign(2, Snow());
          o.energy = true;
        }}};
@@ -238,11 +237,11 @@ void add_matrix() {
                                      (transfer == Transfer::flip ? "flip/" : "apic/") +
                                      (basis == Basis::quadratic ? "quadratic/" : "cubic/") +
                                      snow.name;
-            add(
-                name,
+            add(name,
                 [=] {
                   Case c = matrix_slab(dimension);
-                  c.options.numerics.precision = in_double ? Precision::float64 : Precision::float32;
+                  c.options.numerics.precision =
+                      in_double ? Precision::float64 : Precision::float32;
                   c.options.numerics.transfer = transfer;
                   c.options.numerics.basis = basis;
                   snow.choose(c.options);

@@ -91,7 +91,8 @@ SNOWSHED_INLINE auto combine_lanes(const V& x, Combine combine,
   } else {
     const auto first = __builtin_shufflevector(x, x, lane...);
     const auto second = __builtin_shufflevector(x, x, (half + lane)...);
-    return combine_lanes(combine(first, second), combine, std::make_integer_sequence<int, half / 2>());
+    return combine_lanes(combine(first, second), combine,
+                         std::make_integer_sequence<int, half / 2>());
   }
 }
 template <class V, class Combine>
@@ -103,7 +104,8 @@ SNOWSHED_INLINE auto combine_lanes(const V& x, Combine combine) {
 /// Bits that are set in any lane.
 template <class M>
 SNOWSHED_INLINE auto bits_in(const M& mask) {
-  return combine_lanes(mask, [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return a | b; });
+  return combine_lanes(mask,
+                       [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return a | b; });
 }
 
 template <class M>
@@ -146,7 +148,8 @@ SNOWSHED_INLINE V clamp(const V& x, const V& lo, const V& hi) {
 template <class V>
 SNOWSHED_INLINE Scalar<V> largest(const V& x) {
   if constexpr (is_simd_pack<V>)
-    return combine_lanes(x, [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return max(a, b); });
+    return combine_lanes(
+        x, [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return max(a, b); });
   else
     return x;
 }
@@ -182,7 +185,8 @@ SNOWSHED_INLINE void exchange_rows(V (&rows)[n]) {
   }
 }
 
-/// Transposes a square of as many packs as they have lanes: lane j of row i becomes lane i of row j.
+/// Transposes a square of as many packs as they have lanes: lane j of row i becomes lane i of row
+/// j.
 template <class V, int n>
 SNOWSHED_INLINE void transpose(V (&rows)[n]) {
   if constexpr (sizeof(rows[0][0]) == 4) {

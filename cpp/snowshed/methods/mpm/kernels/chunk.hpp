@@ -121,15 +121,15 @@ SNOWSHED_INLINE void scatter_nodes(const Stencil<T, D, basis>& s, int l, const N
                                    T* tile, Second second) {
   constexpr int S = support(basis), N = tile_edge<D>(basis);
   T* nodes = in_register(tile + s.node[l] * node_values);
-  const auto along_last = [&](T* row, const Node<T>& value,
-                              const Node<T>& along_z) SNOWSHED_INLINE_LAMBDA {
-    for (int k = 0; k < S; ++k) {
-      Node<T> node = Node<T>::load(row + k * node_values);
-      add_scaled(node, s.weight[D - 1][k][l], value);
-      add_scaled<derived>(node, second(D - 1, k), along_z);
-      node.store(row + k * node_values);
-    }
-  };
+  const auto along_last = [&](T* row, const Node<T>& value, const Node<T>& along_z)
+                              SNOWSHED_INLINE_LAMBDA {
+                                for (int k = 0; k < S; ++k) {
+                                  Node<T> node = Node<T>::load(row + k * node_values);
+                                  add_scaled(node, s.weight[D - 1][k][l], value);
+                                  add_scaled<derived>(node, second(D - 1, k), along_z);
+                                  node.store(row + k * node_values);
+                                }
+                              };
   for (int i = 0; i < S; ++i) {
     const T wi = s.weight[0][i][l];
     Node<T> value_i = scaled(wi, p.value);

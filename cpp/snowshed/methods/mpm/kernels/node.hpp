@@ -46,13 +46,11 @@ struct Node {
 
   static SNOWSHED_INLINE Node load(const T* values) {
     Node n;
-    for (int i = 0; i < parts; ++i)
-      std::memcpy(&n.part[i], values + i * part_values, sizeof(Part));
+    for (int i = 0; i < parts; ++i) std::memcpy(&n.part[i], values + i * part_values, sizeof(Part));
     return n;
   }
   SNOWSHED_INLINE void store(T* values) const {
-    for (int i = 0; i < parts; ++i)
-      std::memcpy(values + i * part_values, &part[i], sizeof(Part));
+    for (int i = 0; i < parts; ++i) std::memcpy(values + i * part_values, &part[i], sizeof(Part));
   }
 
   SNOWSHED_INLINE void store_first_half(T* values) const {

@@ -296,8 +296,8 @@ struct ParticleKernels {
       NodeSums<T, D> a;
       a.value = Node<T>::of_halves(rows[l], nothing);
       for (int j = 0; j < D; ++j)
-        a.along[j] = Node<T>::of_halves(apic ? rows[l] + 4 * (1 + D + j) : nothing,
-                                        rows[l] + 4 * (1 + j));
+        a.along[j] =
+            Node<T>::of_halves(apic ? rows[l] + 4 * (1 + D + j) : nothing, rows[l] + 4 * (1 + j));
       if constexpr (apic)
         scatter_nodes<Halves::both>(stencil, l, a, tile, arm_then_gradient(stencil, l));
       else
