@@ -7,7 +7,7 @@ namespace snowshed {
 namespace {
 
 /// Particles that follow on each other in memory lie near to each other.
-constexpr std::size_t particles_in_part = 64;
+constexpr std::size_t particles_in_box = 64;
 
 struct PointBox {
   Vec3 low, high;
@@ -52,7 +52,7 @@ void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
                    RowLists<WallContact<D>>& contacts) {
   const std::vector<PlacedObstacle> placed = place_obstacles(obstacles, time);
   contacts.update(
-      points.size(), particles_in_part, threads,
+      points.size(), particles_in_box, threads,
       [&](std::size_t begin, std::size_t end, std::uint32_t* first,
           std::vector<WallContact<D>>& list) {
         const PointBox box = box_around(points, begin, end);

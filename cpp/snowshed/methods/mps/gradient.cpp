@@ -9,7 +9,7 @@ namespace {
 
 /// Particles do not come nearer to walls than this, in l0, and those that are nearer are pushed out
 /// by at most a part of l0 in a step.
-constexpr double least_distance = 0.25, largest_push = 0.1;
+constexpr double nearest_place = 0.25, largest_push = 0.1;
 
 /// The least pressure among a particle and its neighbours, Pa.
 template <int D>
@@ -65,7 +65,7 @@ VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& parti
 template <int D>
 void keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& velocity) {
   const double approach = (velocity - c.velocity).dot(c.normal);
-  const double room = c.distance - least_distance * spacing;
+  const double room = c.distance - nearest_place * spacing;
   const double slowest = std::min(-room, largest_push * spacing) / dt;
   if (approach < slowest) velocity += (slowest - approach) * c.normal;
 }

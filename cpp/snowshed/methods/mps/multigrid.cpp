@@ -8,15 +8,15 @@
 namespace snowshed {
 namespace {
 
-constexpr float damping = 0.7f;       // of Jacobi sweeps
+constexpr float jacobi_damping = 0.7f;       // of Jacobi sweeps
 constexpr float enlargement = 1.6f;   // of corrections that are constant within aggregates
 constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
 constexpr std::size_t most_levels = 24;
-constexpr std::ptrdiff_t piece = 512;
+constexpr std::ptrdiff_t rows_in_piece = 512;
 
 template <class F>
 void for_each_row(std::size_t n, int threads, F f) {
-  parallel_pieces(std::ptrdiff_t(n), threads, piece, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  parallel_pieces(std::ptrdiff_t(n), threads, rows_in_piece, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
   });
 }
@@ -180,7 +180,7 @@ void Multigrid<D>::update(const NeighbourLists<D>& lists, const AlignedVector<fl
   for (auto* vector : {&diagonal_, &inverse_, &x_, &b_, &r_}) vector->resize(size_);
   for_each_row(size_, threads_, [&](std::size_t i) {
     diagonal_[i] = float(diagonal[i]);
-    inverse_[i] = diagonal_[i] > 0 ? damping / diagonal_[i] : 0.0f;
+    inverse_[i] = diagonal_[i] > 0 ? jacobi_damping / diagonal_[i] : 0.0f;
   });
   levels_.clear();
   levels_.reserve(most_levels);
@@ -194,7 +194,7 @@ void Multigrid<D>::update(const NeighbourLists<D>& lists, const AlignedVector<fl
   for (Level& level : levels_) {
     for (auto* vector : {&level.x, &level.b, &level.r, &level.inverse}) vector->resize(level.size());
     for (std::size_t i = 0; i < level.size(); ++i)
-      level.inverse[i] = level.diagonal[i] > 0 ? damping / level.diagonal[i] : 0.0f;
+      level.inverse[i] = level.diagonal[i] > 0 ? jacobi_damping / level.diagonal[i] : 0.0f;
   }
   factor_coarsest();
 }

@@ -42,7 +42,7 @@ double source(const MpsModel<D>& model, double dt, const MpsParticles<D>& partic
   double excess = near.density[i] / model.kernel.number_density - 1;
   if (s.source == MpsSource::published) return -s.density / (dt * dt) * excess;
   if (near.surface[i]) excess = std::max(excess, 0.0);
-  return (1 - s.compensation) * s.density / dt * divergence(model, particles, near, i) -
+  return s.density / dt * divergence(model, particles, near, i) -
          s.compensation * s.density / (dt * dt) * excess;
 }
 

@@ -45,6 +45,7 @@ class MpsSolver final : public MpsMethod {
   void move(double dt, MpsParticles<D>&) const;
   void book_energy(MpsState<D>& next, double dt) const;
   double choose_step(const MpsParticles<D>&) const;
+  double pressure_step(const MpsParticles<D>&) const;
   double largest_speed(const MpsParticles<D>&) const;
   MpsState<D> restored(const BinaryReader&) const;
   template <class Visit>

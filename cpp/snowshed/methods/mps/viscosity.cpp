@@ -9,7 +9,7 @@ namespace snowshed {
 namespace {
 
 /// Nearer to a wall than this, in l0, its friction grows no further.
-constexpr double least_distance = 0.25;
+constexpr double nearest_friction = 0.25;
 
 /// The viscosity between two particles: their harmonic mean, so that the stress is that of both.
 inline double between(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0.0; }
@@ -24,7 +24,7 @@ template <int D>
 double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles,
                  const MpsWork<D>& work, std::size_t i, const WallContact<D>& c) {
   const MpsSettings& s = model.settings();
-  const double height = std::max(c.distance, least_distance * s.spacing);
+  const double height = std::max(c.distance, nearest_friction * s.spacing);
   const VecD<D> relative = particles.velocity[i] - c.velocity;
   const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
   const double pressure = work.smooth_pressure[i] +

@@ -6,9 +6,9 @@
 namespace snowshed {
 namespace {
 
-constexpr std::size_t particles_in_part = 256;
+constexpr std::size_t particles_with_images = 256;
 /// Nearer to a wall than this, in l0, a particle's image keeps away.
-constexpr double least_distance = 0.1;
+constexpr double nearest_image = 0.1;
 /// Two walls make a corner, with images behind both, if the cosine between their normals is smaller.
 constexpr double corner = 0.7;
 
@@ -70,10 +70,10 @@ void WallImages<D>::update(const NeighbourLists<D>& lists,
                            int threads, const AlignedVector<float>& direct,
                            AlignedVector<float>& weight) {
   weight.resize(lists.pairs());
-  images_.update(lists.size(), particles_in_part, threads,
+  images_.update(lists.size(), particles_with_images, threads,
                  [&](std::size_t begin, std::size_t end, std::uint32_t* first,
                      std::vector<WallImage<D>>& list) {
-                   ImageMaker<D> maker{contacts, reach, least_distance * spacing, list};
+                   ImageMaker<D> maker{contacts, reach, nearest_image * spacing, list};
                    for (std::size_t i = begin; i < end; ++i) {
                      const std::size_t before = list.size();
                      const bool near = contacts.begin(i) < contacts.end(i);
