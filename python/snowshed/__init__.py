@@ -24,6 +24,7 @@ from snowshed.analysis.dimension_ratio import dimension_ratio
 from snowshed.io.renamed import renamed as _renamed
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mps import MpsSettings
 from snowshed.methods.slide import SlideSettings
 from snowshed.run.events import run_events
 from snowshed.run.interrupt import Interrupted
@@ -67,6 +68,7 @@ __all__ = [
     "LoadingStage",
     "Motion",
     "MpmSettings",
+    "MpsSettings",
     "Obstacle",
     "Output",
     "Panel",

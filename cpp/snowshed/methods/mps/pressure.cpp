@@ -32,18 +32,35 @@ double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
   return model.gradient() * sum + model.laplacian() * flow;
 }
 
-/// The right-hand side of lap p = ..., Pa/m2: equation (18), or that of Tanaka and Masunaga (2010,
-/// doi:10.1016/j.jcp.2010.02.011), which takes the divergence from the velocities and only a share
-/// of the density's error.
+/// The time in which the density's error is taken away by the share `compensation`, s: the step, or
+/// the time in which a particle of usual speed moves by the Courant factor times l0 where that is
+/// longer. With the step alone, snow that one fast particle slows down would be pushed the harder,
+/// the shorter the step. (Ours.)
 template <int D>
-double source(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles,
+double compensation_time(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles) {
+  const MpsSettings& s = model.settings();
+  double square = 0;
+  for (const VecD<D>& u : particles.velocity) square += u.squaredNorm();
+  const double usual = 3 * std::sqrt(square / double(particles.size())) +
+                       std::sqrt(model.gravity.norm() * s.spacing);
+  return usual > 0 ? std::max(dt, std::min(s.max_time_step, s.courant_factor * s.spacing / usual))
+                   : dt;
+}
+
+/// The right-hand side of lap p = ..., Pa/m2: equation (18), or after Tanaka and Masunaga (2010,
+/// doi:10.1016/j.jcp.2010.02.011) the divergence of the velocities and a share of the density's
+/// error. They weigh the divergence with one less the share, which would take as much from the
+/// pressure of snow at rest; here its weight is one.
+template <int D>
+double source(const MpsModel<D>& model, double dt, double compensation_time,
+              const MpsParticles<D>& particles,
               const MpsNeighbourhood<D>& near, std::size_t i) {
   const MpsSettings& s = model.settings();
   double excess = near.density[i] / model.kernel.number_density - 1;
   if (s.source == MpsSource::published) return -s.density / (dt * dt) * excess;
   if (near.surface[i]) excess = std::max(excess, 0.0);
   return s.density / dt * divergence(model, particles, near, i) -
-         s.compensation * s.density / (dt * dt) * excess;
+         s.compensation * s.density / (dt * compensation_time) * excess;
 }
 
 /// A fluid without a free surface knows its pressure up to a constant: takes the mean from the
@@ -71,6 +88,7 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const double n0 = model.kernel.number_density;
+  const double relaxation = compensation_time(model, dt, particles);
   const bool mirrored = s.surface == MpsSurface::mirrored;
   work.fixed.resize(n);
   work.diagonal.resize(n);
@@ -89,7 +107,7 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
     // What is missing at a free surface has the pressure of the particle with the opposite sign.
     if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
     work.diagonal[i] = std::max(sum, 1e-3 * n0);
-    double value = -source(model, dt, particles, near, i) / model.laplacian();
+    double value = -source(model, dt, relaxation, particles, near, i) / model.laplacian();
     if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
     work.source[i] = value;
   });
