@@ -35,7 +35,7 @@ class MpsSettings(MethodSettings):
         Density, which stays [kg/m3]. 0 < value <= 10000; default 200.
     rheology : {"newtonian", "bingham", "bingham_dilatant"}
         Law of the shear stress. Default "bingham_dilatant".
-    yield : {"papanastasiou", "bi_viscous"}
+    regularisation : {"papanastasiou", "bi_viscous"}
         How the yield stress is approached at small shear rates. Default "papanastasiou".
     viscosity : float
         Plastic viscosity [Pa s]. 0 <= value <= 1e+06; default 0.012.
@@ -98,7 +98,7 @@ class MpsSettings(MethodSettings):
     courant_factor: Optional[float] = None
     density: Optional[float] = None
     rheology: Optional[MpsRheology] = None
-    yield: Optional[MpsYield] = None
+    regularisation: Optional[MpsYield] = None
     viscosity: Optional[float] = None
     cohesion: Optional[float] = None
     friction_angle: Optional[float] = None

@@ -48,15 +48,19 @@ VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& parti
   VecD<D> sum = VecD<D>::Zero();
   const double per_velocity = model.settings().density / dt;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    double pressure = particles.pressure[m->of];
+    const double level = particles.pressure[m->of];
+    double pressure = level;
+    VecD<D> across = VecD<D>::Zero();  // the part of the way along the normals
     for (const int k : {0, 1}) {
       if (m->rise[k] == 0) continue;
       const WallContact<D>& wall = near.wall(*m, k);
-      const double slope =
-          -per_velocity * (particles.velocity[i] - wall.velocity).dot(wall.normal);
-      pressure += m->rise[k] * slope;
+      pressure -= m->rise[k] * per_velocity *
+                  (particles.velocity[i] - wall.velocity).dot(wall.normal);
+      across += m->way.dot(wall.normal) * wall.normal;
     }
-    sum += (std::max(0.0, pressure) + base) * double(m->slope) * m->way;
+    // Along the wall the forces between a particle and an image are equal and opposite.
+    sum += double(m->slope) *
+           ((level + base) * m->way + (std::max(0.0, pressure) - level) * across);
   }
   return sum;
 }
@@ -82,11 +86,16 @@ void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& partic
   work.change.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
+    particles.support[i] = 0;
     if (!particles.moves(i)) return;
     const double base =
         conservative ? particles.pressure[i] : -least_pressure(particles, near, i);
-    const VecD<D> gradient = gradient_among_snow(particles, near, i, base, conservative) +
-                             gradient_at_walls(model, particles, near, i, base, dt);
+    const VecD<D> at_walls = gradient_at_walls(model, particles, near, i, base, dt);
+    const VecD<D> gradient =
+        gradient_among_snow(particles, near, i, base, conservative) + at_walls;
+    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
+      particles.support[i] = std::max(particles.support[i], -model.gradient() *
+                                                                at_walls.dot(c->normal) / s.density);
     const VecD<D> before = particles.velocity[i];
     VecD<D> velocity = before - per_pressure * model.gradient() * gradient;
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)

@@ -31,6 +31,7 @@ void sort_particles(const CellOrder<D>& cells, MpsParticles<D>& particles,
   gather(particles.density, spare.density);
   gather(particles.rate, spare.rate);
   gather(particles.viscosity, spare.viscosity);
+  gather(particles.support, spare.support);
   gather(particles.kind, spare.kind);
   gather(particles.id, spare.id);
   gather(particles.event, spare.event);

@@ -23,6 +23,7 @@ struct MpsParticles {
   AlignedVector<double> density;    // number density over n0
   AlignedVector<double> rate;       // 1/s, of shear
   AlignedVector<double> viscosity;  // Pa s, apparent
+  AlignedVector<double> support;    // m/s2, by walls, along their normals, in the last step
   AlignedVector<MpsKind> kind;
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;
@@ -41,6 +42,7 @@ struct MpsParticles {
     visit("density", self.density);
     visit("rate", self.rate);
     visit("viscosity", self.viscosity);
+    visit("support", self.support);
     visit("kind", self.kind);
     visit("id", self.id);
     visit("event", self.event);

@@ -63,7 +63,7 @@ template <int D>
 void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
   const Rheology& law = model.rheology;
   work.smooth_pressure.resize(particles.size());
-  if (law.is_newtonian() && !model.needs_wall_pressure()) {
+  if (law.is_newtonian()) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
       particles.rate[i] = 0;
       particles.viscosity[i] = law.viscosity;

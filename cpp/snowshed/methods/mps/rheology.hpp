@@ -31,7 +31,7 @@ struct Rheology {
             s.stress_growth,
             s.rheology == MpsRheology::bingham_dilatant ? s.dilatant_rate : HUGE_VAL,
             s.dilatant_exponent,
-            s.yield == MpsYield::bi_viscous};
+            s.regularisation == MpsYield::bi_viscous};
   }
 
   bool is_newtonian() const {

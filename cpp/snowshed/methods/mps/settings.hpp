@@ -31,7 +31,7 @@ struct MpsSettings {
   double density = 200;          // kg/m3
 
   MpsRheology rheology = MpsRheology::bingham_dilatant;
-  MpsYield yield = MpsYield::papanastasiou;
+  MpsYield regularisation = MpsYield::papanastasiou;
   double viscosity = 0.012;      // Pa s, plastic
   double cohesion = 0;           // Pa, "adhesive force"
   double friction_angle = 24;    // degrees

@@ -55,13 +55,6 @@ MpsModel<D>::MpsModel(MpsOptions o)
       threads(threads_to_use(options.settings.threads)) {}
 
 template <int D>
-bool MpsModel<D>::needs_wall_pressure() const {
-  return std::any_of(options.obstacles.begin(), options.obstacles.end(), [](const Obstacle& o) {
-    return o.law.condition != Condition::sticky && o.law.friction > 0;
-  });
-}
-
-template <int D>
 double MpsSolver<D>::largest_speed(const MpsParticles<D>& particles) const {
   double fastest2 = 0;
   for (const VecD<D>& u : particles.velocity) {

@@ -36,8 +36,6 @@ struct MpsModel {
   /// d/n0: turns a sum over neighbours into a gradient, equation (4).
   double gradient() const { return D / kernel.number_density; }
   double particle_mass() const { return settings().density * std::pow(settings().spacing, D); }
-  /// Whether the friction of a wall depends on the pressure.
-  bool needs_wall_pressure() const;
 
   MpsOptions options;
   VecD<D> gravity;  // m/s2

@@ -17,9 +17,10 @@ inline double between(double a, double b) { return a + b > 0 ? 2 * a * b / (a + 
 }  // namespace
 
 /// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
-/// distance, and at most Coulomb's friction where the obstacle is not sticky. The pressure at the
-/// wall follows from that of the particle hydrostatically. The velocity continues linearly into the
-/// wall, so that it is zero at the surface.
+/// distance; the velocity continues linearly into the wall and is zero at the surface. Its frictional
+/// part follows from the force with which the wall supports the particle, so that the friction of
+/// all particles is Coulomb's of their weight, however they lie. Where the obstacle is not sticky,
+/// it is at most the obstacle's own friction.
 template <int D>
 double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles,
                  const MpsWork<D>& work, std::size_t i, const WallContact<D>& c) {
@@ -27,15 +28,16 @@ double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles,
   const double height = std::max(c.distance, nearest_friction * s.spacing);
   const VecD<D> relative = particles.velocity[i] - c.velocity;
   const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
-  const double pressure = work.smooth_pressure[i] +
-                          height * s.density * std::max(0.0, -model.gravity.dot(c.normal));
-  double viscosity =
-      model.rheology.apparent_viscosity(model.rheology.yield_stress(pressure), rate);
-  const ContactLaw& law = model.options.obstacles[c.obstacle].law;
-  if (law.condition != Condition::sticky)
-    viscosity = std::min(viscosity, model.rheology.regularised(law.friction * pressure, rate));
-  return viscosity / s.density * model.wall_friction.at(c.distance / s.spacing) /
-         (s.spacing * height);
+  const Rheology& law = model.rheology;
+  // Each wall that a particle touches bears a part; they share by the number of contacts.
+  const double walls = double(work.near.contacts.end(i) - work.near.contacts.begin(i));
+  const double support = particles.support[i] / walls;
+  const double drag = law.apparent_viscosity(law.cohesion, rate) / s.density *
+                          model.wall_friction.at(c.distance / s.spacing) / (s.spacing * height) +
+                      law.regularised(law.friction * support, rate) / height;
+  const ContactLaw& contact = model.options.obstacles[c.obstacle].law;
+  if (contact.condition == Condition::sticky) return drag;
+  return std::min(drag, law.regularised(contact.friction * support, rate) / height);
 }
 
 template <int D>
