@@ -66,7 +66,7 @@ double seed_body(const BodySpec& body, const Scene& scene, const std::string& pa
   const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
   const double dx = resolution(scene.numerics);
   if (scene.uses<MpsSettings>()) {
-    batch.positions = seed_lattice(*shape, scene.dimension, dx);
+    batch.positions = seed_lattice(*shape, scene.dimension, dx, stop);
     batch.mass = std::get<MpsSettings>(scene.numerics).density * std::pow(dx, scene.dimension);
     batch.velocity = body.velocity;
     return batch.total_mass();

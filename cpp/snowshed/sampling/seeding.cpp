@@ -176,15 +176,17 @@ std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, doubl
   return points;
 }
 
-std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing) {
+std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing,
+                               const StopRequest& stop) {
   check_arguments(dimension, spacing, 1);
-  count_for(measure(shape, dimension, spacing), dimension, spacing, 1);
+  count_for(measure(shape, dimension, spacing, stop), dimension, spacing, 1);
   std::vector<Vec3> points;
   const auto box = scene_box(shape, dimension);
   if (!box) {
     Mat3 cell = spacing * Mat3::Identity();
     if (dimension == 2) cell(1, 1) = 0;
-    points = LatticeSeeder(shape, nullptr).fill(voxelize(shape, dimension, spacing), cell);
+    points = LatticeSeeder(shape, nullptr, stop)
+                 .fill(voxelize(shape, dimension, spacing, 0.0, stop), cell);
   } else {
     OrientedBox filled = *box;
     std::array<std::size_t, 3> counts{1, 1, 1};

@@ -40,6 +40,7 @@ std::size_t expected_count(const LevelSet& shape, int dimension, double voxel, d
 /// bounded solid. In a box the lattice stands along its edges, and the first point half a spacing
 /// from its lowest corner; a box is filled with the nearest whole number of layers. Throws InputError
 /// where the solid holds no point, or more than `max_particles`.
-std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing);
+std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing,
+                               const StopRequest& stop = {});
 
 }  // namespace snowshed
