@@ -64,6 +64,7 @@ TEST(MpsSolver, FirstStepOfAColumnIsHydrostatic) {
     const double width = dimension == 2 ? 0.2 : 0.1;
     MpsOptions o = tank(dimension, width, 0.01);
     o.settings.pressure_tolerance = 1e-6;
+    o.settings.viscosity = 1e-6;
     const auto mps = make_mps(o);
     mps->add(block_of(o, Vec3::Zero(), {width, width, 0.2}));
     mps->step();
