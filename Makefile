@@ -30,7 +30,7 @@ SHELL := bash
 
 CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/snowshed cpp/vdb -type f)
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
-PYTHON_FOLDERS = $(wildcard python validation thesis tests tools examples benchmarks lua_compat)
+PYTHON_FOLDERS = $(wildcard python validation reproduction thesis hagenmuller tests tools examples benchmarks lua_compat)
 
 .PHONY: help build demo verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
   sanitize-thread fuzz mutants bench docs format lint tidy clean
@@ -38,7 +38,7 @@ PYTHON_FOLDERS = $(wildcard python validation thesis tests tools examples benchm
 
 help:
 	@echo "make build     $(BIN)/snowshed and $(BIN)/snowshed-run"
-	@echo "make demo      the laboratory experiment: five slide-offs, table and pictures"
+	@echo "make demo      the laboratory experiment: five slide-offs, table, pictures and a page that moves"
 	@echo "make verify    problems with known answers, a minute (VERIFY=--full: hours)"
 	@echo "make thesis    the thesis reproduced, some minutes (THESIS=--middle: hours, --full: days)"
 	@echo "make test      all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
@@ -83,6 +83,9 @@ demo: build
 	$(BIN)/snowshed panel --preset lab-50 --friction 0.3 -o $(DEMO)
 	@echo "Pictures:"
 	@ls $(DEMO)/*.png
+	$(BIN)/snowshed view $(DEMO) --quiet
+	@echo "The snow in motion; open it in a browser:"
+	@echo "$(CURDIR)/$(DEMO)/view.html"
 
 # Old results of the quick suite give way; those of the full one took hours and never do.
 verify: build $(VENV)/.dev-tools
@@ -179,7 +182,7 @@ lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools python/snowshed/_core.pyi
 	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
 	$(BIN)/ruff check $(PYTHON_FOLDERS)
 	$(BIN)/ruff format --check $(PYTHON_FOLDERS)
-	$(BIN)/mypy python/snowshed validation thesis
+	$(BIN)/mypy python/snowshed validation reproduction thesis hagenmuller
 
 tidy: $(VENV)/.build-tools $(VENV)/.cpp-tools
 	sh tools/tidy.sh

@@ -1,5 +1,5 @@
-# Finds Eigen and nlohmann-json, which are header-only. The system's packages are preferred. The
-# Python wheels `cmeel-eigen` and `nlohmann-json` contain the same headers.
+# Finds Eigen and nlohmann-json, which are header-only, and zlib. The system's packages are preferred.
+# The Python wheels `cmeel-eigen`, `nlohmann-json` and `cmeel-zlib` contain the same.
 add_library(snowshed_headers INTERFACE)
 
 find_package(Python COMPONENTS Interpreter QUIET)
@@ -21,3 +21,13 @@ foreach(header EIGEN JSON)
   endif()
   target_include_directories(snowshed_headers SYSTEM INTERFACE ${SNOWSHED_${header}_DIR})
 endforeach()
+
+find_path(SNOWSHED_ZLIB_DIR zlib.h PATHS ${snowshed_site_packages} PATH_SUFFIXES cmeel.prefix/include)
+find_library(SNOWSHED_ZLIB_LIBRARY NAMES z)
+find_library(SNOWSHED_ZLIB_LIBRARY NAMES libz.so z
+  PATHS ${snowshed_site_packages} PATH_SUFFIXES cmeel.prefix/lib64 cmeel.prefix/lib)
+if(NOT SNOWSHED_ZLIB_DIR OR NOT SNOWSHED_ZLIB_LIBRARY)
+  message(FATAL_ERROR "zlib not found: install zlib1g-dev, or `pip install cmeel-zlib`")
+endif()
+target_include_directories(snowshed_headers SYSTEM INTERFACE ${SNOWSHED_ZLIB_DIR})
+target_link_libraries(snowshed_headers INTERFACE ${SNOWSHED_ZLIB_LIBRARY})

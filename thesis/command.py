@@ -1,4 +1,4 @@
-"""The commands ``snowshed reproduce`` and ``python -m thesis``."""
+"""The command ``snowshed reproduce thesis``, which is also ``python -m thesis``."""
 
 from __future__ import annotations
 
@@ -8,28 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import click
-
-from snowshed.cli.exit_codes import Failed, Stopped
+from reproduction.computing import check_failures, compute_stages
 
 if TYPE_CHECKING:
     from snowshed.scene.components import Condition
-    from thesis.reproduction import Reproduction
-    from thesis.stage import Stage
 
 PATH = click.Path(path_type=Path)
 
 
-@click.group()
-def reproduce() -> None:
-    """Reproduce a publication: its tables and figures, and verdicts on its claims.
-
-    \b
-    Example:
-      snowshed reproduce thesis --quick -o reproduction
-    """  # noqa: D301 - click wants the control character
-
-
-@reproduce.command()
+@click.command()
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, old or new."
 )
@@ -49,8 +36,8 @@ def reproduce() -> None:
     "names",
     multiple=True,
     metavar="NAME",
-    help="Compute only this: lab, s-index, fixation, calibration, deviations, geometry (with "
-    "--full) or regression; may be repeated.",
+    help="Compute only this: lab, s-index, fixation, calibration, deviations, variations, "
+    "geometry (with --full) or regression; may be repeated.",
 )
 @click.option(
     "--table", type=PATH, help="Rows of panels to use for chapter 5 instead of simulating them."
@@ -81,14 +68,16 @@ def thesis(
 
     \b
     Example:
-      snowshed reproduce thesis --quick -o reproduction
+      snowshed reproduce thesis --quick -o report
     """  # noqa: D301 - click wants the control character
+    from reproduction.display import print_claims
+    from reproduction.stage import choose
+
     from snowshed.analysis.regression.rows import read_rows
     from thesis.folder import ReproductionFolder
     from thesis.report import write_report
     from thesis.reproduction import Reproduction
     from thesis.size import SIZES
-    from thesis.stage import choose
 
     chosen = replace(SIZES[size], condition=condition)
     if table is not None:  # so that a wrong table is known before anything is computed
@@ -96,35 +85,9 @@ def thesis(
     results = ReproductionFolder.claim(folder, chosen.name, condition)
     all_of_it = Reproduction(results, chosen, table)
     if not report_only:
-        _compute(choose(all_of_it.stages, names), folder, jobs, quiet)
+        compute_stages(choose(all_of_it.stages, names), folder, jobs, quiet)
     claims = write_report(all_of_it)
     if not quiet:
-        from thesis.display import print_claims
-
-        print_claims(claims)
+        print_claims(claims, "the thesis")
         click.echo(f"report in {results.report}")
-    _check_failures(all_of_it)
-
-
-def _compute(stages: Sequence[Stage], folder: Path, jobs: Optional[int], quiet: bool) -> None:
-    from snowshed.study.errors import StudyError
-    from thesis.display import progress_bar
-    from thesis.reproduction import compute
-
-    try:
-        with progress_bar(quiet=quiet) as progress:
-            compute(stages, jobs=jobs, progress=progress)
-    except StudyError as error:
-        raise Failed(str(error)) from None
-    except KeyboardInterrupt:
-        message = f"interrupted; the same command goes on with what {folder} holds"
-        raise Stopped(message) from None
-
-
-def _check_failures(found: Reproduction) -> None:
-    failed = {name: stage.state().failed for name, stage in found.study_stages.items()}
-    listed = ", ".join(f"{count} of {name}" for name, count in failed.items() if count)
-    if listed:
-        raise Failed(
-            f"simulations failed: {listed}; see `snowshed study status {found.folder.runs}`"
-        )
+    check_failures(all_of_it.study_stages, results.runs)

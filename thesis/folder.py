@@ -12,15 +12,10 @@ geometry.csv         the rows that are regressed
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from snowshed._core import InputError
-from snowshed.io.atomic import write_text
-from snowshed.io.json_file import read_object
-
-IDENTITY = "reproduction.json"
+from reproduction.folder import claim_folder
 
 
 @dataclass(frozen=True)
@@ -38,24 +33,8 @@ class ReproductionFolder:
         InputError
             If it holds a reproduction of another size or condition, or something else.
         """
-        file = path / IDENTITY
-        if file.is_file():
-            there = {"condition": "separate", **read_object(file)}
-            if there.get("size") != size:
-                raise InputError(
-                    f"{path}: holds a reproduction with --{there.get('size')}; "
-                    f"take a new folder for --{size}"
-                )
-            if there["condition"] != condition:
-                raise InputError(
-                    f"{path}: holds a reproduction with --condition {there['condition']}; "
-                    f"take a new folder for --condition {condition}"
-                )
-        elif path.exists() and (not path.is_dir() or any(path.iterdir())):
-            raise InputError(f"{path}: not empty, and holds no reproduction")
-        else:
-            path.mkdir(parents=True, exist_ok=True)
-            write_text(file, json.dumps({"size": size, "condition": condition}) + "\n")
+        identity = {"publication": "thesis", "size": size, "condition": condition}
+        claim_folder(path, identity, {"publication": "thesis", "condition": "separate"})
         return cls(path)
 
     @property

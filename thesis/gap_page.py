@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import click
+from reproduction.hypothesis_tests import SIGMAS
 
 from snowshed._core import InputError
 from snowshed.analysis.deviations import DEVIATIONS
@@ -27,7 +28,6 @@ from snowshed.io.atomic import write_text
 from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
-from thesis.claims.hypothesis_tests import SIGMAS
 from thesis.claims.regression import Regressed
 from thesis.scatter import read_scatter, scatter
 from thesis.sections import deviations as deviations_section
@@ -39,6 +39,7 @@ from thesis.sections.regression import (
     rows_in_words,
 )
 from thesis.studies import PANEL, THESIS
+from thesis.variant_errors import FILE, SCHEME, read_variant_errors
 from thesis.variants import by_size, change, is_unswitched, quartiles, read_variants_file
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ if TYPE_CHECKING:
 
 DATA = Path(__file__).with_name("data")
 PAGE = Path(__file__).parents[1] / "docs" / "thesis-gap.md"
-DEVIATIONS_FILE, SCATTER_FILE = "deviations.csv", "scatter.csv"
+DEVIATIONS_FILE, SCATTER_FILE, ERRORS_FILE = "deviations.csv", "scatter.csv", FILE.name
 #: Folders of regressions, as `snowshed regress` writes them, and the files that are kept of them.
 REGRESSIONS = ("regression-one-seed", "regression-means")
 KEPT = ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv")
@@ -64,7 +65,7 @@ def page(data: Path = DATA) -> str:
         "thesis's chapter 5, and what makes them so. [Reproducing the thesis](reproduce.md) has "
         "the rest.",
         *_scatter_part(read_scatter(data / SCATTER_FILE)),
-        *_causes_part(stacks),
+        *_causes_part(stacks, read_variant_errors(data / ERRORS_FILE)),
         *_regression_part(data),
     ]
     return "\n\n".join(parts) + "\n"
@@ -113,16 +114,32 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
     ]
 
 
-def _causes_part(stacks: pd.DataFrame) -> list[str]:
+def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
     order = by_size(stacks)
     return [
         "## Causes, the largest first",
         " ".join(deviations_section.sample_text(stacks)),
         markdown(deviations_section.changes_grid(stacks)),
         "\n".join(f"{place}. {_cause(stacks, name)}" for place, name in enumerate(order, 1)),
+        *_variations_part(stacks),
         "### Quartiles of H/L with each deviation undone",
         markdown(deviations_section.quartiles_grid(stacks)),
         *_left_over(stacks),
+        "### Regressions with each deviation undone",
+        f"ε-SVR of H/L of the same rows ({errors['rows'].max():.0f} for each), by "
+        f"{SCHEME.rounds} round{'s' if SCHEME.rounds > 1 else ''} of {SCHEME.folds} outer and {SCHEME.inner_folds} inner folds. The "
+        "quartiles are those of the predictions. A sample has a tenth of the rows of the data set, "
+        "so that its errors are to be compared with each other.",
+        markdown(deviations_section.errors_grid(errors, stacks)),
+    ]
+
+
+def _variations_part(stacks: pd.DataFrame) -> list[str]:
+    return [
+        "### Settings of our own, varied on the same sample",
+        "Damping is a rate in our settings, so that it does not depend on the length of the "
+        "steps. A share in each step does.",
+        markdown(deviations_section.variations_grid(stacks)),
     ]
 
 

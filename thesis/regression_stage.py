@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional
 
+from reproduction.stage import StageReporter, State, StudyStage
+
 from snowshed._core import InputError
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.rows import StackRows, read_rows
@@ -13,7 +15,6 @@ from snowshed.run.pool import available_cores
 from snowshed.run.progress import Progress, Reporter
 from thesis.folder import ReproductionFolder
 from thesis.size import Size
-from thesis.stage import StageReporter, State, StudyStage
 from thesis.studies import PANELS
 
 KINDS = ("linear", "rbf")

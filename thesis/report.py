@@ -3,29 +3,15 @@
 from __future__ import annotations
 
 import importlib
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import replace
-from datetime import datetime, timezone
 
-from snowshed import _core
+from reproduction.hypothesis_tests import Judged
+from reproduction.report import Texts, common_facts, write_pages
+from reproduction.section import Section
+from reproduction.stage import State
+
 from snowshed._core import InputError
-from snowshed.io.atomic import write_text
-from snowshed.plot.html_page import Grid, template
-from snowshed.run.machine import cpu_name
-from thesis.claims.hypothesis_tests import (
-    CONFIRMED,
-    CONTRADICTED,
-    SIGMAS,
-    UNDECIDED,
-    Finding,
-    Judged,
-)
 from thesis.reproduction import Reproduction
-from thesis.section import Section
-from thesis.stage import State
 
-TEMPLATE = "thesis.html.j2"
 #: The modules of `thesis.sections`, in order, and the stage that each needs.
 SECTIONS = {
     "lab": "lab",
@@ -38,16 +24,35 @@ SECTIONS = {
 }
 #: Sections whose claims compare means over a design: a run that failed makes them unlike.
 DESIGNS = ("lab", "s_index", "fixation")
-VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
+ABOUT = (
+    "Frischholz, <em>Snow slide-off from solar panels with the Material Point Method</em> (master "
+    "thesis, EPFL and SLF): its laboratory experiment and chapters 3 to 5, computed again with "
+    "snowshed. Every table stands beside the numbers that the thesis prints; every claim has a "
+    "verdict."
+)
+QUICK = (
+    "<strong>A quick reproduction.</strong> Coarse cells, 2D instead of 3D in chapters 3 and 4, "
+    "few seedings and few values: it shows the way. Its verdicts are those of these settings, not "
+    "of the thesis's; for these use <code>--full</code>."
+)
+NOISE = (
+    "Its noise is that of the seeding: another placement of the particles gives another stack. "
+    "Deviations between seedings are pooled over the points that a claim compares and divided by "
+    "the root of the number of runs a mean is over; where there are few seedings, they are "
+    "widened by Student's t. Where slopes are fitted, the noise is their standard error; for "
+    "scores of the regressions it is the standard error over the outer folds, for errors and "
+    "quartiles that over the panels. Rules that say <em>no noise</em> compare numbers as they "
+    "are."
+)
 
 
 def write_report(found: Reproduction) -> list[Judged]:
     """Write the report from what is there; return the claims with their findings."""
     sections = [build(found, module, stage) for module, stage in SECTIONS.items()]
-    claims = [claim for section in sections for claim in section.claims]
-    write_text(found.folder.claims, claims_csv(claims))
-    write_text(found.folder.report, render(found, sections, claims))
-    return claims
+    quick = found.size.name == "quick"
+    texts = Texts("The thesis reproduced", "the thesis", ABOUT, QUICK if quick else "", NOISE)
+    facts = common_facts(found.size.name, found.stages)
+    return write_pages(found.folder.report, found.folder.claims, texts, facts, sections)
 
 
 def build(found: Reproduction, module: str, stage: str) -> Section:
@@ -62,57 +67,5 @@ def build(found: Reproduction, module: str, stage: str) -> Section:
     except InputError as error:
         return Section(stage, f"Stage {stage}", missing=[*lines, str(error)])
     if not state.finished or (state.failed and module in DESIGNS):
-        section = replace(section, claims=[_open(one, state) for one in section.claims])
+        section = section.left_open(state.in_words())
     return section.lacking(*lines)
-
-
-def _open(claim: Judged, state: State) -> Judged:
-    """Leave a claim open: means over part of a design would compare unlike points."""
-    words = f"the stage is not complete, {state.in_words()}"
-    return replace(claim, finding=Finding(UNDECIDED, words))
-
-
-def render(found: Reproduction, sections: Sequence[Section], claims: Sequence[Judged]) -> str:
-    """Return the report as HTML."""
-    return template("thesis", TEMPLATE).render(
-        facts={
-            "size": found.size.name,
-            "version": _core.version,
-            "machine": cpu_name(),
-            "date": datetime.now(timezone.utc).date().isoformat(),
-            "stages": "; ".join(f"{one.name} {one.state().in_words()}" for one in found.stages),
-        },
-        quick=found.size.name == "quick",
-        sigmas=SIGMAS,
-        counts=Counter(one.finding.verdict for one in claims),
-        claims=claims_grid(claims),
-        rules=rules_grid(claims),
-        sections=sections,
-        of_section=claims_grid,
-    )
-
-
-def claims_grid(claims: Sequence[Judged]) -> Grid:
-    """Return claims and findings, contradictions first."""
-    ordered = sorted(claims, key=lambda one: VERDICTS.index(one.finding.verdict))
-    rows = [[one.finding.verdict, one.source, one.text, one.finding.sentence] for one in ordered]
-    return Grid(["verdict", "section", "the thesis", "here"], rows, "llll")
-
-
-def rules_grid(claims: Sequence[Judged]) -> Grid:
-    """Return when each claim counts as confirmed."""
-    rows = [[one.source, one.text, one.rule] for one in claims]
-    return Grid(["section", "claim", "confirmed if"], rows, "lll")
-
-
-def claims_csv(claims: Sequence[Judged]) -> str:
-    """Return claims and findings as CSV."""
-    import pandas as pd
-
-    rows = [
-        (one.source, one.text, one.rule, one.finding.verdict, one.finding.sentence)
-        for one in claims
-    ]
-    columns = ["source", "claim", "confirmed_if", "verdict", "finding"]
-    text: str = pd.DataFrame(rows, columns=columns).to_csv(index=False)
-    return text

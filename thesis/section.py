@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from reproduction.hypothesis_tests import widening
 
 from snowshed.io.arrays import Floats
 from snowshed.io.formatting import NOTHING
-from snowshed.plot.html_page import Grid, Picture
+from snowshed.plot.html_page import Grid
 from snowshed.plot.labels import label
 from snowshed.study.table import value_at
-from thesis.claims.hypothesis_tests import Judged, widening
 from thesis.printed import Printed
 from thesis.size import MEASURED_FRICTION
 
@@ -28,37 +27,6 @@ PANEL_FRICTION = (
     f"The thesis does not print the panel's friction; here it is {MEASURED_FRICTION}, the least "
     "static coefficient that it measured."
 )
-
-
-@dataclass(frozen=True)
-class Section:
-    """A section of the report.
-
-    Attributes
-    ----------
-    name, title
-        For links, and as its heading.
-    paragraphs
-        What was computed and how, and what to know when reading.
-    tables
-        With their titles.
-    pictures, claims
-        Figures, and what was found of the thesis's claims.
-    missing
-        What is not there yet, a line each.
-    """
-
-    name: str
-    title: str
-    paragraphs: Sequence[str] = ()
-    tables: Sequence[tuple[str, Grid]] = ()
-    pictures: Sequence[Picture] = ()
-    claims: Sequence[Judged] = ()
-    missing: Sequence[str] = ()
-
-    def lacking(self, *lines: str) -> Section:
-        """Return the section with more lines on what is missing."""
-        return replace(self, missing=[*self.missing, *lines])
 
 
 def settings_grid(printed: Sequence[Printed], scenes: Sequence[str]) -> Grid:

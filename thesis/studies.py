@@ -11,7 +11,7 @@ from snowshed.analysis.calibration.design import calibration_study
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.dataset import MODEL_BETWEEN
-from snowshed.analysis.regression.geometry import FRICTION, geometry_study
+from snowshed.analysis.regression.geometry import DAMPING_RATE, FRICTION, geometry_study
 from snowshed.analysis.sensitivity.designs import sensitivity_study
 from snowshed.scene.components import Snow
 from snowshed.scene.thesis_tables import (
@@ -36,6 +36,16 @@ VARIANTS: Mapping[str, Sequence[str]] = {
     DEFAULTS: (),
     **{one.name: (one.name,) for one in DEVIATIONS.values()},
     THESIS: (ALL,),
+}
+#: Settings of ours that are varied on the same sample, beside the defaults; of cells by their size
+#: over that of the defaults.
+COARSE_CELLS = 4 / 3
+VARIATIONS: Mapping[str, Mapping[str, float]] = {
+    "coarse-cells": {"numerics.dx": COARSE_CELLS},
+    "half-damping": {"numerics.damping_rate": DAMPING_RATE / 2},
+    "double-damping": {"numerics.damping_rate": DAMPING_RATE * 2},
+    "short-steps": {"numerics.courant_factor": 0.6},
+    "short-steps-damped-each": {"numerics.courant_factor": 0.6, "numerics.flip_ratio": 0.99},
 }
 PANEL = ("panel.tilt", "panel.height", "panel.length")
 #: Seed of the synthetic truth: one that no run of the grid has.
@@ -135,8 +145,28 @@ def deviations(size: Size) -> list[Study]:
     ]
 
 
+def variations(size: Size) -> list[Study]:
+    """Return the sample of panels of `deviations` with settings of ours varied one by one.
+
+    Examples
+    --------
+    >>> from thesis.size import QUICK
+    >>> [study.name for study in variations(QUICK)][:2]
+    ['variations-coarse-cells', 'variations-half-damping']
+    """
+    studies = []
+    for name, settings in VARIATIONS.items():
+        ours = _variant(size, DEFAULTS, ())
+        cells = settings.get("numerics.dx", 1.0) * size.deviation_dx[0]
+        scene = ours.scene.update({**settings, "numerics.dx": cells})
+        studies.append(Study(scene, ours.parts, study_of(name), ours.seeds))
+    return studies
+
+
 def study_of(variant: str) -> str:
-    """Return the name of the study whose runs are those of a variant."""
+    """Return the name of the study whose runs are those of a variant or a variation."""
+    if variant in VARIATIONS:
+        return f"variations-{variant}"
     measured_only = variant in DEVIATIONS and not DEVIATIONS[variant].simulated
     return f"deviations-{DEFAULTS if measured_only else variant}"
 

@@ -1,12 +1,14 @@
-"""Stacks with each deviation from the thesis undone, and how much that changes them."""
+"""Stacks with each deviation from the thesis undone, or a setting varied, and what that changes."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import numpy as np
+from reproduction.hypothesis_tests import Estimate, widening
 
 from snowshed._core import InputError
 from snowshed.analysis.deviations import DEVIATIONS, deviating_trimming
@@ -15,8 +17,7 @@ from snowshed.snow.stack.quantities import MEASURES
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.store import Store
 from snowshed.study.table import read_table
-from thesis.claims.hypothesis_tests import Estimate, widening
-from thesis.studies import DEFAULTS, PANEL, VARIANTS, study_of
+from thesis.studies import DEFAULTS, PANEL, VARIANTS, VARIATIONS, study_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +32,7 @@ SETTINGS = ("dx",)
 
 
 def read_variants(store: Path) -> pd.DataFrame:
-    """Return the stacks of all variants that are computed, from a reproduction's store.
+    """Return the stacks of all variants and variations that are computed, from a store.
 
     Returns
     -------
@@ -45,7 +46,7 @@ def read_variants(store: Path) -> pd.DataFrame:
         present = opened.studies()
         hashes = {
             name: [run.hash for run in opened.runs(study_of(name))]
-            for name in VARIANTS
+            for name in (*VARIANTS, *VARIATIONS)
             if study_of(name) in present
         }
     tables = []
@@ -87,9 +88,16 @@ def quartiles(stacks: pd.DataFrame, trimming: str) -> list[float]:
     return [float(one) for one in np.quantile(ratios(stacks, trimming), QUANTILES)]
 
 
+def with_runs_of_its_own(stacks: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
+    """Yield the defaults, and each variant that has runs of its own, with its stacks."""
+    for name, of_one in stacks.groupby("variant", sort=False):
+        if name == DEFAULTS or not of_one["same_runs"].all():
+            yield str(name), of_one
+
+
 def trimming_of(variant: str) -> str:
-    """Return the reading of A.4.2 that a variant measures by."""
-    return deviating_trimming(VARIANTS[variant])
+    """Return the reading of A.4.2 that a variant or a variation measures by."""
+    return deviating_trimming(VARIANTS.get(variant, ()))
 
 
 def change(
@@ -106,7 +114,7 @@ def change(
     stacks
         From `read_variants`.
     variant
-        The name of a deviation, or "thesis".
+        The name of a deviation or of a variation, or "thesis".
     quantity
         "height", "length" or "ratio".
     trimming

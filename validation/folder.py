@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed import _core
 from snowshed._core import InputError
-from snowshed.io.atomic import write_text
+from snowshed.io.atomic import remove_leftovers, write_text
 from snowshed.io.json_file import check_values, read_object
 from snowshed.run.results import check_empty
 from validation.measurement_file import MeasurementFile
@@ -55,6 +55,7 @@ class SuiteFolder:
     def reopen(cls, path: Path) -> SuiteFolder:
         """Open the folder of an earlier suite; raises InputError if it is not one."""
         folder = cls(path)
+        remove_leftovers(path)
         if not folder.measurements.path.is_file():
             raise InputError(f"{path}: nothing to resume; it holds no measurements.jsonl")
         return folder

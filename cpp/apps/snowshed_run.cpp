@@ -1,13 +1,17 @@
 // snowshed-run: a JSON scene in, results out. No Python.
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/run/event_sequence.hpp"
+#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace {
@@ -17,8 +21,9 @@ constexpr const char* usage =
     "       snowshed-run --schema | --version | --help\n"
     "\n"
     "Runs the scene's events and writes into DIR scene.json, run.json,\n"
-    "particles.pvd (ParaView), particles/, snapshots/ and checkpoint.bin.\n"
-    "Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted.\n";
+    "particles.pvd (ParaView), particles/, snapshots/, film.bin and checkpoint.bin.\n"
+    "Exit codes: 0 done; 2 bad input, nothing was written; 3 the run could not go on, for the\n"
+    "simulation failed, the disk is full or memory is short; 130 interrupted.\n";
 
 struct Options {
   std::string scene, folder;
@@ -61,19 +66,24 @@ class Display : public snowshed::EventObserver {
   explicit Display(bool quiet) : quiet_(quiet) {}
 
   void progress(const snowshed::Simulation& sim, const snowshed::RunReport& r) override {
-    if (!quiet_)
+    if (!quiet_ && terminal_)
       std::fprintf(stderr, "\revent %d  %3.0f %%  t = %.3f s  %.1f M updates/s ", sim.event(),
                    100 * r.progress, r.time, r.updates_per_s / 1e6);
   }
   void event_ended(const snowshed::Simulation&, const snowshed::EventFacts& facts) override {
+    if (const auto lost = facts.energy_residual(); lost > snowshed::largest_energy_residual)
+      std::fprintf(stderr, "\rnote: event %d: the energy balance has a residual of %.2g %%\n",
+                   facts.event, 100 * *lost);
     if (!quiet_)
-      std::fprintf(stderr, "\revent %d  %s after %.3f s of snow time%30s\n", facts.event,
-                   facts.ended == "rest" ? "at rest" : "time limit", facts.sim_time, "");
+      std::fprintf(stderr, "%sevent %d  %s after %.3f s of snow time%s\n", terminal_ ? "\r" : "",
+                   facts.event, facts.ended == "rest" ? "at rest" : "time limit", facts.sim_time,
+                   terminal_ ? "                              " : "");
   }
   bool stop_requested() override { return interrupted != 0; }
 
  private:
   bool quiet_;
+  bool terminal_ = isatty(STDERR_FILENO) != 0;  // a file or a pipe gets whole lines only
 };
 
 /// What time does to the stack between events is the Python package's to compute.
@@ -87,8 +97,10 @@ snowshed::EventSequence open(const Options& o) {
   std::vector<std::string> notes;
   const snowshed::Scene scene = snowshed::load_scene(o.scene, &notes);
   for (const std::string& note : notes)
-    if (!o.quiet) std::fprintf(stderr, "note: %s: %s\n", o.scene.c_str(), note.c_str());
-  if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder);
+    if (!o.quiet)
+      std::fprintf(stderr, "note: %s\n", snowshed::printable(o.scene + ": " + note).c_str());
+  const auto stop = [] { return interrupted != 0; };
+  if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder, stop);
   refuse_ageing(o.folder);
   return snowshed::EventSequence::resume(scene, ".", o.folder);
 }
@@ -104,18 +116,26 @@ bool run_all(snowshed::EventSequence& sequence, bool quiet) try {
   throw;
 }
 
+/// A signal that is ignored, as nohup has it, stays so.
+void interrupt_on(int signal) {
+  if (std::signal(signal, [](int) { interrupted = 1; }) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
+int fail(const std::string& message, int code) {
+  std::fprintf(stderr, "error: %s\n", snowshed::printable(message).c_str());
+  return code;
+}
+
 int run(const Options& o) {
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  std::signal(SIGTERM, [](int) { interrupted = 1; });
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) interrupt_on(signal);
   snowshed::EventSequence sequence = open(o);
   if (!run_all(sequence, o.quiet)) {
-    std::fprintf(stderr, "error: interrupted; go on with: snowshed-run %s -o %s --resume\n",
-                 o.scene.c_str(), o.folder.c_str());
-    return 130;
+    return fail(
+        "interrupted; go on with: snowshed-run " + o.scene + " -o " + o.folder + " --resume", 130);
   }
   if (!o.quiet)
     std::fprintf(stderr, "for tables and pictures: snowshed run %s -o %s --resume\n",
-                 o.scene.c_str(), o.folder.c_str());
+                 snowshed::printable(o.scene).c_str(), snowshed::printable(o.folder).c_str());
   return 0;
 }
 
@@ -128,11 +148,15 @@ int main(int argc, char** argv) {
     if (argc == 2 && !std::strcmp(argv[1], "--schema"))
       return std::puts(snowshed::scene_schema().c_str()), 0;
     return run(parse(argc, argv));
+  } catch (const snowshed::Stopped&) {
+    return fail("interrupted; nothing was written", 130);
   } catch (const snowshed::SimulationError& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 3;
+    return fail(error.what(), 3);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory: give fewer particles or a larger dx", 3);
+  } catch (const snowshed::FileError& error) {
+    return fail(error.what(), error.is_of_disk() ? 3 : 2);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 2;
+    return fail(error.what(), 2);
   }
 }

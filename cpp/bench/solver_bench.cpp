@@ -4,7 +4,8 @@
 //   per cell), and a two-dimensional slab;
 // - the bare kernel on the same slab;
 // - the same slab with one feature more or less at a time;
-// - the cost against the number of particles.
+// - the cost against the number of particles;
+// - the matrix of all kernels, on small slabs that flow.
 //
 // Sleep is off, except in the benchmarks of sleep.
 #include <benchmark/benchmark.h>
@@ -197,6 +198,59 @@ void add_scaling() {
   }
 }
 
+// --- every kernel ------------------------------------------------------------------------------
+
+/// A snow of each sort of kernel, see KernelChoice.
+struct MatrixSnow {
+  const char* name;
+  std::function<void(MpmOptions&)> choose;
+};
+
+const std::vector<MatrixSnow>& matrix_snows() {
+  static const std::vector<MatrixSnow> snows = {
+      {"elastic", [](MpmOptions& o) { o.snows[0].model = SnowModel::elastic; }},
+      {"cam_clay", [](MpmOptions&) {}},
+      {"several", [](MpmOptions& o) { o.snows.assign(2, Snow()); }},
+      {"energy", [](MpmOptions& o) {
+         o.snows.assign(2, Snow());
+         o.energy = true;
+       }}};
+  return snows;
+}
+
+Case matrix_slab(int dimension) {
+  Case c = dimension == 3 ? slab_3d(in_flow) : slab_2d();
+  const double density = c.options.snows[0].density;
+  if (dimension == 3) c.batch = slab({32, 16, 16}, slab_dx, density);
+  c.batch.velocity = in_flow;
+  return c;
+}
+
+void add_matrix() {
+  for (const int dimension : {2, 3})
+    for (const bool in_double : {false, true})
+      for (const Transfer transfer : {Transfer::flip, Transfer::apic})
+        for (const Basis basis : {Basis::quadratic, Basis::cubic})
+          for (const MatrixSnow& snow : matrix_snows()) {
+            const std::string name = std::string("matrix/") + (dimension == 3 ? "3d/" : "2d/") +
+                                     (in_double ? "double/" : "float/") +
+                                     (transfer == Transfer::flip ? "flip/" : "apic/") +
+                                     (basis == Basis::quadratic ? "quadratic/" : "cubic/") +
+                                     snow.name;
+            add(name,
+                [=] {
+                  Case c = matrix_slab(dimension);
+                  c.options.numerics.precision =
+                      in_double ? Precision::float64 : Precision::float32;
+                  c.options.numerics.transfer = transfer;
+                  c.options.numerics.basis = basis;
+                  snow.choose(c.options);
+                  return c;
+                },
+                {1});
+          }
+}
+
 }  // namespace
 }  // namespace snowshed
 
@@ -205,6 +259,7 @@ int main(int argc, char** argv) {
   snowshed::add_prices();
   snowshed::add_scaling();
   snowshed::add_slides();
+  snowshed::add_matrix();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

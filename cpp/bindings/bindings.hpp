@@ -10,9 +10,11 @@ namespace snowshed {
 struct Reseeding;
 struct RunReport;
 
+void register_errors(pybind11::module_&);
 void bind_scene(pybind11::module_&);
 void bind_simulation(pybind11::module_&);
 void bind_event_sequence(pybind11::module_&);
+void bind_film(pybind11::module_&);
 void bind_material(pybind11::module_&);
 
 pybind11::object reseeding_dict(const std::optional<Reseeding>&);  ///< None where there is none

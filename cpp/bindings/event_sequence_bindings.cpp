@@ -1,4 +1,5 @@
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <limits>
 
@@ -24,7 +25,16 @@ py::dict facts_dict(const EventFacts& facts) {
   py::dict energy;
   for (const auto& [name, joules] : facts.energy) energy[name.c_str()] = joules;
   d["energy"] = energy;
+  d["energy_residual"] = facts.energy_residual();
   return d;
+}
+
+using Path = std::filesystem::path;
+
+/// What a handler of a signal raises, such as KeyboardInterrupt, comes through.
+bool python_interrupts() {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  return false;
 }
 
 /// Passes all on to a Python object with the same methods.
@@ -80,13 +90,13 @@ void bind_event_sequence(py::module_& m) {
   py::class_<EventSequence, std::shared_ptr<EventSequence>>(m, "EventSequence")
       .def_static(
           "create",
-          [](const std::string& json, const std::string& base_dir, const std::string& folder) {
-            return EventSequence::create(parse_scene(json), base_dir, folder);
+          [](const std::string& json, const Path& base_dir, const Path& folder) {
+            return EventSequence::create(parse_scene(json), base_dir, folder, python_interrupts);
           },
           "scene_json"_a, "base_dir"_a, "folder"_a)
       .def_static(
           "resume",
-          [](const std::string& json, const std::string& base_dir, const std::string& folder) {
+          [](const std::string& json, const Path& base_dir, const Path& folder) {
             return EventSequence::resume(parse_scene(json), base_dir, folder);
           },
           "scene_json"_a, "base_dir"_a, "folder"_a)
@@ -101,6 +111,11 @@ void bind_event_sequence(py::module_& m) {
             s.record().machine = std::move(facts);
           },
           "facts"_a)
+      .def_property(
+          "tables", [](const EventSequence& s) { return s.record().tables; },
+          [](EventSequence& s, decltype(RunRecord::tables) tables) {
+            s.record().tables = std::move(tables);
+          })
       .def_property_readonly(
           "simulation",
           [](const std::shared_ptr<EventSequence>& s) {  // which the simulation keeps alive

@@ -1,4 +1,5 @@
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +15,7 @@ namespace py = pybind11;
 namespace snowshed {
 namespace {
 
-py::dict plan_dict(const std::string& text, const std::string& base_dir) {
+py::dict plan_dict(const std::string& text, const std::filesystem::path& base_dir) {
   const Scene scene = parse_scene(text);
   const CostReport report = report_cost(scene, base_dir);
   const int events = scene.events.count;
@@ -59,7 +60,7 @@ void bind_scene(py::module_& m) {
   using namespace py::literals;
   m.def(
       "parse_scene",
-      [](const std::string& text, const std::string& base_dir) {
+      [](const std::string& text, const std::filesystem::path& base_dir) {
         std::vector<std::string> notes;
         const Scene scene = parse_scene(text, "scene", &notes);
         warn(notes);
@@ -69,10 +70,10 @@ void bind_scene(py::module_& m) {
       "The complete, validated JSON of a scene; files it names are found from base_dir.");
   m.def(
       "load_scene",
-      [](const std::string& path) {
+      [](const std::filesystem::path& path) {
         std::vector<std::string> notes;
         const Scene scene = load_scene(path, &notes);
-        warn(notes, path);
+        warn(notes, path.string());
         return write_scene(resolve(scene));
       },
       "path"_a, "The same of a file; files it names are found beside it.");
@@ -87,7 +88,7 @@ void bind_scene(py::module_& m) {
   m.def("plan", &plan_dict, "scene_json"_a, "base_dir"_a = ".");
   m.def(
       "expected_work",
-      [](const std::string& text, const std::string& base_dir) {
+      [](const std::string& text, const std::filesystem::path& base_dir) {
         return expected_work(parse_scene(text), base_dir);
       },
       "scene_json"_a, "base_dir"_a = ".",

@@ -1,5 +1,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "array_copies.hpp"
 #include "bindings.hpp"
@@ -120,7 +121,7 @@ py::tuple slide_bonds(const Simulation& sim) {
   return py::make_tuple(pairs, column<double>(bonds.rest_length));
 }
 
-py::tuple ascii_grid(const std::string& path) {
+py::tuple ascii_grid(const std::filesystem::path& path) {
   const HeightField f = read_ascii_grid(path);
   return py::make_tuple(map_of(f.heights, f.rows, f.columns), f.west, f.south, f.cell);
 }
@@ -134,6 +135,7 @@ py::object frame(const Simulation& sim) {
   d["slope"] = vector(f.slope);
   d["length"] = f.length;
   d["width"] = f.width;
+  d["board"] = f.board;
   return d;
 }
 
@@ -240,20 +242,22 @@ void bind_files(SimulationClass& c) {
   using namespace py::literals;
   (*c).def_static(
       "load",
-      [](const std::string& path) {
+      [](const std::filesystem::path& path) {
         return std::make_unique<SimulationHandle>(Simulation::load(path));
       },
       "path"_a);
-  c.reads("save", [](const Simulation& s, const std::string& path) { s.save(path); }, "path"_a);
+  c.reads(
+      "save", [](const Simulation& s, const std::filesystem::path& path) { s.save(path); },
+      "path"_a);
   c.changes(
       "set_snapshots",
-      [](Simulation& s, const std::string& dir, double interval) {
+      [](Simulation& s, const std::filesystem::path& dir, double interval) {
         s.write_snapshots(dir, interval);
       },
       "dir"_a, "interval_s"_a);
   c.reads(
-      "write_vtk", [](const Simulation& s, const std::string& path) { s.write_vtp(path); },
-      "path"_a);
+      "write_vtk",
+      [](const Simulation& s, const std::filesystem::path& path) { s.write_vtp(path); }, "path"_a);
 }
 
 void bind_fields(SimulationClass& c) {
@@ -325,7 +329,7 @@ void bind_simulation(py::module_& m) {
   m.def("read_ascii_grid", &ascii_grid, "path"_a,
         "(heights, west, south, cell) of an ESRI ASCII grid, the southernmost row first.");
   SimulationClass c(m);
-  (*c).def(py::init([](const std::string& json, const std::string& base_dir) {
+  (*c).def(py::init([](const std::string& json, const std::filesystem::path& base_dir) {
              return std::make_unique<SimulationHandle>(
                  std::make_shared<Simulation>(parse_scene(json), base_dir));
            }),

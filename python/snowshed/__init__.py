@@ -4,13 +4,16 @@ A scene is set value by value and run event after event; the stack below the pan
 
 Examples
 --------
+>>> from snowshed import Scene
 >>> scene = Scene.preset("lab-50").set("snow.density", 250)
 >>> scene.panel.tilt
 50.0
 """
 
+import importlib as _importlib
 import os
 from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 
 # The solver's threads meet twice a step. By default OpenMP's runtime makes the early ones spin for
 # a long time, which on a busy machine takes the processor from the thread they wait for. The
@@ -18,40 +21,40 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 if "OMP_WAIT_POLICY" not in os.environ:
     os.environ.setdefault("GOMP_SPINCOUNT", "2000")
 
-from snowshed._core import InputError, SimulationError
-from snowshed._core import version as __version__
-from snowshed.analysis.dimension_ratio import dimension_ratio
-from snowshed.io.renamed import renamed as _renamed
-from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.mpm import MpmSettings
-from snowshed.methods.mps import MpsSettings
-from snowshed.methods.slide import SlideSettings
-from snowshed.run.events import run_events
-from snowshed.run.interrupt import Interrupted
-from snowshed.run.progress import Progress
-from snowshed.run.results import read_events
-from snowshed.run.results_reader import Results
-from snowshed.run.simulation import Simulation
-from snowshed.scene.components import (
-    Area,
-    Body,
-    Domain,
-    Events,
-    Ground,
-    Layer,
-    Motion,
-    Obstacle,
-    Output,
-    Panel,
-    Seeding,
-    Slab,
-    Snow,
-    Terrain,
-)
-from snowshed.scene.loading import Cone, LoadingStage, Sample
-from snowshed.scene.scene import ResolvedScene, Scene
-from snowshed.scene.shape import Shape
-from snowshed.snow.stack.measure import Extent, StackMeasure, level, measure_stack
+if _TYPE_CHECKING:
+    from snowshed._core import InputError, SimulationError
+    from snowshed._core import version as __version__
+    from snowshed.analysis.dimension_ratio import dimension_ratio
+    from snowshed.methods.grains.settings import GrainsSettings
+    from snowshed.methods.mpm import MpmSettings
+    from snowshed.methods.mps import MpsSettings
+    from snowshed.methods.slide import SlideSettings
+    from snowshed.run.events import run_events
+    from snowshed.run.interrupt import Interrupted
+    from snowshed.run.progress import Progress
+    from snowshed.run.results import read_events
+    from snowshed.run.results_reader import Results
+    from snowshed.run.simulation import Simulation
+    from snowshed.scene.components import (
+        Area,
+        Body,
+        Domain,
+        Events,
+        Ground,
+        Layer,
+        Motion,
+        Obstacle,
+        Panel,
+        Seeding,
+        Slab,
+        Snow,
+        Terrain,
+    )
+    from snowshed.scene.loading import Cone, LoadingStage, Sample
+    from snowshed.scene.output import Output
+    from snowshed.scene.scene import ResolvedScene, Scene
+    from snowshed.scene.shape import Shape
+    from snowshed.snow.stack.measure import Extent, StackMeasure, level, measure_stack
 
 __all__ = [
     "Area",
@@ -94,5 +97,69 @@ __all__ = [
     "run_events",
 ]
 
+#: Where each name comes from. They are imported when they are used: commands start at once, and an
+#: interrupt meanwhile meets the command line's own code.
+_MODULES = {
+    "Area": "snowshed.scene.components",
+    "Body": "snowshed.scene.components",
+    "Cone": "snowshed.scene.loading",
+    "Domain": "snowshed.scene.components",
+    "Events": "snowshed.scene.components",
+    "Extent": "snowshed.snow.stack.measure",
+    "GrainsSettings": "snowshed.methods.grains.settings",
+    "Ground": "snowshed.scene.components",
+    "InputError": "snowshed._core",
+    "Interrupted": "snowshed.run.interrupt",
+    "Layer": "snowshed.scene.components",
+    "LoadingStage": "snowshed.scene.loading",
+    "Motion": "snowshed.scene.components",
+    "MpmSettings": "snowshed.methods.mpm",
+    "MpsSettings": "snowshed.methods.mps",
+    "Obstacle": "snowshed.scene.components",
+    "Output": "snowshed.scene.output",
+    "Panel": "snowshed.scene.components",
+    "Progress": "snowshed.run.progress",
+    "ResolvedScene": "snowshed.scene.scene",
+    "Results": "snowshed.run.results_reader",
+    "Sample": "snowshed.scene.loading",
+    "Scene": "snowshed.scene.scene",
+    "Seeding": "snowshed.scene.components",
+    "Shape": "snowshed.scene.shape",
+    "Simulation": "snowshed.run.simulation",
+    "SimulationError": "snowshed._core",
+    "Slab": "snowshed.scene.components",
+    "SlideSettings": "snowshed.methods.slide",
+    "Snow": "snowshed.scene.components",
+    "StackMeasure": "snowshed.snow.stack.measure",
+    "Terrain": "snowshed.scene.components",
+    "dimension_ratio": "snowshed.analysis.dimension_ratio",
+    "level": "snowshed.snow.stack.measure",
+    "measure_stack": "snowshed.snow.stack.measure",
+    "read_events": "snowshed.run.results",
+    "run_events": "snowshed.run.events",
+}
+_FORMER = {"InitialisedScene": "ResolvedScene", "Numerics": "MpmSettings"}
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
 if not _TYPE_CHECKING:
-    __getattr__ = _renamed(__name__, {"InitialisedScene": ResolvedScene, "Numerics": MpmSettings})
+
+    def __getattr__(name: str) -> object:
+        if name == "__version__":
+            return _importlib.import_module("snowshed._core").version
+        if name in _FORMER:
+            from snowshed.io.renamed import renamed
+
+            former = {name: _imported(_FORMER[name])}
+            return renamed(__name__, former, stacklevel=3)(name)
+        if name not in _MODULES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return _imported(name)
+
+    def _imported(name: str) -> _Any:
+        found = getattr(_importlib.import_module(_MODULES[name]), name)
+        globals()[name] = found
+        return found

@@ -2,7 +2,7 @@
 
 import sys
 
-from snowshed.cli.main import main
+from snowshed.cli.start import main
 
 if __name__ == "__main__":
     sys.exit(main())

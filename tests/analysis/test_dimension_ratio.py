@@ -39,6 +39,12 @@ def test_two_of_a_kind_are_refused(pair, tmp_path):
         compare_folders(pair[0], tmp_path / "other")
 
 
+def test_two_runs_of_a_kind_are_compared_by_the_command(pair, tmp_path, capsys):
+    shutil.copytree(pair[0], tmp_path / "other")
+    assert main(["compare", str(pair[0]), str(tmp_path / "other")]) == 0
+    assert "1.00" in capsys.readouterr().out
+
+
 def test_command(pair, capsys, tmp_path):
     assert main(["compare", str(pair[0]), str(pair[1])]) == 0
     shown = capsys.readouterr().out

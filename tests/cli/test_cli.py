@@ -86,6 +86,40 @@ def test_former_options_are_taken_and_hidden(capsys):
     assert "--step-factor" not in capsys.readouterr().out
 
 
+def test_without_a_command_the_help_is_shown_as_help(capsys):
+    assert main([]) == 0
+    shown = capsys.readouterr()
+    assert shown.out.startswith("Usage: snowshed") and len(shown.out.splitlines()) > 10
+    assert shown.err == ""
+
+
+def test_help_is_short_and_help_all_is_whole(capsys):
+    assert main(["panel", "--help"]) == 0
+    short = capsys.readouterr().out
+    assert main(["panel", "--help-all"]) == 0
+    whole = capsys.readouterr().out
+    assert "--tilt" in short and "--flip-ratio" not in short
+    assert "--flip-ratio" in whole and "--step-factor" not in whole
+    assert main(["panel", "--help"]) == 0  # as before
+    assert len(short.splitlines()) < 70 < len(whole.splitlines())
+
+
+def test_odd_scenes_and_results_are_told(tmp_path, capsys):
+    coarse = ("--dim", "2", "--height", "0.33", "--length", "0.245", "--thickness", "0.02")
+    odd = ("--dx", "0.05", "--tilt", "20", "--friction", "2", "--max-time", "0.1")
+    allowed = ("--allow-sparse", "--width", "0.2")
+    out = str(tmp_path / "out")
+    assert main(["panel", *coarse, *odd, *allowed, "-o", out]) == 0
+    shown = capsys.readouterr()
+    assert "the slab is 20 mm thick, less than two cells of 50 mm" in shown.err
+    assert "nothing slid: the snow stays on the panel" in shown.out
+    data = json.loads((tmp_path / "out" / "scene.json").read_text())
+    del data["ground"]
+    (tmp_path / "scene.json").write_text(json.dumps(data))
+    assert main(["run", str(tmp_path / "scene.json"), "-o", str(tmp_path / "b")]) == 0
+    assert "the scene has no ground" in capsys.readouterr().err
+
+
 def test_help_names_unit_and_default(capsys):
     assert main(["panel", "--help"]) == 0
     text = " ".join(capsys.readouterr().out.split())

@@ -72,3 +72,41 @@ def test_lines_are_as_wide_as_forces_are_large_and_do_not_cross_the_picture():
 def test_a_sample_without_forces_is_drawn_without_lines():
     figure = force_figure(contacts([(0, 0, 0), (0, 0, 0)]), voxel_size=0.1)
     assert figure.axes[0].get_title("left") == "No forces between the grains"
+
+
+def lines_of(figure):
+    from matplotlib.collections import LineCollection
+
+    drawn = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
+    return {tuple(one.get_colors()[0]): len(one.get_paths()) for one in drawn if one.get_paths()}
+
+
+def test_only_bonds_pull():
+    """Both contacts are pushed along the line of their centres; the second has no bond."""
+    apart = contacts([(3, 0, 0), (2, 0, 0)])
+    assert (apart.normal_forces < 0).all()
+    assert len(lines_of(force_figure(apart, voxel_size=0.1))) == 2  # one colour each
+
+
+def test_of_many_grains_the_forces_in_the_slice_are_drawn():
+    count = 400
+    y = np.linspace(0, 1, count)
+    centres = np.stack([np.zeros(count), y, np.zeros(count)], axis=1)
+    many = GrainContacts(
+        spheres=centres,
+        sphere_grains=np.arange(count),
+        grains=np.stack([np.arange(count - 1), np.arange(1, count)], axis=1),
+        points=0.5 * (centres[1:] + centres[:-1]),
+        forces=np.tile([0.0, -1.0, 0.0], (count - 1, 1)),
+        bonded=np.ones(count - 1, dtype=bool),
+    )
+    figure = force_figure(many, voxel_size=0.1)
+    assert sum(lines_of(figure).values()) <= 2 * 0.26 * count
+    assert "in the slice" in figure.axes[0].get_title("left")
+
+
+def test_a_modulus_is_told_where_the_stress_is_linear_only():
+    waves = 1e5 * RAMP + 4e3 * np.sin(300 * RAMP)
+    for stress, words in ((1e5 * RAMP, "tangent modulus"), (waves, "not linear")):
+        figure = loading_figure(curve(axial_strain=RAMP, top_stress_pa=stress), ["compress"])
+        assert words in figure.axes[1].get_title("left")

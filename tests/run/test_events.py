@@ -17,6 +17,7 @@ def compare_tables(one, other):
             b.drop(columns="wall_s", errors="ignore"),
             check_exact=True,
         )
+    assert (one / "film.bin").read_bytes() == (other / "film.bin").read_bytes()
 
 
 def interrupt_at(event, moment):
@@ -35,6 +36,7 @@ def test_the_results_folder_is_complete(finished):
     names = {path.name for path in finished.iterdir()}
     assert names == {
         "scene.json", "events.csv", "outline.csv", "energy.csv", "run.json", "checkpoint.bin",
+        "film.bin",
         "particles", "particles.pvd", "stack.png", "growth.png",
     }  # fmt: skip
     assert {path.name for path in (finished / "particles").iterdir()} == {

@@ -1,6 +1,7 @@
 """The standalone executable, which needs no Python, and its agreement with the package."""
 
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from bad_scenes import bad_scene  # noqa: F401
+from bad_scenes import CLOSED_MESH, bad_scene  # noqa: F401
 from conftest import tiny_scene
 from test_events import interrupt_at
 
@@ -309,3 +310,28 @@ def test_help_version_and_schema():
     assert snowshed_run("--help").stdout.startswith("usage: snowshed-run")
     assert snowshed_run("--version").stdout == f"{_core.version}\n"
     assert json.loads(snowshed_run("--schema").stdout) == json.loads(_core.scene_schema())
+
+
+def test_other_kernels_do_not_go_on(tmp_path):
+    first, scene = tmp_path / "out", tmp_path / "scene.json"
+    tiny_scene(**{"events.max_time": 0.05}).resolve().save(scene)
+    for kernels, code in (("junk", 2), ("baseline", 0)):
+        done = snowshed_run(scene, "-o", first, env={**os.environ, "SNOWSHED_KERNELS": kernels})
+        assert done.returncode == code
+    present = {**os.environ, "SNOWSHED_KERNELS": "avx2"}
+    done = snowshed_run(scene, "-o", first, "--resume", env=present)
+    if "can run" not in done.stderr:  # a machine that has them
+        assert done.returncode == 2 and 'made with the kernels "baseline"' in done.stderr
+
+
+def test_a_changed_mesh_does_not_go_on(tmp_path):
+    out, scene, mesh = tmp_path / "out", tmp_path / "scene.json", tmp_path / "a.obj"
+    mesh.write_text(CLOSED_MESH)
+    shape = {"type": "mesh", "file": "a.obj", "scale": 0.1}
+    data = tiny_scene(**{"events.max_time": 0.05}).append("obstacles", {"shape": shape}).to_data()
+    scene.write_text(json.dumps(data))
+    assert snowshed_run(scene, "-o", out).returncode == 0
+    assert snowshed_run(scene, "-o", out, "--resume").returncode == 0
+    mesh.write_text(CLOSED_MESH.replace("v 0 0 1", "v 0 0 1.2"))
+    done = snowshed_run(scene, "-o", out, "--resume")
+    assert done.returncode == 2 and "a.obj: has changed since the checkpoint" in done.stderr

@@ -195,7 +195,7 @@ def test_a_record_that_cannot_be_gone_on_with(tmp_path, tiny, content, message):
             lambda text: re.sub(r"(?m)^1,[^,]*", "1,inf", text),
             "no finite numbers in a column height_m",
         ),
-        (lambda text: text.replace(",rest", ""), "line 2: not a table: 29 cells in 30 columns"),
+        (lambda text: text.replace(",rest", ""), "line 2: not a table: 31 cells in 32 columns"),
         (lambda text: re.sub(r"(?m)^1,.*\n", "", text), "its events are not 1, 2"),
     ],
 )
@@ -223,3 +223,26 @@ def test_events_that_the_table_lacks_are_measured_from_their_particles(finished,
     for name in ("events.csv", "outline.csv", "energy.csv"):
         one, other = (pd.read_csv(f / name) for f in (finished, folder))
         pd.testing.assert_frame_equal(one, other, rtol=1e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["outline.csv", "energy.csv", "events.csv"])
+@pytest.mark.parametrize("damage", ["empty", "header", "row", "digit", "column"])
+def test_a_table_that_lacks_rows_or_has_others_is_not_continued(finished, tmp_path, name, damage):
+    folder = tmp_path / "results"
+    shutil.copytree(finished, folder)
+    lines = (folder / name).read_text().splitlines(keepends=True)
+    changed = {
+        "empty": "",
+        "header": lines[0],
+        "row": "".join(lines[:1] + lines[2:]),
+        "digit": "".join(lines[:1] + [lines[1].replace(".", ".1", 1)] + lines[2:]),
+        "column": "".join([lines[0].replace("event", "evnt", 1)] + lines[1:]),
+    }[damage]
+    (folder / name).write_text(changed)
+    if name == "events.csv" and damage in ("empty", "header"):  # measured again from particles
+        resume(tiny_scene(**{"output.energy": True}), folder)
+        assert len((folder / name).read_text().splitlines()) == len(lines)
+        return
+    with pytest.raises(InputError, match=rf"{name}: "):
+        resume(tiny_scene(**{"output.energy": True}), folder)
+    assert (folder / name).read_text() == changed

@@ -214,9 +214,9 @@ def test_leftovers_of_killed_processes_are_removed(scripted, tmp_path):
     with Store.create(tmp_path / "store") as store:
         store.register("tiny", STUDY.axes, STUDY.runs())
         store.record(outcome(HASHES[0]))
-        for name in (*HASHES[:2], "unknown"):
+        for name in (*HASHES[:2], "0" * 32):
             (store.running / name / "results").mkdir(parents=True)
-        (store.running / "dead.lock").touch()
+        (store.running / "node-1-0123abcd.lock").touch()
         session._tidy(store)
         assert [path.name for path in store.running.iterdir()] == [HASHES[1]]
         with ownership(store):

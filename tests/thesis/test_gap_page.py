@@ -4,8 +4,8 @@ import shutil
 
 import pandas as pd
 import pytest
+from reproduction.hypothesis_tests import Estimate
 from thesis import gap_page
-from thesis.claims.hypothesis_tests import Estimate
 from thesis.scatter import read_scatter, scatter
 from thesis.variants import by_size, change, read_variants_file
 

@@ -6,8 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from thesis.claims import calibration, fixation, geometry, lab, regression, s_index
-from thesis.claims.hypothesis_tests import (
+from reproduction.hypothesis_tests import (
     CONFIRMED,
     CONTRADICTED,
     UNDECIDED,
@@ -22,6 +21,7 @@ from thesis.claims.hypothesis_tests import (
     positive,
     small,
 )
+from thesis.claims import calibration, fixation, geometry, lab, regression, s_index
 
 ORDER = (CONFIRMED, CONTRADICTED, UNDECIDED)
 

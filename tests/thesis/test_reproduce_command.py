@@ -62,8 +62,8 @@ def test_without_the_source_it_says_where_it_is(tmp_path, capsys, monkeypatch):
     )
     assert run("-o", tmp_path / "out") == 2
     assert capsys.readouterr().err == (
-        "error: reproduce comes with the source of snowshed, not with the installed package: "
-        "run `make thesis` there\n"
+        "error: reproduce thesis comes with the source of snowshed, not with the installed "
+        "package: run `make build` there\n"
     )
     assert not (tmp_path / "out").exists()
 
@@ -124,8 +124,8 @@ def test_a_stage_of_real_snow(tmp_path, capsys, monkeypatch):
 
 
 def test_failed_simulations_have_an_exit_code(tmp_path, capsys, monkeypatch):
+    from reproduction.stage import State, StudyStage
     from thesis import command
-    from thesis.stage import State, StudyStage
 
     table = geometry_table(tmp_path / "rows.csv")
     state = StudyStage.state

@@ -12,9 +12,13 @@ from thesis.folder import ReproductionFolder
 from thesis.reproduction import Reproduction
 from thesis.sections import deviations as section
 from thesis.size import SIZES
+from thesis.variant_errors import variant_errors
 
+from snowshed import Scene, Simulation
 from snowshed._core import InputError
-from snowshed.analysis.deviations import DEVIATIONS
+from snowshed.analysis.deviations import DEVIATIONS, THESIS_DX
+from snowshed.analysis.regression import CrossValidation
+from snowshed.analysis.regression.geometry import DAMPING_RATE
 
 
 def stacks(**factors):
@@ -66,6 +70,39 @@ def test_all_variants_are_of_the_same_panels_and_differ_in_their_deviation_alone
     assert studies.study_of("trimming") == "deviations-defaults"
 
 
+def test_damping_is_undone_and_varied_at_a_rate_that_the_thesis_does_not_have():
+    numerics = {
+        study.name: json.loads(study.runs()[0].scene)["numerics"]
+        for study in (*studies.deviations(SIZES["full"]), *studies.variations(SIZES["full"]))
+    }
+    rates = {name: one.get("damping_rate") for name, one in numerics.items()}
+    assert rates["deviations-defaults"] == rates["variations-short-steps"] == DAMPING_RATE
+    assert rates["deviations-damping"] is rates["deviations-thesis"] is None
+    assert numerics["deviations-damping"]["flip_ratio"] == 0.99
+    assert rates["variations-half-damping"] == DAMPING_RATE / 2
+    # The rate is that of the thesis's share with its own cells and steps.
+    scene = Scene.preset("geometry").update({"numerics.dx": THESIS_DX, "events.count": 1})
+    simulation = Simulation(scene.update({"panel.length": 0.2, "seeding.particles_per_voxel": 4}))
+    simulation.begin_event()
+    simulation.step(20)
+    share = -math.log(0.99) / (simulation.time / 20)
+    assert share == pytest.approx(DAMPING_RATE, rel=0.05)
+
+
+def test_regressions_of_variants_have_a_row_for_each_reading_and_model():
+    scheme = CrossValidation(rounds=1, folds=2, inner_folds=2)
+    rng = np.random.default_rng(1)
+    many = pd.concat([stacks(reseed=(1.5, 1.0)).assign(**{"panel.length": x}) for x in range(1, 5)])
+    for column in many.filter(like="length_m"):
+        many[column] *= rng.uniform(0.9, 1.1, len(many))
+    table = variant_errors(many, scheme)
+    assert len(table) == 2 * 2 * 2 and set(table["rows"]) == {24}
+    median = table.set_index(["variant", "trimming", "model"])["Q2"]
+    changed = median["reseed"] / median["defaults"]
+    assert changed["outermost_first", "rbf"] == pytest.approx(1.5, rel=0.15)
+    assert changed["equal_pace", "rbf"] == pytest.approx(1.0, rel=0.15)  # nothing changes it here
+
+
 def test_a_change_is_that_of_the_mean_stack_over_panels():
     table = stacks(reseed=(1.2, 0.8), frames=(1.0, 1.0))
     height = variants.change(table, "reseed", "height")
@@ -114,13 +151,13 @@ def test_the_section_is_written_from_the_store(tmp_path):
     assert found.study_stages["deviations"].state().done == 0  # enters the studies
     with pytest.raises(InputError, match="no panel of the sample is computed yet"):
         section.build(found)
-    fill(found, ["deviations"])
+    fill(found, ["deviations", "variations"])
     made = section.build(found)
     titles = [title for title, _ in made.tables]
-    assert len(titles) == 3 and "by both readings of A.4.2" in titles[2]
+    assert len(titles) == 4 and "by both readings of A.4.2" in titles[3]
     file = tmp_path / "out" / "deviations" / "stacks.csv"
     again = variants.read_variants_file(file)
-    assert set(again["variant"]) == set(studies.VARIANTS)
+    assert set(again["variant"]) == {*studies.VARIANTS, *studies.VARIATIONS}
     (tmp_path / "not.csv").write_text("variant\nslip\n")
     with pytest.raises(InputError, match=r"not\.csv: no column dx, equal_pace_height_m"):
         variants.read_variants_file(tmp_path / "not.csv")

@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 from reproduce_helpers import TINY, geometry_table
+from reproduction.stage import compute
 from thesis.folder import ReproductionFolder
-from thesis.reproduction import Reproduction, compute
+from thesis.reproduction import Reproduction
 from thesis.sections import regression as section
 
 from snowshed.analysis.regression.summary import THESIS_QUARTILES, thesis_relative_error

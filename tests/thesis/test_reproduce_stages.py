@@ -6,18 +6,19 @@ import re
 import pandas as pd
 import pytest
 from reproduce_helpers import TINY, TINY_WITH_PANELS, fill, geometry_table
+from reproduction.stage import State, StudyStage, choose, compute
 from thesis import studies
 from thesis.folder import ReproductionFolder
-from thesis.reproduction import Reproduction, compute
+from thesis.reproduction import Reproduction
 from thesis.sections.regression import read_regressed
 from thesis.size import FULL, MIDDLE, QUICK
-from thesis.stage import State, StudyStage, choose
 
 from snowshed import Scene
 from snowshed._core import InputError
 from snowshed.study import Study
 
-NAMES = ["lab", "s-index", "fixation", "calibration", "deviations", "geometry", "regression"]
+NAMES = ["lab", "s-index", "fixation", "calibration", "deviations", "variations"]
+NAMES += ["geometry", "regression"]
 
 
 def test_full_is_what_the_thesis_computes():

@@ -5,16 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from snowshed.io.formatting import percent
-from snowshed.plot.labels import settings
-from snowshed.scene.thesis_tables import CALIBRATED
-from thesis.claims.hypothesis_tests import (
+from reproduction.hypothesis_tests import (
     CONFIRMED,
     CONTRADICTED,
     UNDECIDED,
     Claim,
     Finding,
 )
+
+from snowshed.io.formatting import percent
+from snowshed.plot.labels import settings
+from snowshed.scene.thesis_tables import CALIBRATED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

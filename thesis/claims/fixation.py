@@ -11,9 +11,7 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from snowshed.io.formatting import percent
-from snowshed.plot.labels import label
-from thesis.claims.hypothesis_tests import (
+from reproduction.hypothesis_tests import (
     Claim,
     Estimate,
     Finding,
@@ -23,6 +21,9 @@ from thesis.claims.hypothesis_tests import (
     positive,
     small,
 )
+
+from snowshed.io.formatting import percent
+from snowshed.plot.labels import label
 from thesis.claims.s_index import COHESION, HARDENING, MODULUS, PRESSURE, SLOPE
 
 if TYPE_CHECKING:

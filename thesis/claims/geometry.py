@@ -15,10 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from snowshed.io.arrays import Floats
-from snowshed.io.formatting import percent
-from thesis.claims.hypothesis_tests import (
+from reproduction.hypothesis_tests import (
     CONFIRMED,
     CONTRADICTED,
     UNDECIDED,
@@ -29,6 +26,9 @@ from thesis.claims.hypothesis_tests import (
     positive,
     small,
 )
+
+from snowshed.io.arrays import Floats
+from snowshed.io.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd

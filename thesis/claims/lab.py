@@ -11,9 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from snowshed.io.formatting import percent
-from thesis.claims.hypothesis_tests import (
+from reproduction.hypothesis_tests import (
     CONTRADICTED,
     UNDECIDED,
     Claim,
@@ -25,6 +23,8 @@ from thesis.claims.hypothesis_tests import (
     small,
     widening,
 )
+
+from snowshed.io.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,17 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from snowshed.analysis.regression.summary import (
-    LINEAR_WORSE,
-    QUARTILES_OFF,
-    THESIS_ERRORS,
-    THESIS_QUARTILES,
-    THESIS_ROWS,
-)
-from snowshed.io.arrays import Floats
-from snowshed.io.formatting import percent
-from thesis.claims.hypothesis_tests import (
+from reproduction.hypothesis_tests import (
     CONFIRMED,
     CONTRADICTED,
     UNDECIDED,
@@ -29,6 +19,16 @@ from thesis.claims.hypothesis_tests import (
     positive,
     widening,
 )
+
+from snowshed.analysis.regression.summary import (
+    LINEAR_WORSE,
+    QUARTILES_OFF,
+    THESIS_ERRORS,
+    THESIS_QUARTILES,
+    THESIS_ROWS,
+)
+from snowshed.io.arrays import Floats
+from snowshed.io.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,8 +9,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from snowshed.plot.labels import label
-from thesis.claims.hypothesis_tests import (
+from reproduction.hypothesis_tests import (
     Claim,
     Estimate,
     Finding,
@@ -20,6 +19,8 @@ from thesis.claims.hypothesis_tests import (
     positive,
     small,
 )
+
+from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd

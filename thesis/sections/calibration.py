@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from reproduction.hypothesis_tests import judge
+from reproduction.section import Section
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import read_simulated
@@ -18,9 +20,8 @@ from snowshed.scene.thesis_tables import CALIBRATED
 from snowshed.study.table import read_table
 from thesis import printed
 from thesis.claims.calibration import CALIBRATION, Recovery
-from thesis.claims.hypothesis_tests import judge
 from thesis.reproduction import Reproduction
-from thesis.section import PANEL_FRICTION, SAVED_DPI, Section, settings_grid
+from thesis.section import PANEL_FRICTION, SAVED_DPI, settings_grid
 from thesis.studies import GRID, TRUTH, TRUTH_SEED
 
 if TYPE_CHECKING:

@@ -1,27 +1,44 @@
-"""Where our settings deviate from the thesis: each undone alone, and all together."""
+"""Our settings and the thesis's: each deviation undone, all undone, and settings varied."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Optional
 
 import numpy as np
+from reproduction.hypothesis_tests import SIGMAS, Estimate
+from reproduction.section import Section
 
 from snowshed.analysis.deviations import DEVIATIONS, FRAME_RATE
-from snowshed.analysis.regression.summary import THESIS_QUARTILES, THESIS_ROWS
+from snowshed.analysis.regression.geometry import DAMPING_RATE
+from snowshed.analysis.regression.summary import QUARTILES, THESIS_QUARTILES, THESIS_ROWS
 from snowshed.io.atomic import write_text
-from snowshed.io.formatting import NOTHING
+from snowshed.io.formatting import NOTHING, percent
 from snowshed.plot.html_page import Grid
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
-from thesis.claims.hypothesis_tests import SIGMAS, Estimate
 from thesis.reproduction import Reproduction
-from thesis.section import Section
-from thesis.studies import DEFAULTS, PANEL, THESIS
-from thesis.variants import by_size, change, is_unswitched, quartiles, read_variants
+from thesis.studies import DEFAULTS, PANEL, THESIS, VARIANTS, VARIATIONS
+from thesis.variants import (
+    by_size,
+    change,
+    is_unswitched,
+    quartiles,
+    read_variants,
+    with_runs_of_its_own,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
 
 STACKS = "stacks.csv"
+#: What the variations are, beside our settings.
+WORDS: Mapping[str, str] = {
+    "coarse-cells": "cells a third larger",
+    "half-damping": f"damping {DAMPING_RATE / 2:g} 1/s instead of {DAMPING_RATE:g}",
+    "double-damping": f"damping {DAMPING_RATE * 2:g} 1/s",
+    "short-steps": "steps two thirds as long",
+    "short-steps-damped-each": "the same, with a share of 0.99 in each step",
+}
 QUANTITIES = {"height": "height", "length": "length", "ratio": "H/L"}
 
 
@@ -34,6 +51,7 @@ def build(found: Reproduction) -> Section:
     tables = [
         ("What the deviations are", deviations_grid()),
         ("What each changes when it is undone", changes_grid(stacks)),
+        ("What changes where a setting of ours is varied", variations_grid(stacks)),
         ("Quartiles of H/L, of the rows, by both readings of A.4.2", quartiles_grid(stacks)),
     ]
     title = "Deviations from the thesis, one by one"
@@ -43,6 +61,7 @@ def build(found: Reproduction) -> Section:
 def sample_text(stacks: pd.DataFrame) -> list[str]:
     """Return in words what was computed, and how to read the tables."""
     ours = stacks[stacks["variant"] == DEFAULTS]
+    stacks = stacks[stacks["variant"].isin(VARIANTS)]
     panels, seeds = len(ours[list(PANEL)].drop_duplicates()), ours["seed"].nunique()
     cells = " and ".join(f"{100 * dx:.3g} cm" for dx in sorted(stacks["dx"].unique(), reverse=True))
     longest, events = ours["panel.length"].max(), ours["event"].max()
@@ -78,9 +97,30 @@ def changes_grid(stacks: pd.DataFrame) -> Grid:
     return Grid(["undone", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
 
 
+def variations_grid(stacks: pd.DataFrame) -> Grid:
+    """Return how much a stack changes where a setting of ours is varied."""
+    there = [name for name in VARIATIONS if name in set(stacks["variant"])]
+    rows = [[WORDS[name], *_changes(stacks, name)] for name in there]
+    return Grid(["varied", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
+
+
 def _changes(stacks: pd.DataFrame, name: str, trimming: Optional[str] = None) -> list[str]:
     found = (change(stacks, name, quantity, trimming) for quantity in QUANTITIES)
     return [change_in_words(one) for one in found]
+
+
+def errors_grid(errors: pd.DataFrame, stacks: pd.DataFrame) -> Grid:
+    """Return Tables 5.3.1 and 5.3.2 for the rows of each variant, from `thesis.variant_errors`."""
+    rows = []
+    for one in errors.to_dict("records"):
+        numbers = [f"{one[name]:.3f}" for name in QUARTILES]
+        numbers += [f"{one[name]:.4f}" for name in ("mean_absolute_error", "held_out_error")]
+        part = percent(one["mean_absolute_error"] / one["Q2"], 2)
+        name = _title(stacks, str(one["variant"]))
+        rows.append([name, str(one["trimming"]), str(one["model"]), *numbers, part])
+    head = ["undone", "reading of A.4.2", "model", *QUARTILES]
+    head += ["mean absolute error", "on rows not trained on", "of the median prediction"]
+    return Grid(head, rows, "lll" + "r" * 7)
 
 
 def change_in_words(found: Estimate) -> str:
@@ -101,13 +141,12 @@ def quartiles_grid(stacks: pd.DataFrame) -> Grid:
     """Return the quartiles of H/L of each variant that has runs of its own, by both readings."""
     rows = [
         [
-            _title(stacks, str(name)),
+            _title(stacks, name),
             trimming,
             *(f"{one:.3f}" for one in quartiles(of_one, trimming)),
         ]
-        for name, of_one in stacks.groupby("variant", sort=False)
+        for name, of_one in with_runs_of_its_own(stacks)
         for trimming in TRIMMINGS
-        if name == DEFAULTS or not of_one["same_runs"].all()
     ]
     printed = [f"{one:.3f}" for one in THESIS_QUARTILES["rbf"]]
     rows.append(["Table 5.3.1, RBF", "not printed", *printed])
@@ -116,6 +155,8 @@ def quartiles_grid(stacks: pd.DataFrame) -> Grid:
 
 def _title(stacks: pd.DataFrame, variant: str) -> str:
     """Return a variant's name; a deviation that changes nothing in the scene says so."""
+    if variant in VARIATIONS:
+        return WORDS[variant]
     if variant in (DEFAULTS, THESIS):
         return {DEFAULTS: "none", THESIS: "all: the preset thesis"}[variant]
     return f"{variant} (not switched)" if is_unswitched(stacks, variant) else variant

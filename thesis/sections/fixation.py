@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from reproduction.hypothesis_tests import judge
+from reproduction.section import Section
 
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import seeding_noise
@@ -14,17 +16,8 @@ from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import label
 from thesis import printed
 from thesis.claims.fixation import FIXATION as CLAIMS
-from thesis.claims.hypothesis_tests import judge
 from thesis.reproduction import Reproduction
-from thesis.section import (
-    PANEL_FRICTION,
-    SAVED_DPI,
-    Section,
-    grouped,
-    plus_minus,
-    settings_grid,
-    widenings,
-)
+from thesis.section import PANEL_FRICTION, SAVED_DPI, grouped, plus_minus, settings_grid, widenings
 from thesis.studies import FIXATION, INDEX
 
 if TYPE_CHECKING:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+from reproduction.hypothesis_tests import judge
+from reproduction.section import Section
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.dataset import geometry_table as shipped_rows
@@ -13,10 +15,9 @@ from snowshed.plot.html_page import Grid, Picture
 from snowshed.study.table import read_table
 from thesis import printed
 from thesis.claims.geometry import GEOMETRY, INPUTS
-from thesis.claims.hypothesis_tests import judge
 from thesis.figures import geometry_figure
 from thesis.reproduction import Reproduction
-from thesis.section import Section, settings_grid
+from thesis.section import settings_grid
 from thesis.studies import TILTS, geometry
 
 TEXT = (

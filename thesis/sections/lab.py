@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from reproduction.hypothesis_tests import Judged, judge
+from reproduction.section import Section
+
 from snowshed._core import InputError
 from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid, Picture
@@ -11,10 +14,9 @@ from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.table import read_table
 from thesis import printed
 from thesis.claims import lab as claims
-from thesis.claims.hypothesis_tests import Judged, judge
 from thesis.figures import growth_figure
 from thesis.reproduction import Reproduction
-from thesis.section import Section, grouped, plus_minus, settings_grid
+from thesis.section import grouped, plus_minus, settings_grid
 from thesis.size import MEASURED_FRICTION
 from thesis.studies import LAB_2D, LAB_3D, RELEASE
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
+from reproduction.hypothesis_tests import judge
+from reproduction.section import Section
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.rows import StackRows, read_rows
@@ -21,7 +23,6 @@ from snowshed.io.csv_table import read_csv
 from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.snow.stack.quantities import MEASURES
-from thesis.claims.hypothesis_tests import judge
 from thesis.claims.regression import (
     REGRESSION,
     VALIDATION_SCORE,
@@ -30,7 +31,7 @@ from thesis.claims.regression import (
 )
 from thesis.regression_stage import KINDS, TARGET, Part
 from thesis.reproduction import Reproduction
-from thesis.section import SAVED_DPI, Section
+from thesis.section import SAVED_DPI
 
 TEXT = (
     "ε-SVR of H/L with a linear and an RBF kernel, hyper-parameters in powers of ten, chosen and "

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from reproduction.hypothesis_tests import judge
+from reproduction.section import Section
+
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.report import evaluate
 from snowshed.analysis.sensitivity.stored import read_stored
@@ -11,18 +14,9 @@ from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import label
 from snowshed.scene.thesis_tables import PAIRS
 from thesis import printed
-from thesis.claims.hypothesis_tests import judge
 from thesis.claims.s_index import S_INDEX
 from thesis.reproduction import Reproduction
-from thesis.section import (
-    PANEL_FRICTION,
-    SAVED_DPI,
-    Section,
-    grouped,
-    plus_minus,
-    settings_grid,
-    widenings,
-)
+from thesis.section import PANEL_FRICTION, SAVED_DPI, grouped, plus_minus, settings_grid, widenings
 from thesis.studies import INDEX
 
 if TYPE_CHECKING:

@@ -14,12 +14,12 @@ from snowshed.scene.components import (
     Events,
     Ground,
     Obstacle,
-    Output,
     Panel,
     Seeding,
     Slab,
 )
 from snowshed.scene.components import Snow as SnowPart
+from snowshed.scene.output import Output
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.stress.space import Point

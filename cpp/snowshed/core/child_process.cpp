@@ -18,7 +18,7 @@ namespace snowshed {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& program, int error) {
-  throw FileError(program.string() + ": cannot be run: " + std::strerror(error));
+  throw FileError(program.string(), std::string("cannot be run: ") + std::strerror(error), error);
 }
 
 /// A pipe whose ends are closed when they are no longer needed.

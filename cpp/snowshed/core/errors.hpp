@@ -1,8 +1,10 @@
 // Errors a user can act on: what was wrong, where, what is allowed.
 #pragma once
 
+#include <cerrno>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace snowshed {
 
@@ -24,10 +26,23 @@ class SimulationError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reading or writing a file failed.
+/// Reading or writing a file failed: which file, what could not be done, and the system's number of
+/// the reason (errno; 0 where it gives none).
 class FileError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  FileError(std::string file, const std::string& what, int code)
+      : std::runtime_error(file + ": " + what), file_(std::move(file)), code_(code) {}
+  const std::string& file() const { return file_; }
+  int code() const { return code_; }
+
+  /// Returns whether the disk is full or broken, which has nothing to do with what was asked for.
+  bool is_of_disk() const {
+    return code_ == ENOSPC || code_ == EDQUOT || code_ == EIO || code_ == EFBIG;
+  }
+
+ private:
+  std::string file_;
+  int code_;
 };
 
 }  // namespace snowshed

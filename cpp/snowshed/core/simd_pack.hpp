@@ -10,6 +10,10 @@
 #include <type_traits>
 #include <utility>
 
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "snowshed/core/variant.hpp"
 
 SNOWSHED_VARIANT_BEGIN
@@ -77,13 +81,31 @@ SNOWSHED_INLINE V select(const M& mask, const V& a, const V& b) {
   return mask ? a : b;
 }
 
+/// The lanes combined, a half with the other half until one is left.
+template <class V, class Combine, int... lane>
+SNOWSHED_INLINE auto combine_lanes(const V& x, Combine combine,
+                                   std::integer_sequence<int, lane...>) {
+  constexpr int half = int(sizeof...(lane));
+  if constexpr (half == 1) {
+    return combine(x[0], x[1]);
+  } else {
+    const auto first = __builtin_shufflevector(x, x, lane...);
+    const auto second = __builtin_shufflevector(x, x, (half + lane)...);
+    return combine_lanes(combine(first, second), combine,
+                         std::make_integer_sequence<int, half / 2>());
+  }
+}
+template <class V, class Combine>
+SNOWSHED_INLINE auto combine_lanes(const V& x, Combine combine) {
+  constexpr int n = int(sizeof(V) / sizeof(x[0]));
+  return combine_lanes(x, combine, std::make_integer_sequence<int, n / 2>());
+}
+
 /// Bits that are set in any lane.
 template <class M>
 SNOWSHED_INLINE auto bits_in(const M& mask) {
-  constexpr int n = int(sizeof(M) / sizeof(mask[0]));
-  auto bits = mask[0];
-  for (int i = 1; i < n; ++i) bits |= mask[i];
-  return bits;
+  return combine_lanes(mask,
+                       [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return a | b; });
 }
 
 template <class M>
@@ -125,13 +147,113 @@ SNOWSHED_INLINE V clamp(const V& x, const V& lo, const V& hi) {
 /// The largest lane.
 template <class V>
 SNOWSHED_INLINE Scalar<V> largest(const V& x) {
-  if constexpr (is_simd_pack<V>) {
-    Scalar<V> r = x[0];
-    for (int i = 1; i < int(sizeof(V) / sizeof(x[0])); ++i) r = x[i] > r ? x[i] : r;
-    return r;
-  } else {
+  if constexpr (is_simd_pack<V>)
+    return combine_lanes(
+        x, [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return max(a, b); });
+  else
     return x;
+}
+
+/// One step of a transposition: rows i and i + step exchange the lanes in which the bit `step` of
+/// their number differs from that of their row.
+template <int step, class V, int... lane>
+SNOWSHED_INLINE void exchange(V& a, V& b, std::integer_sequence<int, lane...>) {
+  constexpr int n = int(sizeof...(lane));
+  const V first = __builtin_shufflevector(a, b, ((lane & step) != 0 ? n + lane - step : lane)...);
+  b = __builtin_shufflevector(a, b, ((lane & step) != 0 ? n + lane : lane + step)...);
+  a = first;
+}
+
+/// a and b become their even and odd halves of {a0 b0 a1 b1 ...}, within each four lanes: one
+/// instruction each.
+template <class V, int... lane>
+SNOWSHED_INLINE void interleave(V& a, V& b, std::integer_sequence<int, lane...>) {
+  constexpr int n = int(sizeof...(lane));
+  const V first = __builtin_shufflevector(a, b, (lane / 4 * 4 + lane % 4 / 2 + lane % 2 * n)...);
+  b = __builtin_shufflevector(a, b, (lane / 4 * 4 + 2 + lane % 4 / 2 + lane % 2 * n)...);
+  a = first;
+}
+
+template <int step, class V, int n>
+SNOWSHED_INLINE void exchange_rows(V (&rows)[n]) {
+  if constexpr (step < n) {
+    SNOWSHED_UNROLL
+    for (int i = 0; i < n; ++i)
+      if ((i & step) == 0)
+        exchange<step>(rows[i], rows[i + step], std::make_integer_sequence<int, n>());
+    exchange_rows<2 * step>(rows);
   }
+}
+
+/// Transposes a square of as many packs as they have lanes: lane j of row i becomes lane i of row
+/// j.
+template <class V, int n>
+SNOWSHED_INLINE void transpose(V (&rows)[n]) {
+  if constexpr (sizeof(rows[0][0]) == 4) {
+    constexpr auto lanes = std::make_integer_sequence<int, n>();
+    SNOWSHED_UNROLL
+    for (int i = 0; i < n; i += 4) {
+      V* r = rows + i;
+      interleave(r[0], r[1], lanes);
+      interleave(r[2], r[3], lanes);
+      exchange<2>(r[0], r[2], lanes);
+      exchange<2>(r[1], r[3], lanes);
+      std::swap(r[1], r[2]);
+    }
+    exchange_rows<4>(rows);
+  } else {
+    exchange_rows<1>(rows);
+  }
+}
+
+/// In each lane whether it is one of the first n.
+template <class T, int... lane>
+SNOWSHED_INLINE SimdMask<T> first_lanes(int n, std::integer_sequence<int, lane...>) {
+  using Index = std::remove_reference_t<decltype(SimdMask<T>{}[0])>;
+  return SimdMask<T>{Index(lane)...} < Index(n) - SimdMask<T>{};
+}
+template <class T>
+SNOWSHED_INLINE SimdMask<T> first_lanes(int n) {
+  return first_lanes<T>(n, std::make_integer_sequence<int, simd_width<T>>());
+}
+
+/// The first n lanes from memory, the others from `rest`, without touching the memory behind them.
+template <class T>
+SNOWSHED_INLINE SimdPack<T> load_first(const T* p, int n, const SimdPack<T>& rest) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(T) == 4)
+    return (SimdPack<T>)_mm512_mask_loadu_ps((__m512)rest, __mmask16((1u << n) - 1), p);
+  else
+    return (SimdPack<T>)_mm512_mask_loadu_pd((__m512d)rest, __mmask8((1u << n) - 1), p);
+#elif defined(__AVX2__)
+  const SimdMask<T> lanes = first_lanes<T>(n);
+  if constexpr (sizeof(T) == 4)
+    return select(lanes, (SimdPack<T>)_mm256_maskload_ps(p, (__m256i)lanes), rest);
+  else
+    return select(lanes, (SimdPack<T>)_mm256_maskload_pd(p, (__m256i)lanes), rest);
+#else
+  SimdPack<T> v = rest;
+  for (int i = 0; i < n; ++i) v[i] = p[i];
+  return v;
+#endif
+}
+
+template <class T>
+SNOWSHED_INLINE void store_first(T* p, const SimdPack<T>& v, int n) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(T) == 4)
+    _mm512_mask_storeu_ps(p, __mmask16((1u << n) - 1), (__m512)v);
+  else
+    _mm512_mask_storeu_pd(p, __mmask8((1u << n) - 1), (__m512d)v);
+#elif defined(__AVX2__)
+  const SimdMask<T> lanes = first_lanes<T>(n);
+  if constexpr (sizeof(T) == 4)
+    _mm256_maskstore_ps(p, (__m256i)lanes, (__m256)v);
+  else
+    _mm256_maskstore_pd(p, (__m256i)lanes, (__m256d)v);
+#else
+  for (int i = 0; i < n; ++i) p[i] = v[i];
+#endif
 }
 
 /// Read the first n values at p; the lanes beyond repeat the first one, so that they hold
@@ -139,22 +261,19 @@ SNOWSHED_INLINE Scalar<V> largest(const V& x) {
 template <class T>
 SNOWSHED_INLINE SimdPack<T> load(const T* p, int n) {
   SimdPack<T> v;
-  if (n == simd_width<T>) {
+  if (n == simd_width<T>)
     std::memcpy(&v, p, sizeof v);
-  } else {
-    v = broadcast<SimdPack<T>>(p[0]);
-    for (int i = 1; i < n; ++i) v[i] = p[i];
-  }
+  else
+    v = load_first(p, n, broadcast<SimdPack<T>>(p[0]));
   return v;
 }
 
 template <class T>
 SNOWSHED_INLINE void store(T* p, const SimdPack<T>& v, int n) {
-  if (n == simd_width<T>) {
+  if (n == simd_width<T>)
     std::memcpy(p, &v, sizeof v);
-  } else {
-    for (int i = 0; i < n; ++i) p[i] = v[i];
-  }
+  else
+    store_first(p, v, n);
 }
 
 SNOWSHED_VARIANT_END

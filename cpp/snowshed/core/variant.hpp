@@ -15,4 +15,10 @@
   }
 
 #define SNOWSHED_INLINE inline __attribute__((always_inline))
+// Arrays of packs stay in registers only where the loops over them are taken apart early.
+#if defined(__clang__)
+#define SNOWSHED_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define SNOWSHED_UNROLL _Pragma("GCC unroll 64")
+#endif
 #define SNOWSHED_INLINE_LAMBDA __attribute__((always_inline))

@@ -71,7 +71,8 @@ class SampledGrid final : public LevelSet {
       : samples_(std::move(samples)), flat_(samples_.counts[1] == 1) {
     for (int axis = 0; axis < 3; ++axis)
       size_[axis] = samples_.spacing * static_cast<double>(samples_.counts[axis] - 1);
-    deepest_ = -*std::min_element(samples_.values.begin(), samples_.values.end());
+    reaches_border_ = any_inside([this](const Vec3& at) { return to_border(at) >= 0; });
+    find_depth();
     find_bounds();
   }
 
@@ -79,7 +80,8 @@ class SampledGrid final : public LevelSet {
     Vec3 p = x - samples_.origin;
     if (flat_) p.y() = 0;
     const Vec3 clamped = p.cwiseMax(0.0).cwiseMin(size_);
-    return interpolate(clamped / samples_.spacing) + (p - clamped).norm();
+    const double d = interpolate(clamped / samples_.spacing) + (p - clamped).norm();
+    return reaches_border_ ? std::max(d, to_border(p)) : d;
   }
 
   Vec3 normal(const Vec3& x) const override {
@@ -118,23 +120,47 @@ class SampledGrid final : public LevelSet {
     return a + fraction[0] * (along_yz(high[0]) - a);
   }
 
-  /// Computes the bounds. A cell contains a part of the solid only if one of its corners is
-  /// negative. Beyond the grid the solid continues by at most its greatest depth.
-  void find_bounds() {
-    bounds_ = no_bounds();
+  /// Returns the signed distance to the border of the grid at `p`, a position relative to its
+  /// origin; a lower bound outside.
+  double to_border(const Vec3& p) const {
+    double nearest = -infinity;
+    for (int axis = 0; axis < 3; ++axis)
+      if (axis != 1 || !flat_) nearest = std::max({nearest, -p[axis], p[axis] - size_[axis]});
+    return nearest;
+  }
+
+  /// Calls visit(position relative to the origin, value) for the samples inside the solid.
+  template <class Visit>
+  void for_each_inside(Visit visit) const {
     for_each_sample(samples_, [&](std::size_t i, std::size_t j, std::size_t k) {
       const double value = samples_.values[index_of(samples_, i, j, k)];
-      if (value >= 0) return;
-      const Vec3 at = samples_.origin + samples_.spacing * Vec3(i, j, k);
-      bounds_ = unite(bounds_, {at, at});
+      if (value < 0) visit(Vec3(samples_.spacing * Vec3(i, j, k)), value);
+    });
+  }
+
+  template <class Predicate>
+  bool any_inside(Predicate holds) const {
+    bool found = false;
+    for_each_inside([&](const Vec3& at, double) { found = found || holds(at); });
+    return found;
+  }
+
+  void find_depth() {
+    for_each_inside([&](const Vec3& at, double value) {
+      deepest_ = std::max(deepest_, -(reaches_border_ ? std::max(value, to_border(at)) : value));
+    });
+  }
+
+  /// Computes the bounds. A cell contains a part of the solid only if one of its corners is
+  /// negative.
+  void find_bounds() {
+    bounds_ = no_bounds();
+    for_each_inside([&](const Vec3& at, double) {
+      bounds_ = unite(bounds_, {samples_.origin + at, samples_.origin + at});
     });
     bounds_ = expanded(bounds_, samples_.spacing);
-    const Vec3 grid_min = samples_.origin, grid_max = samples_.origin + size_;
-    const double beyond = std::max(deepest_, 0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (bounds_.min[axis] < grid_min[axis]) bounds_.min[axis] = grid_min[axis] - beyond;
-      if (bounds_.max[axis] > grid_max[axis]) bounds_.max[axis] = grid_max[axis] + beyond;
-    }
+    bounds_.min = bounds_.min.cwiseMax(samples_.origin);
+    bounds_.max = bounds_.max.cwiseMin(samples_.origin + size_);
     if (!flat_) return;
     bounds_.min.y() = -infinity;
     bounds_.max.y() = infinity;
@@ -143,7 +169,8 @@ class SampledGrid final : public LevelSet {
   GridSamples samples_;
   bool flat_;
   Vec3 size_;
-  double deepest_;
+  bool reaches_border_;
+  double deepest_ = 0;
   Bounds bounds_;
 };
 

@@ -19,9 +19,9 @@ struct GridSamples {
   std::vector<float> values;
 };
 
-/// Returns the solid in which the trilinear interpolant of the samples is negative. A point beyond
-/// the grid is clamped to it; its value is that of the clamped point plus the distance between
-/// both.
+/// Returns the solid in which the trilinear interpolant of the samples is negative. A solid that
+/// reaches the border of the grid ends there. Outside the grid the distance is that of the nearest
+/// point of the grid plus the distance to it.
 ///
 /// Throws InputError at `where` if the counts do not fit the values, if a value is not finite, if
 /// no value is negative, or if neighbours differ by clearly more than the spacing, since a signed

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cinttypes>
 #include <cstdint>
@@ -32,7 +33,10 @@ std::filesystem::path temporary_name(const std::filesystem::path& path) {
   char digits[temporary_digits + 1];
   std::snprintf(digits, sizeof digits, "%016" PRIx64, number);
   std::string name(temporary_prefix);
-  return path.parent_path() / (name + digits + "-" + path.filename().string());
+  const std::string own = path.filename().string();  // its end, so that more fits into a name
+  constexpr std::size_t longest = 100;
+  return path.parent_path() /
+         (name + digits + "-" + own.substr(own.size() - std::min(own.size(), longest)));
 }
 
 bool is_device_or_pipe(const std::filesystem::path& path) {
@@ -135,7 +139,7 @@ void AtomicFile::discard() noexcept {
 void AtomicFile::fail(const char* action) {
   const int error = errno;  // `discard` may overwrite it
   discard();
-  throw FileError(path_.string() + ": " + action + ": " + reason(error));
+  throw FileError(path_.string(), std::string(action) + ": " + reason(error), error);
 }
 
 bool is_leftover(const std::filesystem::directory_entry& entry) {

@@ -186,8 +186,15 @@ void BinaryReader::read_file() {
   else if (file.open(path_, std::ios::binary); !file)
     error = std::error_code(errno, std::generic_category());
   if (!error) size_ = std::filesystem::file_size(path_, error);
-  if (error) throw FileError(path_.string() + ": cannot read the file: " + error.message());
+  if (error)
+    throw FileError(path_.string(), "cannot read the file: " + error.message(), error.value());
 
+  Header header{};
+  file.read(reinterpret_cast<char*>(&header), sizeof header);
+  file.clear();
+  file.seekg(0);
+  if (size_ >= sizeof header && std::memcmp(header.magic, magic, sizeof magic) != 0)
+    fail(0, "not a snowshed archive");  // before a large file is read in vain
   if (size_ > available_memory_bytes())
     throw InputError(path_.string(),
                      "the archive of " + std::to_string(size_) + " bytes does not fit into memory");

@@ -1,6 +1,7 @@
-// A fast 64-bit checksum that finds damage of files. It is no protection against manipulation.
+// Checksums that find damage of files. They are no protection against manipulation.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -26,6 +27,35 @@ class Checksum {
 
  private:
   std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+/// The checksum CRC-32 of ISO 3309, as zlib computes it: for files that other programs read, too.
+class Crc32 {
+ public:
+  void update(const void* data, std::size_t bytes) {
+    const auto* next = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i)
+      state_ = table()[(state_ ^ next[i]) & 0xffu] ^ (state_ >> 8);
+  }
+
+  std::uint32_t value() const { return ~state_; }
+
+ private:
+  using Table = std::array<std::uint32_t, 256>;
+
+  static const Table& table() {
+    static const Table made = [] {
+      Table t{};
+      for (std::uint32_t n = 0; n < t.size(); ++n) {
+        t[n] = n;
+        for (int bit = 0; bit < 8; ++bit) t[n] = (t[n] & 1u ? 0xedb88320u : 0u) ^ (t[n] >> 1);
+      }
+      return t;
+    }();
+    return made;
+  }
+
+  std::uint32_t state_ = 0xffffffffu;
 };
 
 }  // namespace snowshed

@@ -15,7 +15,7 @@ namespace snowshed {
 FolderLock::FolderLock(const std::filesystem::path& folder)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ < 0)
-    throw FileError(folder.string() + ": " + std::generic_category().message(errno));
+    throw FileError(folder.string(), std::generic_category().message(errno), errno);
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(descriptor_);
   throw InputError(folder.string(), "in use: another run writes into this folder");

@@ -68,7 +68,7 @@ PvdSeries PvdSeries::reopen(std::filesystem::path path, double before) {
   PvdSeries series(std::move(path));
   if (!std::filesystem::exists(series.path_)) return series;
   std::ifstream lines(series.path_);
-  if (!lines) throw FileError(series.path_.string() + ": cannot read the file");
+  if (!lines) throw FileError(series.path_.string(), "cannot read the file", errno);
 
   bool closed = false;
   int number = 0;

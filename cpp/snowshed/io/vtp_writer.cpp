@@ -1,12 +1,15 @@
 #include "snowshed/io/vtp_writer.hpp"
 
+#include <cinttypes>
 #include <cstddef>
+#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <type_traits>
 
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/checksum.hpp"
 #include "snowshed/io/xml_text.hpp"
 
 namespace snowshed {
@@ -21,6 +24,30 @@ constexpr const char* vtk_type() {
   if constexpr (std::is_same_v<T, std::uint16_t>) return "UInt16";
   if constexpr (std::is_same_v<T, std::uint8_t>) return "UInt8";
 }
+
+/// A file that ends with the checksum of what was written before, in a comment: programs that show
+/// the file need not know of it.
+class ChecksummedXml {
+ public:
+  explicit ChecksummedXml(const std::filesystem::path& path) : file_(path) {}
+
+  void write(const void* data, std::size_t bytes) {
+    sum_.update(data, bytes);
+    file_.write(data, bytes);
+  }
+  void write(std::string_view text) { write(text.data(), text.size()); }
+
+  void finish() {
+    char comment[32];
+    std::snprintf(comment, sizeof comment, "  <!-- crc32 %08" PRIx32 " -->\n", sum_.value());
+    file_.write(std::string(comment) + "</VTKFile>\n");
+    file_.commit();
+  }
+
+ private:
+  AtomicFile file_;
+  Crc32 sum_;
+};
 
 /// The raw data that follow the XML. Each block is preceded by its length.
 class AppendedData {
@@ -37,7 +64,7 @@ class AppendedData {
     return element;
   }
 
-  void write(AtomicFile& file) const {
+  void write(ChecksummedXml& file) const {
     for (const Block& block : blocks_) {
       file.write(&block.bytes, sizeof block.bytes);
       file.write(block.data, block.bytes);
@@ -112,11 +139,11 @@ void write(const std::filesystem::path& path, const std::vector<std::array<Real,
       "  </PolyData>\n"
       "  <AppendedData encoding=\"raw\">\n_";
 
-  AtomicFile file(path);
+  ChecksummedXml file(path);
   file.write(xml);
   appended.write(file);
-  file.write("\n  </AppendedData>\n</VTKFile>\n");
-  file.commit();
+  file.write("\n  </AppendedData>\n");
+  file.finish();
 }
 
 template <class Real>

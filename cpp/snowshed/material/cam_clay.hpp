@@ -153,7 +153,7 @@ struct CamClay {
   SNOWSHED_INLINE V root(const PQ<V>& trial, const V& ev, const V& p0_old, const V& n_trial,
                          const V& far, const V& skip) const {
     constexpr T tolerance = sizeof(T) == 4 ? T(3e-7) : T(1e-15);
-    const V zero = broadcast<V>(T(0));
+    const V zero = broadcast<V>(T(0)), one = broadcast<V>(T(1));
     const C c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
     // Close to the root, the search ends once the change of pressure is below rounding.
     const V rounding = T(0.2) * tolerance * (abs(trial.p) + beta * p0_old);
@@ -187,10 +187,9 @@ struct CamClay {
       const V n = T(2) * p - (T(1) - beta) * p0;
       const V n_slope = T(2) * elastic.bulk - (T(1) - beta) * p0_slope;
       const V flow = n - c * d;  // has the sign of n: |flow| >= |n|
-      const V ratio = n / select(abs(flow) > T(0), flow, zero + T(1));
-      const V q = trial.q * ratio;
-      const V q_slope =
-          trial.q * c * (n - d * n_slope) / select(abs(flow) > T(0), V(flow * flow), zero + T(1));
+      const V per_flow = T(1) / select(abs(flow) > T(0), flow, one);
+      const V q = trial.q * (n * per_flow);
+      const V q_slope = trial.q * c * (n - d * n_slope) * per_flow * per_flow;
       const V shear = (T(1) + T(2) * beta) / m2 * q * q;
       const V y = shear + (p + beta * p0) * (p - p0);
       const auto before_centre = n * n_trial > T(0);

@@ -9,6 +9,7 @@ namespace snowshed {
 struct Quantity {
   std::string name, unit, meaning;
   int components = 1;
+  double film_step = 0;  // in which a film stores small values; 0: films do not hold it
 };
 
 const std::vector<Quantity>& quantities();

@@ -61,7 +61,8 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
 
 /// Fills a body of snow with particles of equal mass; returns its mass, kg.
 double seed_body(const BodySpec& body, const Scene& scene, const std::string& path,
-                 const std::filesystem::path& base_dir, std::uint64_t seed, ParticleBatch& batch) {
+                 const std::filesystem::path& base_dir, std::uint64_t seed, const StopRequest& stop,
+                 ParticleBatch& batch) {
   const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
   const double dx = resolution(scene.numerics);
   if (scene.uses<MpsSettings>()) {
@@ -72,8 +73,8 @@ double seed_body(const BodySpec& body, const Scene& scene, const std::string& pa
   }
   const Snow& snow = snow_of(scene, body);
   batch.positions = snowshed::seed(*shape, scene.dimension, dx, scene.seeding.particles_per_voxel,
-                                   scene.seeding.pattern, seed);
-  const double mass = snow.density * measure(*shape, scene.dimension, dx);
+                                   scene.seeding.pattern, seed, stop);
+  const double mass = snow.density * measure(*shape, scene.dimension, dx, stop);
   batch.mass = mass / double(batch.positions.size());
   batch.velocity = body.velocity;
   batch.material_id = material_id_of(snow, assemble_snows(scene));
@@ -83,7 +84,7 @@ double seed_body(const BodySpec& body, const Scene& scene, const std::string& pa
 }  // namespace
 
 SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
-                      const PanelRegion& panel, int event, double lift) {
+                      const PanelRegion& panel, int event, double lift, const StopRequest& stop) {
   SeededSnow snow;
   const std::vector<BodySpec> bodies = assemble_bodies(scene, event, lift);
   const std::vector<std::string> paths = body_paths(scene, event);
@@ -92,8 +93,9 @@ SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
     const std::uint64_t seed = scene.seeding.seed + 1000003u * std::uint64_t(event) + i;
     ParticleBatch& batch = snow.batches.emplace_back();
     batch.event = event;
-    snow.mass += with_path(
-        paths[i], [&] { return seed_body(bodies[i], scene, paths[i], base_dir, seed, batch); });
+    snow.mass += with_path(paths[i], [&] {
+      return seed_body(bodies[i], scene, paths[i], base_dir, seed, stop, batch);
+    });
     if (i >= layers) snow.height_on_panel += panel.height_of(batch.positions);
   }
   if (scene.slab) snow.height_on_panel += slab_thickness(*scene.slab, event);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/methods/particle_batch.hpp"
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/scene/scene.hpp"
@@ -18,9 +19,10 @@ struct SeededSnow {
 };
 
 /// Seeds the snow of `event` (1 is the first), its slab `lift` metres above the panel. Throws
-/// InputError naming the layer or body that cannot be seeded.
+/// InputError naming the layer or body that cannot be seeded, and Stopped on request.
 SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
-                      const PanelRegion& panel, int event, double lift);
+                      const PanelRegion& panel, int event, double lift,
+                      const StopRequest& stop = {});
 
 /// The snow of a method that seeds its own.
 SeededSnow seeded(std::vector<ParticleBatch>);

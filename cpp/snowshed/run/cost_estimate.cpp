@@ -10,6 +10,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/material/elasticity.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -31,6 +32,17 @@ constexpr Storage storage(int dimension, Precision precision) {
   return single ? Storage{150.0, 48.0} : Storage{300.0, 96.0};
 }
 
+/// Of a contact between a node and an obstacle, which is there twice while blocks are sorted, and
+/// of an obstacle with its shape, apart from files.
+struct ObstacleStorage {
+  double bytes_per_contact, bytes_per_obstacle;
+};
+
+constexpr ObstacleStorage obstacle_storage(Precision precision) {
+  return precision == Precision::float32 ? ObstacleStorage{100.0, 500.0}
+                                         : ObstacleStorage{200.0, 1000.0};
+}
+
 /// Grid voxels in use for each voxel of snow: the splines reach beyond it, and it spreads.
 constexpr double grid_spread = 4.0;
 
@@ -42,6 +54,53 @@ constexpr double least_settling_time = 0.25;  // s
 /// Share of the older snow that new snow keeps awake from its first landing to rest: about a half
 /// in the laboratory scene and on the wide stacks of chapter 5.
 constexpr double woken_share = 0.5;
+
+double nodes_per_block(const Scene& scene) {
+  return scene.dimension == 2 ? block_nodes<2> : block_nodes<3>;
+}
+
+/// Nodes of the grid blocks around the snow of an event, were each body compact: many small bodies
+/// far apart use more of them than the volume of their snow tells.
+double count_nodes(const Scene& scene, int event) {
+  constexpr double reached = 1.5;  // blocks beyond its own that the splines of a body reach
+  const double edge = (scene.dimension == 2 ? block_edge<2> : block_edge<3>)*scene.mpm().dx;
+  double blocks = 0;
+  for (const BodySpec& body : assemble_bodies(scene, event)) {
+    const double volume = shape_volume(body.shape, scene.dimension).value_or(0.0);
+    const double size = std::pow(volume, 1.0 / scene.dimension) / edge;
+    blocks += std::pow(size + reached, scene.dimension);
+  }
+  return blocks * nodes_per_block(scene);
+}
+
+/// How many obstacles overlap where most do: their boxes are counted at the middles of some.
+double most_overlapping(const std::vector<ObstacleSpec>& obstacles) {
+  constexpr std::size_t places = 200;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  double everywhere = 0;
+  for (const ObstacleSpec& o : obstacles) {
+    const auto bounds = shape_bounds(o.shape);
+    if (bounds && bounds->sizes().allFinite())
+      boxes.push_back(*bounds);
+    else
+      ++everywhere;
+  }
+  std::size_t most = 0;
+  const std::size_t stride = std::max<std::size_t>(1, boxes.size() / places);
+  for (std::size_t i = 0; i < boxes.size(); i += stride)
+    most = std::max(most, std::size_t(std::count_if(boxes.begin(), boxes.end(), [&](const auto& b) {
+                      return b.contains(boxes[i].center());
+                    })));
+  return everywhere + double(most);
+}
+
+/// Memory of the grid where snow is scattered, and of the obstacles and the contacts with them.
+double surroundings_bytes(const Scene& scene, double nodes) {
+  const std::vector<ObstacleSpec> obstacles = assemble_obstacles(scene);
+  const auto [per_contact, per_obstacle] = obstacle_storage(scene.mpm().precision);
+  return nodes * most_overlapping(obstacles) * per_contact +
+         per_obstacle * double(obstacles.size());
+}
 
 double snow_volume(const Scene& scene, int event) {
   double volume = 0.0;
@@ -180,8 +239,12 @@ CostEstimate estimate_cost(const Scene& given, std::vector<double> particles) {
   estimate.steps = scene.events.count * std::ceil(estimate.event_time / estimate.time_step);
   estimate.updates = count_updates(scene, estimate);
   const auto [per_particle, per_voxel] = storage(scene.dimension, scene.mpm().precision);
-  const double voxels = grid_spread * estimate.total_particles / scene.seeding.particles_per_voxel;
-  estimate.bytes = per_particle * estimate.total_particles + per_voxel * voxels;
+  double nodes = 0;
+  for (int event = 1; event <= scene.events.count; ++event) nodes += count_nodes(scene, event);
+  const double filled = grid_spread * estimate.total_particles / scene.seeding.particles_per_voxel;
+  const double voxels = std::max(filled, nodes);
+  estimate.bytes = per_particle * estimate.total_particles + per_voxel * voxels +
+                   surroundings_bytes(scene, voxels);
   return estimate;
 }
 

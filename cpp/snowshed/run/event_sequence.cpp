@@ -11,10 +11,10 @@ namespace fs = std::filesystem;
 namespace snowshed {
 
 EventSequence EventSequence::create(const Scene& scene, const fs::path& base_dir,
-                                    const fs::path& folder) {
+                                    const fs::path& folder, const StopRequest& stop) {
   ResultsFolder::require_empty(folder);
   auto sim = std::make_unique<Simulation>(scene, base_dir);
-  sim->begin_event();  // seeding may fail, and then nothing must be left behind
+  sim->begin_event(stop);  // seeding may fail, and then nothing must be left behind
   ResultsFolder results = ResultsFolder::create(folder, sim->scene());
   return {std::move(sim), std::move(results), {}};
 }
@@ -53,12 +53,15 @@ bool EventSequence::is_done() const {
 bool EventSequence::run(EventObserver& observer, double report_interval) {
   const double every = sim_->scene().output.snapshot_interval;
   if (every > 0) sim_->write_snapshots(folder_.snapshots(), every);
+  if (sim_->scene().output.film && !is_done()) sim_->record_film(folder_.film());
   while (!is_done()) {
     bool stopped = observer.stop_requested();
-    if (!stopped) {
-      begin_event(observer);  // seeding may take long
-      stopped = observer.stop_requested();
-    }
+    if (!stopped) try {
+        begin_event(observer);  // seeding may take long
+        stopped = observer.stop_requested();
+      } catch (const Stopped&) {  // the last checkpoint is of the same snow, before it aged
+        return write_record("interrupted"), false;
+      }
     const RunEnd end = stopped ? RunEnd::paused : run_event(observer, report_interval);
     if (end == RunEnd::paused) return checkpoint(observer, "interrupted"), false;
     end_event(observer, end);
@@ -71,7 +74,7 @@ void EventSequence::begin_event(EventObserver& observer) {
   std::optional<Reseeding> reseeding;
   if (!sim_->event_running()) {
     if (sim_->event() > 0) observer.between_events(*sim_);
-    reseeding = sim_->begin_event();
+    reseeding = sim_->begin_event([&] { return observer.stop_requested(); });
   }
   observer.event_begun(*sim_, reseeding);
 }

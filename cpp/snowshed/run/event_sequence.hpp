@@ -28,16 +28,16 @@ class EventObserver {
   virtual void event_ended(const Simulation&, const EventFacts&) {}
   /// A checkpoint is about to be written: what must be as new as it is kept now.
   virtual void before_checkpoint(const Simulation&) {}
-  /// Asked at every report and between events; true interrupts the sequence.
+  /// Asked at every report, between events and while snow is seeded; true interrupts the sequence.
   virtual bool stop_requested() { return false; }
 };
 
 class EventSequence {
  public:
   /// Begins a run in a folder that is new or empty. The first snow is laid before anything is
-  /// written. Throws InputError.
+  /// written. Throws InputError, and Stopped on request.
   static EventSequence create(const Scene& scene, const std::filesystem::path& base_dir,
-                              const std::filesystem::path& folder);
+                              const std::filesystem::path& folder, const StopRequest& stop = {});
 
   /// Goes on from the last checkpoint in the folder of an earlier run of the same scene, whichever
   /// program began it, or begins where there is no checkpoint yet. Throws InputError.
@@ -46,8 +46,8 @@ class EventSequence {
 
   /// Runs the events that are left, with a report every `report_interval` seconds of wall time and
   /// checkpoints as the scene's output.checkpoint_interval asks, and after each event. Returns
-  /// false if the observer stopped it, after a checkpoint. What is thrown by the simulation or the
-  /// observer comes through.
+  /// false if the observer stopped it, after a checkpoint; amid seeding the last checkpoint is of
+  /// the same snow. What is thrown by the simulation or the observer comes through.
   bool run(EventObserver&, double report_interval);
 
   /// Records in the folder that the run cannot go on, with a checkpoint of its last good state.

@@ -54,13 +54,14 @@ std::vector<double> share_masses(const ParticleState& old, const std::vector<std
 }
 
 /// Points that fill the stack as a solid.
-std::vector<Vec3> fill_stack(const Scene& scene, const std::vector<Vec3>& stack, int event) {
+std::vector<Vec3> fill_stack(const Scene& scene, const std::vector<Vec3>& stack, int event,
+                             const StopRequest& stop) {
   const Seeding& s = scene.seeding;
   const double dx = resolution(scene.numerics);
   const Shape solid = particles_to_level_set(
       stack, scene.dimension, dx, particle_radius(scene.dimension, dx, s.particles_per_voxel));
   return seed(*solid, scene.dimension, dx, s.particles_per_voxel, s.pattern,
-              s.seed + 1000003u * std::uint64_t(event) + 500000u);
+              s.seed + 1000003u * std::uint64_t(event) + 500000u, stop);
 }
 
 /// The new particles by event and snow, which they have from the old ones.
@@ -83,13 +84,13 @@ std::vector<ParticleBatch> batches_of(const Reseeding::Cloud& cloud, const Parti
 }  // namespace
 
 Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleState old, int event,
-                       double laid_height) try {
+                       double laid_height, const StopRequest& stop) try {
   const std::vector<Snow> snows = assemble_snows(scene);
   const auto initial_density = [&](std::size_t i) {
     return snows[std::size_t(material_id_of(old, i))].density;
   };
   Reseeding r;
-  r.after.positions = fill_stack(scene, old.positions, event);
+  r.after.positions = fill_stack(scene, old.positions, event, stop);
   const auto old_of =
       nearest_particles(r.after.positions, old.positions, 1.5 * resolution(scene.numerics));
   r.after.masses = share_masses(old, old_of, snows.size());

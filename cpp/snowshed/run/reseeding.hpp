@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/scene/scene.hpp"
@@ -24,8 +25,9 @@ struct Reseeding {
 /// Seeds the stack `old` afresh before the event that follows `event`: at rest, in its initial
 /// state, with its mass. Event and snow of a new particle are those of the old one nearest to it,
 /// and each snow keeps its mass. The snow that stayed on the panel is converted along with it, so
-/// nothing is lost. Throws SimulationError where the stack cannot be converted.
+/// nothing is lost. Throws SimulationError where the stack cannot be converted, and Stopped on
+/// request.
 Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleState old, int event,
-                       double laid_height);
+                       double laid_height, const StopRequest& stop = {});
 
 }  // namespace snowshed

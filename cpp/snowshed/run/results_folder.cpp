@@ -34,7 +34,7 @@ auto with_file_errors(Action action) {
   try {
     return action();
   } catch (const fs::filesystem_error& error) {
-    throw FileError(error.path1().string() + ": " + error.code().message());
+    throw FileError(error.path1().string(), error.code().message(), error.code().value());
   }
 }
 
@@ -78,7 +78,10 @@ ResultsFolder ResultsFolder::reopen(fs::path folder, const Scene& scene) {
 }
 
 ResultsFolder::ResultsFolder(fs::path folder) : folder_(std::move(folder)), lock_(folder_) {
-  for (const char* inside : {"", "particles", "snapshots"}) remove_leftovers(folder_ / inside);
+  remove_leftovers(folder_);
+  std::error_code failed;
+  for (fs::directory_iterator at(folder_, failed), end; !failed && at != end; at.increment(failed))
+    if (at->symlink_status(failed).type() == fs::file_type::directory) remove_leftovers(at->path());
 }
 
 std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const Scene& scene) const {

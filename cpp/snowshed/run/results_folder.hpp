@@ -10,8 +10,8 @@
 namespace snowshed {
 
 /// Holds scene.json, run.json (`RunRecord`), checkpoint.bin, particles/event_NNN.vtp,
-/// particles.pvd and snapshots/. It is locked: no other run writes into it meanwhile. What a killed
-/// run left half-written is removed when it is opened.
+/// particles.pvd, film.bin and snapshots/. It is locked: no other run writes into it meanwhile.
+/// What a killed run left half-written is removed when it is opened.
 class ResultsFolder {
  public:
   /// Makes the folder for a scene. Throws InputError where it holds anything.
@@ -25,6 +25,7 @@ class ResultsFolder {
 
   std::filesystem::path checkpoint() const { return folder_ / "checkpoint.bin"; }
   std::filesystem::path record() const { return folder_ / "run.json"; }
+  std::filesystem::path film() const { return folder_ / "film.bin"; }
   std::filesystem::path snapshots() const { return folder_ / "snapshots"; }
 
   /// Reads the checkpoint. Throws InputError where it is damaged, or of another scene.

@@ -1,19 +1,23 @@
 #include "snowshed/run/run_record.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "snowshed/core/compensated_sum.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/methods/grains/energy.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/slide/energy.hpp"
+#include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/scene/enum_names.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/json_value.hpp"
+#include "snowshed/scene/message_format.hpp"
 
 namespace snowshed {
 namespace {
@@ -31,6 +35,7 @@ ordered_json to_json(const EventFacts& facts) {
                  {"ended", facts.ended}, {"laid_height_m", facts.laid_height}};
   j["damping_rate_per_s"] = or_null(facts.damping_rate);
   for (const auto& [name, joules] : facts.energy) j["energy"][name] = joules;
+  if (const auto share = facts.energy_residual()) j["energy_residual"] = *share;
   return j;
 }
 
@@ -76,7 +81,42 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// What was released and taken up, and where it is: the sums differ by rounding alone.
+ordered_json balance_of(const SlideMethod& slide) {
+  const MassBalance& m = slide.mass_balance();
+  const FieldView masses = slide.field("mass");
+  const double on_terrain = compensated_sum(masses.at<double>(0), slide.size());
+  return {{"released_kg", m.released},
+          {"entrained_kg", m.entrained},
+          {"left_terrain_kg", m.left},
+          {"on_terrain_kg", on_terrain},
+          {"residual_kg", m.released + m.entrained - m.left - on_terrain}};
+}
+
+std::map<std::string, std::map<std::string, std::string>> table_checksums(const json& j) {
+  std::map<std::string, std::map<std::string, std::string>> tables;
+  if (!j.is_object()) throw wrong_type("/tables", j, "an object");
+  for (const auto& [table, sums] : j.items()) {
+    if (!sums.is_object()) throw wrong_type(pointer("/tables", table), sums, "an object");
+    for (const auto& [event, sum] : sums.items())
+      tables[table][event] = to_text(sum, pointer(pointer("/tables", table), event));
+  }
+  return tables;
+}
+
 }  // namespace
+
+std::optional<double> EventFacts::energy_residual() const {
+  double largest = 0, residual = 0;
+  for (const auto& [name, joules] : energy) {
+    if (name == "residual_j")
+      residual = std::abs(joules);
+    else
+      largest = std::max(largest, std::abs(joules));
+  }
+  if (energy.empty()) return std::nullopt;
+  return largest > 0 ? residual / largest : 0.0;
+}
 
 std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_limit"; }
 
@@ -85,6 +125,7 @@ RunRecord RunRecord::read(const std::filesystem::path& file) try {
   if (!std::filesystem::is_regular_file(file)) return record;
   const json j = parse_json(text_of(file), "text");
   record.wall = to_number(require(j, "wall_s", "/"), "/wall_s", "a number");
+  if (j.contains("tables")) record.tables = table_checksums(j["tables"]);
   if (!j.contains("finished_events")) return record;  // of the version before
   const json& events = j["finished_events"];
   if (!events.is_array()) throw wrong_type("/finished_events", events, "an array");
@@ -115,8 +156,11 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   j["updates_per_s"] = wall > 0 ? double(c.particle_updates) / wall : 0.0;
   j["peak_memory_mb"] = double(peak_resident_bytes()) / 1e6;
   j["wall_s"] = wall;
+  if (const auto* slide = dynamic_cast<const SlideMethod*>(&method))
+    j["mass_balance"] = balance_of(*slide);
   j["finished_events"] = ordered_json::array();
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
+  if (!tables.empty()) j["tables"] = tables;
   j["status"] = status;
   if (!error.empty()) j["error"] = error;
   write_atomic(file, pretty(j));

@@ -24,7 +24,14 @@ struct EventFacts {
   std::optional<double> damping_rate;  // 1/s, its mean, see MpmSettings::mean_damping_rate
   std::vector<std::pair<std::string, double>>
       energy;  // J, by name; empty without the energy balance
+
+  /// What the time integration gained or lost, over the largest of the energies; none without the
+  /// energy balance.
+  std::optional<double> energy_residual() const;
 };
+
+/// A larger share of the energy that was gained or lost is worth a warning.
+inline constexpr double largest_energy_residual = 0.01;
 
 /// Returns what run.json calls the two ways in which events end.
 std::string name_of(RunEnd);
@@ -43,7 +50,9 @@ class RunRecord {
 
   std::vector<EventFacts> finished;            // by event
   std::map<std::string, std::string> machine;  // further facts, by key
-  double wall = 0;                             // s, of the whole run so far
+  /// Checksums of the tables that Python keeps: by name, of the rows through an event.
+  std::map<std::string, std::map<std::string, std::string>> tables;
+  double wall = 0;  // s, of the whole run so far
 };
 
 }  // namespace snowshed

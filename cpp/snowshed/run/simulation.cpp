@@ -10,6 +10,8 @@
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/methods/slide/solver.hpp"
+#include "snowshed/run/film_recorder.hpp"
+#include "snowshed/run/fingerprint.hpp"
 #include "snowshed/run/grains_cost.hpp"
 #include "snowshed/run/loading_curve.hpp"
 #include "snowshed/run/mps_cost.hpp"
@@ -36,6 +38,7 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
     cost_ = estimate_mps_cost(scene_, count_lattice_particles(scene_, base_dir));
     check_memory(cost_.bytes);
   }
+  shape_prints_ = fingerprints_of_shapes(scene_, base_dir_);
   surroundings_ = build_surroundings(scene_, base_dir_);
   listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
   solver_ = empty_method();
@@ -82,13 +85,13 @@ const LoadingCurve& Simulation::loading_curve() const {
 
 int Simulation::threads() const { return threads_to_use(wanted_threads(scene_.numerics)); }
 
-std::optional<Reseeding> Simulation::begin_event() {
+std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   if (running_) throw SimulationError("the present event has not ended yet");
   std::optional<Reseeding> reseeding;
   if (event_ > 0 && scene_.events.between == Between::reseed)
-    reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_);
+    reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_, stop);
   const double lift = lift_of_next_slab(reseeding);
-  SeededSnow snow = seed_next_event(lift);
+  SeededSnow snow = seed_next_event(lift, stop);
   change_snow(reseeding, std::move(snow.batches));
   event_mass_ = snow.mass;
   laid_height_ += snow.height_on_panel;
@@ -100,10 +103,10 @@ std::optional<Reseeding> Simulation::begin_event() {
   return reseeding;
 }
 
-SeededSnow Simulation::seed_next_event(double lift) const {
+SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) const {
   if (scene_.uses<SlideSettings>()) return seeded(slide().seed());
   if (scene_.uses<GrainsSettings>()) return seeded(grains().seed());
-  return seed_event(scene_, base_dir_, panel_, event_ + 1, lift);
+  return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
 
 /// Takes a step of the present event.
@@ -167,8 +170,9 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
   bool pausing = false;
   while (true) {
     if (pausing && solver_->at_safe_point()) return RunEnd::paused;
-    if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
+    record();
     if (const auto end = event_end()) {
+      if (film_) film_->record_end(*solver_, event_);
       running_ = false;
       return *end;
     }
@@ -181,6 +185,12 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
       pausing = !observer(r);
     }
   }
+}
+
+/// Writes what is due now.
+void Simulation::record() {
+  if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
+  if (film_ && film_->due({event_, running_, solver_->time()})) film_->record(*solver_, event_);
 }
 
 /// How the event has ended now, if it has.
@@ -219,6 +229,11 @@ RunReport Simulation::report(double rms_speed) const {
 
 void Simulation::write_snapshots(const std::filesystem::path& folder, double interval) {
   snapshots_ = std::make_unique<SnapshotSeries>(folder, interval, solver_->time());
+}
+
+void Simulation::record_film(const std::filesystem::path& file) {
+  film_ = std::make_unique<FilmRecorder>(file, film_header(scene_, *solver_, cost_),
+                                         RunPlace{event_, running_, solver_->time()});
 }
 
 void Simulation::write_vtp(const std::filesystem::path& file) const {

@@ -21,6 +21,7 @@
 
 namespace snowshed {
 
+class FilmRecorder;
 class GrainsMethod;
 class LoadingCurve;
 class SlideMethod;
@@ -51,8 +52,9 @@ class Simulation {
   /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
   /// "reseed", from the second event on the stack is first seeded afresh (`reseed_stack`). All or
   /// nothing: throws InputError where the snow of this event cannot be seeded, SimulationError
-  /// where the stack cannot be converted or an event still runs, and leaves everything as it was.
-  std::optional<Reseeding> begin_event();
+  /// where the stack cannot be converted or an event still runs, Stopped on request, and leaves
+  /// everything as it was.
+  std::optional<Reseeding> begin_event(const StopRequest& stop = {});
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
   /// `interval` seconds of wall time, returns false; then it goes on to the next safe point, so
@@ -77,6 +79,10 @@ class Simulation {
 
   /// Writes a snapshot to `folder` every `interval` seconds of simulated time from now on.
   void write_snapshots(const std::filesystem::path& folder, double interval);
+
+  /// Records the particles into a film from now on, or goes on with the film of the run that was
+  /// resumed: what it holds beyond the present state is recorded anew.
+  void record_film(const std::filesystem::path& file);
 
   /// Writes a checkpoint, which replaces an older one only once it has been read back. Throws
   /// SimulationError where the state could not be resumed from, FileError where it cannot be
@@ -129,9 +135,10 @@ class Simulation {
  private:
   double lift_of_next_slab(const std::optional<Reseeding>&) const;
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
-  SeededSnow seed_next_event(double lift) const;
+  SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
   void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
   void advance();
+  void record();
   bool is_at_rest();
   std::optional<RunEnd> event_end();
   std::unique_ptr<Method> empty_method() const;
@@ -141,7 +148,8 @@ class Simulation {
   Scene scene_;
   // As checkpoints hold it, written ahead: lack of memory amid JSON would end the process.
   std::string scene_text_;
-  std::vector<Snow> snows_;  // by material_id
+  std::vector<Snow> snows_;                 // by material_id
+  std::vector<std::int64_t> shape_prints_;  // of the files that shapes are read from
   std::filesystem::path base_dir_;
   CostEstimate cost_;
   PanelRegion panel_;
@@ -149,6 +157,7 @@ class Simulation {
   std::vector<Obstacle> listed_obstacles_;  // those of the scene's list
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
+  std::unique_ptr<FilmRecorder> film_;
   std::unique_ptr<LoadingCurve> curve_;  // of grains only
   RestDetector rest_;
   int event_ = 0;

@@ -1,49 +1,18 @@
 // Saving and restoring a simulation: its scene, where it stands between events, and the solver.
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/method.hpp"
+#include "snowshed/run/fingerprint.hpp"
 #include "snowshed/run/loading_curve.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/run/snapshot_series.hpp"
+#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {
 namespace {
-
-/// A number that is another one for other bytes, but for rare accidents (FNV-1a, 64 bits).
-class Fingerprint {
- public:
-  template <class T>
-  void add(const T* values, std::size_t count) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(values);
-    for (std::size_t i = 0; i < count * sizeof(T); ++i)
-      value_ = (value_ ^ bytes[i]) * 1099511628211ull;
-  }
-  void add(const HeightField& f) {
-    const double place[] = {f.cell, f.west, f.south, double(f.columns), double(f.rows)};
-    add(place, std::size(place));
-    add(f.heights.data(), f.heights.size());
-  }
-  void add(const GrainSample& s) {
-    add(s.box.data(), 3);
-    add(&s.radius, 1);
-    for (const Clump& c : s.clumps) {
-      add(c.centre.data(), 3);
-      add(&c.volume, 1);
-      add(&c.spheres, 1);
-    }
-    for (const Vec3& x : s.spheres) add(x.data(), 3);
-    for (const BondedPair& b : s.bonds) {
-      add(&b.first, 1);
-      add(&b.second, 1);
-    }
-  }
-  std::int64_t value() const { return std::int64_t(value_); }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ull;
-};
 
 /// Of the files that a slide's terrain and thickness are read from, which a scene only names.
 std::vector<std::int64_t> ground_of(const Surroundings& surroundings) {
@@ -80,12 +49,35 @@ void check_files(const BinaryReader& in, const Scene& scene, const Surroundings&
     check_file(in, scene.sample->file, in.value<std::int64_t>("sample"), sample_of(surroundings));
 }
 
+/// The same of the files that shapes are read from; a checkpoint of an earlier version does not
+/// know them.
+void check_shape_files(const BinaryReader& in, const Scene& scene,
+                       const std::vector<std::int64_t>& now) {
+  const std::vector<std::string> files = shape_files(scene);
+  if (files.empty() || !in.has("shape_files")) return;
+  const auto then = in.get<std::int64_t>("shape_files", files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) check_file(in, files[i], then[i], now[i]);
+}
+
+/// Other kernels round differently, so that the run would not go on to the same bits.
+void check_kernels(const BinaryReader& in) {
+  if (!in.has("kernels")) return;
+  const std::string then = in.text("kernels"), now = kernel_variant();
+  if (then != now)
+    throw InputError(in.path().string(), "made with the kernels " + quote(then) + ", and " +
+                                             quote(now) +
+                                             " are used now; set SNOWSHED_KERNELS to " +
+                                             "those where the machine has them, or start anew");
+}
+
 }  // namespace
 
 void Simulation::save(const std::filesystem::path& checkpoint) const {
   BinaryWriter out;
   out.add_text("scene", scene_text_);
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
+  out.add_text("kernels", kernel_variant());
+  if (!shape_prints_.empty()) out.add("shape_files", shape_prints_);
   if (scene_.terrain) out.add("ground", ground_of(surroundings_));
   if (scene_.sample) out.add_value("sample", sample_of(surroundings_));
   if (curve_) curve_->save(out);
@@ -115,7 +107,9 @@ std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkp
   in.require_finite();  // a clock that is not a number would never reach the end of an event
   auto sim = std::make_unique<Simulation>(parse_scene(in.text("scene"), checkpoint.string()),
                                           in.text("base_dir"));
+  check_kernels(in);
   check_files(in, sim->scene_, sim->surroundings_);
+  check_shape_files(in, sim->scene_, sim->shape_prints_);
   const auto event = in.get<std::int64_t>("event", 2);
   if (event[0] < 0 || event[0] > sim->scene_.events.count)
     throw InputError(checkpoint.string(), "event " + std::to_string(event[0]) + " of " +

@@ -79,20 +79,24 @@ class WeightQueue {
 }  // namespace
 
 std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count, int dimension,
-                                    double point_measure) {
+                                    double point_measure, const StopRequest& stop) {
+  StopCheck check_stop(stop);
   const std::vector<Vec3>& points = candidates.points;
   const double kept_ratio = static_cast<double>(count) / candidates.inside_count;
   const PairWeight pair_weight(dimension, point_measure, kept_ratio);
   const PointGrid grid(points, pair_weight.reach());
 
   std::vector<std::int64_t> weights(points.size(), 0);
-  for (std::uint32_t i = 0; i < points.size(); ++i)
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    check_stop();
     grid.for_each_near(points[i], [&](std::uint32_t j, const Vec3& other) {
       if (j != i) weights[i] += pair_weight(points[i], other);
     });
+  }
 
   WeightQueue queue(std::move(weights));
   for (std::size_t left = candidates.inside_count; left > count;) {
+    check_stop();
     const std::uint32_t i = queue.pop();
     left -= candidates.inside[i];
     grid.for_each_near(points[i], [&](std::uint32_t j, const Vec3& other) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/core/vec.hpp"
 
 namespace snowshed {
@@ -30,8 +31,8 @@ struct Candidates {
 /// fewer neighbours and be removed less often, and the surface layer would become too dense.
 ///
 /// Weights are integers. Their sums and differences are exact, so the order of removal does not
-/// depend on rounding. The time grows as N log N.
+/// depend on rounding. The time grows as N log N. Throws Stopped on request.
 std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count, int dimension,
-                                    double point_measure);
+                                    double point_measure, const StopRequest& stop = {});
 
 }  // namespace snowshed

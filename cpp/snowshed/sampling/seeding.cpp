@@ -69,7 +69,8 @@ struct Tiling {
 /// Places a point in each lattice cell: its centre, or a random point if `random` is given.
 class LatticeSeeder {
  public:
-  LatticeSeeder(const LevelSet& shape, Random* random) : shape_(shape), random_(random) {}
+  LatticeSeeder(const LevelSet& shape, Random* random, const StopRequest& stop)
+      : shape_(shape), random_(random), check_stop_(stop) {}
 
   /// Returns one point for every cell of the tiling.
   std::vector<Vec3> fill(const Tiling& tiling) {
@@ -97,6 +98,7 @@ class LatticeSeeder {
 
  private:
   Vec3 offset(const Mat3& cell) {
+    check_stop_();
     if (!random_) return Vec3::Zero();
     const double a = random_->uniform(), b = random_->uniform(), c = random_->uniform();
     return cell * Vec3(a - 0.5, b - 0.5, c - 0.5);
@@ -104,27 +106,31 @@ class LatticeSeeder {
 
   const LevelSet& shape_;
   Random* random_;
+  StopCheck check_stop_;
 };
 
-std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing,
-                               Random* random) {
-  LatticeSeeder seeder(shape, random);
+std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing, Random* random,
+                               const StopRequest& stop) {
+  LatticeSeeder seeder(shape, random, stop);
   if (const auto box = scene_box(shape, dimension))
     return seeder.fill(Tiling(*box, dimension, spacing));
   Mat3 cell = spacing * Mat3::Identity();
   if (dimension == 2) cell(1, 1) = 0;
-  return seeder.fill(voxelize(shape, dimension, spacing), cell);
+  return seeder.fill(voxelize(shape, dimension, spacing, 0.0, stop), cell);
 }
 
 /// Returns random candidates inside the solid and within `margin` of it, on average `per_voxel` in
 /// each voxel. At least `wanted` of them are inside.
 Candidates draw_candidates(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                           double margin, std::size_t wanted, Random& random) {
+                           double margin, std::size_t wanted, Random& random,
+                           const StopRequest& stop) {
   constexpr int max_rounds = 1000;
-  const std::vector<Voxel> voxels = voxelize(shape, dimension, voxel, margin);
+  const std::vector<Voxel> voxels = voxelize(shape, dimension, voxel, margin, stop);
+  StopCheck check_stop(stop);
   Candidates candidates;
   for (int round = 0; round < max_rounds && candidates.inside_count < wanted; ++round)
     for (const Voxel& v : voxels) {
+      check_stop();
       const int count = static_cast<int>(per_voxel + random.uniform());
       for (int n = 0; n < count; ++n) {
         const double a = random.uniform(), b = random.uniform(), c = random.uniform();
@@ -140,30 +146,31 @@ Candidates draw_candidates(const LevelSet& shape, int dimension, double voxel, d
 }
 
 std::vector<Vec3> seed_poisson(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                               Random& random) {
+                               Random& random, const StopRequest& stop) {
   constexpr std::size_t candidates_per_point = 3;  // Yuksel: 5 gains little over 3
-  const double total = measure(shape, dimension, voxel);
+  const double total = measure(shape, dimension, voxel, stop);
   const auto count = static_cast<std::size_t>(count_for(total, dimension, voxel, per_voxel));
   // The reach of the pair weights, but no more than the solid itself is thick.
   const double margin =
       std::min(1.2 * spacing(dimension, voxel, per_voxel), std::max(shape.inradius(), 0.0));
   const Candidates candidates =
       draw_candidates(shape, dimension, voxel, candidates_per_point * per_voxel, margin,
-                      candidates_per_point / 2 * count, random);
-  return eliminate_samples(candidates, count, dimension, total / count);
+                      candidates_per_point / 2 * count, random, stop);
+  return eliminate_samples(candidates, count, dimension, total / count, stop);
 }
 
 }  // namespace
 
 std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                       SeedPattern pattern, std::uint64_t seed) {
+                       SeedPattern pattern, std::uint64_t seed, const StopRequest& stop) {
   // Checks the arguments and refuses excessive counts before anything is allocated.
   expected_count(shape, dimension, voxel, per_voxel, pattern);
   Random random(seed);
   if (pattern == SeedPattern::poisson)
-    return seed_poisson(shape, dimension, voxel, per_voxel, random);
-  std::vector<Vec3> points = seed_lattice(shape, dimension, spacing(dimension, voxel, per_voxel),
-                                          pattern == SeedPattern::jittered ? &random : nullptr);
+    return seed_poisson(shape, dimension, voxel, per_voxel, random, stop);
+  std::vector<Vec3> points =
+      seed_lattice(shape, dimension, spacing(dimension, voxel, per_voxel),
+                   pattern == SeedPattern::jittered ? &random : nullptr, stop);
   if (points.empty())
     throw InputError("", "the solid is too small for the voxel size to hold a particle");
   return points;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/geometry/level_set.hpp"
 
 namespace snowshed {
@@ -26,9 +27,9 @@ inline constexpr double max_particles = 2e8;
 /// - poisson: blue noise (see sample_elimination.hpp) of exactly `expected_count` points.
 ///
 /// The same arguments give the same points. Throws InputError if the solid is unbounded, if it
-/// holds no particle, or if it holds more than `max_particles`.
+/// holds no particle, or if it holds more than `max_particles`, and Stopped on request.
 std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                       SeedPattern pattern, std::uint64_t seed);
+                       SeedPattern pattern, std::uint64_t seed, const StopRequest& stop = {});
 
 /// Returns the number of particles that `seed` will place. It is exact for poisson and for boxes,
 /// and per_voxel * measure / voxel^d otherwise.

@@ -27,8 +27,8 @@ class Subdivision {
     int levels;
   };
 
-  Subdivision(const LevelSet& shape, int dimension)
-      : shape_(shape), bounds_(shape.bounds()), dimension_(dimension) {}
+  Subdivision(const LevelSet& shape, int dimension, const StopRequest& stop)
+      : shape_(shape), bounds_(shape.bounds()), dimension_(dimension), check_stop_(stop) {}
 
   /// Returns the smallest cell with edge `edge` * 2^levels that covers the solid and the margin.
   Root root(double edge, double margin) const {
@@ -90,6 +90,7 @@ class Subdivision {
   }
 
   void count_cell() {
+    check_stop_();
     if (++cells_ > max_boundary_cells) refuse();
   }
 
@@ -117,14 +118,16 @@ class Subdivision {
   const LevelSet& shape_;
   const Bounds bounds_;
   const int dimension_;
+  StopCheck check_stop_;
   std::size_t cells_ = 0;
 };
 
 }  // namespace
 
-std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin) {
+std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin,
+                            const StopRequest& stop) {
   std::vector<Voxel> voxels;
-  Subdivision cut(shape, dimension);
+  Subdivision cut(shape, dimension, stop);
   const auto [center, levels] = cut.root(edge, margin);
   cut.collect_voxels(center, std::ldexp(edge, levels), levels, margin, voxels);
   return voxels;
@@ -139,11 +142,11 @@ std::optional<OrientedBox> scene_box(const LevelSet& shape, int dimension) {
   return box;
 }
 
-double measure(const LevelSet& shape, int dimension, double voxel) {
+double measure(const LevelSet& shape, int dimension, double voxel, const StopRequest& stop) {
   require_bounded(shape.bounds(), dimension);
   if (const auto box = scene_box(shape, dimension))
     return dimension == 2 ? 4 * box->half.x() * box->half.z() : 8 * box->half.prod();
-  Subdivision cut(shape, dimension);
+  Subdivision cut(shape, dimension, stop);
   auto [center, levels] = cut.root(voxel, 0.0);
   const double edge = std::ldexp(voxel, levels);
   // A small solid needs a finer subdivision of its boundary most, and can afford it.

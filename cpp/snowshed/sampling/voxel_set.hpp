@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/geometry/level_set.hpp"
 
 namespace snowshed {
@@ -17,8 +18,10 @@ struct Voxel {
 /// solid `shape`. Neighbouring voxels are near each other in the result. The lattice has a corner
 /// at the centre of the solid's bounds.
 ///
-/// Throws InputError if the solid is unbounded or needs more than 2e8 voxels on its boundary.
-std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin = 0.0);
+/// Throws InputError if the solid is unbounded or needs more than 2e8 voxels on its boundary, and
+/// Stopped on request.
+std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin = 0.0,
+                            const StopRequest& stop = {});
 
 /// Returns `shape` as a box if it is one. In 2D this is the rectangle in which the box cuts the
 /// plane y = 0, with edges along columns 0 and 2 of `axes`; the box's own y axis must be normal to
@@ -28,6 +31,6 @@ std::optional<OrientedBox> scene_box(const LevelSet& shape, int dimension);
 /// Returns the volume (3D, m3) or area (2D, m2) of a bounded solid. It is exact for boxes in any
 /// orientation. For other solids, voxels on the boundary are subdivided and cut by the tangent
 /// plane, with an error of second order in the voxel size. Throws as `voxelize`.
-double measure(const LevelSet& shape, int dimension, double voxel);
+double measure(const LevelSet& shape, int dimension, double voxel, const StopRequest& stop = {});
 
 }  // namespace snowshed

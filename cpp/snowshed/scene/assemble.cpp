@@ -31,9 +31,6 @@ ObstacleSpec ground_obstacle(const Ground& ground) {
 ObstacleSpec panel_obstacle(const Scene& scene) {
   const Panel& panel = *scene.panel;
   const PanelFrame frame = panel_frame(scene);
-  // The grid cannot see a board thinner than a few cells: snow would pass through it, or be
-  // felt from the other side. The face stays where it is; the board grows downward.
-  constexpr double least_cells = 3.0;
   ObstacleSpec obstacle;
   obstacle.name = "panel";
   obstacle.shape.type = "plate";
@@ -41,7 +38,7 @@ ObstacleSpec panel_obstacle(const Scene& scene) {
   obstacle.shape.normal = frame.normal;
   obstacle.shape.length = frame.length;
   obstacle.shape.width = frame.width;
-  obstacle.shape.thickness = std::max(panel.thickness, least_cells * resolution(scene.numerics));
+  obstacle.shape.thickness = frame.board;
   obstacle.condition = panel.condition;
   obstacle.friction = panel.friction;
   return obstacle;
@@ -89,6 +86,10 @@ PanelFrame panel_frame(const Scene& scene) {
   frame.slope = tilted_slope(panel.tilt);
   frame.length = panel.length;
   frame.width = panel.width;
+  // The grid cannot see a board thinner than a few cells: snow would pass through it, or be
+  // felt from the other side. The face stays where it is; the board grows downward.
+  constexpr double least_cells = 3.0;
+  frame.board = std::max(panel.thickness, least_cells * resolution(scene.numerics));
   frame.center.z() = panel.height - height_above_ground(scene, frame.lower_edge());
   return frame;
 }

@@ -326,6 +326,9 @@ template <class V>
 void describe(V& v, Output& o) {
   v.number("snapshot_interval", o.snapshot_interval, "s", allowed::time,
            "Simulated time between particle snapshots; 0: only at the end of an event");
+  v.flag("film", o.film, "Record the particles over time, for snowshed view");
+  v.number("film_interval", o.film_interval, "s", allowed::time,
+           "Simulated time between frames of the film; 0: chosen by how long an event should last");
   v.flag("energy", o.energy, "Keep the energy balance");
   v.number("checkpoint_interval", o.checkpoint_interval, "s", allowed::time,
            "Wall time between checkpoints; 0: none");

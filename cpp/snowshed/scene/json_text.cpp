@@ -88,7 +88,9 @@ class ValueBuilder {
                    const nlohmann::detail::exception& error) {
     constexpr int number_overflow = 406;
     if (error.id == number_overflow)
-      throw InputError(path(), last_read + " is too large for a number");
+      throw InputError(path(),
+                       (last_read.size() > 60 ? last_read.substr(0, 60) + "..." : last_read) +
+                           " is too large for a number");
     throw InputError(place(text_, position, name_), plain_message(error.what(), last_read));
   }
 
@@ -170,6 +172,9 @@ json parse_json(const std::string& text, const std::string& name) {
     throw InputError(name, "longer than " + std::to_string(max_text_bytes >> 20) + " MB");
   ValueBuilder builder(text, name);
   json::sax_parse(with_plain_blanks(text), &builder);
+  const std::size_t nul = text.find('\0');  // where the parser takes the text to end
+  if (nul != std::string::npos)
+    throw InputError(place(text, nul + 1, name), "not valid JSON: a NUL character");
   return builder.take();
 }
 

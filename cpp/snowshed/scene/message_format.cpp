@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -24,7 +25,43 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+/// The length in bytes of the character of UTF-8 that begins at `at`, with its code; 0 for none.
+std::size_t decode(const std::string& text, std::size_t at, std::uint32_t& code) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(at);
+  if (lead < 0x80) return code = lead, 1;
+  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || at + length > text.size()) return 0;
+  code = lead & (0x7Fu >> length);
+  for (std::size_t i = at + 1; i < at + length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+    code = code << 6 | (byte(i) & 0x3Fu);
+  }
+  return length;
+}
+
+/// Whether a terminal would take a character for a command, or write backwards because of it.
+bool is_control(std::uint32_t code) {
+  return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0x200E || code == 0x200F ||
+         (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) ||
+         (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF;
+}
+
 }  // namespace
+
+std::string printable(const std::string& message) {
+  std::string shown;
+  for (std::size_t at = 0; at < message.size();) {
+    std::uint32_t code = 0;
+    const std::size_t length = decode(message, at, code);
+    if (length == 0 || is_control(code))
+      shown += code == '\n' && length == 1 ? ' ' : '?';
+    else
+      shown += message.substr(at, length);
+    at += std::max<std::size_t>(length, 1);
+  }
+  return shown;
+}
 
 std::string show(double number) {
   if (std::isnan(number)) return "NaN";

@@ -156,6 +156,8 @@ struct Events {
 
 struct Output {
   double snapshot_interval = 0.0;  // s between particle snapshots; 0: only at the end of an event
+  bool film = true;                // record the run, so that it can be viewed
+  double film_interval = 0.0;      // s between its frames; 0: chosen by how long events last
   bool energy = false;             // keep the energy balance
   double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };

@@ -1,5 +1,6 @@
 #include "snowshed/scene/scene_json.hpp"
 
+#include <algorithm>
 #include <fstream>
 
 #include "snowshed/scene/earlier_version.hpp"
@@ -13,8 +14,12 @@ namespace {
 
 /// At most one byte more than is allowed, whatever the file is.
 std::string read_text(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) throw InputError(file.string(), "no such file");
-  if (std::filesystem::is_directory(file)) throw InputError(file.string(), "is a folder");
+  std::error_code failed;
+  const auto status = std::filesystem::status(file, failed);
+  if (status.type() == std::filesystem::file_type::not_found)
+    throw InputError(file.string(), "no such file");
+  if (failed) throw InputError(file.string(), "cannot be read: " + failed.message());
+  if (std::filesystem::is_directory(status)) throw InputError(file.string(), "is a folder");
   std::ifstream stream(file, std::ios::binary);
   std::string text;
   char block[1 << 16];
@@ -35,6 +40,12 @@ void make_absolute(const std::filesystem::path& folder, std::string& file) {
 void with_absolute_files(const std::filesystem::path& folder, ShapeSpec& shape) {
   make_absolute(folder, shape.file);
   for (auto& part : shape.shapes) with_absolute_files(folder, part);
+}
+
+void add_files(const ShapeSpec& shape, std::vector<std::string>& files) {
+  const bool known = std::find(files.begin(), files.end(), shape.file) != files.end();
+  if (!shape.file.empty() && !known) files.push_back(shape.file);
+  for (const auto& part : shape.shapes) add_files(part, files);
 }
 
 /// Completes snow of a layer or body by the scene's, both as they were given.
@@ -84,6 +95,13 @@ Scene with_absolute_files(const std::filesystem::path& folder, Scene scene) {
       make_absolute(absolute, *file);
   if (scene.sample) make_absolute(absolute, scene.sample->file);
   return scene;
+}
+
+std::vector<std::string> shape_files(const Scene& scene) {
+  std::vector<std::string> files;
+  for (const auto& obstacle : scene.obstacles) add_files(obstacle.shape, files);
+  for (const auto& body : scene.bodies) add_files(body.shape, files);
+  return files;
 }
 
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* notes) {

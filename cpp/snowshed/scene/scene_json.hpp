@@ -21,6 +21,10 @@ Scene parse_scene(const std::string& text, const std::string& name = "scene",
 /// The scene with absolute names of mesh and grid files; relative ones are taken to be in `folder`.
 Scene with_absolute_files(const std::filesystem::path& folder, Scene scene);
 
+/// The mesh and grid files that the shapes of a scene name, as they are written there, without
+/// repetition.
+std::vector<std::string> shape_files(const Scene& scene);
+
 /// `parse_scene` on a file; errors name it. Mesh and grid files given by a relative path are
 /// looked for beside the scene file, so the result does not depend on the working directory.
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);

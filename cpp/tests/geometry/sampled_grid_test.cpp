@@ -1,5 +1,6 @@
 #include "snowshed/geometry/sampled_grid.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "geometry/geometry_testing.hpp"
@@ -27,7 +28,9 @@ TEST(SampledGrid, IsExactForAPlaneWithinTheGrid) {
   Random random(17);
   for (int n = 0; n < 1000; ++n) {
     const Vec3 x = random_point(random, 0.9);
-    ASSERT_NEAR(grid->distance(x), plane->distance(x), 1e-6);
+    const double border = x.cwiseAbs().maxCoeff() - 1;  // where the solid ends
+    ASSERT_NEAR(grid->distance(x), std::max(plane->distance(x), border), 1e-6);
+    if (border > plane->distance(x) - 0.1) continue;  // the edge between both
     ASSERT_LT((grid->normal(x) - plane->normal(x)).norm(), 1e-5);
   }
 }
@@ -56,6 +59,19 @@ TEST(SampledGrid, AddsTheDistanceBeyondTheGrid) {
   EXPECT_LT((grid->normal({4, 0, 0}) - Vec3::UnitX()).norm(), 1e-3);
 }
 
+TEST(SampledGrid, EndsAtTheBorderOfTheGrid) {
+  for (const std::size_t along_y : {std::size_t(5), std::size_t(1)}) {
+    const GridSamples all_inside{
+        {0, 0, 0}, 0.1, {5, along_y, 5}, std::vector<float>(25 * along_y, -1)};
+    const Shape grid = make_sampled_grid(all_inside, "g");
+    const int dimension = along_y == 1 ? 2 : 3;
+    EXPECT_NEAR(measure(*grid, dimension, 0.02), std::pow(0.4, dimension), 1e-3);
+    EXPECT_NEAR(grid->inradius(), 0.2, 1e-6);
+    EXPECT_GT(grid->distance({0.5, 0.2, 0.2}), 0.09);
+    EXPECT_LE(grid->bounds().max.x(), 0.4 + 1e-12);
+  }
+}
+
 TEST(SampledGrid, OneSampleAlongYMeansConstantInY) {
   const Shape ball = make_sphere({0, 0, 0}, 0.5);
   const Shape grid = make_sampled_grid(sampled(*ball, {-1, 0, -1}, 0.1, {21, 1, 21}), "g");
@@ -68,7 +84,8 @@ TEST(SampledGrid, OneSampleAlongYMeansConstantInY) {
 TEST(SampledGrid, BoundsHoldWhereTheSolidReachesTheEdgeOfTheGrid) {
   const Shape box = make_box(Vec3(0, 0, 0), Vec3(4, 1, 1));
   const Shape grid = make_sampled_grid(sampled(*box, {-1, -1, -1}, 0.1, {21, 21, 21}), "g");
-  EXPECT_LT(grid->distance({1.3, 0, 0}), 0);
+  EXPECT_LT(grid->distance({0.9, 0, 0}), 0);
+  EXPECT_GT(grid->distance({1.1, 0, 0}), 0);  // where there are no samples
   expect_bounds_hold(*grid, 2.0);
 }
 

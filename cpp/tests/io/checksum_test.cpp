@@ -32,5 +32,11 @@ TEST(Checksum, SeesOrderLengthAndZeros) {
 
 TEST(Checksum, IsPartOfTheFileFormat) { EXPECT_EQ(sum({1, 2, 3}), 0xc07b167c3203d34u); }
 
+TEST(Crc32, IsThatOfZlib) {
+  Crc32 sum;
+  sum.update("123456789", 9);
+  EXPECT_EQ(sum.value(), 0xcbf43926u);  // the check value of the catalogue of CRCs
+}
+
 }  // namespace
 }  // namespace snowshed

@@ -176,5 +176,34 @@ TEST(CostEstimate, MemoryErrorsNameBothNumbers) {
   }
 }
 
+TEST(CostEstimate, OverlappingObstaclesNeedMemoryAtEachNode) {
+  Scene scene = preset_scene("lab-40");
+  const double without = estimate_cost(scene).bytes;
+  ObstacleSpec sphere;
+  sphere.shape.type = "sphere";
+  sphere.shape.radius = 0.2;
+  scene.obstacles.assign(10000, sphere);
+  const double together = estimate_cost(scene).bytes;
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
+    scene.obstacles[i].shape.center.x() = double(i);
+  const double apart = estimate_cost(scene).bytes;
+  EXPECT_GT(together, 100 * without);
+  EXPECT_LT(apart, without + 2e7);
+}
+
+TEST(CostEstimate, ScatteredSnowNeedsMoreOfTheGrid) {
+  Scene scene = preset_scene("lab-40");
+  scene.slab.reset();
+  scene.panel.reset();
+  BodySpec grain;
+  grain.shape.type = "sphere";
+  grain.shape.radius = 0.006;
+  scene.bodies.assign(500, grain);
+  const double many = estimate_cost(scene).bytes;
+  scene.bodies.resize(1);
+  scene.bodies[0].shape.radius *= std::cbrt(500.0);
+  EXPECT_GT(many, 2 * estimate_cost(scene).bytes);
+}
+
 }  // namespace
 }  // namespace snowshed

@@ -152,5 +152,15 @@ TEST(Seed, RefusesWhatCannotBeFilled) {
   EXPECT_THROW(expected_count(*box, 3, 1e-4, 8, SeedPattern::regular), InputError);
 }
 
+TEST(Seed, IsGivenUpOnRequest) {
+  const Shape ball = make_sphere({0, 0, 0}, 0.3);
+  for (const SeedPattern pattern : patterns) {
+    int asked = 0;
+    const auto third = [&] { return ++asked == 3; };
+    EXPECT_THROW(seed(*ball, 3, voxel_edge, 8, pattern, 1, third), Stopped);
+    EXPECT_EQ(asked, 3);
+  }
+}
+
 }  // namespace
 }  // namespace snowshed

@@ -58,5 +58,14 @@ TEST(Wording, RangesHoldTheirClosedEndsOnly) {
   EXPECT_FALSE(anything.contains(std::numeric_limits<double>::quiet_NaN()));
 }
 
+TEST(Wording, MessagesHoldNoCommandsToTheTerminal) {
+  EXPECT_EQ(printable("a\x1b[31mb\xc2\x9b"
+                      "c\xe2\x80\xae"
+                      "d\xff\n\x7f"),
+            "a?[31mb?c?d? ?");
+  EXPECT_EQ(printable("Sägen 雪 \xf0\x9f\x98\x80"), "Sägen 雪 \xf0\x9f\x98\x80");
+  EXPECT_EQ(printable("cut \xe2\x80"), "cut ??");
+}
+
 }  // namespace
 }  // namespace snowshed

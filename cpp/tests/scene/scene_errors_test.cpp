@@ -399,5 +399,15 @@ TEST(SceneErrorsText, ScenesMadeInCodeAreHeldAgainstTheSameRanges) {
   EXPECT_EQ(where(), "/dimension");
 }
 
+TEST(SceneErrorsText, ANulEndsNoScene) {
+  const std::string text = good + "}";
+  for (const std::string& rest : {std::string(1, '\0'), std::string("\0junk", 5)}) try {
+      parse_scene(text + rest);
+      FAIL() << rest.size();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("a NUL character"), std::string::npos);
+    }
+}
+
 }  // namespace
 }  // namespace snowshed

@@ -70,8 +70,9 @@ DEVIATIONS: Mapping[str, Deviation] = {
         Deviation(
             "damping",
             "FLIP has a share of 0.99 in each step, whatever the step.",
-            "What the presets have.",
-            "A share in each step makes the damping depend on the step: a shorter one damps more.",
+            "Panels of chapter 5 are damped at a rate, that of this share with the thesis's cells.",
+            "A share in each step makes the damping depend on the step, and so on the cells: a "
+            "shorter step damps more.",
             lambda chapter: {"numerics.transfer": "flip", "numerics.flip_ratio": 0.99},
         ),
         Deviation(

@@ -57,6 +57,31 @@ def compare_folders(one: PathLike, other: PathLike) -> pd.DataFrame:
     return dimension_ratio(tables[3], tables[2])
 
 
+def same_dimension(one: PathLike, other: PathLike) -> bool:
+    """Return whether two results folders are both of 2D or both of 3D runs; raises InputError."""
+    return _dimension(one) == _dimension(other)
+
+
+def height_ratio(one: PathLike, other: PathLike) -> pd.DataFrame:
+    """Return the heights of the stacks of two runs, event by event, and their ratio.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns `event`, `height_1_m`, `height_2_m` and `ratio` (the first over the second).
+
+    Raises
+    ------
+    InputError
+        If a folder holds no results.
+    """
+    heights = [read_events(folder)[["event", "height_m"]] for folder in (one, other)]
+    table: pd.DataFrame = heights[0].merge(heights[1], on="event", suffixes=("_1", "_2"))
+    table = table.rename(columns={"height_m_1": "height_1_m", "height_m_2": "height_2_m"})
+    table["ratio"] = table.height_1_m / table.height_2_m
+    return table
+
+
 def _dimension(folder: PathLike) -> int:
     scene = Path(folder) / "scene.json"
     if not scene.is_file():

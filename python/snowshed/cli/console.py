@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
-from rich.console import Console
 from rich.table import Table
 
 from snowshed.analysis.dimension_ratio import RULE_OF_THUMB
-from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.cli.terminal import PlainConsole, plain_table, wide_console
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import settings_of
 from snowshed.plot.caption import contact_text, mean_damping_rate
@@ -40,9 +39,20 @@ def print_events(table: pd.DataFrame, folder: Path) -> None:
         shown.add_row(*(form.format(row[name]) for name, form in EVENT_TABLE.values()))
     wide_console(120).print(shown)
     scene = read_object(folder / "scene.json")
-    console = Console()
-    console.print(contacts_and_damping(scene, mean_damping_rate(table)), highlight=False)
-    console.print(f"results, stack.png and growth.png in {folder}", highlight=False)
+    console = PlainConsole()
+    console.print(contacts_and_damping(scene, mean_damping_rate(table)))
+    residual = energy_residual(folder)
+    if residual is not None:
+        console.print(f"energy balance: residual {residual:.2g} of the largest energy")
+    console.print(f"results, stack.png and growth.png in {folder}")
+    console.print(f"the snow in motion: snowshed view {folder}")
+
+
+def energy_residual(folder: Path) -> Optional[float]:
+    """Return what run.json says of the energy balance after the last event; None without one."""
+    events = read_object(folder / "run.json").get("finished_events") or [{}]
+    residual = events[-1].get("energy_residual")
+    return None if residual is None else float(residual)
 
 
 def contacts_and_damping(scene: dict[str, Any], damping_rate: Optional[float]) -> str:
@@ -65,7 +75,7 @@ def print_plan(plan: dict[str, Any]) -> None:
     shown.add_column(style="bold")
     for name, value in plan_rows(plan).items():
         shown.add_row(name, value)
-    Console().print(shown, highlight=False)
+    PlainConsole().print(shown)
 
 
 def plan_rows(plan: dict[str, Any]) -> dict[str, str]:
@@ -95,4 +105,12 @@ def print_ratios(ratios: pd.DataFrame) -> None:
     for event, three, two, ratio in ratios.itertuples(index=False):
         cells = (f"{three:.3f}", f"{two:.3f}", f"{ratio:.2f}", f"{RULE_OF_THUMB:.2f}")
         shown.add_row(str(event), *cells)
+    wide_console(120).print(shown)
+
+
+def print_heights(ratios: pd.DataFrame, one: str, other: str) -> None:
+    """Print the heights of two runs, event by event, and their ratio."""
+    shown = plain_table("Stack heights", ("event", f"{one}, m", f"{other}, m", "ratio"), padding=0)
+    for event, first, second, ratio in ratios.itertuples(index=False):
+        shown.add_row(str(event), f"{first:.3f}", f"{second:.3f}", f"{ratio:.2f}")
     wide_console(120).print(shown)

@@ -1,16 +1,19 @@
 """The command line: the list of commands, and their exit codes.
 
 ``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``grains`` a loading test of segmented
-snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, and ``season`` a winter.
+snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, ``season`` a winter, and
+``clearance`` many of them, to the height a panel needs.
 ``compare|sensitivity|calibrate`` answer questions about runs, and ``geometry|regress|predict``
 treat the data set of panels.
 
-Exit codes: 0 done, 2 bad input, 3 the simulation could not go on, 130 interrupted. Errors are one
-line on stderr.
+Exit codes: 0 done; 2 bad input, nothing was written; 3 what was begun could not go on, for the
+simulation failed, the disk is full or memory is short; 130 interrupted. Errors are one line on
+stderr.
 """
 
 from __future__ import annotations
 
+import errno
 import sys
 import warnings
 from collections.abc import Sequence
@@ -20,6 +23,16 @@ import click
 
 import snowshed._core as _core
 from snowshed.cli.deferred import Deferred
+from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_GO_ON, INTERRUPTED
+from snowshed.io.messages import shortened
+from snowshed.io.printable import printable
+
+#: What is wrong with files as the user named them.
+OF_NAMES = (
+    *(errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENOTEMPTY, errno.EACCES),
+    *(errno.EPERM, errno.ENAMETOOLONG, errno.ELOOP, errno.EINVAL, errno.ENXIO, errno.EROFS),
+)
+LONGEST_MESSAGE = 4000  # characters
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -37,15 +50,17 @@ DEFERRED = (
     ("plan", "scene", "Print the features and the cost of a scene file, without running it."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
     ("schema", "scene", "Print the JSON Schema of a scene."),
-    ("compare", "scene", "Compare the stack heights of a 3D and a 2D results folder."),
+    ("compare", "scene", "Compare the stack heights of two results folders."),
     ("lua", "lua", "Run a scene that Lua scripts describe, or write it as JSON."),
     ("study", "study", "Compute many runs of one scene whose parameters vary."),
     ("geometry", "regression", "Write the study of panel geometries that regress takes."),
     ("regress", "regression", "Regress stacks on panels: models, tables and figures."),
     ("predict", "regression", "Predict a stack's height and length without simulating it."),
     ("season", "season", "Simulate a winter: snow accumulates, is released and piles up."),
+    ("clearance", "clearance", "Find how high a panel's lower edge must be to stay clear."),
     ("sensitivity", "sensitivity", "Find the snow parameters that matter for the stack."),
     ("calibrate", "calibration", "Find the snow whose simulated stacks agree with measured ones."),
+    ("view", "view", "Write the moving view of a run as a page, or as a video."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
     ("verify", "verify", "Check this installation against known answers, in seconds."),
     ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),
@@ -77,20 +92,37 @@ def main(
 
 
 def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) -> int:
+    given = sys.argv[1:] if arguments is None else arguments
+    if not given and isinstance(command, click.Group):
+        arguments = ["--help"]
     try:
         settings = cli.context_settings
+        _refuse_bytes(sys.argv[1:] if arguments is None else arguments)
         return command.main(arguments, prog_name=name, standalone_mode=False, **settings) or 0
     except click.ClickException as error:
         return _fail(error.format_message(), max(error.exit_code, 2))
     except OSError as error:
-        return _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error), 2)
+        said = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+        named = not error.errno or error.errno in OF_NAMES
+        return _fail(said, BAD_INPUT if named else COULD_NOT_GO_ON)
     except _core.InputError as error:
-        return _fail(str(error), 2)
+        return _fail(str(error), BAD_INPUT)
     except _core.SimulationError as error:
-        return _fail(str(error), 3)
+        return _fail(str(error), COULD_NOT_GO_ON)
+    except MemoryError:
+        return _fail("out of memory; give fewer particles or a larger dx", COULD_NOT_GO_ON)
     except (KeyboardInterrupt, click.Abort):
-        return _fail("interrupted", 130)
+        return _fail("interrupted", INTERRUPTED)
     return 0
+
+
+def _refuse_bytes(arguments: Sequence[str]) -> None:
+    """Refuse names that are no UTF-8 before any work: scenes and tables could not hold them."""
+    for argument in arguments:
+        try:
+            argument.encode()
+        except UnicodeEncodeError:
+            raise _core.InputError(f"{argument}: this name is not UTF-8") from None
 
 
 def _note(
@@ -106,9 +138,10 @@ def _note(
         text = f"note: {message}\n"
     else:
         text = warnings.formatwarning(message, category, filename, lineno, line)
-    (file or sys.stderr).write(text)
+    (file or sys.stderr).write(printable(text))
 
 
 def _fail(message: str, code: int) -> int:
-    print("error:", " ".join(message.split()), file=sys.stderr)
+    line = printable(" ".join(message.split()))
+    print("error:", shortened(line, LONGEST_MESSAGE), file=sys.stderr)
     return code

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Optional
 
-from rich.console import Console
 from rich.progress import (
     BarColumn,
     TaskProgressColumn,
@@ -16,6 +15,7 @@ from rich.progress import (
 )
 from rich.progress import Progress as Bar
 
+from snowshed.cli.terminal import PlainConsole
 from snowshed.io.formatting import duration
 from snowshed.run.progress import Progress, Reporter
 
@@ -57,7 +57,7 @@ def progress_bar(
         yield None
         return
     bar: Optional[Bar] = None
-    console = Console(stderr=True, highlight=False)
+    console = PlainConsole(stderr=True)
 
     def report(progress: Progress) -> None:
         nonlocal bar
@@ -66,11 +66,11 @@ def progress_bar(
             if announce is not None:
                 console.print(announce(progress))
             bar = Bar(
-                TextColumn("{task.description}", markup=False),
+                TextColumn("{task.description}"),
                 BarColumn(bar_width=width),
                 TaskProgressColumn(),
                 TimeElapsedColumn() if told else TimeRemainingColumn(),
-                TextColumn("{task.fields[note]}", markup=False),
+                TextColumn("{task.fields[note]}"),
                 console=console,
                 speed_estimate_period=speed_period_s,
                 transient=transient,

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import click
+
+import snowshed._core as _core
 from snowshed.cli.exit_codes import Stopped
+from snowshed.io.formatting import about
 from snowshed.methods.registry import NAME_KEY
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.scene_notes import notes_after, notes_before
 from snowshed.scene.scene import ResolvedScene
+
+LONG = 600.0  # s; longer runs are announced
 
 
 def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
@@ -24,10 +31,26 @@ def _run_events(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -
     from snowshed.cli.progress import progress_bar
     from snowshed.run.events import run_events
 
+    if not quiet:
+        for note in (*notes_before(ready.data), *_of_long_run(ready)):
+            click.echo(f"note: {note}", err=True)
     with progress_bar(quiet=quiet) as progress:
         table = run_events(ready, folder, resume=resume, progress=progress)
     if not quiet:
         console.print_events(table, folder)
+        for note in notes_after(table):
+            click.echo(f"note: {note}")
+
+
+def _of_long_run(ready: ResolvedScene) -> list[str]:
+    """Return a note on a run that takes long, before it begins."""
+    seconds = _core.plan(ready.json, ready.base_dir)["expected_wall_s"]
+    if seconds < LONG:
+        return []
+    return [
+        f"this takes {about(seconds)}; Ctrl-C stops it, --resume goes on. A larger --dx is faster: "
+        "twice the size takes a sixteenth of the time in 3D, an eighth in 2D"
+    ]
 
 
 def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:

@@ -35,10 +35,28 @@ SHORT_NAMES = {
     "obstacles": "obstacle",
     "bodies": "body",
 }
+#: What ``--help`` shows.
+BASIC = (
+    "dimension", "panel.height", "panel.length", "panel.width", "panel.tilt", "panel.friction",
+    "panel.condition", "slab.thickness", "slab.layers", "ground.tilt", "snow.density",
+    "snow.youngs_modulus", "snow.preconsolidation_pressure", "snow.cohesion", "numerics.dx",
+    "numerics.threads", "events.count", "events.max_time", "output.snapshot_interval",
+)  # fmt: skip
 PREFIXED = ("panel", "slab", "ground", "domain")
 TYPES: Mapping[str, Any] = {"number": float, "integer": int, "string": str}
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def _show_all(context: click.Context, parameter: click.Parameter, given: bool) -> None:
+    if not given or context.resilient_parsing:
+        return
+    aliases = {option_name(path) for one in scene_parameters() for path in one.aliases}
+    for option in context.command.params:
+        if isinstance(option, click.Option):
+            option.hidden = bool(aliases & set(option.opts))
+    click.echo(context.get_help())
+    context.exit()
 
 
 def option_name(path: str) -> str:
@@ -55,13 +73,27 @@ def option_name(path: str) -> str:
 
 
 def scene_options(command: Command) -> Command:
-    """Add all options that describe a scene to a click command."""
+    """Add all options that describe a scene to a click command.
+
+    ``--help`` shows those of `BASIC`, ``--help-all`` all of them.
+    """
+    command = click.option(
+        "--help-all",
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        callback=_show_all,
+        help="Show all options, also those of the snow and the method, and exit.",
+    )(command)
     for parameter in reversed(scene_parameters()):
         for path in parameter.aliases:
             command = _option(replace(parameter, path=path), hidden=True)(command)
-        command = _option(parameter)(command)
+        command = _option(parameter, hidden=parameter.path not in BASIC)(command)
     command = click.option(
-        "--snow", "snow_preset", metavar="NAME", help="Snow of the thesis: calibrated, reference."
+        "--snow",
+        "snow_preset",
+        metavar="NAME",
+        help="Snow of the thesis (calibrated, reference), or a JSON file of a snow.",
     )(command)
     return click.option(
         "--preset",
@@ -76,7 +108,7 @@ def scene_from_options(
     """Build a scene: the preset (or a bare panel), then the snow, then single options."""
     scene = Scene.preset(preset) if preset else Scene(panel=Panel(), slab=Slab(), ground=Ground())
     if snow_preset:
-        scene.update({"snow": Snow.preset(snow_preset).to_data()})
+        scene.update({"snow": Snow.named(snow_preset).to_data()})
     given = {k.replace("__", "."): v for k, v in options.items() if v is not None and v != ()}
     return scene.update(given)
 

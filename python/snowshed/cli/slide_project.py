@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Optional
 
-import click
-
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.slide_files import refuse_changed_areas, removing_copies, terrain_copy
+from snowshed.cli.terminal import say
 from snowshed.scene.scene import ResolvedScene
 
 
@@ -47,7 +46,7 @@ def run_project(
             results = folder if number == 0 else folder / simulation_name(simulation)
             ready = simulation.scene.resolve()
             if len(simulations) > 1 and not quiet:
-                click.echo(f"{simulation.release}, {simulation.sim_type}:")
+                say(f"{simulation.release}, {simulation.sim_type}:")
             goes_on = resume and (number == 0 or (results / "scene.json").exists())
             if goes_on:
                 refuse_changed_areas(ready, results, simulation.files)

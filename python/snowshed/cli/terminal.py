@@ -1,18 +1,48 @@
-"""Tables that stay whole without a terminal."""
+"""What the commands print: texts as they are, and tables that stay whole without a terminal."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 from typing import Any
 
+import click
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
+
+from snowshed.io.printable import printable
 
 
-def wide_console(width: int = 100) -> Console:
+class PlainConsole(Console):
+    """A console on which no text is markup or a command to the terminal, wherever it comes from."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(highlight=False, markup=False, **options)
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        """Return a text as it is shown."""
+        return super().render_str(printable(text), **options)
+
+    def note(self, text: str) -> None:
+        """Print a note, which stands out."""
+        self.print(Text.assemble(("note:", "bold yellow"), f" {printable(text)}"))
+
+
+def say(text: object, *, err: bool = False) -> None:
+    """Print a line of text."""
+    click.echo(printable(text), err=err)
+
+
+def write_out(text: str) -> None:
+    """Print data: to a file or a pipe exactly as they are, to a terminal as it may show them."""
+    click.echo(printable(text) if sys.stdout.isatty() else text, nl=not text.endswith("\n"))
+
+
+def wide_console(width: int = 100) -> PlainConsole:
     """Return a console for stdout; without a terminal it has `width` columns, not rich's 80."""
-    console = Console(highlight=False)
+    console = PlainConsole()
     console.width = console.width if console.is_terminal else width
     return console
 

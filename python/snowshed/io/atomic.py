@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +13,8 @@ from typing import Union
 
 from snowshed._core import InputError
 
+#: How files begin that are still being written, or that a killed process left.
+LEFTOVER = re.compile(r"\.partial-[0-9a-f]{16}-")
 #: Errors of file systems that flush nothing.
 CANNOT_FLUSH = (errno.EINVAL, errno.ENOTSUP, errno.EROFS)
 
@@ -40,9 +43,11 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     if path.exists() and not path.is_file():
         raise InputError(f"{path}: not a file; what is written would destroy it")
     path = Path(os.path.realpath(path))
+    if path.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
     # Nobody can guess the name, so nobody can plant a link there; the core removes what a killed
     # process leaves in a results folder by this name.
-    beside = path.with_name(f".partial-{secrets.token_hex(8)}-{path.name}")
+    beside = path.with_name(f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}")
     try:
         os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield beside
@@ -55,6 +60,19 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
         raise
     finally:
         beside.unlink(missing_ok=True)
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove from a folder what killed processes left half-written; nothing if there is none."""
+    if folder.is_dir():
+        for path in folder.iterdir():
+            if LEFTOVER.match(path.name) and path.is_file() and not path.is_symlink():
+                path.unlink(missing_ok=True)
+
+
+def _end_of(name: str) -> str:
+    """Return the end of a name, which tells its kind, so short that more fits into a name."""
+    return os.fsdecode(os.fsencode(name)[-100:].lstrip(bytes(range(0x80, 0xC0))))
 
 
 def write_text(path: Union[str, os.PathLike[str]], text: str) -> None:

@@ -6,8 +6,10 @@ All are read by the same rules: UTF-8, one name for each column, and a cell for 
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,10 +19,13 @@ from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import LARGEST, LARGEST_TABLE, read_input
 from snowshed.io.messages import quoted
+from snowshed.io.number_text import number_in
+from snowshed.io.printable import csv_cell
 
 if TYPE_CHECKING:
     import pandas as pd
 
+WHOLE = re.compile("[0-9]{1,9}")
 MOST_COLUMNS = 1000  # pandas takes minutes for a line of a hundred thousand names
 
 
@@ -75,8 +80,8 @@ class Table:
     def total(self, column: str) -> float:
         """Return the sum of a column."""
         try:
-            total = math.fsum(float(row[column]) for row in self.rows)
-        except (KeyError, ValueError, OverflowError):
+            total = math.fsum(number_in(row[column]) for row in self.rows)
+        except (KeyError, OverflowError):
             total = math.nan
         if not math.isfinite(total):
             raise self._damaged(f"no numbers in the column {column}")
@@ -89,19 +94,27 @@ class Table:
         for row in rows:
             if self.columns and not set(row) <= set(self.columns):
                 raise self._damaged(f"its columns are not {', '.join(self.columns)}")
-            if not row.get("event", "").isdecimal():
+            if not WHOLE.fullmatch(row.get("event", "")):
                 raise self._damaged("a row without the number of its event")
         return rows
 
     def _damaged(self, what: str) -> InputError:
         return InputError(f"{self.path}: damaged: {what}")
 
+    def checksum(self, event: int) -> str:
+        """Return a checksum of the rows through an event, with the names of their columns."""
+        kept = [row for row in self.rows if int(row["event"]) <= event]
+        return hashlib.blake2b(self._text(kept).encode(), digest_size=16).hexdigest()
+
     def _write(self) -> None:
+        write_text(self.path, self._text(self.rows))
+
+    def _text(self, rows: Iterable[Mapping[str, str]]) -> str:
         text = io.StringIO()
         writer = csv.DictWriter(text, self.columns, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(self.rows)
-        write_text(self.path, text.getvalue())
+        writer.writerows(rows)
+        return text.getvalue()
 
 
 def _cell(value: Any) -> str:
@@ -184,6 +197,29 @@ def read_text_table(
     return TextTable(columns, rows)
 
 
+def csv_text(table: pd.DataFrame, **options: Any) -> str:
+    """Return a table as CSV without its index; texts in it do no harm in a spreadsheet.
+
+    Parameters
+    ----------
+    table
+        Any table.
+    **options
+        As of `pandas.DataFrame.to_csv`.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> csv_text(pd.DataFrame({"name": ["=A1", "b"], "x": [-1.0, 2.0]})).split()
+    ['name,x', "'=A1,-1.0", 'b,2.0']
+    """
+    words = [i for i, kind in enumerate(table.dtypes) if kind.kind not in "biufcmM"]
+    safe = table.rename(columns=csv_cell)
+    for i in words:
+        safe = safe.assign(**{str(safe.columns[i]): table.iloc[:, i].map(csv_cell)})
+    return str(safe.to_csv(index=False, lineterminator="\n", **options))
+
+
 def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:
     """Return a DataFrame as the table of texts that its CSV file would be.
 
@@ -233,16 +269,20 @@ def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     OSError
         If it cannot be read.
     """
+    return parse_csv(_decoded(path, LARGEST_TABLE), path, as_text=as_text)
+
+
+def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.DataFrame:
+    """Return a table from the text of a CSV file; see `read_csv`. Errors name `where` it was."""
     import pandas as pd
 
-    text = _decoded(path, LARGEST_TABLE)
-    for _ in _records(path, text):
+    for _ in _records(where, text):
         pass
     options: dict[str, Any] = {"dtype": str, "keep_default_na": False} if as_text else {}
     try:
         table: pd.DataFrame = pd.read_csv(io.StringIO(text), **options)
     except ValueError as error:  # of pandas all errors on content are ValueErrors
-        raise InputError(f"{path}: not a table: {error}") from None
+        raise InputError(f"{where}: not a table: {error}") from None
     return table
 
 
@@ -255,7 +295,7 @@ def _decoded(path: Path, largest: int) -> str:
         raise InputError(f"{path}, line {line}: not a table: not UTF-8 text") from None
 
 
-def _records(path: Path, text: str, comment: str = "") -> Iterator[tuple[int, list[str]]]:
+def _records(path: Path | str, text: str, comment: str = "") -> Iterator[tuple[int, list[str]]]:
     """Yield the first line and the cells of each record, which has as many as there are names."""
     pulled: list[int] = []
     reader = csv.reader(_numbered(text, comment, pulled), strict=True)

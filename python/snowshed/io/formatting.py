@@ -43,7 +43,7 @@ def number(value: Optional[float], digits: int = 3) -> str:
     if value is None or isnan(value):
         return NOTHING
     text = f"{value:.{digits}g}"
-    if "e" in text and 1e3 <= abs(float(text)) < 1e6:
+    if "e" in text and 1.0 <= abs(float(text)) < 1e6:
         return f"{float(text):,.0f}"
     if "e" in text:
         mantissa, _, exponent = text.partition("e")
@@ -57,8 +57,8 @@ def percent(value: Optional[float], digits: int = 3) -> str:
 
     Examples
     --------
-    >>> [percent(x) for x in (0.05, 0.012345, 0.0)]
-    ['5 %', '1.23 %', '0 %']
+    >>> [percent(x) for x in (0.05, 0.012345, 0.0)], percent(1.0, 2)
+    (['5 %', '1.23 %', '0 %'], '100 %')
     """
     if value is None or isnan(value):
         return NOTHING

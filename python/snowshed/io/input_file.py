@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import resource
+import stat
 from pathlib import Path
 
 from snowshed._core import InputError
@@ -9,6 +12,44 @@ from snowshed._core import InputError
 MB = 1 << 20
 #: What people write, scenes and studies and lists, is nowhere near as long; tables may be.
 LARGEST, LARGEST_TABLE = 64 * MB, 1024 * MB
+
+
+def read_regular(path: Path) -> bytes:
+    """Return the content of a file of any size that fits into memory, but of no device or pipe.
+
+    Raises
+    ------
+    InputError
+        If it is no regular file, or is larger than half of the memory.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> read_regular(Path("/dev/zero"))
+    Traceback (most recent call last):
+    ...
+    snowshed._core.InputError: /dev/zero: not a regular file
+    """
+    with open(path, "rb", opener=_open_at_once) as file:
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            raise InputError(f"{path}: not a regular file")
+        if status.st_size > _memory() / 2:
+            raise InputError(f"{path}: {status.st_size / 1e9:.3g} GB do not fit into memory")
+        return file.read()
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    """Open a file without waiting, as for the writer of a pipe."""
+    return os.open(path, flags | os.O_NONBLOCK)
+
+
+def _memory() -> int:
+    """Return the bytes that the machine, or the limit of this process, has."""
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    return machine if limit == resource.RLIM_INFINITY else min(machine, limit)
 
 
 def read_input(path: Path, largest: int = LARGEST) -> bytes:

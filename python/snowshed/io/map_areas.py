@@ -14,6 +14,8 @@ from typing import Any, Optional
 from snowshed._core import InputError
 from snowshed.io.coordinate_systems import is_in_degrees
 from snowshed.io.extras import require
+from snowshed.io.messages import quoted
+from snowshed.io.number_text import number_in
 from snowshed.io.paths import PathLike
 
 Ring = Sequence[Sequence[float]]
@@ -69,7 +71,13 @@ def read_areas(path: PathLike) -> list[MapArea]:
     shapely: Any = require("shapely", "terrain", "reading polygons")
     try:
         meta, _, shapes, columns = pyogrio.raw.read(path, max_features=LARGEST + 1)
-    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError) as error:
+        shapes = [shapely.from_wkb(shape) for shape in shapes]
+    except (
+        pyogrio.errors.DataSourceError,
+        pyogrio.errors.DataLayerError,
+        shapely.errors.ShapelyError,
+        ValueError,
+    ) as error:
         raise InputError(f"{path}: not a file of polygons: {error}") from None
     if len(shapes) > LARGEST:
         raise InputError(f"{path}: more than {LARGEST} polygons")
@@ -79,7 +87,7 @@ def read_areas(path: PathLike) -> list[MapArea]:
     areas = [
         area
         for number, (shape, record) in enumerate(zip(shapes, records), 1)
-        for area in _areas_of(shapely.from_wkb(shape), record, number, crs, path, shapely)
+        for area in _areas_of(shape, record, number, crs, path, shapely)
     ]
     if not areas:
         raise InputError(f"{path}: holds no polygon")
@@ -98,7 +106,8 @@ def _areas_of(
     if shape is None or shape.geom_type not in ("Polygon", "MultiPolygon"):
         raise InputError(f"{where}: not a polygon")
     if not shape.is_valid:
-        raise InputError(f"{where}: {shapely.is_valid_reason(shape)}")
+        reason = shapely.is_valid_reason(shape)
+        raise InputError(f"{where}: no valid outline: {reason}; draw it without crossings")
     named = {str(key).lower(): value for key, value in record.items()}
     name = str(named.get("name") or f"area {number}")
     thickness = _thickness(named, where)
@@ -118,11 +127,10 @@ def _thickness(named: dict[str, Any], where: str) -> Optional[float]:
         value = named.get(key)
         if value is None or str(value).strip() in ("", "None", "nan"):
             continue
-        try:
-            number = float(value)
-        except ValueError:
-            raise InputError(f"{where}: {key} {value!r} is not a number") from None
-        if not (math.isfinite(number) and number > 0):
+        number = number_in(str(value))
+        if math.isnan(number):
+            raise InputError(f"{where}: {key} {quoted(str(value))} is not a number")
+        if not number > 0:
             raise InputError(f"{where}: {key} is {number:g} m; give one above 0")
         return number
     return None

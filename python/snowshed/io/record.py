@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar, Optional, TypeVar
 from snowshed._core import InputError
 from snowshed.io.field_type import alternatives_of, convert, is_record, shown
 from snowshed.io.json_file import JsonObject, JsonValue
-from snowshed.io.messages import suggestion
+from snowshed.io.messages import shortened, suggestion
 
 DEEPEST = 64  # as the core has it
 
@@ -142,7 +142,9 @@ class Record(metaclass=_RecordClass):
         if key not in keys:
             allowed = ", ".join(cls.keys())
             near = suggestion(str(key), keys)
-            raise InputError(f"{path}/{key}: unknown key; allowed: {allowed}{near}")
+            raise InputError(
+                f"{path}/{shortened(str(key), 100)}: unknown key; allowed: {allowed}{near}"
+            )
         return keys[key]
 
     def record_type(self, key: str) -> Optional[type[Record]]:

@@ -6,7 +6,9 @@ import warnings
 from collections.abc import Callable, Mapping
 
 
-def renamed(module: str, classes: Mapping[str, type]) -> Callable[[str], object]:
+def renamed(
+    module: str, classes: Mapping[str, type], *, stacklevel: int = 2
+) -> Callable[[str], object]:
     """Return the ``__getattr__`` of a module that gives classes by their former names, and warns.
 
     Parameters
@@ -15,6 +17,8 @@ def renamed(module: str, classes: Mapping[str, type]) -> Callable[[str], object]
         The module's name.
     classes
         The classes, by their former names.
+    stacklevel
+        As of `warnings.warn`; one more where the module calls what is returned.
 
     Examples
     --------
@@ -31,7 +35,7 @@ def renamed(module: str, classes: Mapping[str, type]) -> Callable[[str], object]
         if name not in classes:
             raise AttributeError(f"module {module!r} has no attribute {name!r}")
         now = classes[name]
-        warnings.warn(f"{module}.{name} is now {now.__name__}", DeprecationWarning, stacklevel=2)
+        warnings.warn(f"{module}.{name} is now {now.__name__}", DeprecationWarning, stacklevel)
         return now
 
     return find

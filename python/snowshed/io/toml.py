@@ -1,14 +1,53 @@
-"""Data as TOML text, one value a line. Reading TOML is the standard library's business."""
+"""TOML: read by the standard library, within limits, and written one value a line."""
 
 from __future__ import annotations
 
 import json
 import re
+import sys
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 from snowshed._core import InputError
+from snowshed.io.messages import shortened
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+#: The library's time and memory grow with the square of these.
+MOST_PARTS, MOST_TABLES = 50, 10_000
+PART = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
+LONG_KEY = re.compile(rf"{PART}(?:[ \t]*\.[ \t]*{PART}){{{MOST_PARTS}}}")
 BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def parse_toml(content: bytes) -> dict[str, Any]:
+    """Return the data of a TOML text.
+
+    Raises
+    ------
+    InputError
+        If it is none, or one whose keys have too many parts or that has too many tables.
+
+    Examples
+    --------
+    >>> parse_toml(b"panel.tilt = 40")
+    {'panel': {'tilt': 40}}
+    """
+    try:
+        text = content.decode("utf-8")
+        if long := LONG_KEY.search(text):
+            line = text.count("\n", 0, long.start()) + 1
+            raise InputError(f"not TOML: a key of more than {MOST_PARTS} parts (at line {line})")
+        if text.count("\n[") > MOST_TABLES:
+            raise InputError(f"not TOML: more than {MOST_TABLES} tables")
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # of tomllib all errors are ValueErrors
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"not TOML: {shortened(str(error), 200)}") from None
 
 
 def toml_value(value: object) -> str:

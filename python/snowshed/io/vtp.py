@@ -1,8 +1,11 @@
-"""Reading the particles that a run stored (.vtp), in the form that the core writes them."""
+"""Files of VTK (.vtp): reading the particles that a run stored, and writing triangles."""
 
 from __future__ import annotations
 
 import os
+import re
+import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Union
@@ -12,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.io.atomic import replacing
+from snowshed.io.input_file import read_regular
 
 TYPES = MappingProxyType(
     {
@@ -23,6 +28,9 @@ TYPES = MappingProxyType(
     }
 )
 APPENDED = b'<AppendedData encoding="raw">\n_'
+#: How a file ends, with the checksum of what stands before; and without.
+END = re.compile(rb"  <!-- crc32 ([0-9a-f]{8}) -->\n</VTKFile>\n\Z")
+OLD_END, LONGEST_END = b"\n  </AppendedData>\n</VTKFile>\n", 64
 LENGTH_BYTES = 8  # before each block
 
 
@@ -47,13 +55,12 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     OSError
         If it cannot be read.
     """
-    content = Path(path).read_bytes()
-    head, found, data = content.partition(APPENDED)
+    content = read_regular(Path(path))
     try:
+        _check_sum(content)
+        head, found, data = content.partition(APPENDED)
         if not found:
             raise ValueError("it has no appended raw data")
-        if not data.rstrip().endswith(b"</VTKFile>"):
-            raise ValueError("it ends too early")
         piece = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece")
         if piece is None:
             raise ValueError("it has no points")
@@ -62,6 +69,16 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
         return {array.attrib["Name"]: _values(array, data, count) for array in arrays}
     except (ValueError, LookupError, OverflowError, ElementTree.ParseError) as error:
         raise InputError(f"{path}: not particles that snowshed wrote: {error}") from None
+
+
+def _check_sum(content: bytes) -> None:
+    """Raise ValueError unless the checksum at the end is right; a version before wrote none."""
+    if content.endswith(OLD_END):
+        return
+    if not (end := END.search(content, max(0, len(content) - LONGEST_END))):
+        raise ValueError("it ends too early")
+    if zlib.crc32(memoryview(content)[: end.start()]) != int(end[1], 16):
+        raise ValueError("its checksum is wrong")
 
 
 def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]:
@@ -78,3 +95,51 @@ def _values(array: ElementTree.Element, data: bytes, count: int) -> NDArray[Any]
     if values.dtype.kind == "f" and not np.isfinite(values).all():
         raise ValueError(f"{array.attrib['Name']} holds what is no finite number")
     return values.reshape(count, components) if components > 1 else values
+
+
+def write_triangles(
+    path: Union[str, os.PathLike[str]],
+    points: NDArray[np.float32],
+    triangles: NDArray[np.integer[Any]],
+    values: Mapping[str, NDArray[np.int32]],
+) -> None:
+    """Write triangles as a .vtp file with appended raw data.
+
+    Parameters
+    ----------
+    path
+        The file.
+    points : (n, 3)
+        m.
+    triangles : (m, 3)
+        The points of each.
+    values
+        A whole number (m,) of each triangle, by name.
+    """
+    count = len(triangles)
+    corners = triangles.astype("<i8").ravel()
+    ends = np.arange(3, 3 * count + 1, 3, dtype="<i8")
+    blocks: list[NDArray[Any]] = [points.astype("<f4")]
+    blocks += [value.astype("<i4") for value in values.values()]
+    blocks += [corners, ends]
+    offsets = np.cumsum([0, *(LENGTH_BYTES + block.nbytes for block in blocks)])
+    cells = "".join(
+        f'<DataArray type="Int32" Name="{name}" format="appended" offset="{offset}"/>\n'
+        for name, offset in zip(values, offsets[1:])
+    )
+    head = (
+        '<?xml version="1.0"?>\n'
+        '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n'
+        f'<PolyData><Piece NumberOfPoints="{len(points)}" NumberOfPolys="{count}">\n'
+        '<Points><DataArray type="Float32" Name="position" NumberOfComponents="3" '
+        f'format="appended" offset="0"/></Points>\n<CellData>\n{cells}</CellData>\n'
+        '<Polys><DataArray type="Int64" Name="connectivity" format="appended" '
+        f'offset="{offsets[-3]}"/>\n<DataArray type="Int64" Name="offsets" format="appended" '
+        f'offset="{offsets[-2]}"/></Polys>\n</Piece></PolyData>\n'
+    )
+    with replacing(path) as beside, beside.open("wb") as file:
+        file.write(head.encode("ascii") + APPENDED)
+        for block in blocks:
+            file.write(block.nbytes.to_bytes(LENGTH_BYTES, "little"))
+            file.write(np.ascontiguousarray(block).data)
+        file.write(b"\n</AppendedData>\n</VTKFile>\n")

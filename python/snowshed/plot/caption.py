@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.methods.registry import settings_of
-from snowshed.plot.labels import label, settings
+from snowshed.plot.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 #: Parameters of the snow that are named.
 ELASTIC = ("youngs_modulus", "poissons_ratio")
 PLASTIC = ("critical_state_slope", "preconsolidation_pressure", "cohesion", "hardening_factor")
+#: What becomes of the stack between events.
+BETWEEN = {"carry": "the stack stays", "reseed": "the stack is seeded anew"}
 MOST_LAYERS = 4  # whose thicknesses are named one by one
 
 
@@ -33,7 +35,7 @@ def scene_caption(scene: dict[str, Any], damping_rate: Optional[float] = None) -
     >>> from snowshed.scene.scene import Scene
     >>> print(scene_caption(Scene.preset("lab-50").resolve().data))
     3D · panel 0.245 m, tilt 50°, 0.33 m above ground, separate, friction 0.3 · slab 0.02 m thick
-    snow 210 kg/m³, E 1 MPa, nu 0.3, M 0.5, p₀ 7 kPa, β 0.2, ξ 0.1 · events carry
+    snow 210 kg/m³, E 1 MPa, nu 0.3, M 0.5, p₀ 7 kPa, β 0.2, ξ 0.1 · the stack stays
     dx 0.01 m · FLIP 0.99 a step
     """
     parts = [f"{scene['dimension']}D"]
@@ -50,7 +52,7 @@ def scene_caption(scene: dict[str, Any], damping_rate: Optional[float] = None) -
     method = [f"{settings.RESOLUTION} {settings.resolution:g} m"]
     if damping := settings.damping_text(damping_rate):
         method.append(damping)
-    snow = [_snow(scene), f"events {scene['events']['between']}"]
+    snow = [_snow(scene), BETWEEN[scene["events"]["between"]]]
     return "\n".join(" · ".join(line) for line in (parts, snow, method))
 
 
@@ -89,10 +91,11 @@ def _slab(slab: dict[str, Any]) -> str:
     return f"layers {', '.join(thicknesses)} m"
 
 
-def _densities(scene: dict[str, Any]) -> str:
+def _span(scene: dict[str, Any], name: str) -> str:
+    """Return a parameter of the snow with its unit; from where to where, if layers differ."""
     layers = (scene.get("slab") or {}).get("layers") or [{}]
-    found = [layer.get("snow", scene["snow"])["density"] for layer in layers]
-    known = label("snow.density")
+    found = [layer.get("snow", scene["snow"])[name] for layer in layers]
+    known = label(f"snow.{name}")
     ends = sorted({min(found), max(found)})
     return " to ".join([*map(known.value, ends[:-1]), known.quantity(ends[-1])])
 
@@ -100,5 +103,5 @@ def _densities(scene: dict[str, Any]) -> str:
 def _snow(scene: dict[str, Any]) -> str:
     elastic = scene["snow"]["model"] == "elastic"
     shown = ELASTIC if elastic else (*ELASTIC, *PLASTIC)
-    values = {f"snow.{name}": scene["snow"][name] for name in shown}
-    return f"snow {_densities(scene)}, {settings(values)}" + (", elastic" if elastic else "")
+    values = [f"{label(f'snow.{name}').symbol} {_span(scene, name)}" for name in shown]
+    return ", ".join([f"snow {_span(scene, 'density')}", *values, *["elastic"] * elastic])

@@ -2,27 +2,33 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from snowshed.io.arrays import Booleans, Floats
 from snowshed.methods.grains.contacts import GrainContacts
-from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank
+from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank, describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SLICE = 0.25  # of the sample's depth, about its middle, whose grains are drawn
+TITLE_WIDTH = 80  # characters
 WIDEST = 7.0  # points, of a line
+MANY = 300  # grains, from which on only the forces in the slice are drawn
 ICE = ("#e3ebf1", "#cfdce6", "#bccdda", "#d9e0ea", "#c5d6d9")
 
 
-def force_figure(contacts: GrainContacts, voxel_size: float) -> Figure:
+def force_figure(contacts: GrainContacts, voxel_size: float, title: str = "") -> Figure:
     """Return the picture of a sample from the side, with the forces between its grains.
 
-    Lines join the centres of grains that touch by way of their contact; all contacts are drawn,
-    and the ice of a slice in the middle. Width is in proportion to the force.
+    Lines join the centres of grains that touch by way of their contact. Of a sample of few grains
+    all contacts are drawn, of others those in the slice in the middle whose ice is drawn, too.
+    Width is in proportion to the force. Only bonds can pull: where grains without one are pushed
+    apart askew, they press.
 
     Parameters
     ----------
@@ -30,12 +36,16 @@ def force_figure(contacts: GrainContacts, voxel_size: float) -> Figure:
         As they are at a time.
     voxel_size
         Diameter of the spheres, m.
+    title
+        Written above, such as how a synthetic sample was made.
     """
     from matplotlib import rc_context
 
     with rc_context(STYLE):
         width, _, height = np.ptp(contacts.spheres, axis=0) + voxel_size
         figure = blank(6.4, 1.2 + 5.6 * min(height / width, 2.0))
+        if title:
+            describe(figure, fill(title, TITLE_WIDTH))
         axes = figure.subplots()
         axes.grid(visible=False)
         _draw_ice(axes, contacts, voxel_size)
@@ -49,9 +59,7 @@ def _draw_ice(axes: Axes, contacts: GrainContacts, voxel_size: float) -> None:
     from matplotlib.collections import EllipseCollection
 
     depth = contacts.spheres[:, 1]
-    low, high = depth.min(), depth.max()
-    near = np.abs(depth - 0.5 * (low + high)) <= 0.5 * SLICE * (high - low) + 0.5 * voxel_size
-    shown = np.flatnonzero(near)
+    shown = np.flatnonzero(_in_slice(contacts, depth, 0.5 * voxel_size))
     shown = shown[np.argsort(-depth[shown], kind="stable")]  # from the back to the front
     centres = 1e3 * contacts.spheres[shown][:, [0, 2]]
     size = np.full(len(shown), 1e3 * voxel_size)
@@ -67,18 +75,27 @@ def _draw_ice(axes: Axes, contacts: GrainContacts, voxel_size: float) -> None:
         set_limits(1e3 * (values.min() - edge), 1e3 * (values.max() + edge))
 
 
+def _in_slice(contacts: GrainContacts, depth: Floats, margin: float = 0.0) -> Booleans:
+    """Return which depths (y, m) are in the slice in the middle, whose ice is drawn."""
+    low, high = contacts.spheres[:, 1].min(), contacts.spheres[:, 1].max()
+    near = np.abs(depth - 0.5 * (low + high)) <= 0.5 * SLICE * (high - low) + margin
+    return np.asarray(near)
+
+
 def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
     from matplotlib.collections import LineCollection
     from matplotlib.lines import Line2D
 
-    normal = contacts.normal_forces
-    size = np.linalg.norm(contacts.forces, axis=1)
+    pulling = contacts.bonded & (contacts.normal_forces < 0.0)
+    many = int(contacts.sphere_grains.max(initial=0)) >= MANY
+    drawn_ones = _in_slice(contacts, contacts.points[:, 1]) if many else np.isfinite(pulling)
+    size = np.linalg.norm(contacts.forces, axis=1) * drawn_ones
     largest = float(size.max(initial=0.0))
     if largest == 0.0:
         axes.set_title("No forces between the grains")
         return
     for pulls, colour in ((False, BODY), (True, STACK)):
-        chosen = (normal < 0.0) == pulls
+        chosen = (pulling == pulls) & drawn_ones
         for side in (0, 1):
             ways, whole = contacts.arms(side)
             shown = np.flatnonzero(chosen & whole)
@@ -87,7 +104,8 @@ def _draw_forces(axes: Axes, contacts: GrainContacts) -> None:
             drawn = LineCollection(list(lines), linewidths=widths, colors=colour)
             drawn.set(alpha=0.75, capstyle="round")
             axes.add_collection(drawn)
-    axes.set_title("Forces between grains", color=INK)
+    where = " in the slice" if many else ""
+    axes.set_title(f"Forces between grains{where}", color=INK)
     key = [
         Line2D([], [], color=BODY, lw=WIDEST, label=f"pressing, {_force_text(largest)}"),
         Line2D([], [], color=BODY, lw=WIDEST / 4, label=f"pressing, {_force_text(largest / 4)}"),

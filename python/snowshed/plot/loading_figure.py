@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
-from snowshed.methods.grains.phases import Phases, find_phases
-from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STACK, STYLE, blank
+from snowshed.methods.grains.phases import LINEAR, Phases, find_phases
+from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STACK, STYLE, blank, describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +31,7 @@ BEGINNING = 4.0  # times the elastic limit that the diagram of the beginning sho
 PHASES = ("#d8e8f2", "#f6efe2", "#f3dfd8")
 
 
-def loading_figure(curve: LoadingCurve, kinds: Sequence[str]) -> Figure:
+def loading_figure(curve: LoadingCurve, kinds: Sequence[str], title: str = "") -> Figure:
     """Return the figure of a loading test: stresses, broken bonds, coordination and energies.
 
     The first stage is shaded by its phases if it compresses; where it hardens, stresses are on a
@@ -43,12 +43,16 @@ def loading_figure(curve: LoadingCurve, kinds: Sequence[str]) -> Figure:
         What it measured.
     kinds
         Of its stages, in order.
+    title
+        Written above, such as how a synthetic sample was made.
     """
     from matplotlib import rc_context
 
     along, label = _abscissa(curve, kinds)
     with rc_context(STYLE):
         figure = blank(9.0, 6.6)
+        if title:
+            describe(figure, title)
         (stress, beginning), (bonds, last) = figure.subplots(2, 2)
         phases = find_phases(curve.of_stage(1), kinds[0])
         _draw_stresses(stress, curve, along, logarithmic=phases.hardening_onset is not None)
@@ -107,7 +111,10 @@ def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) 
     unit = _unit_of_strain(float(strain[shown].max(initial=0.0)))
     axes.plot(unit[1] * strain[shown], stress[shown] / 1e3, ".-", color=INK, lw=1.0, ms=4)
     title = "Beginning"
-    if phases.tangent_modulus is not None:
+    waves = phases.linearity is not None and phases.linearity < LINEAR
+    if waves:
+        title += f": not linear (R² {phases.linearity:.2f}), as waves run through the sample"
+    elif phases.tangent_modulus is not None:
         x = np.array([0.0, limit])
         fitted = np.polyfit(strain[strain <= limit], stress[strain <= limit], 1)
         axes.plot(unit[1] * x, np.polyval(fitted, x) / 1e3, color=BODY, lw=2.5, alpha=0.6)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Protocol
 
 import numpy as np
 from matplotlib import colormaps
@@ -25,13 +25,25 @@ from snowshed.plot.figure_style import (
     describe,
     quiet,
 )
+from snowshed.plot.stack_figures import ROWS, named_events
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+
+class _Contact(Protocol):
+    """The first contact of the snow with the panel, as a season has it."""
+
+    @property
+    def date(self) -> str: ...
+    @property
+    def event(self) -> Optional[int]: ...
+    @property
+    def cause(self) -> str: ...
+
+
 SIZE = (9.0, 10.2)  # inches
-MOST_NAMED = 8  # events in the legend
 
 
 def season_figure(
@@ -40,7 +52,7 @@ def season_figure(
     scene: Mapping[str, Any],
     *,
     panel: Sequence[Sequence[float]],
-    burial_event: Optional[int],
+    contact: Optional[_Contact],
     title: str,
 ) -> Figure:
     """Draw a season.
@@ -55,8 +67,8 @@ def season_figure(
         The complete scene of the slide-offs.
     panel
         The panel's upper and lower edge, (x, z) in m.
-    burial_event
-        The event with which the snow reaches the panel's lower edge; None: none.
+    contact
+        The first contact of the snow with the panel; None: there is none.
     title
         Above the figure, before the key numbers of the scene.
     """
@@ -65,8 +77,8 @@ def season_figure(
     moments = [datetime.fromisoformat(date) for date in table["date"]]
     dates: Floats = date2num(moments)  # type: ignore[no-untyped-call]
     _draw_panel_snow(load, dates, table)
-    _draw_stack(stack, dates, table, float(scene["panel"]["height"]), burial_event)
-    _draw_outlines(side, outlines, panel)
+    _draw_stack(stack, dates, table, float(panel[1][1]), contact)
+    _draw_outlines(side, outlines, table, panel)
     for axes in (load, stack):
         locator: Any = AutoDateLocator()  # type: ignore[no-untyped-call]
         formatter: Any = ConciseDateFormatter(locator, show_offset=False)  # type: ignore[no-untyped-call]
@@ -108,41 +120,47 @@ def _draw_panel_snow(axes: Axes, dates: Floats, table: pd.DataFrame) -> None:
 
 
 def _draw_stack(
-    axes: Axes, dates: Floats, table: pd.DataFrame, edge: float, burial_event: Optional[int]
+    axes: Axes, dates: Floats, table: pd.DataFrame, edge: float, contact: Optional[_Contact]
 ) -> None:
-    """Draw the height of the stack against that of the panel's lower edge."""
+    """Draw the height of the snow against that of the panel's lower edge."""
     below = table["clearance_m"].rsub(edge)  # the snow right below the edge
     axes.axhline(edge, color=INK, linewidth=1.2, linestyle=(0, (4, 3)))
     axes.annotate(
         "lower edge of the panel",
-        (1.0, edge),
-        (-2, 4),
+        (0.0, edge),
+        (4, 4),
         xycoords=axes.get_yaxis_transform(),
         textcoords="offset points",
-        ha="right",
+        ha="left",
         color=INK,
         fontsize=9,
     )
     steps: dict[str, Any] = {"where": "post", "linewidth": 2.0}
-    axes.step(dates, table["stack_height_m"], color=STACK, label="highest snow", **steps)
+    cover = table["cover_m"]
+    top, settled_top = table["stack_height_m"] + cover, table["settled_height_m"] + cover
+    axes.fill_between(
+        dates, 0.0, cover, step="post", color=GRID, linewidth=0, label="natural snow cover"
+    )
+    axes.step(dates, top, color=STACK, label="highest snow", **steps)
     axes.step(dates, below, color=BODY, label="snow below the edge", **steps)
     if (table["settled_height_m"] < table["stack_height_m"]).any():
         name = "highest snow, settled (estimate)"
         settled = {**steps, "linewidth": 1.3, "linestyle": "--"}
-        axes.step(dates, table["settled_height_m"], color=INK, label=name, **settled)
-    if burial_event is not None:
-        row = table["event"].fillna(0).tolist().index(burial_event)
-        _mark_burial(axes, dates[row], below.iloc[row], burial_event)
-    axes.set_title("Stack: height above the ground, m", loc="left", color=INK, fontsize=11)
-    axes.set_ylim(0.0, 1.25 * max(edge, float(table["stack_height_m"].max() or 0.0)))
-    axes.legend(frameon=False, fontsize=9, loc="upper left", ncols=3)
+        axes.step(dates, settled_top, color=INK, label=name, **settled)
+    if contact is not None:
+        row = table["date"].tolist().index(contact.date)
+        _mark_contact(axes, dates[row], edge, contact)
+    axes.set_title("Snow: height above the ground, m", loc="left", color=INK, fontsize=11)
+    axes.set_ylim(0.0, 1.35 * max(edge, float(top.max() or 0.0)))
+    axes.legend(frameon=False, fontsize=9, loc="upper left", ncols=4)
 
 
-def _mark_burial(axes: Axes, date: float, below: float, event: int) -> None:
-    axes.plot(date, below, "o", color=BODY, markersize=8)
+def _mark_contact(axes: Axes, date: float, edge: float, contact: _Contact) -> None:
+    axes.plot(date, edge, "o", color=BODY, markersize=8)
+    event = "" if contact.event is None else f", event {contact.event}"
     axes.annotate(
-        f"event {event}: reached",
-        (date, below),
+        f"first contact: {contact.cause}{event}",
+        (date, edge),
         (-8, -4),
         textcoords="offset points",
         ha="right",
@@ -152,21 +170,31 @@ def _mark_burial(axes: Axes, date: float, below: float, event: int) -> None:
     )
 
 
-def _draw_outlines(axes: Axes, outlines: pd.DataFrame, panel: Sequence[Sequence[float]]) -> None:
-    """Draw the profile of the stack after every event, and the panel above it."""
+def _draw_outlines(
+    axes: Axes, outlines: pd.DataFrame, table: pd.DataFrame, panel: Sequence[Sequence[float]]
+) -> None:
+    """Draw the stack's profile on the snow cover of its day, event by event, below the panel."""
+    covers = table.dropna(subset=["event"]).groupby("event")["cover_m"].first()
     axes.plot(*zip(*panel), color=INK, linewidth=3.5, solid_capstyle="round")
     axes.axhline(0.0, color=FAINT, linewidth=1.2)
     events = sorted(set(outlines["event"]))
     shades = colormaps["viridis"](np.linspace(FIRST, LAST, max(len(events), 1)))
-    every = 1 + (len(events) - 1) // MOST_NAMED
-    for number, (event, shade) in enumerate(zip(events, shades)):
+    named = named_events(len(events))
+    for number, (event, shade) in enumerate(zip(events, shades), 1):
         profile = outlines[outlines["event"] == event]
-        name = f"after event {event}" if number % every == 0 else None
-        axes.plot(profile["x"], profile["z"], color=shade, linewidth=1.6, label=name)
+        name = f"after event {event}" if number in named else None
+        cover = float(covers.get(event, 0.0))
+        axes.plot(profile["x"], cover + profile["z"], color=shade, linewidth=1.6, label=name)
     if events:
-        axes.legend(frameon=False, fontsize=9, loc="upper right")
+        columns = 1 + (len(named) - 1) // ROWS
+        axes.legend(frameon=False, fontsize=9, loc="upper right", ncols=columns)
+        deepest = float(covers.max())
+        if deepest > 0.0:
+            axes.axhspan(0.0, deepest, color=GRID, linewidth=0, zorder=0)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title("Outlines, from the side, m", loc="left", color=INK, fontsize=11)
+    axes.set_title(
+        "Outlines on the natural snow cover, from the side, m", loc="left", color=INK, fontsize=11
+    )
     axes.set_xlabel("along the ground from the panel's centre, m", color=INK, fontsize=9)
 
 

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 import snowshed._core as _core
-from snowshed.io.arrays import Floats
+from snowshed.io.arrays import Booleans, Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import mean_damping_rate, scene_caption
 from snowshed.plot.figure_style import (
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+HELD = "#b8c0c8"  # snow that the panel or a structure holds
+MOST_NAMED, ROWS = 15, 8  # events in a legend, and rows of it
 PICTURED_PARTICLES = 100_000  # at most; a regular choice of them beyond
 WIDTH, VIEW_WIDTH = 9.0, 8.1  # inches, of the figure and of the views in it
 LOWEST, HIGHEST = 1.6, 5.0  # inches, of a view
@@ -56,6 +59,7 @@ def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
         The measure of the same particles.
     """
     tilt, frame = simulation.ground_tilt_deg, simulation.panel_frame()
+    level_ground = json.loads(simulation.scene).get("ground") is not None
     views = [_filling(x) for x in (_scene_limits(stack, tilt, frame), _stack_limits(stack, tilt))]
     heights = [VIEW_WIDTH * _steepness(view) for view in views]
     figure = blank(WIDTH, sum(heights) + 1.9)
@@ -63,20 +67,34 @@ def stack_figure(simulation: _core.Simulation, stack: StackMeasure) -> Figure:
     for axes, view in zip((overview, enlarged), views):
         axes.set(xlim=view[:2], ylim=view[2:], aspect="equal", ylabel="z, m")
         quiet(axes)
-        _draw_ground(axes, tilt)
+        if level_ground:
+            _draw_ground(axes, tilt)
         _draw_obstacles(axes, simulation)
-        _draw_particles(axes, simulation)
+        _draw_particles(axes, simulation, stack.members)
         _draw_scale(axes)
     if frame is not None:
-        _draw_panel(overview, frame, tilt)
+        _draw_panel(overview, frame, tilt, measured=level_ground)
     _draw_measures(enlarged, stack, tilt)
-    _name_events(overview, simulation)
+    _name_events(overview, simulation, apart=not stack.members.all())
     enlarged.set_xlabel("x from the panel's centre, m" if frame is not None else "x, m")
     title = f"Stack after event {simulation.event}, from the side"
+    if stack.mass == 0.0:
+        title += ": no snow has come down"
     if _pictured(stack) is stack.body:
         title += f": its largest body; 97 % of the snow lies within {stack.length:.2f} m"
     _caption(figure, simulation.scene, title, simulation.damping_rate_per_s)
     return figure
+
+
+def named_events(count: int) -> list[int]:
+    """Return the events that a legend names: all if there are few, else some with both ends.
+
+    Examples
+    --------
+    >>> named_events(3), named_events(100)[:2], named_events(100)[-1]
+    ([1, 2, 3], [1, 8], 100)
+    """
+    return sorted({round(i) for i in np.linspace(1, count, min(count, MOST_NAMED))})
 
 
 def growth_figure(table: pd.DataFrame, scene: str) -> Figure:
@@ -117,8 +135,11 @@ def _shades(count: int) -> list[Any]:
     return list(colormaps["viridis"](np.linspace(FIRST, LAST, count)))
 
 
-def _draw_particles(axes: Axes, simulation: _core.Simulation) -> None:
-    """Draw particles in the size they have, those that lie nearest in front."""
+def _draw_particles(axes: Axes, simulation: _core.Simulation, stack: Booleans) -> None:
+    """Draw particles in the size they have, those that lie nearest in front.
+
+    Those that are no part of the stack, because something holds them, are grey.
+    """
     positions, events = simulation.positions(), simulation.events()
     if len(positions) == 0:
         return
@@ -127,6 +148,7 @@ def _draw_particles(axes: Axes, simulation: _core.Simulation) -> None:
     shown = shown[np.argsort(-positions[shown, 1], kind="stable")]
     count = int(events.max())
     colours = np.array(_shades(count))[np.clip(events[shown], 1, count) - 1]
+    colours[~stack[shown]] = to_rgba(HELD)
     diameter = _points_per_metre(axes) * _spacing(json.loads(simulation.scene))
     size = float(np.clip(every * (0.8 * diameter) ** 2, 0.6, 60.0))
     x, _, z = positions[shown].T
@@ -135,7 +157,7 @@ def _draw_particles(axes: Axes, simulation: _core.Simulation) -> None:
 
 def _spacing(scene: dict[str, Any]) -> float:
     """Return the mean distance of particles as they are seeded, m."""
-    count: float = scene["seeding"]["particles_per_voxel"]
+    count: float = scene.get("seeding", {}).get("particles_per_voxel", 1.0)
     return float(resolution_of(scene) / count ** (1 / scene["dimension"]))
 
 
@@ -145,19 +167,22 @@ def _points_per_metre(axes: Axes) -> float:
     return VIEW_WIDTH * 72 / (right - left)
 
 
-def _name_events(axes: Axes, simulation: _core.Simulation) -> None:
+def _name_events(axes: Axes, simulation: _core.Simulation, *, apart: bool) -> None:
     """Say which colour is which event, where there is air: at the upper right."""
     count = max(simulation.event, 1)
     shades = _shades(count)
-    every = range(1, count + 1, 1 + (count - 1) // 8)
+    named = [(f"event {i}", shades[i - 1]) for i in named_events(count)]
+    if apart:
+        named.append(("not in the stack", HELD))
     axes.legend(
         handles=[
-            Line2D([], [], marker="o", linestyle="", color=shades[i - 1], label=f"event {i}")
-            for i in every
+            Line2D([], [], marker="o", linestyle="", color=colour, label=name)
+            for name, colour in named
         ],
         frameon=False,
         fontsize=9,
         loc="upper right",
+        ncols=1 + (len(named) - 1) // ROWS,
     )
 
 
@@ -183,10 +208,12 @@ def _draw_obstacles(axes: Axes, simulation: _core.Simulation) -> None:
         axes.contour(x, z, distance, [0.0], colors=[FAINT], linewidths=1.2, zorder=2)
 
 
-def _draw_panel(axes: Axes, frame: dict[str, Any], tilt: float) -> None:
-    """Draw the panel's face, and the height of its lower edge above the ground."""
+def _draw_panel(axes: Axes, frame: dict[str, Any], tilt: float, *, measured: bool) -> None:
+    """Draw the panel's face, and the height of its lower edge above the ground if `measured`."""
     upper, lower = _panel_ends(frame)
-    axes.plot(*zip(upper, lower), color=INK, linewidth=3.5, solid_capstyle="round", zorder=4)
+    axes.plot(*zip(upper, lower), color=INK, linewidth=3.5, solid_capstyle="round", zorder=2)
+    if not measured:
+        return
     foot = np.array([lower[0], -lower[0] * np.tan(np.radians(tilt))])
     axes.plot(*zip(lower, foot), color=FAINT, linewidth=1.0, linestyle=(0, (4, 3)), zorder=2)
     axes.annotate(
@@ -206,9 +233,10 @@ def _draw_measures(axes: Axes, stack: StackMeasure, tilt: float) -> None:
     if len(stack.outline) == 0:
         return
     shown = _pictured(stack)
-    axes.plot(*_tilted(shown.outline, tilt).T, color=INK, linewidth=1.3, zorder=5)
+    axes.plot(*_tilted(_profile(shown), tilt).T, color=INK, linewidth=1.3, zorder=5)
     _dimension_line(axes, _length_ends(shown), tilt, f"length {shown.length:.3f} m", above=False)
-    crest = np.array([[shown.crest, 0.0], [shown.crest, shown.height]])
+    foot = _ground_at_crest(shown)
+    crest = np.array([[shown.crest, foot], [shown.crest, foot + shown.height]])
     _dimension_line(axes, crest, tilt, f"height {shown.height:.3f} m", above=True)
 
 
@@ -219,13 +247,25 @@ def _pictured(stack: StackMeasure) -> Extent:
 
 def _length_ends(shown: Extent) -> Floats:
     """Return where the dimension line of the length goes, on levelled ground."""
-    below = -0.03 * max(shown.length, 4 * shown.height)
+    below = shown.ground.min(initial=0.0) - 0.03 * max(shown.length, 4 * shown.height)
     return np.array([[shown.head, below], [shown.tail, below]])
 
 
 def _frame(shown: Extent) -> Floats:
     """Return the lower ends and the top of what is shown, on levelled ground."""
-    return np.vstack([_length_ends(shown), [[shown.crest, shown.height]]])
+    top = _ground_at_crest(shown) + shown.height
+    return np.vstack([_length_ends(shown), [[shown.crest, top]], _profile(shown)])
+
+
+def _profile(shown: Extent) -> Floats:
+    """Return the surface (k, 2) as it lies over its ground, on levelled ground."""
+    profile: Floats = shown.outline + np.column_stack([0.0 * shown.ground, shown.ground])
+    return profile
+
+
+def _ground_at_crest(shown: Extent) -> float:
+    """Return z of the ground below the highest snow, on levelled ground."""
+    return float(np.interp(shown.crest, shown.outline[:, 0], shown.ground))
 
 
 def _dimension_line(axes: Axes, ends: Floats, tilt: float, label: str, *, above: bool) -> None:

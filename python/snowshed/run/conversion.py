@@ -73,7 +73,7 @@ def outline_difference(one: Floats, other: Floats) -> float:
     Parameters
     ----------
     one, other : (k, 2)
-        Outlines as ``snowshed.snow.stack.surface.outline`` returns them.
+        Outlines as of `Extent`.
 
     Examples
     --------

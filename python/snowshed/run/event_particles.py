@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from snowshed._core import InputError
 from snowshed.io.damage import DAMAGED
 from snowshed.io.vtp import read_particles
 from snowshed.run.results import RunFolder
+from snowshed.run.stack_measuring import Surroundings, surroundings
 from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
@@ -40,6 +41,8 @@ class EventParticles:
         Booleans: True for snow that lies on the panel.
     dimension, dx, ground_tilt_deg
         2 or 3; size of the grid cells, m; tilt of the ground, degrees.
+    around
+        The structures that particles touch, and the ground that is not plane.
     """
 
     positions: Singles
@@ -49,6 +52,7 @@ class EventParticles:
     dimension: int
     dx: float
     ground_tilt_deg: float
+    around: Surroundings = field(default_factory=Surroundings)
 
     def measure(self, trimming: str = DEFAULT_TRIMMING) -> StackMeasure:
         """Measure the stack by a reading of A.4.2; see `snowshed.measure_stack`."""
@@ -60,6 +64,8 @@ class EventParticles:
             dx=self.dx,
             ground_tilt_deg=self.ground_tilt_deg,
             exclude=self.on_panel,
+            structures=self.around.structures,
+            ground=self.around.ground,
             trimming=trimming,
         )
 
@@ -74,6 +80,11 @@ class EventParticles:
         [1.0, 0.0, 0.0]
         """
         stream = io.BytesIO()
+        around: dict[str, Any] = {}
+        if self.around.structures is not None:
+            around["structures"] = np.packbits(self.around.structures)
+        if self.around.ground is not None:
+            around["ground"] = self.around.ground.astype(np.float32)
         axes = [0, 2] if self.dimension == 2 else [0, 1, 2]
         np.savez_compressed(
             stream,
@@ -82,6 +93,7 @@ class EventParticles:
             densities=self.densities,
             on_panel=np.packbits(self.on_panel),
             scene=np.array([self.dimension, self.dx, self.ground_tilt_deg]),
+            **around,
         )
         return stream.getvalue()
 
@@ -106,8 +118,17 @@ class EventParticles:
         places, masses = archive["places"], archive["masses"]
         positions = np.zeros((len(masses), 3), dtype=np.float32)
         positions[:, [0, 2] if dimension == 2 else [0, 1, 2]] = places.T
-        on_panel = np.unpackbits(archive["on_panel"], count=len(masses)).astype(bool)
-        return cls(positions, masses, archive["densities"], on_panel, int(dimension), dx, tilt)
+        on_panel, *structures = (
+            np.unpackbits(archive[name], count=len(masses)).astype(bool)
+            for name in ("on_panel", "structures")
+            if name in archive
+        )
+        around = Surroundings(
+            structures[0] if structures else None,
+            archive["ground"].astype(float) if "ground" in archive else None,
+        )
+        densities = archive["densities"]
+        return cls(positions, masses, densities, on_panel, int(dimension), dx, tilt, around)
 
 
 def read_event_particles(folder: PathLike) -> Iterator[tuple[int, EventParticles]]:
@@ -126,15 +147,17 @@ def read_event_particles(folder: PathLike) -> Iterator[tuple[int, EventParticles
         if event is None or laid is None:
             raise InputError(f"{results.run}: damaged: an event without its number or laid height")
         found = read_particles(results.particles_of(event))
+        positions = found["position"].astype(float)
         yield (
             event,
             EventParticles(
                 found["position"],
                 found["mass"],
                 found["density"],
-                simulation.on_panel_at(found["position"].astype(float), laid),
+                simulation.on_panel_at(positions, laid),
                 simulation.dimension,
                 simulation.resolution,
                 simulation.ground_tilt_deg,
+                surroundings(simulation, positions),
             ),
         )

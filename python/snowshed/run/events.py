@@ -14,6 +14,7 @@ moved mass, height, length and outline. What time does to a stack that is carrie
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -27,8 +28,9 @@ from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
 from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
-from snowshed.snow.stack.measure import StackMeasure, measure_stack
+from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -98,12 +100,27 @@ def run_events(
         prepare = _continue_tables if resume else _begin_tables
         prepare(sequence, results, None if ageing is None else ageing.data)
         sequence.describe_machine(machine_facts())
-        recorder = _Recorder(sequence.simulation, results, ageing, interrupt, progress)
+        recorder = _Recorder(sequence, results, ageing, interrupt, progress)
         recorder.fill_in(sequence.finished_events)
         run_sequence(sequence, recorder, results.folder)
     if pictures:
         recorder.draw()
     return read_events(results.folder)
+
+
+LARGEST_RESIDUAL = 0.01  # of the largest energy
+
+
+def warn_of_residual(facts: Mapping[str, Any]) -> None:
+    """Warn where the time integration gained or lost more energy than it should."""
+    share = facts["energy_residual"]
+    if share is not None and share > LARGEST_RESIDUAL:
+        warnings.warn(
+            f"event {facts['event']}: the energy balance has a residual of {share:.2g} of the "
+            f"largest energy, above {LARGEST_RESIDUAL:g}; a smaller courant_factor or dx may help",
+            FutureWarning,
+            stacklevel=2,
+        )
 
 
 def _begin_tables(
@@ -119,6 +136,7 @@ def _continue_tables(
     results.check(ageing)
     simulation = sequence.simulation
     results.keep_through(simulation.event, running=simulation.event_running)
+    results.check_rows(sequence.tables, simulation.event)
     events = results.events
     if events.rows and not sequence.finished_events:  # of the version before
         sequence.count_from(int(events.total("steps")), events.total("wall_s"))
@@ -129,15 +147,16 @@ class _Recorder:
 
     def __init__(
         self,
-        simulation: _core.Simulation,
+        sequence: _core.EventSequence,
         results: RunFolder,
         ageing: Optional[Ageing],
         interrupt: InterruptRequest,
         report: Optional[Reporter],
     ) -> None:
-        self.simulation = simulation
+        self.sequence = sequence
+        self.simulation = sequence.simulation
         self.results = results
-        self.count = simulation.event_count
+        self.count = self.simulation.event_count
         self.ageing = ageing
         self.interrupt = interrupt
         self.report = report
@@ -163,7 +182,9 @@ class _Recorder:
         self._tell(report["time_s"], report["progress"], report["updates_per_s"])
 
     def before_checkpoint(self) -> None:
-        """Do nothing: tables are cut to the checkpoint when a run goes on."""
+        """Note the checksums of the tables, which are cut to the checkpoint when a run goes on."""
+        event, running = self.simulation.event, self.simulation.event_running
+        self.sequence.tables = self.results.checksums(self.sequence.tables, event, running=running)
 
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
@@ -173,6 +194,7 @@ class _Recorder:
         """Measure the stack as it is in memory."""
         self.stack = self._measure()
         self._record(facts, self.stack)
+        warn_of_residual(facts)
         self._tell(self.simulation.time_s, 1.0)
 
     def fill_in(self, finished: list[dict[str, Any]]) -> None:
@@ -220,15 +242,7 @@ class _Recorder:
     def _measure_of(
         self, positions: Floats, masses: Floats, density: Floats, on_panel: Booleans
     ) -> StackMeasure:
-        return measure_stack(
-            positions,
-            masses,
-            density,
-            dimension=self.simulation.dimension,
-            dx=self.simulation.resolution,
-            ground_tilt_deg=self.simulation.ground_tilt_deg,
-            exclude=on_panel,
-        )
+        return measure_particles(self.simulation, positions, masses, density, on_panel)
 
     def _tell(self, time_s: float, fraction: float, updates_per_s: float = 0.0) -> None:
         """Report where the run is; `fraction` is the part of the event that is done."""

@@ -221,7 +221,6 @@ def _draw(
     from snowshed.plot.force_chains import force_figure
     from snowshed.plot.loading_figure import loading_figure
 
-    save(
-        loading_figure(curve, [stage["kind"] for stage in scene["loading"]]), folder / "grains.png"
-    )
-    save(force_figure(contacts, scene["sample"]["voxel_size"]), folder / "forces.png")
+    kinds, title = [stage["kind"] for stage in scene["loading"]], scene.get("title", "")
+    save(loading_figure(curve, kinds, title), folder / "grains.png")
+    save(force_figure(contacts, scene["sample"]["voxel_size"], title), folder / "forces.png")

@@ -34,7 +34,9 @@ class InterruptRequest:
 
 @contextmanager
 def deferred_interrupts() -> Iterator[InterruptRequest]:
-    """Turn Ctrl-C (SIGINT) and SIGTERM into a request; a second one acts at once.
+    """Turn Ctrl-C (SIGINT), SIGTERM and SIGHUP into a request; a second one acts at once.
+
+    A signal that is ignored stays so: SIGHUP of a command started with nohup.
 
     Outside the main thread, which alone may handle signals, nothing is changed.
     """
@@ -42,8 +44,9 @@ def deferred_interrupts() -> Iterator[InterruptRequest]:
     if threading.current_thread() is not threading.main_thread():
         yield request
         return
-    signals = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.getsignal(number) for number in signals}
+    signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    handlers = {number: signal.getsignal(number) for number in signals}
+    before = {number: old for number, old in handlers.items() if old is not signal.SIG_IGN}
 
     def restore() -> None:
         for number, handler in before.items():
@@ -53,7 +56,7 @@ def deferred_interrupts() -> Iterator[InterruptRequest]:
         request.requested = True
         restore()
 
-    for number in signals:
+    for number in before:
         signal.signal(number, note)
     try:
         yield request

@@ -11,6 +11,7 @@ energy.csv         energy balance at the end of each event (only with output.ene
 run.json           version, machine, size and speed of the run, how each event went, and its status
 checkpoint.bin     the state from which the run goes on
 particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series
+film.bin           the particles over time, for `snowshed view` (unless output.film = false)
 snapshots/         particle snapshots during the events (only with output.snapshot_interval)
 stack.png          side view of the last stack
 growth.png         height, length, head and tail against the event
@@ -33,7 +34,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.io.arrays import Floats
-from snowshed.io.atomic import write_text
+from snowshed.io.atomic import LEFTOVER, write_text
 from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.json_file import read_object
 from snowshed.run.ageing import AGEING_COLUMNS
@@ -70,7 +71,11 @@ EVENT_COLUMNS = (
     "damping_rate_per_s",
     "trimming",
     *(MEASURES[name].column(quantity) for name in TRIMMINGS for quantity in QUANTITIES),
+    "on_structures_kg",
+    "joined",
 )
+#: Checksums of tables, by name: of the rows through an event, by its number.
+Checksums = Mapping[str, Mapping[str, str]]
 #: Columns that hold words.
 WORDS = ("ended", "trimming")
 
@@ -99,6 +104,8 @@ def measured_columns(stack: StackMeasure) -> dict[str, Union[float, str]]:
             for name, extent in stack.trimmed.items()
             for quantity in QUANTITIES
         },
+        "on_structures_kg": stack.on_structures_mass,
+        "joined": int(stack.joined),
     }
 
 
@@ -149,6 +156,47 @@ class RunFolder:
         self.conversions.keep_through(event)
         self.ageings.keep_through(event)
 
+    def checksums(
+        self, known: Checksums, event: int, *, running: bool
+    ) -> dict[str, dict[str, str]]:
+        """Return `known` checksums with those of the rows that a checkpoint of `event` keeps."""
+        done = event - 1 if running else event
+        found = {name: dict(sums) for name, sums in known.items()}
+        for table in self._tables():
+            through = done if table in self._of_ended() else event
+            if through > 0:
+                found.setdefault(table.path.name, {})[str(through)] = table.checksum(through)
+        return found
+
+    def check_rows(self, known: Checksums, event: int) -> None:
+        """Raise InputError if a table lacks rows that a run wrote, or has others.
+
+        Rows of ended events that are in no checksum are dropped, to be measured again. Of a run of
+        the version before there are no checksums.
+        """
+        if not known:
+            return
+        self.missing_events(event)  # or they are not numbered one after another
+        ended = _last_known(known.get(self.events.path.name, {}), len(self.events.rows))
+        for table in self._tables():
+            sums = known.get(table.path.name, {})
+            of_ended = table in self._of_ended()
+            through = ended if of_ended else _last_known(sums, event)
+            if of_ended:
+                table.keep_through(ended)
+            if str(through) in sums and table.checksum(through) != sums[str(through)]:
+                raise InputError(
+                    f"{table.path}: damaged: its rows through event {through} are not those that "
+                    "the run wrote"
+                )
+
+    def _of_ended(self) -> tuple[Table, ...]:
+        """Return the tables of events that have ended, which are written together."""
+        return (self.events, self.outlines, self.energies)
+
+    def _tables(self) -> tuple[Table, ...]:
+        return (*self._of_ended(), self.conversions, self.ageings)
+
     def add_outline(self, event: int, outline: Floats) -> None:
         """Add the profile (k, 2) of the stack after an event."""
         self.outlines.add({"event": event, "x": x, "z": z} for x, z in outline.tolist())
@@ -162,12 +210,17 @@ class RunFolder:
         return read_object(self.run) if self.run.exists() else {}
 
 
+def _last_known(sums: Mapping[str, str], event: int) -> int:
+    """Return the last event up to `event` of which there is a checksum; 0 if there is none."""
+    return max((int(at) for at in sums if at.isdecimal() and int(at) <= event), default=0)
+
+
 def check_empty(folder: PathLike) -> None:
     """Raise InputError unless results may be written to `folder`: it is new, or empty."""
     folder = Path(folder)
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: not a folder")
-    if folder.is_dir() and any(folder.iterdir()):
+    if folder.is_dir() and any(not LEFTOVER.match(path.name) for path in folder.iterdir()):
         raise InputError(f"{folder}: not empty; choose a new folder, or go on with --resume")
 
 

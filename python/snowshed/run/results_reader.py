@@ -12,10 +12,12 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.csv_table import read_csv
 from snowshed.io.extras import require
+from snowshed.io.film import FILM, Film
 from snowshed.io.json_file import read_object
 from snowshed.io.pvd import read_series
 from snowshed.io.units import unit_of_column
 from snowshed.io.vtp import read_particles
+from snowshed.run.film_dataset import film_dataset
 from snowshed.run.particle_dataset import particle_dataset
 from snowshed.run.results import read_events
 from snowshed.scene.scene import PathLike, ResolvedScene
@@ -135,6 +137,22 @@ class Results:
         for time, file in read_series(path):
             values = read_particles(file)
             yield particle_dataset(values, int(values["event"].max(initial=0)), time)
+
+    @property
+    def film(self) -> Film:
+        """The recorded film of the run, read frame by frame (film.bin)."""
+        path = self.folder / FILM
+        if not path.is_file():
+            raise InputError(f"{path}: not there; a run with output.film = true writes it")
+        return Film(path)
+
+    def film_dataset(self, every: int = 1) -> xarray.Dataset:
+        """Return the film, or each so-manieth frame of it, as a Dataset.
+
+        Dimensions ``frame``, ``particle`` and ``component``; ``time`` counts through all events.
+        A position is exact to half a millimetre, and finer where the scene is small.
+        """
+        return film_dataset(self.film, every)
 
     def _numbers(self, name: str, columns: tuple[str, ...], writer: str) -> pd.DataFrame:
         """Return a table of finite numbers only."""

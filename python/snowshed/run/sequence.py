@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import snowshed._core as _core
+from snowshed.io.paths import utf8_path
 from snowshed.run.interrupt import Interrupted
 from snowshed.scene.scene import PathLike, ResolvedScene
 
@@ -21,7 +21,7 @@ def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _c
         If the scene is wrong, the folder is not empty, or there is nothing to resume.
     """
     open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
-    return open_folder(scene.json, scene.base_dir, os.fspath(folder))
+    return open_folder(scene.json, scene.base_dir, utf8_path(folder))
 
 
 def run_sequence(

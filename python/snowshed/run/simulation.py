@@ -17,9 +17,10 @@ from snowshed.io.array_arguments import finite, points, positive
 from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
 from snowshed.run.fields import Fields
 from snowshed.run.particle_dataset import particle_dataset
+from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
-from snowshed.snow.stack.measure import StackMeasure, measure_stack
+from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
     import xarray
@@ -265,7 +266,7 @@ class Simulation:
 
     def _seeded_mass(self, snow: Snow) -> float:
         voxel = self._core.resolution**self.dimension
-        per_voxel = self._data["seeding"]["particles_per_voxel"]
+        per_voxel = self._data.get("seeding", {}).get("particles_per_voxel", 1.0)
         return float(cast(float, snow.density) * voxel / per_voxel)
 
     # --- reading ---------------------------------------------------------------------------
@@ -347,15 +348,12 @@ class Simulation:
         return particle_dataset(values, self.event, self.time)
 
     def measure(self) -> StackMeasure:
-        """Measure the stack: all snow that does not lie on the panel; see `measure_stack`."""
-        return measure_stack(
-            self.positions(),
-            self.masses(),
-            self.densities(),
-            dimension=self.dimension,
-            dx=self._core.resolution,
-            ground_tilt_deg=self._core.ground_tilt_deg,
-            exclude=self.on_panel(),
+        """Measure the stack: all snow that neither the panel nor a structure holds.
+
+        See `snowshed.run.stack_measuring` for what the ground is, and `measure_stack`.
+        """
+        return measure_particles(
+            self._core, self.positions(), self.masses(), self.densities(), self.on_panel()
         )
 
     def energy(self) -> dict[str, float]:

@@ -196,6 +196,7 @@ def run_slide(
             _write_packed(Path(out_dir), maps, summary)
         if facts["energy"]:
             energies = Table(Path(out_dir) / "energy.csv")
+            energies.keep_through(0)  # a finished slide may be resumed, too
             energies.add([{"event": 1, **facts["energy"]}])
         if frames is not None:
             _draw(Path(out_dir), sequence.simulation, maps, areas, summary, frames)

@@ -26,7 +26,6 @@ from snowshed.scene.components import (
     Layer,
     Motion,
     Obstacle,
-    Output,
     Panel,
     ResistanceArea,
     Seeding,
@@ -35,6 +34,7 @@ from snowshed.scene.components import (
     Terrain,
 )
 from snowshed.scene.loading import Cone, LoadingStage, Sample
+from snowshed.scene.output import Output
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.scene.shape import Shape
 

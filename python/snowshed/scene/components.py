@@ -9,9 +9,11 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import List, Literal, Optional, Union
 
-from snowshed._core import snow_preset
+from snowshed._core import InputError, snow_preset
+from snowshed.io.json_file import read_object
 from snowshed.io.paths import PathLike
 from snowshed.io.record import Alias, Record
 from snowshed.scene.shape import Shape, Vector
@@ -20,6 +22,9 @@ SnowModel = Literal["cam_clay", "elastic"]
 Condition = Literal["sticky", "slip", "separate"]
 Pattern = Literal["regular", "jittered", "poisson"]
 Between = Literal["carry", "reseed"]
+
+#: Key of a snow's file under which it says where it comes from.
+PROVENANCE = "provenance"
 
 #: Corners (x, y) of an area on the map, m.
 Outline = Sequence[Sequence[float]]
@@ -68,6 +73,34 @@ class Snow(Record):
         0.5
         """
         return cls.from_data(json.loads(snow_preset(name)))
+
+    @classmethod
+    def load(cls, file: PathLike) -> Snow:
+        """Read a snow from a JSON file: its keys, and if it likes ``provenance``, which may be any.
+
+        Raises
+        ------
+        InputError
+            If the file holds no such object, or unknown keys; it names the file.
+        OSError
+            If it cannot be read.
+        """
+        data = read_object(Path(file))
+        data.pop(PROVENANCE, None)
+        try:
+            return cls.from_data(data)
+        except InputError as error:
+            raise InputError(f"{file}: {error}") from None
+
+    @classmethod
+    def named(cls, name: str) -> Snow:
+        """Return the snow of the thesis that has a name, or else that in a file."""
+        try:
+            return cls.preset(name)
+        except InputError as unknown:
+            if Path(name).suffix != ".json":
+                raise InputError(f"{unknown}; or a JSON file of a snow, NAME.json") from None
+        return cls.load(name)
 
 
 @dataclass
@@ -395,23 +428,3 @@ class Events(Record):
     max_time: Optional[float] = None
     rest_speed: Optional[float] = None
     rest_time: Optional[float] = None
-
-
-@dataclass
-class Output(Record):
-    """Files that a run writes besides its tables.
-
-    Attributes
-    ----------
-    snapshot_interval : float
-        Simulated time between particle snapshots; 0: only at the end of an event [s]. 0 <= value
-        <= 1e+09; default 0.
-    energy : bool
-        Keep the energy balance. Default False.
-    checkpoint_interval : float
-        Wall time between checkpoints; 0: none [s]. 0 <= value <= 1e+09; default 60.
-    """
-
-    snapshot_interval: Optional[float] = None
-    energy: Optional[bool] = None
-    checkpoint_interval: Optional[float] = None

@@ -34,7 +34,6 @@ from snowshed.scene.components import (
     Events,
     Ground,
     Obstacle,
-    Output,
     Panel,
     Seeding,
     Slab,
@@ -42,6 +41,7 @@ from snowshed.scene.components import (
     Terrain,
 )
 from snowshed.scene.loading import Cone, LoadingStage, Sample
+from snowshed.scene.output import Output
 
 __all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 

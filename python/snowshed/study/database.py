@@ -11,6 +11,7 @@ event           what was measured after each event of a run: the columns of all 
 event_timing    wall time of each event, apart, since it differs whenever a run is repeated
 event_particles what each event left, packed, of runs that keep it: particles, or maps of slides
 run_timing      wall time of each run, and what computed it
+checksum        checksums of what the other tables hold (see `snowshed.study.checksums`)
 =============== ========================================================================
 """
 
@@ -23,6 +24,7 @@ from pathlib import Path
 
 from snowshed._core import InputError
 from snowshed.run.method_runs import column_types, runs_of
+from snowshed.study import checksums
 from snowshed.study.errors import StudyError
 
 FILE = "store.sqlite"
@@ -69,6 +71,7 @@ TABLES = (
     "CREATE TABLE event_timing (hash TEXT NOT NULL REFERENCES run, event INTEGER NOT NULL,"
     " wall_s REAL, PRIMARY KEY (hash, event)) WITHOUT ROWID",
     PARTICLES_TABLE,
+    checksums.TABLE,
     f"CREATE TABLE run_timing (hash TEXT PRIMARY KEY REFERENCES run, {_columns(TIMING)})",
 )
 
@@ -87,8 +90,15 @@ def connect(folder: Path) -> sqlite3.Connection:
         except BaseException:
             connection.close()
             raise
-    (folder / RUNNING).mkdir(exist_ok=True)
+    _provide_running(folder / RUNNING)
     return connection
+
+
+def _provide_running(folder: Path) -> None:
+    """Make the folder of runs; a link could lead out of the store, where nothing is ours."""
+    if folder.is_symlink():
+        raise InputError(f"{folder}: a link; it must be a folder of the store itself")
+    folder.mkdir(exist_ok=True)
 
 
 def connect_read_only(folder: Path) -> sqlite3.Connection:
@@ -136,6 +146,9 @@ def _add_what_is_new(connection: sqlite3.Connection) -> None:
     if "keep_particles" not in {row[1] for row in connection.execute("PRAGMA table_info(run)")}:
         kept = "keep_particles INTEGER NOT NULL DEFAULT 0"
         connection.execute(f"ALTER TABLE run ADD COLUMN {kept}")
+    if not connection.execute("PRAGMA table_info(checksum)").fetchone():
+        connection.execute(checksums.TABLE)
+        checksums.note_all(connection)
 
 
 def _pragma(connection: sqlite3.Connection, name: str) -> int:

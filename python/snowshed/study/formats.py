@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, cast
 
 from snowshed._core import InputError
 from snowshed.io.atomic import replacing
+from snowshed.io.csv_table import csv_text
 from snowshed.io.extras import require
 from snowshed.io.units import unit_of_column
 from snowshed.scene.scene import PathLike
@@ -108,7 +109,7 @@ def _writer(file: Path, form: Optional[str]) -> Callable[[pd.DataFrame, Path], N
 
 
 def _write_csv(table: pd.DataFrame, file: Path) -> None:
-    table.to_csv(file, index=False, lineterminator="\n")
+    file.write_text(csv_text(table), encoding="utf-8")
 
 
 def _write_parquet(table: pd.DataFrame, file: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -13,6 +14,8 @@ from snowshed.study.errors import StudyError
 from snowshed.study.locks import holding, is_held
 from snowshed.study.store import Store
 
+OWNER = re.compile(r"[A-Za-z0-9._-]{0,64}-[0-9]+-[0-9a-f]{8}")
+
 
 @contextmanager
 def ownership(store: Store) -> Iterator[str]:
@@ -20,7 +23,8 @@ def ownership(store: Store) -> Iterator[str]:
 
     If the process dies, its lock ends, and `release_dead` of another process releases its claims.
     """
-    owner = f"{platform.node()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
+    node = re.sub(r"[^A-Za-z0-9.-]", "_", platform.node())[:64]
+    owner = f"{node}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
     with holding(_lock(store, owner), Path.touch):
         try:
             yield owner
@@ -32,7 +36,18 @@ def ownership(store: Store) -> Iterator[str]:
 
 def is_alive(store: Store, owner: str) -> bool:
     """Return whether the process of an owner still runs."""
-    return is_held(_lock(store, owner))
+    return is_owner(owner) and is_held(_lock(store, owner))
+
+
+def is_owner(name: str) -> bool:
+    """Return whether a name is one that `ownership` gives, and no way out of the store's folder.
+
+    Examples
+    --------
+    >>> is_owner("node1.local-4711-0a1b2c3d"), is_owner("../../victim")
+    (True, False)
+    """
+    return OWNER.fullmatch(name) is not None
 
 
 def release_dead(store: Store) -> None:
@@ -40,7 +55,8 @@ def release_dead(store: Store) -> None:
     for owner in store.owners():
         if not is_alive(store, owner):
             store.release(owner)
-            _lock(store, owner).unlink(missing_ok=True)
+            if is_owner(owner):
+                _lock(store, owner).unlink(missing_ok=True)
 
 
 def _lock(store: Store, owner: str) -> Path:

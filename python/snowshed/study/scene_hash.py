@@ -12,6 +12,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +22,7 @@ import snowshed._core as _core
 from snowshed.scene.scene import ResolvedScene
 
 HASH_DIGITS = 32  # hexadecimal: 128 bits
+HASH = re.compile(f"[0-9a-f]{{{HASH_DIGITS}}}")
 WITHOUT_EFFECT = ("title", "output")
 #: Keys of a scene under which the path of a file stands.
 FILES = ("file", "thickness_file")
@@ -62,8 +64,19 @@ class Run:
         """
         data: dict[str, Any] = scene.data
         data["numerics"]["threads"] = 0
-        data["output"].update(snapshot_interval=0.0, energy=False)
+        data["output"].update(snapshot_interval=0.0, film=False, energy=False)
         return cls(content_hash(data), json.dumps(data))
+
+
+def is_hash(name: str) -> bool:
+    """Return whether a text is a content hash, and so the name of no folder but a run's.
+
+    Examples
+    --------
+    >>> is_hash("0123456789abcdef0123456789abcdef"), is_hash("../../victim")
+    (True, False)
+    """
+    return HASH.fullmatch(name) is not None
 
 
 def content_hash(scene: Mapping[str, Any]) -> str:

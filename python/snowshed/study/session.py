@@ -24,8 +24,8 @@ from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.local import LocalWorkers
 from snowshed.study.locks import is_held
 from snowshed.study.outcome import Outcome, Task
-from snowshed.study.owner import ownership, release_dead
-from snowshed.study.scene_hash import Run
+from snowshed.study.owner import is_owner, ownership, release_dead
+from snowshed.study.scene_hash import Run, is_hash
 from snowshed.study.store import Store, StoredRun
 from snowshed.study.workers import Workers
 
@@ -178,15 +178,20 @@ def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
 
 
 def _tidy(store: Store) -> None:
-    """Remove files of killed processes that no run needs to go on."""
+    """Remove files of killed processes that no run needs to go on; nothing that is not ours."""
     for path in store.running.iterdir():
-        leftover = path.suffix == ".lock" or store.state(path.name)[0] != "pending"
-        if leftover and not is_held(path):
-            path.unlink(missing_ok=True) if path.is_file() else _remove(path)
+        if path.is_symlink():
+            continue
+        lock = path.is_file() and path.suffix == ".lock" and is_owner(path.stem)
+        ended = path.is_dir() and is_hash(path.name) and store.state(path.name)[0] != "pending"
+        if (lock or ended) and not is_held(path):
+            path.unlink(missing_ok=True) if lock else _remove(path)
 
 
 def _remove(folder: Path) -> None:
-    shutil.rmtree(folder, ignore_errors=True)
+    """Remove the folder of a run with what a run writes into it."""
+    if not folder.is_symlink():
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 class _Session:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +20,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.json_file import check_values, parse_object
 from snowshed.scene.scene import PathLike
+from snowshed.study import checksums
 from snowshed.study.database import (
     FILE,
     RUNNING,
@@ -31,8 +32,9 @@ from snowshed.study.database import (
 )
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome
-from snowshed.study.scene_hash import Run
+from snowshed.study.scene_hash import Run, is_hash
 
+STATUSES = ("pending", "done", "failed")
 NO_STUDY = "holds no study; start one with `snowshed study run`"
 
 
@@ -70,6 +72,7 @@ class Store:
     def __init__(self, folder: Path, connection: sqlite3.Connection) -> None:
         self.folder = folder
         self._connection = connection
+        self._read_digests: tuple[object, Mapping[str, str]] = (None, {})
 
     @classmethod
     def create(cls, folder: PathLike) -> Store:
@@ -148,6 +151,9 @@ class Store:
                 "INSERT INTO study_run VALUES (?, ?, ?)",
                 ((study, position, run.hash) for position, run in enumerate(runs)),
             )
+            for run in runs:
+                checksums.note_run(write, run.hash)
+            checksums.note_study(write, study)
 
     def studies(self) -> list[str]:
         """Return the names of the studies."""
@@ -161,13 +167,16 @@ class Store:
         InputError
             If the store is damaged.
         """
-        ((text,),) = self.read("SELECT axes FROM study WHERE name = ?", (self.named(study),))
+        study = self.named(study)
+        rows = self.read("SELECT axes FROM study WHERE name = ?", (study,))
+        text: Any = rows[0][0] if rows else None
         try:
             axes = json.loads(text)
         except (ValueError, RecursionError, TypeError):
             axes = None
         if not isinstance(axes, list) or not all(isinstance(path, str) for path in axes):
             raise self.damaged(f"the axes of {study} are no list of names")
+        self._check(f"study {study}", lambda: checksums.study_of(self._connection, study))
         return axes
 
     def named(self, study: Optional[str]) -> str:
@@ -195,6 +204,9 @@ class Store:
             " WHERE study = ? ORDER BY position",
             (study,),
         )
+        query = "SELECT count(*) FROM study_run WHERE study = ?"
+        if self.read(query, (study,)) != [(len(rows),)]:
+            raise self.damaged(f"{study}: not all of its runs are there")
         return [self._stored(row) for row in rows]
 
     def find(self, beginning: str) -> StoredRun:
@@ -216,9 +228,36 @@ class Store:
         if not all(text is None or isinstance(text, str) for text in row[:-1]):
             raise self.damaged(f"run {row[0]!r}: not a text in every column")
         run = StoredRun(*[*row[:-1], bool(row[-1])])
+        if not is_hash(run.hash) or run.status not in STATUSES:
+            raise self.damaged(f"run {run.hash!r}: {run.status!r}, or no content hash")
         where = f"{self.folder / FILE}: run {run.hash}: its scene"
         check_values(parse_object(run.scene, where), WHOLE_SCENE, where)
+        self._check(f"run {run.hash}", lambda: [run.hash, run.version, run.scene])
+        if self._digests and (run.status != "pending") != (f"results {run.hash}" in self._digests):
+            raise self.damaged(f"run {run.hash}: {run.status}, but for its results")
         return run
+
+    def check_results(self, hash_: str) -> None:
+        """Raise InputError if the results of a run are not those that were stored."""
+        with translated(self.folder):
+            self._check(f"results {hash_}", lambda: checksums.results_of(self._connection, hash_))
+
+    def _check(self, name: str, content: Callable[[], object]) -> None:
+        """Raise InputError if the checksum of the content is another; an old store has none."""
+        if self._digests and self._digests.get(name) != checksums.digest(content()):
+            raise self.damaged(f"{name}: its checksum is wrong")
+
+    @property
+    def _digests(self) -> Mapping[str, str]:
+        """The checksums by name, read again when the store has changed."""
+        with translated(self.folder):
+            version = self._connection.execute("PRAGMA data_version").fetchone()[0]
+        state = (version, self._connection.total_changes)
+        if self._read_digests[0] != state:
+            there = self.columns("checksum")
+            rows = self.read("SELECT name, digest FROM checksum") if there else []
+            self._read_digests = (state, dict(rows))
+        return self._read_digests[1]
 
     def state(self, hash_: str) -> tuple[str, Optional[str]]:
         """Return the status of a run, which may be "unknown", and who computes it."""
@@ -263,6 +302,7 @@ class Store:
                 key = {"hash": outcome.hash, "event": event}
                 _insert(write, "event_particles", {**key, "data": data})
             _insert(write, "run_timing", {"hash": outcome.hash, **outcome.timing})
+            checksums.note_results(write, outcome.hash)
 
     def reset(self, hashes: Iterable[str]) -> None:
         """Set failed runs to pending."""
@@ -276,6 +316,8 @@ class Store:
                 if failed.rowcount:
                     for table in ("event", "event_timing", "event_particles", "run_timing"):
                         write.execute(f"DELETE FROM {table} WHERE hash = ?", (hash_,))
+                    for kind in ("results", "particles"):
+                        write.execute("DELETE FROM checksum WHERE name = ?", (f"{kind} {hash_}",))
 
     def particles(self, hash_: str) -> dict[int, bytes]:
         """Return the particles after each event of a run, packed; none if it did not keep them.
@@ -291,6 +333,8 @@ class Store:
         found = dict(self.read(query, (hash_,)))
         if not all(isinstance(data, bytes) for data in found.values()):
             raise self.damaged(f"run {hash_}: its particles are no bytes")
+        if found or f"particles {hash_}" in self._digests:
+            self._check(f"particles {hash_}", lambda: sorted(found.items()))
         return found
 
     def columns(self, table: str) -> set[str]:

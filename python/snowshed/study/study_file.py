@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,9 +12,8 @@ from typing import Any, Optional, TypeVar
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
-from snowshed.io.messages import shortened
 from snowshed.io.record import check_once
-from snowshed.io.toml import toml_lines, toml_value
+from snowshed.io.toml import parse_toml, toml_lines, toml_value
 from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES, accuracy_of
 from snowshed.scene.components import Snow
@@ -33,11 +31,6 @@ from snowshed.study.factors import (
     sobol,
 )
 from snowshed.study.scene_hash import FILES
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 Made = TypeVar("Made")
 
@@ -136,7 +129,7 @@ def name_in_errors(file: Path) -> Iterator[None]:
 
 def read(file: Path) -> Content:
     """Return the contents of a study file; see `Study.load`, which names the file in errors."""
-    return _content(_parsed(read_input(file)), file)
+    return _content(parse_toml(read_input(file)), file)
 
 
 def text(content: Content) -> str:
@@ -185,19 +178,9 @@ def _factor_blocks(part: Part, prefix: str, folder: Path) -> Iterator[list[str]]
 def _axis_lines(axes: Mapping[str, Any]) -> list[str]:
     """Return a line for each axis, in the order in which they are read."""
     lines = list(toml_lines(axes))
-    if list(_flatten(tomllib.loads("\n".join(lines)))) == list(axes):
+    if list(_flatten(parse_toml("\n".join(lines).encode()))) == list(axes):
         return lines
     return [f"{toml_value(path)} = {toml_value(values)}" for path, values in axes.items()]
-
-
-def _parsed(content: bytes) -> dict[str, Any]:
-    try:
-        return tomllib.loads(content.decode("utf-8"))
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # of tomllib all errors on content are ValueErrors
-        raise InputError(f"not TOML: {shortened(str(error), 200)}") from None
 
 
 def _content(data: dict[str, Any], file: Path) -> Content:

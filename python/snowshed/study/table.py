@@ -111,6 +111,8 @@ def _rows(store: Store, study: str) -> Iterator[dict[str, Any]]:
     events = _events(store, study)
     timings = {row[0]: dict(zip(RUN_TIMING, row[1:])) for row in _run_timings(store, study)}
     for run in store.runs(study):
+        if run.status != "pending":
+            store.check_results(run.hash)
         common = {**_facts(run, axes), **timings.get(run.hash, {})}
         yield from ({**common, **event} for event in events.get(run.hash, ()))
         if run.status == FAILED:

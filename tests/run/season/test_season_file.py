@@ -55,10 +55,10 @@ BAD_ROWS = [
     ("2024-12-01,0.2,100,-4", "line 3, column date: 2024-12-01 00:00:00 is not after line 2"),
     ("2024-12-02,much,100,-4", "line 3, column snowfall_m: 'much' is not a number"),
     ("2024-12-02,-0.1,100,-4", r"column snowfall_m: -0.1 is outside the allowed range \(0 <= "),
-    ("2024-12-02,nan,100,-4", "line 3, column snowfall_m: nan is outside"),
+    ("2024-12-02,nan,100,-4", "line 3, column snowfall_m: 'nan' is not a number"),
     ("2024-12-02,,100,-4", "line 3, column snowfall_m: empty; give a number"),
     ("2024-12-02,0.2,5000,-4", "line 3, column density_kg_m3: 5000 is outside .* <= 700 kg/m3"),
-    ("2024-12-02,0.2,100,inf", "line 3, column temperature_c: inf is outside"),
+    ("2024-12-02,0.2,100,inf", "line 3, column temperature_c: 'inf' is not a number"),
     ('2024-12-02,"0.2,100,-4', "line 3: not a table: unexpected end"),
 ]
 
@@ -135,3 +135,15 @@ def test_units_that_a_table_tells_must_be_those_of_its_columns():
     table.attrs["units"] = {"snowfall_m": "cm"}
     with pytest.raises(InputError, match="column snowfall_m: its units are 'cm'; convert it to m"):
         read_season(table)
+
+
+def test_snowfall_in_centimetres_is_not_taken_for_metres(tmp_path):
+    file = tmp_path / "season.csv"
+    file.write_text("date,snowfall_m,temperature_c\n2024-12-01,8,-3\n")
+    with pytest.raises(InputError, match=r"column snowfall_m: 8 is outside .*is it in cm, mm or"):
+        read_season(file)
+    file.write_text(
+        "date,snowfall_m,temperature_c\n2024-12-01,2,-3\n2024-12-02,1.5,-3\n2024-12-03,1,-3\n"
+    )
+    with pytest.raises(InputError, match=r"half of the snowfalls are of 1.5 m and more"):
+        read_season(file)

@@ -109,9 +109,9 @@ def test_lower_layers_settle_more_and_warm_ones_faster():
     assert np.all(settled(-1.0) > settled(-10.0))
 
 
-def test_settling_is_off_by_default_and_never_changes_the_mass():
+def test_settling_never_changes_the_mass():
     rows = season(0.3, 0.0, 0.0, days=10)
-    still = accumulate(rows, SeasonSettings(friction=2.0), 30.0)
+    still = accumulate(rows, SeasonSettings(friction=2.0, settling=None), 30.0)
     settled = accumulate(rows, SeasonSettings(friction=2.0, settling="essery-2013"), 30.0)
     assert still[0].thickness == still[2].thickness
     assert settled[2].thickness < settled[1].thickness < settled[0].thickness

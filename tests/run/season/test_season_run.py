@@ -11,11 +11,15 @@ import pandas as pd
 import pytest
 
 from snowshed import InputError, Scene, _core
-from snowshed.cli.display.season import verdict
 from snowshed.cli.main import main
 from snowshed.run.season import SeasonSettings, accumulate, read_season, run_season
-from snowshed.run.season.clearance import below_panel, clearance, first_reached
-from snowshed.run.season.driver import drawn
+from snowshed.run.season.clearance import (
+    Contact,
+    below_panel,
+    clearance,
+    first_reached,
+)
+from snowshed.run.season.driver import drawn, verdict
 from snowshed.run.season.slabs import season_scene
 from snowshed.scene.builders.panel_edge import panel_edge
 
@@ -79,12 +83,12 @@ def test_the_figure_names_the_event_that_buries_the_panel(finished):
     result, folder = finished
     scene = json.loads((folder / "run" / "scene.json").read_text())
     outlines = pd.read_csv(folder / "run" / "outline.csv")
-    buried = dataclasses.replace(result, burial_event=2)
+    buried = dataclasses.replace(result, contact=Contact("2024-12-24", 2, "crest"))
     figure = drawn(buried, outlines, scene)
     texts = [text.get_text() for text in figure.axes[1].texts]
-    assert "event 2: reached" in texts
-    assert "lower edge with event 2" in figure.get_suptitle()
-    assert verdict(buried)[0].endswith("with event 2, 2024-12-24")
+    assert "first contact: crest, event 2" in texts
+    assert verdict(buried) in figure.get_suptitle()
+    assert verdict(buried).endswith("the lower edge, 2024-12-24 (event 2)")
 
 
 def test_all_released_mass_slides_and_the_table_repeats_the_slide_offs(finished):
@@ -104,7 +108,8 @@ def test_the_clearance_is_that_of_the_outline(finished):
     last = outline[outline["event"] == 2]
     edge = 0.5 * 0.245 * math.cos(math.radians(50.0))
     surface = np.interp(edge, last["x"], last["z"], left=0.0, right=0.0)
-    assert result.table["clearance_m"].iloc[-1] == pytest.approx(0.33 - surface)
+    cover = result.table["cover_m"].iloc[-1]
+    assert result.table["clearance_m"].iloc[-1] == pytest.approx(max(0.33 - cover - surface, 0.0))
     left = clearance(scene, last[["x", "z"]].to_numpy(), 0.2)
     assert left.crest == pytest.approx(0.13)
 

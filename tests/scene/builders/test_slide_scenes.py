@@ -30,7 +30,7 @@ def test_polygons_with_holes_and_thickness(tmp_path):
 @pytest.mark.parametrize(
     ("rings", "crs", "fields", "message"),
     [
-        (BOW_TIE, "EPSG:31287", {}, "feature 1: Self-intersection"),
+        (BOW_TIE, "EPSG:31287", {}, "feature 1: no valid outline: Self-intersection"),
         (SQUARE, "EPSG:4326", {}, "its coordinates are in degrees"),
         (SQUARE, "EPSG:31287", {"thickness": -1}, "thickness is -1 m; give one above 0"),
         (SQUARE, "EPSG:31287", {"thickness": "deep"}, "thickness 'deep' is not a number"),

@@ -1,6 +1,6 @@
 import numpy as np
 
-from snowshed.snow.stack.surface import outline, surface_particles
+from snowshed.snow.stack.surface import outline_particles, surface_particles
 
 
 def test_keeps_the_highest_particle_of_each_cell():
@@ -29,10 +29,12 @@ def test_outline_follows_the_surface():
     random = np.random.default_rng(3)
     x, z = random.uniform(0, 3, 60_000), random.uniform(0, 1, 60_000)
     surface = 1 + 0.5 * np.sin(2 * x)
-    profile = outline(np.column_stack([x, 0 * x, z * surface]))
+    heap = np.column_stack([x, 0 * x, z * surface])
+    profile = heap[outline_particles(heap)][:, [0, 2]]
     assert (np.diff(profile[:, 0]) > 0).all()
     assert np.abs(profile[:, 1] - 1 - 0.5 * np.sin(2 * profile[:, 0])).max() < 0.03
 
 
 def test_nothing_has_no_surface():
-    assert len(surface_particles(np.zeros((0, 3)))) == len(outline(np.zeros((0, 3)))) == 0
+    nothing = np.zeros((0, 3))
+    assert len(surface_particles(nothing)) == len(outline_particles(nothing)) == 0

@@ -56,7 +56,7 @@ class GrainsMethod : public Method {
   virtual std::vector<ParticleBatch> seed() const = 0;
   virtual std::size_t count_spheres() const = 0;
   virtual LoadingMeasures measures() const = 0;
-  virtual int stage() const = 0;  ///< measures().stage, at once
+  virtual int stage() const = 0;                                 ///< measures().stage, at once
   virtual std::vector<GrainContact> grain_contacts() const = 0;  ///< ordered by grains
   virtual std::vector<Vec3> sphere_positions() const = 0;        ///< m, in the order of the sample
   virtual std::vector<std::uint32_t> sphere_grains() const = 0;

@@ -66,6 +66,8 @@ class Contacts {
   Contact<T>* of_block(std::size_t block) { return contacts_.data() + first_[block]; }
   int count(std::size_t block) const { return int(first_[block + 1] - first_[block]); }
 
+  std::size_t size() const { return contacts_.size(); }
+
   /// Whether a contact of a block is with an obstacle in motion.
   bool moves(std::size_t block) const;
 

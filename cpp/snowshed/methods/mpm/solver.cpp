@@ -114,13 +114,16 @@ void MpmSolver<T, D>::record_step(double dt) noexcept {
   p.counters.particle_updates += state_.sleep.awake_particles();
   p.counters.slept_updates += std::int64_t(size()) - state_.sleep.awake_particles();
   p.counters.smallest_dt = std::min(p.counters.smallest_dt, dt);
-  if (++work_.since_sort >= steps_between_sorts) work_.tiles_valid = false;
+  if (++work_.since_sort >= work_.until_sort) work_.tiles_valid = false;
 }
 
 template <class T, int D>
 void MpmSolver<T, D>::sort() {
   state_.arrange(model_, blocks_of_particles(state_.layout));
   work_.since_sort = 0;
+  const double share =
+      contacts_per_particle * double(size()) / std::max(double(state_.contacts.size()), 1.0);
+  work_.until_sort = int(steps_between_sorts * std::clamp(share, 1.0 / steps_between_sorts, 1.0));
   ++state_.progress.counters.sorts;
 }
 

@@ -20,6 +20,9 @@ struct MpmOptions {
 };
 
 inline constexpr int steps_between_sorts = 64;
+/// Fewer where each particle has more contacts than this: where thousands of obstacles overlap,
+/// steps take long, and a run that is to stop would wait for its safe point.
+inline constexpr double contacts_per_particle = 100;
 
 std::unique_ptr<Method> make_mpm(const MpmOptions&, std::vector<Obstacle>);
 

@@ -20,6 +20,7 @@ struct Workspace {
   std::vector<double> block_strain;  // 1/s, of the step being tried
   bool tiles_valid = false;          // whether the tiles hold the sums of the particles
   int since_sort = 0;                // steps
+  int until_sort = steps_between_sorts;
 };
 
 template <class T, int D>

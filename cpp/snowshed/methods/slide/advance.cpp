@@ -10,7 +10,7 @@ namespace snowshed {
 void advance(const SlideModel& model, SlideState& state, SlideWork& work) {
   const SlideParticles& p = state.particles;
   const SlideView view = view_of(model, state, work);
-  for_each_piece(model, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     work.piece_sums[std::size_t(begin / particles_in_piece)] =
         slide_kernels().advance(view, begin, end);
   });

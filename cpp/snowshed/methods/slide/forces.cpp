@@ -83,7 +83,7 @@ void sweep(const SlideModel& model, SlideState& state, SlideWork& work) {
 void apply_ground(const SlideModel& model, SlideState& state, SlideWork& work) {
   const std::size_t n = state.particles.size();
   const SlideView view = view_of(model, state, work);
-  for_each_piece(model, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  for_each_piece(work, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     slide_kernels().ground(view, begin, end);
   });
   if (!state.erodible.empty() || !model.resistance.empty()) sweep(model, state, work);
@@ -91,17 +91,16 @@ void apply_ground(const SlideModel& model, SlideState& state, SlideWork& work) {
 
 void add_pressure(const SlideModel& model, SlideState& state, SlideWork& work) {
   const std::size_t n = state.particles.size();
-  const int threads = model.threads_for(n);
   if (!work.entrained.empty())  // new masses
-    work.cells.update(state.particles, work.places.column, work.places.row, threads);
+    work.cells.update(state.particles, work.places.column, work.places.row, work.threads);
   const SlideView view = view_of(model, state, work);
   const SlideKernels& kernels = slide_kernels();
   const auto for_rows = [&](auto kernel) {
-    parallel_pieces(work.cells.rows() - 2, threads, 1,
+    parallel_pieces(work.cells.rows() - 2, work.threads, 1,
                     [&](std::ptrdiff_t j, std::ptrdiff_t) { kernel(view, int(j) + 1); });
   };
   const auto for_entries = [&](auto kernel) {
-    for_each_piece(model, n,
+    for_each_piece(work, n,
                    [&](std::ptrdiff_t begin, std::ptrdiff_t end) { kernel(view, begin, end); });
   };
   if (model.compatible()) {
@@ -119,10 +118,10 @@ void add_bonds(const SlideModel& model, SlideState& state, SlideWork& work) {
   const std::size_t n = state.particles.size();
   const SlideView view = view_of(model, state, work);
   std::atomic<bool> breaks{false};
-  for_each_piece(model, n, state.bonds.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  for_each_piece(work, state.bonds.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     if (slide_kernels().stretch_bonds(view, begin, end)) breaks = true;
   });
-  for_each_piece(model, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  for_each_piece(work, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     slide_kernels().pull(view, begin, end);
   });
   if (!breaks) return;

@@ -5,7 +5,6 @@
 
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/methods/slide/cells.hpp"
-#include "snowshed/methods/slide/particles.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
 namespace snowshed {
@@ -27,19 +26,21 @@ class GridFields {
     double vx, vy, vz;  // m/s; momentum (kg m/s) while they are handed on
   };
 
-  /// Makes room for snow anywhere on the terrain.
-  void reserve(const Terrain& terrain);
+  /// Makes room for snow anywhere on the terrain, and for sums where they are kept.
+  void reserve(const Terrain& terrain, bool keeps_sums);
 
-  /// `east` and `north` are where the particles lie within their cells.
-  void update(const Terrain& terrain, const SlideParticles& particles,
-              const AlignedVector<double>& east, const AlignedVector<double>& north,
-              const CellLists& cells, double density, int threads);
-
-  /// Raises the peaks to the fields where these are larger.
-  void raise(PeakFields& peaks, const Terrain& terrain) const;
+  /// Takes over the cells' rectangle; what is at its nodes is to be found (`sum_on_nodes` in
+  /// kernel_api.hpp).
+  void take_shape(const CellLists& cells);
 
   /// The nodes of the rectangle, row by row, and where it begins on the terrain.
   const Node* nodes() const { return nodes_.data(); }
+  Node* nodes() { return nodes_.data(); }
+  /// Room for mass and momentum on the nodes of the rectangle.
+  Node* sums() {
+    sums_.resize(nodes_.size());
+    return sums_.data();
+  }
   int first_column() const { return first_column_; }
   int first_row() const { return first_row_; }
   int columns() const { return columns_; }
@@ -48,14 +49,14 @@ class GridFields {
   std::vector<double> thickness_everywhere(const Terrain& terrain) const;
   std::vector<double> speed_everywhere(const Terrain& terrain) const;
 
-  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
+  std::size_t bytes() const { return (nodes_.capacity() + sums_.capacity()) * sizeof(Node); }
 
  private:
   template <class Visit>
   void for_each_covered(const Terrain& terrain, Visit visit) const;
 
   int first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
-  AlignedVector<Node> nodes_;
+  AlignedVector<Node> nodes_, sums_;
 };
 
 }  // namespace snowshed

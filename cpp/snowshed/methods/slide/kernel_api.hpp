@@ -41,6 +41,12 @@ struct SlideView {
   const double* flow;
   int flow_column, flow_row, flow_columns;  // the first node, counted from that of the ground
 
+  // The same records while they are found, and the peaks that they raise, at the nodes of the
+  // terrain, or null.
+  double *nodes, *peak_thickness, *peak_speed;
+  double* sums;        // default mode: mass and momentum on the nodes, kept for mean_speed.hpp
+  double fading_mass;  // kg, below which the mean speed there fades
+
   // Particles.
   double *x, *y, *z, *ux, *uy, *uz;
   const double* mass;
@@ -64,7 +70,7 @@ struct SlideView {
   double *sorted_z, *sorted_pressing;  // default mode: m; see weigh_pressure
   const std::uint32_t* sorted_particle;
   const std::uint32_t* cell_begin;  // of the cells of a rectangle with a margin, row by row
-  int cell_columns;
+  int cell_columns, cell_rows;
 
   // Bonds, and for each particle its bonds: twice the bond's place, and one more where it is
   // second.
@@ -103,6 +109,13 @@ struct SlideKernels {
   void (*pull)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Moves the particles; returns their kinetic energy, J.
   double (*advance)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Sums mass and momentum of the particles of a row of cells on the nodes. The odd rows follow
+  /// when all even ones are done; they turn the sums into thickness and velocity, and raise the
+  /// peaks.
+  void (*sum_on_nodes)(const SlideView&, int row);
+  /// Default mode: raises the peak speed along a row of nodes, from two rows before the rectangle
+  /// to two rows after it, when all sums are done.
+  void (*raise_mean_speed)(const SlideView&, int row);
   /// Finds the thickness of the snow at the particles.
   void (*thickness)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
 };

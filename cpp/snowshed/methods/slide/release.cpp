@@ -183,17 +183,22 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
   double fall[2] = {0, 0};
   const Bounds b = bounds_of(polygon.outline);
   const double step = terrain.cell() / 2;
+  const auto look_at = [&](double x, double y) {
+    const GridPlace p = terrain.place(x, y);
+    if (!p.inside()) return;
+    const Vec3 n = terrain.normal(p);
+    g.stretch += 1 / n.z();
+    fall[0] += n.x();
+    fall[1] += n.y();
+    ++g.points;
+  };
   for (double y = b.low[1] + step / 2; y < b.high[1]; y += step)
-    for (double x = b.low[0] + step / 2; x < b.high[0]; x += step) {
-      const GridPlace p = terrain.place(x, y);
-      if (!p.inside() || !contains(polygon, {x, y})) continue;
-      const Vec3 n = terrain.normal(p);
-      g.stretch += 1 / n.z();
-      fall[0] += n.x();
-      fall[1] += n.y();
-      ++g.points;
-    }
-  if (g.points == 0) return g;
+    for (double x = b.low[0] + step / 2; x < b.high[0]; x += step)
+      if (contains(polygon, {x, y})) look_at(x, y);
+  // Areas narrower than the points are apart may lie between them.
+  if (g.points == 0)
+    for (const MapPoint& corner : polygon.outline) look_at(corner[0], corner[1]);
+  if (g.points == 0) return Ground{1.0, 1.0, 0.0, 0};
   g.stretch /= double(g.points);
   const double length = std::hypot(fall[0], fall[1]);
   if (length > 1e-6 * double(g.points)) {
@@ -219,6 +224,31 @@ void for_lattice_points(const Ring& ring, const MapPoint& origin, const Ground& 
       visit(origin[0] + u * along.east - v * along.north,
             origin[1] + u * along.north + v * along.east);
     }
+}
+
+/// Throws where a point lies within two areas: it is not clear how much snow is released there.
+/// Areas may touch.
+void refuse_overlap(const Terrain& terrain, const std::vector<SlideArea>& areas, std::size_t index,
+                    const ParticleBatch& batch) {
+  const double aside = 1e-6 * terrain.cell();
+  const auto well_within = [&](const Polygon& polygon, double x, double y) {
+    return contains(polygon, {x - aside, y}) && contains(polygon, {x + aside, y}) &&
+           contains(polygon, {x, y - aside}) && contains(polygon, {x, y + aside});
+  };
+  for (std::size_t other = 0; other < index; ++other) {
+    const Bounds b = bounds_of(areas[other].polygon.outline);
+    for (const Vec3& p : batch.positions) {
+      if (p.x() < b.low[0] || p.x() > b.high[0] || p.y() < b.low[1] || p.y() > b.high[1]) continue;
+      if (!well_within(areas[other].polygon, p.x(), p.y()) ||
+          !well_within(areas[index].polygon, p.x(), p.y()))
+        continue;
+      refuse_area(index, areas[index].name,
+                  "overlaps /terrain/release/" + std::to_string(other) + " at (" +
+                      std::to_string(terrain.west() + p.x()) + ", " +
+                      std::to_string(terrain.south() + p.y()) +
+                      "); cut one of them, or make them one area");
+    }
+  }
 }
 
 ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const SlideArea& area,
@@ -271,10 +301,17 @@ double lattice_spacing(const ParticleBatch& batch) {
 std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,
                                         const std::vector<SlideArea>& areas) {
   if (areas.empty()) throw InputError("/terrain/release", "names no area");
-  if (settings.mode == SlideMode::compatible) return seed_as_avaframe(settings, terrain, areas);
   std::vector<ParticleBatch> batches;
-  for (std::size_t i = 0; i < areas.size(); ++i)
+  if (settings.mode == SlideMode::compatible) {
+    batches = seed_as_avaframe(settings, terrain, areas);
+    for (std::size_t i = 1; i < areas.size(); ++i)
+      refuse_overlap(terrain, areas, i, batches.front());
+    return batches;
+  }
+  for (std::size_t i = 0; i < areas.size(); ++i) {
     batches.push_back(seed_area(settings, terrain, areas[i], i));
+    refuse_overlap(terrain, areas, i, batches.back());
+  }
   return batches;
 }
 

@@ -154,9 +154,8 @@ void SlideSolver::count_as_added(const SlideState& next, const SlideWork& work,
 /// Takes over a state whose workspace must follow.
 void SlideSolver::accept(SlideState next) {
   SlideWork work;
-  refresh(model_, next, work);
+  refresh(model_, next, work, &next.peaks);
   choose_step(next, work);
-  work.fields.raise(next.peaks, model_.terrain);
   count_as_added(next, work, next.energy);
   state_ = std::move(next);
   work_ = std::move(work);
@@ -219,11 +218,18 @@ void SlideSolver::sort_now_and_then() {
   ++state_.counters.sorts;
 }
 
+void SlideSolver::choose_threads() {
+  const int most = model_.threads_for(size());
+  const bool by_trial = size() < particles_for_threads;
+  work_.threads = by_trial ? work_.thread_choice.begin(most) : most;
+}
+
 void SlideSolver::step() {
   require_sound();
   if (size() == 0) throw SimulationError("there is no snow on the terrain");
   work_.make_room(model_, state_);
   sort_now_and_then();
+  choose_threads();
   // Nothing from here on allocates.
   const bool audited = model_.keeps_energy;
   EnergyAudit& audit = work_.audit;
@@ -238,14 +244,14 @@ void SlideSolver::step() {
   if (audited) audit.after_motion(model_, state_, work_, state_.energy);
   remove_marked(state_, work_);
   split_heavy(model_, state_, work_);
-  refresh_fields(model_, state_, work_);
-  work_.fields.raise(state_.peaks, model_.terrain);
+  refresh_fields(model_, state_, work_, &state_.peaks);
   state_.dt = state_.step;
   ++state_.counters.steps;
   const bool as_asked = state_.counters.smallest_dt == model_.settings.time_step;
   state_.time = as_asked ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
   state_.counters.particle_updates += std::int64_t(size());
   order_known_ = false;
+  work_.thread_choice.end();
   if (size() == 0) state_.stopped = true;
   if (!std::isfinite(state_.kinetic_energy)) {
     broken_ = true;

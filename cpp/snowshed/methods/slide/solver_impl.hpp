@@ -57,6 +57,7 @@ class SlideSolver final : public SlideMethod {
   void append(SlideState&, const ParticleBatch&) const;
   void accept(SlideState);
   void sort_now_and_then();
+  void choose_threads();
   void choose_step(SlideState& next, const SlideWork& work) const;
   void count_as_added(const SlideState& next, const SlideWork& work, SlideEnergy& sums) const;
   void require_sound() const;

@@ -66,12 +66,13 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   bond_lists.reserve(most, state.bonds.size());
   cells.reserve(most, model.terrain);
   if (!model.compatible()) {
-    sorted_z.resize(now + sorted_padding);
     // Lanes beyond the last particle have the weight 0, which must not meet infinity.
-    std::fill(sorted_z.end() - std::ptrdiff_t(sorted_padding), sorted_z.end(), 0.0);
-    sorted_pressing.resize(now + sorted_padding);
+    for (AlignedVector<double>* values : {&sorted_z, &sorted_pressing}) {
+      values->resize(now + sorted_padding);
+      std::fill(values->end() - std::ptrdiff_t(sorted_padding), values->end(), 0.0);
+    }
   }
-  fields.reserve(model.terrain);
+  fields.reserve(model.terrain, !model.compatible());
   if (model.keeps_energy) audit.reserve(now);
 }
 
@@ -115,7 +116,8 @@ void view_places(SlideWork& work, SlideView& v) {
   v.nz = p.nz.data();
   v.thickness = work.thickness.data();
   static_assert(sizeof(GridFields::Node) == 4 * sizeof(double), "kernels read records of four");
-  v.flow = &work.fields.nodes()->thickness;
+  v.nodes = &work.fields.nodes()->thickness;
+  v.flow = v.nodes;
   v.flow_column = work.fields.first_column();
   v.flow_row = work.fields.first_row();
   v.flow_columns = work.fields.columns();
@@ -125,6 +127,19 @@ void view_places(SlideWork& work, SlideView& v) {
   v.sorted_particle = work.cells.order().data();
   v.cell_begin = work.cells.begins();
   v.cell_columns = work.cells.columns();
+  v.cell_rows = work.cells.rows();
+}
+
+/// Whoever sees a state that must not change only reads it.
+void view_particles(const SlideState& state, SlideView& v) {
+  const SlideParticles& p = state.particles;
+  v.x = const_cast<double*>(p.x.data());
+  v.y = const_cast<double*>(p.y.data());
+  v.z = const_cast<double*>(p.z.data());
+  v.ux = const_cast<double*>(p.ux.data());
+  v.uy = const_cast<double*>(p.uy.data());
+  v.uz = const_cast<double*>(p.uz.data());
+  v.mass = p.mass.data();
 }
 
 void view_loads(SlideWork& work, SlideView& v) {
@@ -146,14 +161,7 @@ SlideView view_of(const SlideModel& model, SlideState& state, SlideWork& work) {
   view_model(model, v);
   view_places(work, v);
   view_loads(work, v);
-  SlideParticles& p = state.particles;
-  v.x = p.x.data();
-  v.y = p.y.data();
-  v.z = p.z.data();
-  v.ux = p.ux.data();
-  v.uy = p.uy.data();
-  v.uz = p.uz.data();
-  v.mass = p.mass.data();
+  view_particles(state, v);
   v.bond_first = state.bonds.first.data();
   v.bond_second = state.bonds.second.data();
   v.rest_length = state.bonds.rest_length.data();
@@ -172,32 +180,65 @@ void refresh_places(const SlideModel& model, const SlideState& state, SlideWork&
   SlideView view{};
   view_model(model, view);
   view_places(work, view);
-  view.x = const_cast<double*>(state.particles.x.data());  // which is only read
-  view.y = const_cast<double*>(state.particles.y.data());
-  for_each_piece(model, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+  view_particles(state, view);
+  for_each_piece(work, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
     const auto from = std::ptrdiff_t(begin);
     slide_kernels().locate(view, from + first, from + last);
   });
 }
 
-void refresh(const SlideModel& model, const SlideState& state, SlideWork& work) {
+void refresh(const SlideModel& model, const SlideState& state, SlideWork& work,
+             PeakFields* raised) {
   const std::size_t n = state.particles.size();
+  work.threads = model.threads_for(n);
   work.places.resize(n);
   refresh_places(model, state, work, 0, n);
   work.bond_lists.update(state.bonds, n);
-  refresh_fields(model, state, work);
+  refresh_fields(model, state, work, raised);
 }
 
-void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork& work) {
+namespace {
+
+/// Of a particle's mass: where there is less snow around a node, its speed fades.
+constexpr double share_of_fading = 0.15;
+
+/// The mass of the lightest particle as it was seeded, kg; 0 without particles.
+double lightest(const SlideParticles& p) {
+  return p.size() == 0 ? 0.0 : *std::min_element(p.fresh_mass.begin(), p.fresh_mass.end());
+}
+
+}  // namespace
+
+void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork& work,
+                    PeakFields* raised) {
   const SlideParticles& p = state.particles;
-  const Places& places = work.places;
-  work.cells.update(p, places.column, places.row, model.threads_for(p.size()));
-  work.fields.update(model.terrain, p, places.east, places.north, work.cells,
-                     model.settings.density, model.threads_for(p.size()));
+  work.cells.update(p, work.places.column, work.places.row, work.threads);
+  work.fields.take_shape(work.cells);
   work.thickness.resize(p.size());
   SlideView view{};
+  view_model(model, view);
   view_places(work, view);
-  for_each_piece(model, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  view_particles(state, view);
+  if (raised) {
+    view.peak_thickness = raised->thickness.data();
+    view.peak_speed = raised->speed.data();
+    if (!model.compatible()) view.sums = &work.fields.sums()->thickness;
+  }
+  // Two rows of cells hand on to the same row of nodes: every other row at a time, so that no two
+  // threads meet and the sums do not depend on how many there are.
+  for (const int parity : {0, 1})
+    parallel_pieces((work.cells.rows() + 1 - parity) / 2, work.threads, 1,
+                    [&](std::ptrdiff_t pair, std::ptrdiff_t) {
+                      slide_kernels().sum_on_nodes(view, int(2 * pair) + parity);
+                    });
+  if (view.sums) {
+    view.fading_mass = share_of_fading * lightest(p);
+    parallel_pieces(work.cells.rows() + 4, work.threads, 1,
+                    [&](std::ptrdiff_t row, std::ptrdiff_t) {
+                      slide_kernels().raise_mean_speed(view, int(row) - 2);
+                    });
+  }
+  for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     slide_kernels().thickness(view, begin, end);
   });
 }

@@ -8,6 +8,7 @@
 
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/core/parallel.hpp"
+#include "snowshed/core/thread_choice.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/bonds.hpp"
@@ -23,15 +24,16 @@
 namespace snowshed {
 
 /// The fewest particles that a thread is started for.
-inline constexpr std::size_t particles_per_thread = 128;
+inline constexpr std::size_t particles_per_thread = 400;
+/// Steps of fewer particles find out by trial whether threads make them faster.
+inline constexpr std::size_t particles_for_threads = 20000;
 
 struct SlideModel {
   SlideModel(const SlideSettings&, double gravity, const HeightField&, SlideAreas,
              bool keeps_energy);
 
   bool compatible() const { return settings.mode == SlideMode::compatible; }
-  /// Threads for a step of so many particles. A thread that has little to do costs more time than
-  /// it saves.
+  /// The most threads for a step of so many particles.
   int threads_for(std::size_t particles) const {
     return int(std::clamp<std::size_t>(particles / particles_per_thread, 1, std::size_t(threads)));
   }
@@ -120,6 +122,8 @@ struct SlideWork {
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
   EnergyAudit audit;
+  int threads = 1;  // that share the loops
+  ThreadChoice thread_choice;
 
   /// Makes room for all that a step of this state can need, so that nothing fails amid it.
   void make_room(const SlideModel&, SlideState&);
@@ -131,22 +135,19 @@ inline constexpr std::ptrdiff_t particles_in_piece = 64;
 /// What the kernels see of a slide, until an array of it changes its size.
 SlideView view_of(const SlideModel&, SlideState&, SlideWork&);
 
-/// Calls f(begin, end) for pieces of so many particles, or of bonds between them.
+/// Calls f(begin, end) for pieces of so many particles or bonds.
 template <class F>
-void for_each_piece(const SlideModel& model, std::size_t particles, std::size_t count, F f) {
-  parallel_pieces(std::ptrdiff_t(count), model.threads_for(particles), particles_in_piece, f);
-}
-template <class F>
-void for_each_piece(const SlideModel& model, std::size_t particles, F f) {
-  for_each_piece(model, particles, particles, f);
+void for_each_piece(const SlideWork& work, std::size_t count, F f) {
+  parallel_pieces(std::ptrdiff_t(count), work.threads, particles_in_piece, f);
 }
 
-/// Makes the workspace follow from the particles: places, cells, fields, bonds.
-void refresh(const SlideModel&, const SlideState&, SlideWork&);
+/// Makes the workspace follow from the particles: places, cells, fields, bonds. The fields raise
+/// the peaks that are given.
+void refresh(const SlideModel&, const SlideState&, SlideWork&, PeakFields* raised = nullptr);
 /// The places of the particles [begin, end), which the workspace has room for.
 void refresh_places(const SlideModel&, const SlideState&, SlideWork&, std::size_t begin,
                     std::size_t end);
 /// The same as `refresh` where bonds and the particles' places are known already.
-void refresh_fields(const SlideModel&, const SlideState&, SlideWork&);
+void refresh_fields(const SlideModel&, const SlideState&, SlideWork&, PeakFields* raised);
 
 }  // namespace snowshed

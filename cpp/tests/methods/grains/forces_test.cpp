@@ -53,33 +53,63 @@ TEST(GrainForces, of_a_compressed_contact_grow_with_the_overlap) {
               1e-10);
 }
 
+/// A bond of n x n pairs that is bent by an angle about an axis in its middle. Spheres of a pair at
+/// y from the axis stand 2 (r cos(angle / 2) + y sin(angle / 2)) apart, along the bisector of the
+/// two bodies, and meet at y cos(angle / 2) - r sin(angle / 2): exact for any angle.
+struct BentBond {
+  std::size_t n;
+  double stiffness, half;  // N/m, half the angle
+
+  double place(std::size_t i) const { return (double(i) - 0.5 * double(n - 1)) * diameter; }
+  double gap(double y) const {
+    const double lost = std::sin(0.5 * half);
+    return 2 * y * std::sin(half) - 2 * diameter * lost * lost;
+  }
+  double moment() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      sum += gap(place(i)) * (place(i) * std::cos(half) - 0.5 * diameter * std::sin(half));
+    return double(n) * stiffness * sum;
+  }
+  /// Half the angle at which the outer pairs are so far apart.
+  static double half_angle(std::size_t n, double gap) {
+    BentBond bond{n, 0, gap / (double(n - 1) * diameter)};
+    for (int k = 0; k < 20; ++k)
+      bond.half += (gap - bond.gap(bond.place(n - 1))) / (double(n - 1) * diameter);
+    return bond.half;
+  }
+};
+
 TEST(GrainForces, of_a_bent_bond_begin_to_break_at_the_moment_of_its_outer_pairs) {
-  for (const std::size_t n : {2, 4, 7}) {
-    GrainsOptions o = bonded_blocks(n);
-    o.settings.tensile_strength = 20;  // Pa: angles so small that the geometry stays linear
-    const double side = double(n) * diameter;
-    const double moment =
-        double(n + 1) / double(n) * o.settings.tensile_strength * side * side * side / 6;
-    const double limit = o.settings.tensile_strength * face / normal_stiffness(o);
-    const double outer = 0.5 * double(n - 1) * diameter;
-    for (const bool beyond : {false, true}) {
-      PosedGrains grains(o);
-      GrainBody& upper = grains.state.bodies[1];
-      const Vec3 hinge = upper.position - Vec3(0, 0, diameter);  // the middle of the bond
-      const double angle = limit / outer * (beyond ? 1 + 1e-5 : 1 - 1e-5);
-      const Orientation turn(Eigen::AngleAxisd(angle, Vec3::UnitX()));
-      upper.position = hinge + turn * Vec3(upper.position - hinge);
-      upper.orientation = turn * upper.orientation;
-      grains.evaluate();
-      const Vec3& lower = grains.state.bodies[0].torque;
-      if (!beyond) {
-        EXPECT_NEAR(lower.x() / moment, 1, 3e-5);
+  for (const std::size_t n : {2, 4, 7})
+    for (const double strength : {1e6, 1e3}) {
+      GrainsOptions o = bonded_blocks(n);
+      o.settings.tensile_strength = strength;
+      const double limit = strength * face / normal_stiffness(o);
+      for (const double share : {1 - 1e-7, 1 + 1e-7}) {
+        PosedGrains grains(o);
+        GrainBody& upper = grains.state.bodies[1];
+        const Vec3 hinge = upper.position - Vec3(0, 0, diameter);  // the middle of the bond
+        const BentBond bond{n, normal_stiffness(o), BentBond::half_angle(n, share * limit)};
+        const Orientation turn(Eigen::AngleAxisd(2 * bond.half, Vec3::UnitX()));
+        upper.position = hinge + turn * Vec3(upper.position - hinge);
+        upper.orientation = turn * upper.orientation;
+        grains.evaluate();
+        if (share > 1) {
+          EXPECT_EQ(grains.state.broken_in_tension, std::int64_t(n)) << "one row";
+          continue;
+        }
         EXPECT_EQ(grains.state.bonds, std::int64_t(n * n));
-      } else {
-        EXPECT_EQ(grains.state.broken_in_tension, std::int64_t(n)) << "one row";
+        const GrainBody& lower = grains.state.bodies[0];
+        const Vec3 moment = lower.torque + (lower.position - hinge).cross(lower.force);
+        const double rounding = 1e-13 * diameter / limit;
+        EXPECT_NEAR(moment.x() / bond.moment(), 1, std::max(1e-10, rounding));
+        // Without the geometry of a finite angle: (n + 1) / n of what a beam bears.
+        const double side = double(n) * diameter;
+        const double linear = double(n + 1) / double(n) * strength * side * side * side / 6;
+        EXPECT_NEAR(bond.moment() / linear, 1, 2e-7 + limit / diameter);
       }
     }
-  }
 }
 
 TEST(GrainForces, of_a_sheared_bond_break_at_the_strength_times_its_area) {

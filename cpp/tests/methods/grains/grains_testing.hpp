@@ -66,6 +66,21 @@ inline GrainsOptions grains_of(const LabelImage& image) {
   return o;
 }
 
+/// One stage of each kind after another, each some tens of steps long.
+inline GrainsOptions story_of_all_kinds() {
+  GrainsOptions o = grains_of(random_snow(26, 6));
+  o.settings.density_scaling = 1e3;
+  o.settings.damping = 0.2;
+  o.settings.bonded_plates = true;
+  o.energy = true;
+  o.cone = {3e-4, 30};
+  o.loading = {{LoadingKind::compress, 2, 0.02, 0},  {LoadingKind::unload, 2, 0.01, 0},
+               {LoadingKind::shear, 2, 0.02, 1e5},   {LoadingKind::hold, 2, 0.01, 0},
+               {LoadingKind::isotropic, 2, 0.02, 0}, {LoadingKind::stretch, 2, 0.02, 0},
+               {LoadingKind::penetrate, 2, 0.05, 0}};
+  return o;
+}
+
 inline std::unique_ptr<GrainsMethod> filled(const GrainsOptions& options) {
   auto grains = make_grains(options);
   grains->add(grains->seed());

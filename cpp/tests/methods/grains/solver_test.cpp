@@ -72,11 +72,66 @@ TEST(Grains, that_collide_keep_momentum_and_energy) {
   EXPECT_NEAR(energies_of(*grains).at("kinetic_j") / kinetic, 1, 1e-3);
 }
 
-/// A voxel that its weight, upward, presses to a flat punch (a cone of 90 degrees).
+/// Angular momentum about the centre, kg m2/s: the orientation is that of the spheres now against
+/// those of the sample, and the inertia that of the voxels.
+Vec3 spin_momentum_of(const GrainsMethod& grains, const GrainsOptions& o, std::size_t grain) {
+  const std::vector<Vec3> now = grains.sphere_positions();
+  const Clump& clump = o.sample.clumps[grain];
+  const Vec3 centre = grains.state().positions[grain];
+  Mat3 turned = Mat3::Zero(), before = Mat3::Zero();
+  for (std::uint32_t s = clump.first_sphere; s < clump.first_sphere + clump.spheres; ++s) {
+    const Vec3 offset = o.sample.spheres[s] - clump.centre;
+    turned += (now[s] - centre) * offset.transpose();
+    before += offset * offset.transpose();
+  }
+  const Mat3 rotation = turned * before.inverse();
+  const FieldView spin = grains.field("angular_velocity");
+  const double* w = spin.at<double>(grain);
+  return o.settings.density *
+         (rotation * (clump.inertia * (rotation.transpose() * Vec3(w[0], w[1], w[2]))));
+}
+
+TEST(Grains, that_spin_keep_energy_and_angular_momentum_over_1e5_steps) {
+  GrainsOptions o = grains_of(image_of(60, 60, 60, [](auto i, auto j, auto k) {
+    const bool first = i >= 24 && i < 28 && j >= 28 && j < 31 && k >= 27 && k < 29;
+    const bool second = i >= 29 && i < 31 && j >= 30 && j < 35 && k >= 28 && k < 31;
+    return first ? 1 : second ? 2 : 0;
+  }));
+  o.energy = true;
+  const auto grains = filled(o);
+  grains->add_velocity({Vec3(0.05, 0, 0), Vec3(-0.05, 0, 0)});
+  bool touched = false;
+  for (int i = 0; i < 100000 && !(touched && grains->measures().contacts == 0); ++i) {
+    grains->step();
+    touched = touched || grains->measures().contacts > 0;
+  }
+  ASSERT_TRUE(touched);
+  take_steps(*grains, 40000);  // they meet again before they part
+  const double kinetic = energies_of(*grains).at("kinetic_j");
+  const Vec3 spins[2] = {spin_momentum_of(*grains, o, 0), spin_momentum_of(*grains, o, 1)};
+  const std::vector<Vec3> start = grains->sphere_positions();
+  double worst = 0;
+  for (int i = 0; i < 100; ++i) {
+    take_steps(*grains, 1000);
+    worst = std::max(worst, std::abs(energies_of(*grains).at("kinetic_j") / kinetic - 1));
+    ASSERT_EQ(grains->measures().contacts, 0) << "free flight";
+  }
+  EXPECT_LT(worst, 1e-6);
+  for (std::size_t g = 0; g < 2; ++g) {
+    EXPECT_GT(spins[g].norm(), 0);
+    EXPECT_LT((spin_momentum_of(*grains, o, g) - spins[g]).norm(), 1e-9 * spins[g].norm());
+  }
+  const std::vector<Vec3> end = grains->sphere_positions();
+  EXPECT_GT(((end[0] - end[1]) - (start[0] - start[1])).norm(), test_voxel) << "it has turned";
+}
+
+/// A block of voxels that its weight, upward, presses to a flat punch (a cone of 90 degrees).
 struct Slider {
-  explicit Slider(double friction, double speed) : v0(speed), mu(friction) {
-    GrainsOptions o = grains_of(image_of(
-        20, 20, 20, [](auto i, auto j, auto k) { return i == 5 && j == 10 && k == 19 ? 1 : 0; }));
+  Slider(std::size_t nx, std::size_t ny, std::size_t nz, double friction, double speed)
+      : v0(speed), mu(friction) {
+    GrainsOptions o = grains_of(image_of(20, 20, 20, [=](auto i, auto j, auto k) {
+      return i >= 5 && i < 5 + nx && j >= 10 && j < 10 + ny && k >= 20 - nz ? 1 : 0;
+    }));
     o.settings.friction = friction;
     o.gravity = -g;
     o.loading = {{LoadingKind::penetrate, 1e-9, 1e-3, 0}};
@@ -89,25 +144,61 @@ struct Slider {
   std::unique_ptr<GrainsMethod> grains;
 };
 
-TEST(Grains, slide_on_a_plane_as_coulomb_says) {
-  Slider s(0.2, 0.1);
-  const double until_it_rolls = s.v0 / (2.5 * s.mu * s.g);
-  while (s.grains->time() < 0.8 * until_it_rolls) s.grains->step();
-  // What presses is the weight, less what lifts the grain: its impulse is m (g t - v_z).
+/// What presses is the weight, less what lifts the grain: its impulse is m (g t - v_z).
+void expect_coulomb(const Slider& s) {
   const double lost = s.mu * (s.g * s.grains->time() - s.velocity().z());
   EXPECT_NEAR((s.v0 - s.velocity().x()) / lost, 1, 1e-3);
 }
 
+TEST(Grains, slide_on_a_plane_as_coulomb_says) {
+  Slider voxel(1, 1, 1, 0.2, 0.1), block(6, 4, 2, 0.2, 0.1);
+  const double until_it_rolls = voxel.v0 / (2.5 * voxel.mu * voxel.g);
+  while (voxel.grains->time() < 0.8 * until_it_rolls) voxel.grains->step();
+  expect_coulomb(voxel);
+  const double until_it_stops = block.v0 / (block.mu * block.g);
+  while (block.grains->time() < 0.8 * until_it_stops) block.grains->step();
+  expect_coulomb(block);
+}
+
 TEST(Grains, roll_on_after_sliding_with_three_fifths_of_their_speed) {
-  // With I = m (2 r)^2 / 6 the momentum about the line of contact gives v = v0 / (1 + 2/3).
-  Slider s(0.2, 0.1);
-  while (s.grains->time() < 3e-5) s.grains->step();
-  double mean = 0;  // the springs of the contact swing
-  for (int i = 0; i < 2000; ++i) {
-    s.grains->step();
-    mean += s.velocity().x() / 2000;
+  // Voxels in a row along y, with I = m (2 r)^2 / 6 about it: the momentum about the line of
+  // contact gives v = v0 / (1 + 2/3).
+  for (const std::size_t length : {1, 4}) {
+    Slider s(1, length, 1, 0.2, 0.1);
+    while (s.grains->time() < 3e-5) s.grains->step();
+    double mean = 0;  // the springs of the contact swing
+    for (int i = 0; i < 2000; ++i) {
+      s.grains->step();
+      mean += s.velocity().x() / 2000;
+    }
+    EXPECT_NEAR(mean / s.v0, 0.6, 0.0006) << length;
   }
-  EXPECT_NEAR(mean / s.v0, 0.6, 0.0006);
+}
+
+TEST(Grains, do_the_same_on_any_number_of_threads_whatever_the_stage) {
+  for (const GrainSides sides : {GrainSides::walls, GrainSides::periodic}) {
+    GrainsOptions o = story_of_all_kinds();
+    o.settings.sides = sides;
+    std::vector<std::unique_ptr<GrainsMethod>> all;
+    for (const int threads : {1, 2, 3}) {
+      o.settings.threads = threads;
+      all.push_back(filled(o));
+    }
+    int stages = 0;
+    while (!*all[0]->at_rest()) {
+      const int stage = all[0]->stage();
+      for (const auto& one : all)
+        for (int i = 0; i < 2000 && one->stage() == stage; ++i) one->step();
+      ASSERT_GT(all[0]->stage(), stage);
+      for (const auto& one : all) {
+        ASSERT_EQ(one->time(), all[0]->time()) << "stage " << stage;
+        ASSERT_EQ(one->sphere_positions(), all[0]->sphere_positions()) << "stage " << stage;
+        ASSERT_EQ(one->energy_table(), all[0]->energy_table()) << "stage " << stage;
+      }
+      ++stages;
+    }
+    EXPECT_EQ(stages, 7);
+  }
 }
 
 TEST(Grains, do_the_same_on_any_number_of_threads) {

@@ -105,5 +105,25 @@ TEST(SlideRelease, a_raster_that_does_not_say_the_thickness_everywhere_is_refuse
   EXPECT_THROW(seeded({}, mapped(area, {1, 1, 1, 1, 1, 1}, 3)), InputError);
 }
 
+TEST(SlideRelease, areas_may_touch_but_not_overlap) {
+  const Terrain terrain(inclined(35));
+  const auto seed = [&](double west, SlideMode mode) {
+    SlideSettings settings;
+    settings.mode = mode;
+    return seed_release(settings, terrain,
+                        {rectangle(20, 18, 30, 42, 1.0), rectangle(west, 18, 44, 42, 1.0)});
+  };
+  for (const SlideMode mode : {SlideMode::improved, SlideMode::compatible}) {
+    EXPECT_NO_THROW(seed(30, mode));
+    try {
+      seed(27, mode);
+      FAIL() << "overlapping areas were seeded";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("/terrain/release/1"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("overlaps /terrain/release/0"), std::string::npos);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace snowshed

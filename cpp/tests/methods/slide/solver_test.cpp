@@ -52,6 +52,28 @@ TEST(Slide, a_block_with_voellmy_friction_follows_its_ordinary_differential_equa
   EXPECT_NEAR(speed / count / expected, 1, 0.005);
 }
 
+TEST(Slide, peak_speed_is_that_of_the_snow_and_fades_beyond_its_rim) {
+  SlideOptions o = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3, 1.0));
+  o.settings.bonds = false;
+  o.settings.layer_thickness = 0.1;
+  o.settings.friction = 0;
+  o.settings.artificial_viscosity = 0;
+  const auto slide = make_slide(o);
+  std::vector<ParticleBatch> snow = slide->seed();
+  const double speed = 100;  // m/s; pressure changes it by little within a step
+  snow[0].velocity = speed * Vec3(std::cos(radians(35)), 0, -std::sin(radians(35)));
+  slide->add(snow);
+  // All of the snow moves alike, so that a node has the speed of the mass that it sees.
+  const std::vector<double>& peaks = slide->peaks().speed;
+  const auto at = [&](int column) { return peaks[slide->terrain().index(column, 15)] / speed; };
+  EXPECT_NEAR(at(17), 1, 1e-3);
+  for (int column = 24; column < 29; ++column) EXPECT_GE(at(column), at(column + 1)) << column;
+  EXPECT_GT(at(25), 0.9);  // the snow ends at 50.3 m, just beyond column 25
+  EXPECT_GT(at(27), at(28));
+  EXPECT_GT(at(28), 0);
+  EXPECT_EQ(at(29), 0);
+}
+
 TEST(Slide, snow_below_the_angle_of_friction_stays_exactly_where_it_is) {
   SlideOptions o = slab(20, 0.6);
   o.settings.artificial_viscosity = 0;

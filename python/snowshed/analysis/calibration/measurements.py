@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Optional
 from snowshed._core import InputError
 from snowshed.io.csv_table import Row, read_text_table
 from snowshed.io.messages import quoted
+from snowshed.io.number_text import number_in
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 
@@ -21,6 +22,7 @@ POSITIVE = ("height", "length")
 KEYS = ("tilt_deg", "event")
 ROUND = "round"
 STEEPEST = 90.0  # degrees, not allowed itself
+FARTHEST = 100.0  # m, of anything that is measured of a stack
 FAR = 3.0  # standard deviations by which length and tail - head may differ
 
 TEMPLATE_TILTS = (40, 50)
@@ -212,6 +214,8 @@ class _Row:
         value = self._number(column)
         if quantity in POSITIVE and value <= 0:
             raise self._error(f"{column}: {value:g} is not positive")
+        if abs(value) > FARTHEST:
+            raise self._error(f"{column}: {value:g} m; at most {FARTHEST:g} m are allowed")
         if not self.cells.get(uncertain):
             raise self._error(f"{uncertain}: missing; give one standard deviation of {column}")
         uncertainty = self._number(uncertain)
@@ -251,11 +255,8 @@ class _Row:
 
     def _number(self, column: str) -> float:
         cell = self.cells[column]
-        try:
-            number = float(cell)
-        except ValueError:
-            number = math.nan
-        if not math.isfinite(number):
+        number = number_in(cell)
+        if math.isnan(number):
             raise self._error(f"{column}: {quoted(cell)} is not a number")
         return number
 

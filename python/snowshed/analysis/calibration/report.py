@@ -14,6 +14,7 @@ from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import Surrogate
 from snowshed.io.atomic import replacing, write_text
+from snowshed.io.csv_table import csv_text
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 
@@ -163,7 +164,7 @@ def write(found: Calibration, folder: Path) -> None:
     }
     folder.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():
-        write_text(folder / f"{name}.csv", table.to_csv(index=False))
+        write_text(folder / f"{name}.csv", csv_text(table))
     with replacing(folder / "posterior.nc") as beside:
         posterior.draws.to_netcdf(beside, engine="scipy")
     for name, figure in drawings.items():

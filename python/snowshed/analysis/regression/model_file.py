@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import zipfile
 from collections.abc import Mapping
@@ -22,6 +23,7 @@ from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.io.damage import DAMAGED
+from snowshed.io.input_file import read_regular
 from snowshed.scene.accuracy_settings import FORMER_NAMES
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import measure_named
@@ -138,8 +140,9 @@ def load_model(file: PathLike) -> StackModel:
     """
     path = Path(file)
     try:
-        _check_size(path)
-        with np.load(path, allow_pickle=False) as archive:
+        content = read_regular(path)
+        _check_size(content)
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             return _Reader(archive).model()
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
@@ -149,8 +152,10 @@ def load_model(file: PathLike) -> StackModel:
         raise InputError(f"{path}: damaged, or not a model ({error})") from None
 
 
-def _check_size(path: Path) -> None:
-    with zipfile.ZipFile(path) as archive:
+def _check_size(content: bytes) -> None:
+    if len(content) > LARGEST:
+        raise InputError(f"{len(content)} bytes; at most {LARGEST} are allowed")
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
         size = sum(entry.file_size for entry in archive.infolist())
     if size > LARGEST:
         raise InputError(f"unpacks to {size} bytes; at most {LARGEST} are allowed")

@@ -17,11 +17,12 @@ from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.task import Task, compute
 from snowshed.analysis.regression.threads import one_thread
-from snowshed.io.atomic import write_text
+from snowshed.io.atomic import LEFTOVER, remove_leftovers, write_text
 from snowshed.io.json_file import read_object
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.pool import Ended, Pool
 from snowshed.run.progress import Progress, Reporter
+from snowshed.study.locks import holding, is_held
 
 IDENTITY = "regression.json"
 FORMAT = 2  # of the results of folds; another one is computed anew
@@ -73,6 +74,8 @@ def cross_validate(
         On Ctrl-C or SIGTERM; results of finished folds are kept.
     """
     scheme.check(rows)
+    if is_held(folder):
+        raise InputError(f"{folder}: in use: another regression writes into this folder")
     _claim(folder, rows, scheme)
     points = Scaling.of(rows.inputs).scaled(rows.inputs)
     tasks = [
@@ -85,13 +88,18 @@ def cross_validate(
     results = {task: FoldResult.load(folder / task.file, points) for task in tasks}
     missing = [task for task, result in results.items() if result is None]
     tracker = _Tracker(missing, len(tasks), kinds, progress)
-    with deferred_interrupts() as request:
+    with holding(folder, _make), deferred_interrupts() as request:
+        _tidy(folder)
         for task in _computed(missing, rows, scheme, folder, jobs, request):
             results[task] = FoldResult.load(folder / task.file, points)
             tracker.advance(task)
         if request.requested:
             raise RegressionInterrupted(folder)
     return {task: result for task, result in results.items() if result is not None}
+
+
+def _make(folder: Path) -> None:
+    folder.mkdir(exist_ok=True)
 
 
 class _Tracker:
@@ -141,7 +149,7 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
                 "version of snowshed; take a new folder"
             )
         return
-    if folder.exists() and any(folder.iterdir()):
+    if folder.exists() and any(not LEFTOVER.match(one.name) for one in folder.iterdir()):
         raise InputError(f"{folder}: not empty, and holds no regression")
     folder.mkdir(parents=True, exist_ok=True)
     write_text(path, json.dumps(identity, indent=1) + "\n")
@@ -186,11 +194,14 @@ def _outcome(ended: Ended[Task, None]) -> Task:
 
 def _end(pool: Pool[Task, None], folder: Path) -> None:
     """End the processes, whatever they do, and remove what they have half written."""
-    processes = pool.process_ids
     pool.close()
-    for process in processes:
-        for unfinished in folder.rglob(f".*.{process}.npz"):
-            unfinished.unlink(missing_ok=True)
+    _tidy(folder)
+
+
+def _tidy(folder: Path) -> None:
+    """Remove what killed processes have half written."""
+    for inside in (folder, *(one for one in folder.iterdir() if one.is_dir())):
+        remove_leftovers(inside)
 
 
 def _work(

@@ -16,6 +16,7 @@ from snowshed.cli.commands.designed_study import (
     computed,
     design_options,
 )
+from snowshed.cli.terminal import say
 
 
 @click.command()
@@ -88,4 +89,4 @@ def calibrate(
         from snowshed.cli.display.calibration import print_calibration
 
         print_calibration(found)
-        click.echo(f"tables and figures in {folder}")
+        say(f"tables and figures in {folder}")

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Optional, TypeVar
 
 import click
 
+from snowshed.cli.commands.grain_images import segment_command, synthetic
+from snowshed.cli.commands.grains_studies import material, sensitivity
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
+from snowshed.methods.grains.image.sample_folder import LABELS
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.scene.builders.grains import SAMPLE, example_grains, grains_scene
-from snowshed.scene.components import Output
+from snowshed.scene.builders.grains import example_grains, grains_scene
 from snowshed.scene.loading import Cone, LoadingKind, LoadingStage
+from snowshed.scene.output import Output
 from snowshed.scene.scene import ResolvedScene
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -24,12 +27,13 @@ PATH = click.Path(path_type=Path)
 
 @click.group()
 def grains() -> None:
-    """Load snow grain by grain, from a segmented image of its ice.
+    """Find the grains in an image of snow, and load the snow grain by grain.
 
     \b
     Examples:
       snowshed grains example -o example
-      snowshed grains compress labels.npy --voxel 5e-5 -o out
+      snowshed grains segment slices --voxel 5e-5 -o sample
+      snowshed grains compress sample -o out
     """  # noqa: D301 - click wants the control character
 
 
@@ -51,7 +55,7 @@ def loading_command(
     """
 
     def run(
-        folder: Path, resume: bool, quiet: bool, labels: Path, voxel: float, energy: bool,
+        folder: Path, resume: bool, quiet: bool, labels: Path, voxel: Optional[float], energy: bool,
         snapshots: float, speed: float, strain: float, stress: float = 0.0, **values: Any,
     ) -> None:  # fmt: skip
         cone = _given({"radius": values.pop("radius", None),
@@ -80,7 +84,8 @@ def loading_command(
                      help="Way over the sample's height at which the test ends."),
         click.option("--speed", type=float, default=speed, show_default=True,
                      help="Speed of what moves [m/s]."),
-        click.option("--voxel", type=float, required=True, help="Edge of a voxel [m]."),
+        click.option("--voxel", type=float,
+                     help="Edge of a voxel; a folder of `grains segment` knows it [m]."),
     ):  # fmt: skip
         run = option(run)
     run = run_options(run)
@@ -116,6 +121,10 @@ for command in (
     grains.add_command(command)
 
 
+grains.add_command(synthetic)
+grains.add_command(segment_command)
+
+
 @grains.command()
 @run_options
 def example(folder: Path, resume: bool, quiet: bool) -> None:
@@ -126,7 +135,7 @@ def example(folder: Path, resume: bool, quiet: bool) -> None:
     beside = folder.with_name(f"{folder.name}-sample")
     existed = beside.exists()
     scene = example_grains(beside)
-    labels = beside / SAMPLE
+    labels = beside / LABELS
     try:
         run_scene(scene.resolve(), folder, resume, quiet)
     except BaseException:
@@ -134,3 +143,7 @@ def example(folder: Path, resume: bool, quiet: bool) -> None:
             labels.unlink()
             beside.rmdir()
         raise
+
+
+grains.add_command(sensitivity)
+grains.add_command(material)

@@ -12,6 +12,7 @@ import click
 from snowshed._core import InputError
 from snowshed.cli.commands.run import PATH, run_options
 from snowshed.cli.run_scene import run_scene
+from snowshed.cli.terminal import say
 from snowshed.run.results import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
@@ -52,7 +53,7 @@ def _load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:
     """Load the scenes; what the scripts print goes to stderr."""
 
     def echo(line: str) -> None:
-        click.echo(line, err=True)
+        say(line, err=True)
 
     return load_lua(init, update, echo=None if quiet else echo)
 
@@ -83,6 +84,6 @@ def _run_all(runs: Sequence[LuaRun], folder: Path, *, resume: bool, quiet: bool)
         check_empty(folder)
     for i, run in enumerate(runs, start=1):
         if not quiet:
-            click.echo(f"run {i} of {len(runs)}: {run.name}")
+            say(f"run {i} of {len(runs)}: {run.name}")
         target = folder / run.name
         run_scene(run.scene, target, resume and target.exists(), quiet)

@@ -13,6 +13,7 @@ from snowshed.analysis.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.terminal import say, write_out
 
 PATH = click.Path(path_type=Path)
 
@@ -85,7 +86,7 @@ def geometry(
         between, friction=friction, dx=dx, seeds=seeds, deviations=deviations, trial=trial
     )
     if file is None:
-        click.echo(study.to_toml(), nl=False)
+        write_out(study.to_toml())
     else:
         study.save(file)
 
@@ -174,11 +175,9 @@ def regress(
     rows = rows.of_one_seed() if one_seed else rows
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
     if rows.left_out and not quiet:
-        click.echo(f"note: {rows.left_out} rows have no stack and are left out", err=True)
+        say(f"note: {rows.left_out} rows have no stack and are left out", err=True)
     if rows.moving and not quiet:
-        click.echo(
-            f"note: {rows.moving} stacks were not at rest when their time was over", err=True
-        )
+        say(f"note: {rows.moving} stacks were not at rest when their time was over", err=True)
     try:
         with progress_bar(quiet=quiet, speed_period_s=LONG_PERIOD_S) as progress:
             reports = run(
@@ -197,7 +196,7 @@ def regress(
     if not quiet:
         print_reports(reports)
         model = f" and {MODEL}" if (folder / MODEL).is_file() else ""
-        click.echo(f"tables, figures{model} in {folder}")
+        say(f"tables, figures{model} in {folder}")
 
 
 @click.command()
@@ -242,9 +241,9 @@ def predict(
         extrapolate=extrapolate,
     )
     for objection in found.objections:
-        click.echo(f"warning: EXTRAPOLATED, do not rely on it: {objection}", err=True)
+        say(f"warning: EXTRAPOLATED, do not rely on it: {objection}", err=True)
     if as_json:
-        click.echo(prediction_json(found))
+        write_out(prediction_json(found))
     else:
         panel = f"panel height {height:g} m, length {length:g} m, tilt {tilt:g} degrees"
         print_prediction(found, f"Stack below the panel: {panel}\n{found.kind}, {found.title}")

@@ -1,4 +1,4 @@
-"""The command ``snowshed reproduce``, which comes with the source and not with the package."""
+"""The command ``snowshed reproduce``: publications whose reproduction comes with the source."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from snowshed.cli.deferred import Deferred
 
 #: Folder of the source, if the package is used in place.
 SOURCE = Path(__file__).parents[4]
-PACKAGE = "thesis"
 
 
 class FromSource(Deferred):
@@ -25,17 +24,33 @@ class FromSource(Deferred):
         click.UsageError
             If the source is not at hand.
         """
-        if (SOURCE / PACKAGE / "__init__.py").is_file() and str(SOURCE) not in sys.path:
+        package = str(self.name)
+        if (SOURCE / package / "__init__.py").is_file() and str(SOURCE) not in sys.path:
             sys.path.append(str(SOURCE))
         try:
             return super().load()
         except ModuleNotFoundError as error:
-            if error.name not in (PACKAGE, f"{PACKAGE}.command"):
+            if error.name not in (package, f"{package}.command"):
                 raise
             raise click.UsageError(
-                f"{self.name} comes with the source of snowshed, not with the installed package: "
-                f"run `make {PACKAGE}` there"
+                f"reproduce {package} comes with the source of snowshed, not with the installed "
+                "package: run `make build` there"
             ) from None
 
 
-reproduce = FromSource("reproduce", f"{PACKAGE}.command", "")
+@click.group()
+def reproduce() -> None:
+    """Reproduce a publication: its tables and figures, and verdicts on its claims.
+
+    \b
+    Examples:
+      snowshed reproduce thesis --quick -o thesis
+      snowshed reproduce hagenmuller --quick -o grains
+    """  # noqa: D301 - click wants the control character
+
+
+for name, short_help in (
+    ("thesis", "Chapters 3 to 5 of the thesis on snow that slides off panels."),
+    ("hagenmuller", "What a paper on discrete elements of snow says of its compression."),
+):
+    reproduce.add_command(FromSource(name, f"{name}.command", short_help))

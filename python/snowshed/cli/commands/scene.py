@@ -12,6 +12,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.cli.accuracy import accuracy_option, check_alone, choose
 from snowshed.cli.scene_options import in_terms_of_options, scene_from_options, scene_options
+from snowshed.cli.terminal import say, write_out
 from snowshed.scene.scene import ResolvedScene, Scene
 
 PATH = click.Path(path_type=Path)
@@ -44,7 +45,7 @@ def scene(
     """Write the scene that the same options of ``panel`` would run."""
     ready = resolve_options(preset, snow_preset, options, accuracy)
     if file is None:
-        click.echo(ready.json)
+        write_out(ready.json)
     else:
         ready.save(file)
 
@@ -52,18 +53,24 @@ def scene(
 @click.command()
 def schema() -> None:
     """Print the JSON Schema of a scene."""
-    click.echo(_core.scene_schema())
+    write_out(_core.scene_schema())
 
 
 @click.command()
 @click.argument("one", type=PATH)
 @click.argument("other", type=PATH)
 def compare(one: Path, other: Path) -> None:
-    """Compare the stack heights of a 3D and a 2D results folder."""
-    from snowshed.analysis.dimension_ratio import compare_folders
+    """Compare the stack heights of two results folders.
+
+    Of a 3D and a 2D run the ratio stands beside the rule of thumb of the thesis.
+    """
+    from snowshed.analysis.dimension_ratio import compare_folders, height_ratio, same_dimension
     from snowshed.cli import console
 
-    console.print_ratios(compare_folders(one, other))
+    if same_dimension(one, other):
+        console.print_heights(height_ratio(one, other), one.name, other.name)
+    else:
+        console.print_ratios(compare_folders(one, other))
 
 
 def resolve_options(
@@ -89,5 +96,5 @@ def _accurate(scene: Scene, accuracy: float, *, quiet: bool = False) -> Scene:
     """Return the scene with dx and scheme chosen for an accuracy, and print the choice."""
     choice = choose(accuracy, scene)
     if not quiet:
-        click.echo(choice.reason, err=True)
+        say(choice.reason, err=True)
     return scene.update(choice.values)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import click
 
@@ -67,7 +67,9 @@ DECIDED = {"slab.thickness": 0.1}
 @click.option(
     "--settling",
     metavar="NAME",
-    help="Law by which snow settles between events: vionnet-2012, essery-2013.  [default: none]",
+    default=DEFAULTS.settling,
+    show_default=True,
+    help="Law by which snow settles: vionnet-2012, essery-2013, or none.",
 )
 @click.option(
     "--sintering",
@@ -83,6 +85,21 @@ DECIDED = {"slab.thickness": 0.1}
     show_default=True,
     help="Age of bonds that have the strength of the snow that slides.",
 )
+@click.option(
+    "--strength",
+    metavar="NAME",
+    default=DEFAULTS.strength,
+    show_default=True,
+    help="Relation by which the strength of a slab follows from its density: sigrist-2006, or "
+    "none.",
+)
+@click.option(
+    "--cover",
+    metavar="DEPTH",
+    default=str(DEFAULTS.cover),
+    show_default=True,
+    help="Natural snow cover below the stack: weather (from the file), none, or a depth in m.",
+)
 @click.option("--resume", is_flag=True, help="Go on with an interrupted season.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @scene_options
@@ -97,6 +114,8 @@ def season(
     settling: Optional[str],
     sintering: Optional[str],
     strength_age: float,
+    strength: str,
+    cover: str,
     resume: bool,
     quiet: bool,
     preset: Optional[str],
@@ -114,7 +133,15 @@ def season(
       snowshed season winter.csv --dim 2 --height 0.8 --length 2 --tilt 40 --dx 0.03 -o results
     """  # noqa: D301 - click wants the control character
     settings = SeasonSettings(
-        release_friction, adhesion, catch, new_snow, settling, sintering, strength_age
+        release_friction,
+        adhesion,
+        catch,
+        new_snow,
+        none_or(settling),
+        none_or(sintering),
+        strength_age,
+        none_or(strength),
+        depth_or_word(cover),
     )
     scene = _scene(scene_file, preset, snow_preset, options)
     result = _run(season_file, scene, folder, settings, resume=resume, quiet=quiet)
@@ -122,6 +149,19 @@ def season(
         from snowshed.cli.display.season import print_season
 
         print_season(result, folder)
+
+
+def none_or(name: Optional[str]) -> Optional[str]:
+    """Return the name, or None where it is "none"."""
+    return None if name == "none" else name
+
+
+def depth_or_word(text: str) -> Union[str, float]:
+    """Return a depth, m, if the text is a number, else the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _scene(

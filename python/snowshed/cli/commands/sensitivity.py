@@ -14,6 +14,7 @@ from snowshed.cli.commands.designed_study import (
     computed,
     design_options,
 )
+from snowshed.cli.terminal import say
 
 
 @click.command()
@@ -61,8 +62,8 @@ def sensitivity(
         if found is None:
             return
         stored, name = found
-    note = None if quiet else lambda text: click.echo(f"note: {text}", err=True)
+    note = None if quiet else lambda text: say(f"note: {text}", err=True)
     table = evaluate(stored, folder, method, study=name, measure=measure, note=note)
     if not quiet:
         print_table(method, table)
-        click.echo(f"tables and figures in {folder}")
+        say(f"tables and figures in {folder}")

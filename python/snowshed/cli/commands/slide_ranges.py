@@ -14,6 +14,7 @@ from snowshed._core import InputError
 from snowshed.cli.commands.study import compute_study, print_plan
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.slide_files import removing_copies, terrain_copy
+from snowshed.cli.terminal import say
 from snowshed.io.messages import suggestion
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.scene import Scene
@@ -144,7 +145,7 @@ def run_project_ranges(
         if max_time is not None:
             first.scene.set("events.max_time", max_time)
         if others and not quiet:
-            click.echo(f"{first.release}, {first.sim_type}; {len(others)} others are left out")
+            say(f"{first.release}, {first.sim_type}; {len(others)} others are left out")
         run_ranges(first.scene, folder, options, quiet=quiet)
 
 

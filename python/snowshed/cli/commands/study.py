@@ -11,6 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Failed, Stopped
+from snowshed.cli.terminal import PlainConsole, say, write_out
 from snowshed.io.atomic import write_text
 from snowshed.io.formatting import about
 from snowshed.run.progress import Reporter
@@ -62,7 +63,7 @@ def template(file: Optional[Path]) -> None:
     from snowshed.study.study_file import TEMPLATE
 
     if file is None:
-        click.echo(TEMPLATE, nl=False)
+        write_out(TEMPLATE)
     else:
         write_text(file, TEMPLATE)
 
@@ -185,7 +186,7 @@ def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
     with _outcome_as_exit_code(), Store.open(folder) as store:
         text = store.find(hash_).scene
     if file is None:
-        click.echo(text)
+        write_out(text)
     else:
         write_text(file, text + "\n")
 
@@ -194,8 +195,8 @@ def print_plan(study: Study, jobs: Optional[int]) -> None:
     """Print the number of runs of a study, and their expected time."""
     seconds, at_once = study.expected_duration(jobs=jobs)
     count = len(study.runs())
-    click.echo(f"{study.name}: {count} runs, {at_once} at once, {about(seconds)}")
-    click.echo(f"varying: {', '.join(study.axes) or 'nothing'}")
+    say(f"{study.name}: {count} runs, {at_once} at once, {about(seconds)}")
+    say(f"varying: {', '.join(study.axes) or 'nothing'}")
 
 
 def compute_study(study: Study, folder: Path, *, quiet: bool, **options: Any) -> None:
@@ -222,18 +223,16 @@ def _progress(quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
 
 def _finish(folder: Path, names: list[str], quiet: bool) -> None:
     """Print where the results are; fail if runs have failed."""
-    from rich.console import Console
-
     from snowshed.cli.display.study import print_failures
 
     with _outcome_as_exit_code(), Store.open(folder) as store:
         runs = {run.hash: run for name in names for run in store.runs(name)}
     failed = [run for run in runs.values() if run.status == "failed"]
     if not quiet:
-        print_failures(failed, Console(highlight=False, soft_wrap=True))
+        print_failures(failed, PlainConsole(soft_wrap=True))
         done = len(runs) - len(failed)
-        click.echo(f"{done} of {len(runs)} runs done")
-        click.echo(f"their table: snowshed study export {folder} -o table.csv")
+        say(f"{done} of {len(runs)} runs done")
+        say(f"their table: snowshed study export {folder} -o table.csv")
     if failed:
         listed = ", ".join(run.hash[:12] for run in failed[:LISTED])
         listed += ", ..." if len(failed) > LISTED else ""
@@ -245,4 +244,4 @@ def _warn_of_missing(folder: Path, name: Optional[str]) -> None:
         runs = store.runs(store.named(name))
     missing = sum(run.status == "pending" for run in runs)
     if missing:
-        click.echo(f"note: {missing} of {len(runs)} runs are not computed yet", err=True)
+        say(f"note: {missing} of {len(runs)} runs are not computed yet", err=True)

@@ -7,6 +7,8 @@ from typing import Optional
 
 import click
 
+from snowshed.cli.terminal import say
+
 
 @click.command()
 @click.argument("results", type=click.Path(path_type=Path))
@@ -30,7 +32,7 @@ def vdb(
 
     def show(exported: Exported) -> None:
         content = exported.content
-        click.echo(
+        say(
             f"{exported.file}: {content.mass:.4g} kg in {content.volume:.4g} m3, "
             f"{content.density:.0f} kg/m3, {content.surface_voxels:,} + "
             f"{content.density_voxels:,} voxels"

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Optional
 
-from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
+from snowshed.cli.terminal import PlainConsole
 from snowshed.methods.grains.summary import GrainsSummary
 
 
@@ -36,10 +35,10 @@ def print_grains(summary: GrainsSummary, folder: Path) -> None:
     }.items():
         if value:
             shown.add_row(name, value)
-    Console().print(shown, highlight=False)
-    console = Console(highlight=False, soft_wrap=True)
+    PlainConsole().print(shown)
+    console = PlainConsole(soft_wrap=True)
     for note in summary.notes:
-        console.print(f"[bold yellow]note:[/] {escape(note)}")
+        console.note(note)
     console.print(f"results, curve.csv, grains.png and forces.png in {folder}")
 
 

@@ -6,7 +6,6 @@ import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rich.markup import escape
 from rich.table import Table
 
 from snowshed.analysis.regression.pipeline import TargetReport
@@ -34,7 +33,7 @@ def print_reports(reports: Sequence[TargetReport]) -> None:
             shown.add_row(str(model), *(f"{row[name]:.3f}" for name in QUARTILES))
         wide_console().print(shown)
         for check in report.checks:
-            wide_console().print(f" {check}", markup=False)
+            wide_console().print(f" {check}")
         if report.expression:
             wide_console().print(f" {report.expression}\n")
 
@@ -65,7 +64,7 @@ def print_prediction(prediction: Prediction, title: str) -> None:
     rows = prediction.table
     targets = list(dict.fromkeys(rows["target"]))
     units = {target: f", {TARGETS[target]}" if TARGETS[target] else "" for target in targets}
-    wide_console().print(f"{title}\n", markup=False)
+    wide_console().print(f"{title}\n")
     shown = _table("", ["event", *(f"{TARGET_WORDS[name]}{units[name]}" for name in targets)])
     for event, answers in rows.groupby("event"):
         cells = [
@@ -73,12 +72,11 @@ def print_prediction(prediction: Prediction, title: str) -> None:
             for one in (answers[answers["target"] == target].iloc[0] for target in targets)
         ]
         mark = "\nEXTRAPOLATED" if prediction.extrapolated else ""
-        shown.add_row(f"{event}{mark}", *map(escape, cells))
+        shown.add_row(f"{event}{mark}", *cells)
     wide_console().print(shown)
-    wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].", markup=False)
-    wide_console().print(
-        f" The stack is {measure_named(prediction.measure).label}; {_scene(prediction)}."
-    )
+    label = measure_named(prediction.measure).label
+    wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].")
+    wide_console().print(f" The stack is {'; '.join(filter(None, [label, _scene(prediction)]))}.")
 
 
 def _scene(prediction: Prediction) -> str:
@@ -89,7 +87,7 @@ def _scene(prediction: Prediction) -> str:
         for name, value in known
         if "." in name or name in ("dimension", "dx", "trimming")
     ]
-    return escape(", ".join(told))
+    return ", ".join(told)
 
 
 def prediction_json(prediction: Prediction) -> str:

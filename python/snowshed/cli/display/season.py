@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from snowshed.cli.terminal import plain_table, wide_console
-from snowshed.run.season.driver import SeasonResult
+from snowshed.run.season.driver import SeasonResult, verdict
 
 SEASON_TABLE = {
     "date": ("date", "{}"),
@@ -20,7 +20,9 @@ SEASON_TABLE = {
     "hold\nPa": ("resisting_pa", "{:.0f}"),
     "stack\nheight, m": ("stack_height_m", "{:.2f}"),
     "stack\nlength, m": ("stack_length_m", "{:.2f}"),
+    "cover\nm": ("cover_m", "{:.2f}"),
     "clearance\nm": ("clearance_m", "{:.2f}"),
+    "to crest\nm": ("crest_clearance_m", "{:.2f}"),
 }
 SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
 
@@ -35,26 +37,9 @@ def print_season(result: SeasonResult, folder: Path) -> None:
     for row in result.table.to_dict("records"):
         shown.add_row(*(_cell(row[name], form) for name, form in columns.values()))
     console.print(shown)
-    for line in (*verdict(result), *(f"note: {note}" for note in result.notes)):
+    for line in (verdict(result), *(f"note: {note}" for note in result.notes)):
         console.print(line)
     console.print(f"season.csv and season.png in {folder}")
-
-
-def verdict(result: SeasonResult) -> list[str]:
-    """Return a sentence on when the stack reaches the panel's lower edge."""
-    if not result.simulated:
-        return []
-    return [
-        _reached("the snow below the panel's lower edge reaches it", result.burial_event, result),
-        _reached("the stack is as high as the lower edge", result.crest_event, result),
-    ]
-
-
-def _reached(what: str, event: int | None, result: SeasonResult) -> str:
-    if event is None:
-        return f"{what}: not within {result.simulated} slide-offs"
-    rows = result.table[result.table["event"] == event]
-    return f"{what}: with event {event}, {rows['date'].iloc[0]}"
 
 
 def _cell(value: Any, form: str) -> str:

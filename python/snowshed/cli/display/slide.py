@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
 from snowshed.analysis.hazard_maps import LEVELS, HazardMaps, uncertainty
+from snowshed.cli.terminal import PlainConsole
 from snowshed.run.slides import SlideSummary
 
 
@@ -31,10 +30,10 @@ def print_slide(summary: SlideSummary, folder: Path) -> None:
         "drop": f"{summary.drop_m:.1f} m",
     }.items():
         shown.add_row(name, value)
-    Console().print(shown, highlight=False)
-    console = Console(highlight=False, soft_wrap=True)
+    PlainConsole().print(shown)
+    console = PlainConsole(soft_wrap=True)
     for note in summary.notes:
-        console.print(f"[bold yellow]note:[/] {escape(note)}")
+        console.note(note)
     console.print(f"results, maps, slide.html and slide.png in {folder}")
 
 
@@ -46,7 +45,7 @@ def print_hazard(maps: HazardMaps, folder: Path) -> None:
         shown.add_column(f"at least {100 * level:.0f} %", justify="right")
     for one in maps.exceedances:
         shown.add_row(one.label, *(f"{maps.area(one, level):,.0f}" for level in LEVELS))
-    console = Console(highlight=False, soft_wrap=True)
+    console = PlainConsole(soft_wrap=True)
     console.print(shown)
     console.print(uncertainty(maps.runs))
     if maps.failed:

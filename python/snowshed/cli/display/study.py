@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from rich.console import Console
-
+from snowshed.cli.terminal import PlainConsole
 from snowshed.io.formatting import about
 from snowshed.run.progress import Progress
 from snowshed.study.owner import is_alive
@@ -25,10 +24,10 @@ def announcement(progress: Progress) -> str:
 
 def print_status(store: Store) -> None:
     """Print the status of the runs, study by study."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = PlainConsole(soft_wrap=True)
     for name in store.studies():
         runs = store.runs(name)
-        console.print(f"{name}: {_runs(len(runs))}", style="bold", markup=False)
+        console.print(f"{name}: {_runs(len(runs))}", style="bold")
         alive = {run.owner for run in runs if run.owner and is_alive(store, run.owner)}
         kinds = Counter("running" if run.owner in alive else run.status for run in runs)
         for status, meaning in (
@@ -42,11 +41,11 @@ def print_status(store: Store) -> None:
         print_failures(runs, console)
 
 
-def print_failures(runs: Sequence[StoredRun], console: Console) -> None:
+def print_failures(runs: Sequence[StoredRun], console: PlainConsole) -> None:
     """Print the runs that failed, with their errors."""
     for run in runs:
         if run.status == "failed":
-            console.print(f"  {run.hash[:12]} failed: {run.error}", markup=False)
+            console.print(f"  {run.hash[:12]} failed: {run.error}")
 
 
 def _runs(count: int) -> str:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import click
-
 import snowshed._core as _core
-from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.cli.terminal import plain_table, say, wide_console
 from snowshed.io.formatting import number
 from snowshed.run.machine import cpu_name
 from snowshed.run.self_test import Result
@@ -19,7 +17,7 @@ def print_facts() -> None:
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02}).resolve()
     plan = _core.plan(scene.json, scene.base_dir)
     threads = f"{plan['threads']} threads at most"
-    click.echo(f"snowshed {_core.version}, {plan['kernels']} kernels, {threads}, {cpu_name()}")
+    say(f"snowshed {_core.version}, {plan['kernels']} kernels, {threads}, {cpu_name()}")
 
 
 def print_results(results: Iterable[Result]) -> None:

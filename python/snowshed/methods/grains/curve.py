@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from snowshed._core import InputError
 from snowshed.io.arrays import Floats
-from snowshed.io.csv_table import read_csv
+from snowshed.io.csv_table import parse_csv, read_csv
 from snowshed.io.paths import PathLike
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: What every curve has; energies follow where they are kept.
 COLUMNS = (
@@ -89,14 +93,28 @@ class LoadingCurve:
         OSError
             If it cannot be read.
         """
-        table = read_csv(Path(path), as_text=True)  # pandas rounds its numbers
+        return cls._of(read_csv(Path(path), as_text=True), str(path))  # pandas rounds its numbers
+
+    @classmethod
+    def parse(cls, text: str, where: str) -> LoadingCurve:
+        """Return the curve of the text of a ``curve.csv``; errors name `where` it was.
+
+        Raises
+        ------
+        InputError
+            If it is no such table.
+        """
+        return cls._of(parse_csv(text, where, as_text=True), where)
+
+    @classmethod
+    def _of(cls, table: pd.DataFrame, where: str) -> LoadingCurve:
         missing = [name for name in COLUMNS if name not in table]
         if missing:
-            raise InputError(f"{path}: no curve of a loading test: no column {missing[0]}")
+            raise InputError(f"{where}: no curve of a loading test: no column {missing[0]}")
         try:
             return cls({str(name): table[name].to_numpy().astype(np.float64) for name in table})
         except ValueError as error:
-            raise InputError(f"{path}: {error}") from None
+            raise InputError(f"{where}: {error}") from None
 
     def text(self) -> str:
         """Return the table as CSV; every number reads back to the same bits."""

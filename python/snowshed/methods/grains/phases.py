@@ -21,6 +21,8 @@ BIN = 0.01  # of strain, over which stresses are averaged before hardening is lo
 DOUBLED = math.log(2.0)  # the rise by which hardening counts as such
 #: Rows of the elastic phase without which no modulus is told.
 LEAST_ROWS = 4
+#: R2 of the line through the elastic phase below which it is none.
+LINEAR = 0.95
 PEAK_BELOW = 0.05  # strain below which the peak of the brittle phase is looked for
 MEANS = ((0.05, 0.10), (0.10, 0.15), (0.25, 0.30))  # strains between which the stress is averaged
 

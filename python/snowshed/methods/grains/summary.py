@@ -8,14 +8,12 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
-from snowshed.methods.grains.phases import MEANS, Phases, find_phases, mean_stress
+from snowshed.methods.grains.phases import LINEAR, MEANS, Phases, find_phases, mean_stress
 
 #: Grains below which one sample hardly stands for its snow.
 FEW_GRAINS = 1000
 #: Mean difference of the stresses on the two plates, over their mean, that inertia may make.
 UNBALANCED = 0.2
-#: R2 of the line through the elastic phase below which it is none.
-LINEAR = 0.95
 #: density_scaling times speed squared, m2/s2, up to which inertia was seen not to raise stresses.
 INERTIA = 0.004
 

@@ -4,7 +4,8 @@ from snowshed.run.season.accumulation import Day, accumulate
 from snowshed.run.season.driver import SeasonResult, run_season
 from snowshed.run.season.release import Balance, balance
 from snowshed.run.season.settings import SeasonSettings
-from snowshed.run.season.weather import Weather, read_season
+from snowshed.run.season.weather import read_season
+from snowshed.run.season.weather_row import Weather
 
 __all__ = [
     "Balance",

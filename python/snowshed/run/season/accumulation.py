@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional
 
 from snowshed.run.ageing import Interval
 from snowshed.run.season.column import SnowColumn
 from snowshed.run.season.release import Balance, balance
 from snowshed.run.season.settings import SeasonSettings
-from snowshed.run.season.weather import Weather
+from snowshed.run.season.weather_row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 
@@ -30,8 +30,13 @@ class Day:
         normal to the panel, m.
     balance
         Driving and resisting stress of this snow.
+    released
+        Whether the snow was released.
     event
-        Number of the release, from 1; None if the snow stayed.
+        Number of the slide-off that follows, from 1; None if the snow stayed, or waits for that of
+        later releases (`SeasonSettings.pool_below`).
+    slab_load, slab_thickness
+        Of the snow of that slide-off, as `load` and `thickness`.
     """
 
     weather: Weather
@@ -39,7 +44,10 @@ class Day:
     load: float
     thickness: float
     balance: Balance
-    event: Optional[int]
+    released: bool = False
+    event: Optional[int] = None
+    slab_load: float = 0.0
+    slab_thickness: float = 0.0
 
 
 def accumulate(
@@ -73,7 +81,6 @@ def accumulate(
     slope = math.cos(math.radians(tilt))
     snow = SnowColumn(load_factor=gravity * slope)
     days: list[Day] = []
-    event = 0
     for row, earlier in zip(season, [None, *season]):
         if earlier is not None:
             elapsed = (row.date - earlier.date).total_seconds()
@@ -82,12 +89,29 @@ def accumulate(
         if density is not None:
             snow.add(settings.catch * density * row.snowfall * slope, density)
         held = _balance(row, settings, snow.mass, tilt, gravity)
-        released = held.releases
-        event += released
-        days.append(Day(row, density, snow.mass, snow.thickness, held, event if released else None))
-        if released:
+        days.append(Day(row, density, snow.mass, snow.thickness, held, held.releases))
+        if held.releases:
             snow.clear()
-    return days
+    return _slide_offs(days, settings.pool_below)
+
+
+def _slide_offs(days: Sequence[Day], pool_below: float) -> list[Day]:
+    """Return the days with the slide-offs that the releases make.
+
+    Snow of thin releases waits until it makes a slab; what is left of it slides last.
+    """
+    releases = [number for number, day in enumerate(days) if day.released]
+    made = list(days)
+    event, load, thickness = 0, 0.0, 0.0
+    for number in releases:
+        load, thickness = load + days[number].load, thickness + days[number].thickness
+        if thickness >= pool_below or number == releases[-1]:
+            event += 1
+            made[number] = replace(
+                days[number], event=event, slab_load=load, slab_thickness=thickness
+            )
+            load, thickness = 0.0, 0.0
+    return made
 
 
 def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
 from snowshed.io.arrays import Floats
 from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.snow.stack.measure import level
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,9 @@ class Clearance:
     crest: float
 
 
-def clearance(scene: Mapping[str, Any], outline: Floats, height: float) -> Clearance:
+def clearance(
+    scene: Mapping[str, Any], outline: Floats, height: float, cover: float = 0.0
+) -> Clearance:
     """Measure the clearance over a stack.
 
     Parameters
@@ -41,6 +46,8 @@ def clearance(scene: Mapping[str, Any], outline: Floats, height: float) -> Clear
         Profile of the stack on levelled ground, m, as in outline.csv.
     height
         Of the stack, m.
+    cover
+        Depth of the natural snow cover, m, on top of which the stack lies.
 
     Examples
     --------
@@ -52,7 +59,7 @@ def clearance(scene: Mapping[str, Any], outline: Floats, height: float) -> Clear
     (0.251, 0.13)
     """
     _, (x, z) = panel_ends(scene)
-    return Clearance(max(z - _surface(outline, x), 0.0), z - height)
+    return Clearance(max(z - cover - _surface(outline, x), 0.0), z - cover - height)
 
 
 def below_panel(scene: Mapping[str, Any], outline: Floats) -> Floats:
@@ -88,6 +95,70 @@ def _surface(outline: Floats, x: float) -> float:
         return 0.0
     places, heights = outline[:, 0], outline[:, 1]
     return float(np.interp(x, places, heights, left=0.0, right=0.0))
+
+
+#: What may touch the panel first, by the columns of the table that tell it.
+CAUSES = (
+    ("slab", "the snow on the panel and the stack touch"),
+    ("below", "the snow below the lower edge reaches it"),
+    ("crest", "the crest of the stack is as high as the lower edge"),
+    ("cover", "the natural snow cover reaches the lower edge"),
+)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The first contact of the snow below with the panel.
+
+    Attributes
+    ----------
+    date
+        As in the season's table.
+    event
+        The last slide-off until then; None: there was none.
+    cause
+        A name in `CAUSES`.
+    """
+
+    date: str
+    event: Optional[int]
+    cause: str
+
+    @property
+    def words(self) -> str:
+        """The cause in words."""
+        return dict(CAUSES)[self.cause]
+
+
+def first_contact(table: pd.DataFrame, dx: float) -> Optional[Contact]:
+    """Return the first row of a season after which anything touches the panel; None: nothing does.
+
+    Parameters
+    ----------
+    table
+        As in season.csv.
+    dx
+        Size of the grid cells, m: a gap of one cell counts as none.
+    """
+    import pandas as pd
+
+    sunk = table["stack_height_m"] - table["settled_height_m"]
+    reached = {
+        "slab": table["joined"] > 0,
+        "below": table["settled_clearance_m"] <= dx,
+        "crest": table["crest_clearance_m"] + sunk <= dx,
+    }
+    touched = pd.DataFrame(reached).to_numpy()
+    rows = np.flatnonzero(touched.any(axis=1))
+    if len(rows) == 0:
+        return None
+    row = int(rows[0])
+    cause = list(reached)[int(np.argmax(touched[row]))]
+    if not table["stack_height_m"].iloc[row] > 0.0:
+        cause = "cover"
+    events = table["event"].iloc[: row + 1].dropna()
+    event = int(events.iloc[-1]) if len(events) else None
+    return Contact(str(table["date"].iloc[row]), event, cause)
 
 
 def first_reached(clearances: Sequence[float], dx: float) -> Optional[int]:

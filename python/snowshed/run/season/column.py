@@ -55,6 +55,21 @@ class SnowColumn:
             self.masses = np.append(self.masses, mass)
             self.densities = np.append(self.densities, density)
 
+    def melt(self, mass: float) -> None:
+        """Take a mass, kg/m2, away from the top.
+
+        Examples
+        --------
+        >>> column = SnowColumn(load_factor=9.81)
+        >>> column.add(20.0, 100.0), column.add(10.0, 50.0), column.melt(15.0)
+        (None, None, None)
+        >>> column.masses.tolist()
+        [15.0]
+        """
+        above = np.cumsum(self.masses[::-1])[::-1] - self.masses
+        left = np.clip(self.masses - np.maximum(mass - above, 0.0), 0.0, None)
+        self.masses, self.densities = left[left > 0.0], self.densities[left > 0.0]
+
     def clear(self) -> None:
         """Take all snow away."""
         self.masses, self.densities = np.zeros(0), np.zeros(0)

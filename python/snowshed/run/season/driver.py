@@ -8,20 +8,20 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
-from snowshed.io.atomic import write_text
-from snowshed.io.csv_table import Table, read_csv
+from snowshed.io.atomic import remove_leftovers, write_text
+from snowshed.io.csv_table import Table, csv_text, read_csv
 from snowshed.methods.registry import resolution_of
 from snowshed.run.events import run_events
 from snowshed.run.progress import Reporter
 from snowshed.run.results import check_empty
 from snowshed.run.season.accumulation import Day, accumulate, pauses
-from snowshed.run.season.clearance import first_reached, panel_ends
-from snowshed.run.season.notes import first_staying, notes
+from snowshed.run.season.clearance import Contact, first_contact, first_reached, panel_ends
+from snowshed.run.season.notes import assumptions, first_staying, notes
 from snowshed.run.season.results import SeasonFolder
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
 from snowshed.run.season.table import season_table
-from snowshed.run.season.weather import Season, read_season
+from snowshed.run.season.weather import Season, read_weather
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 
 if TYPE_CHECKING:
@@ -39,6 +39,9 @@ class SeasonResult:
         As in season.csv.
     releases, simulated
         Number of releases, and of those that were simulated.
+    contact
+        The first contact of any kind between the snow below and the panel: the verdict. None if
+        there is none.
     burial_event
         First event after which the snow below the panel's lower edge reaches it; None if there is
         none.
@@ -54,6 +57,7 @@ class SeasonResult:
     table: pd.DataFrame
     releases: int
     simulated: int
+    contact: Optional[Contact]
     burial_event: Optional[int]
     crest_event: Optional[int]
     staying_event: Optional[int]
@@ -111,7 +115,7 @@ def run_season(
     0
     """
     settings = settings or SeasonSettings()
-    rows = read_season(season)
+    rows, of_reading = read_weather(season)
     ready = resolve_scene(scene)
     data: dict[str, Any] = ready.data
     if "panel" not in data:
@@ -120,7 +124,7 @@ def run_season(
     folder = SeasonFolder(out_dir)
     if not resume:
         check_empty(folder.folder)
-    slides = season_scene(ready, days) if any(day.event for day in days) else None
+    slides = season_scene(ready, days, settings) if any(day.event for day in days) else None
     if slides is not None:
         run_events(
             slides,
@@ -131,7 +135,8 @@ def run_season(
             pictures=pictures,
         )
     folder.folder.mkdir(parents=True, exist_ok=True)
-    result = _result(slides or ready, days, settings, folder)
+    remove_leftovers(folder.folder)
+    result = _result(slides or ready, days, settings, folder, of_reading)
     _write(result, slides or ready, settings, folder, pictures=pictures)
     return result
 
@@ -141,6 +146,7 @@ def _result(
     days: Sequence[Day],
     settings: SeasonSettings,
     folder: SeasonFolder,
+    of_reading: Sequence[str],
 ) -> SeasonResult:
     import pandas as pd
 
@@ -152,12 +158,17 @@ def _result(
     staying = first_staying(events)
     return SeasonResult(
         table,
-        releases=int(pd.notna(table["event"]).sum()),
+        releases=sum(day.released for day in days),
         simulated=len(simulated),
+        contact=first_contact(table, dx),
         burial_event=first_reached(simulated["clearance_m"].tolist(), dx),
         crest_event=first_reached(simulated["crest_clearance_m"].tolist(), dx),
         staying_event=staying,
-        notes=notes(dx, days, settings, events, staying),
+        notes=[
+            *of_reading,
+            *assumptions(table, days, settings),
+            *notes(dx, days, settings, events, staying),
+        ],
     )
 
 
@@ -176,8 +187,9 @@ def _write(
     pictures: bool,
 ) -> None:
     summary = {name: value for name, value in vars(result).items() if name != "table"}
+    summary["contact"] = None if result.contact is None else asdict(result.contact)
     text = json.dumps({"settings": asdict(settings), **summary}, indent=2, default=list)
-    write_text(folder.table, result.table.to_csv(index=False, float_format="%.6g"))
+    write_text(folder.table, csv_text(result.table, float_format="%.6g"))
     write_text(folder.summary, text + "\n")
     if pictures:
         from snowshed.plot.figure_style import save
@@ -205,14 +217,17 @@ def drawn(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]
         outlines,
         scene,
         panel=panel_ends(scene),
-        burial_event=result.burial_event,
-        title=f"{result.releases} releases{_verdict(result)}",
+        contact=result.contact,
+        title=f"{result.releases} releases; {verdict(result)}",
     )
 
 
-def _verdict(result: SeasonResult) -> str:
-    if result.burial_event is not None:
-        return f"; the stack reaches the panel's lower edge with event {result.burial_event}"
+def verdict(result: SeasonResult) -> str:
+    """Return in a few words whether, when and how anything first touches the panel."""
+    contact = result.contact
+    if contact is not None:
+        after = "before any slide-off" if contact.event is None else f"event {contact.event}"
+        return f"{contact.words}, {contact.date[:10]} ({after})"
     if result.simulated:
-        return "; the stack does not reach the panel's lower edge"
-    return ""
+        return f"nothing reaches the panel within {result.simulated} slide-offs"
+    return "nothing slid"

@@ -23,6 +23,45 @@ def first_staying(events: pd.DataFrame) -> Optional[int]:
     return int(stayed.iloc[0]) if len(stayed) else None
 
 
+def assumptions(
+    table: pd.DataFrame, days: Sequence[Day], settings: SeasonSettings
+) -> Iterator[str]:
+    """Yield what a season assumes of the ground, the settling and the strength of the snow.
+
+    Parameters
+    ----------
+    table
+        As in season.csv.
+    days, settings
+        Of the season.
+    """
+    deepest = table["cover_m"].max()
+    if settings.cover == "none" or not deepest:
+        yield "the ground is bare: the stack lies on no natural snow cover"
+    elif not isinstance(settings.cover, str):
+        yield f"the stack lies on a natural snow cover of {settings.cover:g} m all season, as given"
+    else:
+        measured = any(day.weather.snow_depth is not None for day in days)
+        source = "measured" if measured else "from the same snowfalls, settled and melted"
+        date = table["date"].iloc[int(table["cover_m"].argmax())][:10]
+        yield (
+            f"the stack lies on a natural snow cover ({source}), at most {deepest:.2f} m deep on "
+            f"{date}"
+        )
+    if settings.settling is None:
+        yield "no snow settles"
+    if settings.strength is None:
+        yield "slabs of all densities have the strength of the scene's snow"
+    else:
+        yield f"the strength of a slab follows from its density ({settings.strength})"
+    if settings.pool_below:
+        slides = sum(day.event is not None for day in days)
+        yield (
+            f"{sum(day.released for day in days)} releases slide in {slides} slide-offs, of slabs "
+            f"of {1000 * settings.pool_below:g} mm and more"
+        )
+
+
 def notes(
     dx: float,
     days: Sequence[Day],
@@ -58,7 +97,7 @@ def _of_slabs(dx: float, days: Sequence[Day], settings: SeasonSettings) -> Itera
     if estimated:
         yield f"{estimated} densities are estimates ({settings.density})"
     if released:
-        thinnest = min(day.thickness for day in released)
+        thinnest = min(day.slab_thickness for day in released)
         if thinnest < 2.0 * dx:
             yield (
                 f"the thinnest slab has {1000 * thinnest:.1f} mm, less than two cells of "

@@ -33,6 +33,8 @@ SEASON_COLUMNS = (
     "settled_height_m",
     "settled_clearance_m",
     "left_on_panel_kg",
+    "cover_m",
+    "joined",
 )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from snowshed.run.season.accumulation import Day
 from snowshed.run.season.clearance import below_panel, clearance
+from snowshed.run.season.cover import natural_cover
 from snowshed.run.season.results import SEASON_COLUMNS
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.stack_settling import SettlingStack
@@ -44,13 +45,14 @@ def season_table(
 
     stack = _Stack(scene, settings, events, outlines)
     rows = []
-    for day, earlier in zip(days, [None, *days]):
+    cover = natural_cover([day.weather for day in days], settings, scene["gravity"])
+    for day, earlier, depth in zip(days, [None, *days], cover):
         if earlier is not None:
             elapsed = day.weather.date - earlier.weather.date
             stack.settling.wait(elapsed.total_seconds(), earlier.weather.temperature)
         if day.event is not None:
             stack.take(day.event)
-        rows.append({**_panel_columns(day), **stack.columns()})
+        rows.append({**_panel_columns(day), **stack.columns(depth)})
     return pd.DataFrame(rows, columns=list(SEASON_COLUMNS)).astype({"event": "Int64"})
 
 
@@ -60,7 +62,7 @@ def _panel_columns(day: Day) -> dict[str, Any]:
     return {
         "event": day.event,
         "date": weather.date.date().isoformat() if midnight else weather.date.isoformat(),
-        "released": "no" if day.event is None else "yes",
+        "released": "yes" if day.released else "no",
         "snowfall_m": weather.snowfall,
         "density_kg_m3": math.nan if day.density is None else day.density,
         "temperature_c": weather.temperature,
@@ -85,7 +87,7 @@ class _Stack:
         self.events = {int(row["event"]): row for row in events.to_dict("records")}
         self.outlines = outlines
         self.settling = SettlingStack(settings.settling_law, scene["gravity"])
-        self.height, self.length, self.left = 0.0, 0.0, 0.0
+        self.height, self.length, self.left, self.joined = 0.0, 0.0, 0.0, 0
         self.outline = np.zeros((0, 2))
 
     def take(self, event: int) -> None:
@@ -93,17 +95,18 @@ class _Stack:
         row = self.events[event]
         self.height, self.length = float(row["height_m"]), float(row["length_m"])
         self.left = float(row["on_panel_kg"])
+        self.joined = int(row.get("joined") or 0)
         self.outline = self.outlines.loc[self.outlines["event"] == event, ["x", "z"]].to_numpy()
         below = below_panel(self.scene, self.outline)
         if 0 < len(below) < len(self.outline):
             self.height = min(self.height, float(below[:, 1].max()))
         self.settling.take(self.height, float(row["density_kg_m3"]))
 
-    def columns(self) -> dict[str, float]:
-        """Return the columns of the table that the stack fills."""
+    def columns(self, cover: float) -> dict[str, float]:
+        """Return the columns of the table that the stack on a cover of some depth fills."""
         ratio = self.settling.ratio
-        now = clearance(self.scene, self.outline, self.height)
-        settled = clearance(self.scene, self.outline * [1.0, ratio], ratio * self.height)
+        now = clearance(self.scene, self.outline, self.height, cover)
+        settled = clearance(self.scene, self.outline * [1.0, ratio], ratio * self.height, cover)
         return {
             "stack_height_m": self.height,
             "stack_length_m": self.length,
@@ -112,4 +115,6 @@ class _Stack:
             "settled_height_m": ratio * self.height,
             "settled_clearance_m": settled.below,
             "left_on_panel_kg": self.left,
+            "cover_m": cover,
+            "joined": self.joined,
         }

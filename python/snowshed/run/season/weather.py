@@ -18,39 +18,14 @@ from typing import TYPE_CHECKING, Optional, Union
 from snowshed._core import InputError
 from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.messages import quoted
+from snowshed.io.number_text import number_in
+from snowshed.io.weather import Station, read_station
+from snowshed.run.season.observed import days_of
+from snowshed.run.season.weather_row import MOST_SNOWFALL, Weather
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-@dataclass(frozen=True)
-class Weather:
-    """One row of a season.
-
-    Attributes
-    ----------
-    line
-        Line in the file, or row in the table, from 1.
-    date
-        Date at which the snow had fallen.
-    snowfall
-        Depth of the new snow on level ground, m.
-    density
-        Density of the new snow, kg/m3; None: not measured.
-    temperature
-        Temperature of the air, degrees C, until the next row.
-    friction, adhesion
-        Friction and adhesion (Pa) of the panel on that day; None: those of the settings.
-    """
-
-    line: int
-    date: datetime
-    snowfall: float
-    density: Optional[float]
-    temperature: float
-    friction: Optional[float] = None
-    adhesion: Optional[float] = None
 
 
 @dataclass(frozen=True)
@@ -62,14 +37,20 @@ class _Column:
     unit: str
     required: bool = False  # the column
     filled: bool = False  # every cell of it
+    hint: str = ""  # what a number beyond the range may be
 
 
+#: Snowfalls of which half are deeper are not in metres.
+TYPICAL_SNOWFALL = 0.7  # m
 COLUMNS: Mapping[str, _Column] = {
-    "snowfall_m": _Column(0.0, 10.0, "m", required=True, filled=True),
+    "snowfall_m": _Column(
+        0.0, MOST_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
+    ),
     "temperature_c": _Column(-90.0, 40.0, "degrees C", required=True, filled=True),
     "density_kg_m3": _Column(10.0, 700.0, "kg/m3"),
     "friction": _Column(0.0, 10.0, ""),
     "adhesion_pa": _Column(0.0, 1e6, "Pa"),
+    "snow_depth_m": _Column(0.0, 15.0, "m", hint="; is it in cm, mm or inches?"),
 }
 ALLOWED = ("date", *COLUMNS)
 #: Other spellings of units.
@@ -86,9 +67,11 @@ def read_season(season: Season) -> list[Weather]:
     Parameters
     ----------
     season
-        A CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or timestamps,
-        increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c`` and, if
-        known, ``density_kg_m3``, ``friction`` and ``adhesion_pa``. The names tell the units. If
+        A weather file in one of the formats of `snowshed.io.weather.FORMATS`, recognised by its
+        content, or a CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or
+        timestamps, increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c``
+        and, if known, ``density_kg_m3``, ``friction``, ``adhesion_pa`` and ``snow_depth_m`` (of the
+        natural snow cover). The names tell the units. If
         ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of `Weather`
         are returned unchanged.
 
@@ -108,18 +91,39 @@ def read_season(season: Season) -> list[Weather]:
     >>> [(row.snowfall, row.temperature) for row in read_season(table)]
     [(0.2, -4.0), (0.0, 1.5)]
     """
+    return read_weather(season)[0]
+
+
+def read_weather(season: Season) -> tuple[list[Weather], list[str]]:
+    """Return the rows of a season, as `read_season`, and notes on what was assumed in reading.
+
+    Parameters
+    ----------
+    season
+        As for `read_season`, which raises the same errors.
+    """
     if isinstance(season, (str, os.PathLike)):
+        station = read_station(Path(season))
+        if station is not None:
+            return _of_station(station, str(season))
         hint = f"the first line names the columns: {', '.join(ALLOWED)}"
         table, name = read_text_table(Path(season), hint, _check_columns), str(season)
     elif isinstance(season, Sequence):
-        return [*season]
+        return [*season], []
     else:
         table, name = frame_as_text(season, "the season", index="date"), "the season"
         _check_columns(table.columns, name)
         _check_units(season.attrs.get("units", {}))
     rows = [_weather(row) for row in table.rows]
     _check_season(rows, table.rows, name)
-    return rows
+    return rows, []
+
+
+def _of_station(station: Station, source: str) -> tuple[list[Weather], list[str]]:
+    rows, notes = days_of(station, source)
+    places = [Row(source, f"line {row.line}", row.line, {}) for row in rows]
+    _check_season(rows, places, source)
+    return rows, [f"the weather is of a file in the format {station.format}", *notes]
 
 
 def _check_columns(names: Sequence[str], where: str) -> None:
@@ -157,6 +161,7 @@ def _weather(row: Row) -> Weather:
         number["temperature_c"] or 0.0,
         number["friction"],
         number["adhesion_pa"],
+        number["snow_depth_m"],
     )
 
 
@@ -165,12 +170,14 @@ def _number(text: str, column: _Column, where: str) -> Optional[float]:
         if column.filled:
             raise InputError(f"{where}: empty; give a number ({_range(column)})")
         return None
-    try:
-        value = float(text)
-    except ValueError:
-        raise InputError(f"{where}: {quoted(text)} is not a number ({_range(column)})") from None
-    if not (math.isfinite(value) and column.low <= value <= column.high):
-        raise InputError(f"{where}: {value:g} is outside the allowed range ({_range(column)})")
+    value = number_in(text)
+    if math.isnan(value):
+        raise InputError(f"{where}: {quoted(text)} is not a number ({_range(column)})")
+    if not column.low <= value <= column.high:
+        hint = column.hint if value > column.high else ""
+        raise InputError(
+            f"{where}: {value:g} is outside the allowed range ({_range(column)}){hint}"
+        )
     return value
 
 
@@ -182,11 +189,13 @@ def _date(text: str, where: str) -> datetime:
     """Read a date or a time; one with an offset is turned into universal time."""
     try:
         date = datetime.fromisoformat(text.replace("Z", "+00:00"))
-    except ValueError:
+        if date.tzinfo is not None:
+            date = date.astimezone(timezone.utc).replace(tzinfo=None)
+    except (ValueError, OverflowError):
         raise InputError(
             f"{where}: {quoted(text)} is not a date such as 2024-12-31 or 2024-12-31T18:00"
         ) from None
-    return date if date.tzinfo is None else date.astimezone(timezone.utc).replace(tzinfo=None)
+    return date
 
 
 def _check_season(season: Sequence[Weather], rows: Sequence[Row], name: str) -> None:
@@ -200,5 +209,12 @@ def _check_season(season: Sequence[Weather], rows: Sequence[Row], name: str) -> 
                 f"{row.where}, column date: {later.date.isoformat(' ')} is not after "
                 f"{before.place}, {earlier.date.isoformat(' ')}"
             )
-    if not any(row.snowfall for row in season):
+    falls = sorted(row.snowfall for row in season if row.snowfall)
+    if not falls:
         raise InputError(f"{name}: it never snows; every snowfall_m is 0")
+    middle = falls[len(falls) // 2]
+    if len(falls) >= 3 and middle > TYPICAL_SNOWFALL:
+        raise InputError(
+            f"{name}, column snowfall_m: half of the snowfalls are of {middle:g} m and more; is it "
+            "in cm, mm or inches?"
+        )

@@ -98,8 +98,8 @@ def gable_roof(
     """Return a house under a roof of two equal slopes, both with snow.
 
     The slope that falls toward +x is the scene's panel; what slides off the other piles up on the
-    far side of the house and belongs to the stack too: read the columns of the largest connected
-    body. Parameters and errors are those of `shed_roof`; `length` is that of one slope.
+    far side of the house and belongs to the stack too; what stays on either slope does not.
+    Parameters and errors are those of `shed_roof`; `length` is that of one slope.
 
     Examples
     --------

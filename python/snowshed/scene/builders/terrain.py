@@ -50,8 +50,8 @@ def on_terrain(
 
     The plane ground is taken away, and an obstacle "terrain" takes its place. It is shifted so that
     the terrain right below the lower edge of the panel (or at x = 0, without one) is at z = 0:
-    the panel's height is that above the terrain there. The stack's height is measured from z = 0,
-    not from the terrain: look at the pictures too.
+    the panel's height is that above the terrain there. The stack's height is measured from the
+    terrain below it.
 
     Parameters
     ----------

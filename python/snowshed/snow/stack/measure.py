@@ -2,8 +2,9 @@
 
 The steps, in this order:
 
-1. Snow still on the panel is set aside and reported.
-2. The ground is turned level (A.4.4).
+1. The ground is turned level (A.4.4). Heights are those above the ground below.
+2. Snow that has not come down is set aside and reported: what lies on the panel or hangs over its
+   edge, what lies on a structure, and what still falls (module ``support``).
 3. The outermost 3 % are dropped (A.4.1, A.4.2; module ``trimming``). In 2D the thesis can be read
    in two ways: a stack is measured by one, which has a name, and its extent is given by both.
 4. The surface is extracted (A.4.3; module ``surface``); height, length, head, tail and width are
@@ -26,15 +27,20 @@ from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
 from snowshed.io.array_arguments import column, finite, flags, points, positive
-from snowshed.io.arrays import Floats
+from snowshed.io.arrays import Booleans, Floats
 from snowshed.snow.stack.connected_components import largest_body
-from snowshed.snow.stack.surface import outline, surface_particles
+from snowshed.snow.stack.support import supports
+from snowshed.snow.stack.surface import outline_particles, surface_particles
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS, check_trimming, inliers
 
 
 @dataclass(frozen=True)
 class Extent:
-    """The extent of snow in metres; x from the panel's centre, z from the ground. NaN: no snow."""
+    """The extent of snow in metres; x from the panel's centre, z from the ground. NaN: no snow.
+
+    `ground` (k,) is where the ground lies under the points of `outline`: z, m, on levelled ground;
+    zero but on terrain.
+    """
 
     height: float = 0.0
     length: float = 0.0
@@ -44,6 +50,7 @@ class Extent:
     crest: float = np.nan  # x of the highest point
     # (k, 2): x and z of the highest particle in each of at most 30 columns
     outline: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    ground: Floats = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True)
@@ -63,7 +70,13 @@ class StackMeasure(Extent):
     detached_mass
         Part of the mass outside the largest connected body, kg.
     on_panel_mass
-        Snow that was excluded because it lies on the panel, kg.
+        Snow that is excluded because it lies on the panel or hangs over its edge, kg.
+    on_structures_mass
+        Snow that is excluded because it lies on structures other than the panel, kg.
+    joined
+        Whether the stack and the snow on the panel touch.
+    members : (n,)
+        Booleans: which of the particles that were given make up the stack.
     """
 
     trimming: str = DEFAULT_TRIMMING
@@ -73,6 +86,9 @@ class StackMeasure(Extent):
     volume: float = 0.0
     detached_mass: float = 0.0
     on_panel_mass: float = 0.0
+    on_structures_mass: float = 0.0
+    joined: bool = False
+    members: Booleans = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
     @property
     def density(self) -> float:
@@ -116,6 +132,8 @@ def measure_stack(
     dx: float,
     ground_tilt_deg: float = 0.0,
     exclude: Optional[ArrayLike] = None,
+    structures: Optional[ArrayLike] = None,
+    ground: Optional[ArrayLike] = None,
     trimming: str = DEFAULT_TRIMMING,
 ) -> StackMeasure:
     """Measure the stack that particles form.
@@ -139,6 +157,12 @@ def measure_stack(
         Psi, degrees; positive falls in the slide direction.
     exclude : (n,), optional
         Booleans: True for particles that are not part of the stack, because they lie on the panel.
+        Snow that is held by them, because it hangs over the panel's edge, is excluded too.
+    structures : (n,), optional
+        Booleans: True for particles that touch a structure. Snow that is held by it, and does not
+        reach the ground, is excluded.
+    ground : (n,), optional
+        z of the ground below each particle, m, on levelled ground; without it, 0.
     trimming
         How A.4.2 is read where the outermost 3 % are dropped in 2D: "outermost_first" or
         "equal_pace", see `snowshed.snow.stack.trimming`.
@@ -176,23 +200,46 @@ def measure_stack(
         if exclude is None
         else flags("exclude", exclude, len(places))
     )
-    off = ~on_panel
-    snow = level(places[off], finite("ground_tilt_deg", ground_tilt_deg))
-    mass = every_mass[off]
+    levelled = level(places, finite("ground_tilt_deg", ground_tilt_deg))
+    under = np.zeros(len(places)) if ground is None else column("ground", ground, len(places))
+    levelled[:, 2] -= under
     if dimension == 2:
-        snow[:, 1] = 0.0
+        levelled[:, 1] = 0.0
+    touching = np.zeros(len(places), dtype=bool)
+    if structures is not None:
+        touching = flags("structures", structures, len(places))
+    held, on_structure, falling, joined = _held(levelled, on_panel, touching, dx)
+    below = ~(held | on_structure)
+    members = below & ~falling
+    snow, mass, under = levelled[members], every_mass[members], under[members]
     body = largest_body(snow, mass, dx)
-    trimmed = {name: _trimmed_extent(snow, mass, dimension, name) for name in TRIMMINGS}
+    trimmed = {name: _trimmed_extent(snow, mass, under, dimension, name) for name in TRIMMINGS}
     return StackMeasure(
         **vars(trimmed[trimming]),
         trimming=trimming,
         trimmed=trimmed,
-        body=_trimmed_extent(snow[body], mass[body], dimension, trimming),
-        mass=float(mass.sum()),
-        volume=_volume(mass, every_density[off], voxel),
-        detached_mass=float(mass[~body].sum()),
-        on_panel_mass=float(every_mass[on_panel].sum()),
+        body=_trimmed_extent(snow[body], mass[body], under[body], dimension, trimming),
+        mass=float(every_mass[below].sum()),
+        volume=_volume(every_mass[below], every_density[below], voxel),
+        detached_mass=float(mass[~body].sum() + every_mass[falling].sum()),
+        on_panel_mass=float(every_mass[held].sum()),
+        on_structures_mass=float(every_mass[on_structure].sum()),
+        joined=joined,
+        members=members,
     )
+
+
+def _held(
+    snow: Floats, on_panel: Booleans, touching: Booleans, dx: float
+) -> tuple[Booleans, Booleans, Booleans, bool]:
+    """Return which snow the panel holds, structures hold, and falls, and if a stack joins it."""
+    off = ~on_panel
+    found = supports(snow[off], snow[on_panel], touching[off], snow[off, 2], dx)
+    at_panel = on_panel.copy()
+    on_structure, falling = np.zeros((2, len(snow)), dtype=bool)
+    at_panel[off] = found.at_panel
+    on_structure[off], falling[off] = found.on_structure, found.falling
+    return at_panel, on_structure, falling, found.joined
 
 
 def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
@@ -200,15 +247,19 @@ def _volume(masses: Floats, densities: Floats, voxel: float) -> float:
         return float(np.minimum(masses / densities, voxel).sum())
 
 
-def _trimmed_extent(snow: Floats, masses: Floats, dimension: int, trimming: str) -> Extent:
-    return _extent(snow[inliers(snow, masses, dimension, trimming)], dimension)
+def _trimmed_extent(
+    snow: Floats, masses: Floats, under: Floats, dimension: int, trimming: str
+) -> Extent:
+    kept = inliers(snow, masses, dimension, trimming)
+    return _extent(snow[kept], under[kept], dimension)
 
 
-def _extent(snow: Floats, dimension: int) -> Extent:
-    """Measure the surface of levelled, trimmed snow (Table 2.3.2)."""
+def _extent(snow: Floats, under: Floats, dimension: int) -> Extent:
+    """Measure the surface of levelled, trimmed snow (Table 2.3.2), over ground at z = `under`."""
     if len(snow) == 0:
         return Extent()
     x, y, z = snow[surface_particles(snow)].T
+    profile = outline_particles(snow)
     return Extent(
         height=float(z.max()),
         length=float(np.ptp(x)),
@@ -216,5 +267,6 @@ def _extent(snow: Floats, dimension: int) -> Extent:
         tail=float(x.max()),
         width=float(np.ptp(y)) if dimension == 3 else 1.0,
         crest=float(x[np.argmax(z)]),
-        outline=outline(snow),
+        outline=snow[profile][:, [0, 2]],
+        ground=under[profile],
     )

@@ -27,17 +27,15 @@ def surface_particles(positions: Floats) -> Integers:
     return _highest(_cells(x) * CELLS + _cells(y), z)
 
 
-def outline(positions: Floats) -> Floats:
-    """Return the profile of the stack from the side: the highest particle of each x column.
+def outline_particles(positions: Floats) -> Integers:
+    """Return which particles are the profile from the side: the highest of each x column.
 
     Returns
     -------
-    (k, 2), k <= 30
-        x and z of these particles, m, in the order of x.
+    (k,), k <= 30
+        Indices of these particles, in the order of x.
     """
-    x, _, z = positions.T
-    profile: Floats = positions[_highest(_cells(x), z)][:, [0, 2]]
-    return profile
+    return _highest(_cells(positions[:, 0]), positions[:, 2])
 
 
 def _cells(coordinate: Floats) -> Integers:

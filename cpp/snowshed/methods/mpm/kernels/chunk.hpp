@@ -1,27 +1,13 @@
 // A chunk: as many particles as a SIMD register has lanes. Arithmetic runs across the chunk's
-// particles; the transfers run over the nodes of one particle after the other, a node's eight
-// values in one register.
+// particles; the transfers run over the nodes of one particle after the other.
 #pragma once
 
 #include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/kernels/bspline.hpp"
+#include "snowshed/methods/mpm/kernels/node.hpp"
 
 SNOWSHED_VARIANT_BEGIN
-
-template <class T>
-struct NodeTypes;
-template <>
-struct NodeTypes<float> {
-  typedef float type __attribute__((vector_size(32), may_alias, aligned(32)));
-};
-template <>
-struct NodeTypes<double> {
-  typedef double type __attribute__((vector_size(64), may_alias, aligned(64)));
-};
-/// The eight values of a node.
-template <class T>
-using Node = typename NodeTypes<T>::type;
 
 /// Weights of a chunk and where each particle's nodes begin in the tile.
 template <class T, int D, Basis basis>
@@ -41,6 +27,7 @@ struct Stencil {
     SimdPack<T> index = broadcast<SimdPack<T>>(T(0));
     auto outside = cell[0] < low;
     reach = SimdMask<T>{};
+    SNOWSHED_UNROLL
     for (int d = 0; d < D; ++d) {
       SimdPack<T> base;
       for (int l = 0; l < W; ++l) base[l] = std::floor(cell[d][l]);
@@ -50,6 +37,7 @@ struct Stencil {
       const SimdPack<T> f = cell[d] - base;
       SimdPack<T> w[S], g[S];
       BSpline<basis>::evaluate(f, w, g);
+      SNOWSHED_UNROLL
       for (int k = 0; k < S; ++k) {
         std::memcpy(weight[d][k], &w[k], sizeof w[k]);
         std::memcpy(gradient[d][k], &g[k], sizeof g[k]);
@@ -70,77 +58,92 @@ struct Stencil {
   }
 };
 
+/// The same address, kept in a register: nodes are then addressed by constants from it.
+template <class P>
+SNOWSHED_INLINE P* in_register(P* address) {
+  asm("" : "+r"(address));
+  return address;
+}
+
 /// Weighted sums over a particle's nodes: of the weights, and of their derivative along each
-/// direction. `second` holds, for each direction and node, what stands in for the derivative.
+/// direction.
 template <class T, int D>
 struct NodeSums {
   Node<T> value, along[D];
 };
 
-/// sum_i w_i N_i and sum_i (second weight) N_i, innermost direction first.
-template <class T, int D, Basis basis, class Second>
+/// sum_i w_i N_i and sum_i (second weight) N_i, innermost direction first. `second` gives for a
+/// direction and a node along it what stands in for the weight's derivative; it meets the halves
+/// `derived` of a node.
+template <Halves derived, class T, int D, Basis basis, class Second>
 SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const Stencil<T, D, basis>& s, int l,
                                                  const T* tile, Second second) {
   constexpr int S = support(basis), N = tile_edge<D>(basis);
-  const Node<T>* nodes = reinterpret_cast<const Node<T>*>(tile) + s.node[l];
+  const T* nodes = in_register(tile + s.node[l] * node_values);
   NodeSums<T, D> r{};
+  const auto along_last = [&](const T* row, Node<T>& a, Node<T>& b) SNOWSHED_INLINE_LAMBDA {
+    for (int k = 0; k < S; ++k) {
+      const Node<T> node = Node<T>::load(row + k * node_values);
+      add_scaled(a, s.weight[D - 1][k][l], node);
+      add_scaled<derived>(b, second(D - 1, k), node);
+    }
+  };
   for (int i = 0; i < S; ++i) {
+    const T w = s.weight[0][i][l];
     if constexpr (D == 2) {
       Node<T> a{}, b{};
-      for (int k = 0; k < S; ++k) {
-        const Node<T> node = nodes[i * N + k];
-        a += s.weight[1][k][l] * node;
-        b += second(1, k) * node;
-      }
-      const T w = s.weight[0][i][l];
-      r.value += w * a;
-      r.along[0] += second(0, i) * a;
-      r.along[1] += w * b;
+      along_last(nodes + i * N * node_values, a, b);
+      add_scaled(r.value, w, a);
+      add_scaled<derived>(r.along[0], second(0, i), a);
+      add_scaled<derived>(r.along[1], w, b);
     } else {
       Node<T> value{}, along_y{}, along_z{};
       for (int j = 0; j < S; ++j) {
         Node<T> a{}, b{};
-        for (int k = 0; k < S; ++k) {
-          const Node<T> node = nodes[(i * N + j) * N + k];
-          a += s.weight[2][k][l] * node;
-          b += second(2, k) * node;
-        }
-        const T w = s.weight[1][j][l];
-        value += w * a;
-        along_y += second(1, j) * a;
-        along_z += w * b;
+        along_last(nodes + (i * N + j) * N * node_values, a, b);
+        add_scaled(value, s.weight[1][j][l], a);
+        add_scaled<derived>(along_y, second(1, j), a);
+        add_scaled<derived>(along_z, s.weight[1][j][l], b);
       }
-      const T w = s.weight[0][i][l];
-      r.value += w * value;
-      r.along[0] += second(0, i) * value;
-      r.along[1] += w * along_y;
-      r.along[2] += w * along_z;
+      add_scaled(r.value, w, value);
+      add_scaled<derived>(r.along[0], second(0, i), value);
+      add_scaled<derived>(r.along[1], w, along_y);
+      add_scaled<derived>(r.along[2], w, along_z);
     }
   }
   return r;
 }
 
-/// Adds w_i value + sum_d (second weight along d) along[d] to each of a particle's nodes.
-template <class T, int D, Basis basis, class Second>
+/// Adds w_i value + sum_d (second weight along d) along[d] to each of a particle's nodes. Outside
+/// the halves `derived` along[d] is zero.
+template <Halves derived, class T, int D, Basis basis, class Second>
 SNOWSHED_INLINE void scatter_nodes(const Stencil<T, D, basis>& s, int l, const NodeSums<T, D>& p,
                                    T* tile, Second second) {
   constexpr int S = support(basis), N = tile_edge<D>(basis);
-  Node<T>* nodes = reinterpret_cast<Node<T>*>(tile) + s.node[l];
+  T* nodes = in_register(tile + s.node[l] * node_values);
+  const auto along_last = [&](T* row, const Node<T>& value, const Node<T>& along_z)
+                              SNOWSHED_INLINE_LAMBDA {
+                                for (int k = 0; k < S; ++k) {
+                                  Node<T> node = Node<T>::load(row + k * node_values);
+                                  add_scaled(node, s.weight[D - 1][k][l], value);
+                                  add_scaled<derived>(node, second(D - 1, k), along_z);
+                                  node.store(row + k * node_values);
+                                }
+                              };
   for (int i = 0; i < S; ++i) {
     const T wi = s.weight[0][i][l];
-    const Node<T> value_i = wi * p.value + second(0, i) * p.along[0];
+    Node<T> value_i = scaled(wi, p.value);
+    add_scaled<derived>(value_i, second(0, i), p.along[0]);
     if constexpr (D == 2) {
-      const Node<T> along_z = wi * p.along[1];
-      for (int k = 0; k < S; ++k)
-        nodes[i * N + k] += s.weight[1][k][l] * value_i + second(1, k) * along_z;
+      along_last(nodes + i * N * node_values, value_i, scaled<derived>(wi, p.along[1]));
     } else {
-      const Node<T> along_y = wi * p.along[1], along_z = wi * p.along[2];
+      const Node<T> along_y = scaled<derived>(wi, p.along[1]);
+      const Node<T> along_z = scaled<derived>(wi, p.along[2]);
       for (int j = 0; j < S; ++j) {
         const T wj = s.weight[1][j][l];
-        const Node<T> value_ij = wj * value_i + second(1, j) * along_y;
-        const Node<T> along_z_ij = wj * along_z;
-        for (int k = 0; k < S; ++k)
-          nodes[(i * N + j) * N + k] += s.weight[2][k][l] * value_ij + second(2, k) * along_z_ij;
+        Node<T> value_ij = scaled(wj, value_i);
+        add_scaled<derived>(value_ij, second(1, j), along_y);
+        along_last(nodes + (i * N + j) * N * node_values, value_ij, scaled<derived>(wj, along_z));
       }
     }
   }

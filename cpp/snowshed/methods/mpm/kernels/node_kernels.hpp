@@ -10,47 +10,48 @@ SNOWSHED_VARIANT_BEGIN
 
 template <class T, int D, Basis basis, bool flip, bool energy>
 struct NodeKernels {
+  using Half = NodeHalf<T>;
   /// kg. A node that a particle barely touches may have a mass whose inverse overflows.
   static constexpr T least_mass = T(1e-30);
 
   static void gather(const T* const* tiles, T* sums) {
     std::memset(sums, 0, block_nodes<D> * node_values * sizeof(T));
-    Node<T>* out = reinterpret_cast<Node<T>*>(sums);
     for_each_shared_row<D, basis>([&](int neighbour, int node, int tile_node, auto length) {
       // Seen from the particle block this block is the neighbour on the opposite side.
       const T* tile = tiles[neighbour_count<D> - 1 - neighbour];
       if (!tile) return;
-      const Node<T>* in = reinterpret_cast<const Node<T>*>(tile);
-      for (int k = 0; k < length; ++k) out[node + k] += in[tile_node + k];
+      T* out = sums + node * node_values;
+      const T* in = tile + tile_node * node_values;
+      for (int k = 0; k < length * node_values; ++k) out[k] += in[k];
     });
   }
 
   static void update(const StepParameters<T>& step, const T* sums, T* velocities,
                      Contact<T>* contacts, int contact_count, const ContactLaw* laws,
                      NodeStats& stats) {
-    const Node<T>* in = reinterpret_cast<const Node<T>*>(sums);
-    Node<T>* out = reinterpret_cast<Node<T>*>(velocities);
-    Node<T> gravity{};
+    Half gravity{};
     gravity[D - 1] = -step.dt * step.gravity;
-    Node<T> low = std::numeric_limits<T>::max() - Node<T>{}, high = -low;
+    Half low = std::numeric_limits<T>::max() - Half{}, high = -low;
     for (int k = 0; k < block_nodes<D>; ++k) {
-      const T mass = in[k][0];
-      if (!(mass > least_mass)) {
-        out[k] = Node<T>{};
+      const T* sum = sums + k * node_values;
+      T* out = velocities + k * node_values;
+      if (!(sum[0] > least_mass)) {
+        std::memset(out, 0, node_values * sizeof(T));
         continue;
       }
-      const Node<T> old = velocity(in[k]);
-      const Node<T> now = old + force(in[k]) * (step.dt / mass) + gravity;
-      out[k] = with_second_half(now, old);
+      const Half old = velocity(sum);
+      const Half now = old + load_half(sum + 4) * (step.dt / sum[0]) + gravity;
+      store_velocity(out, now, old);
       low = now < low ? now : low;
       high = now > high ? now : high;
     }
     for (int c = 0; c < contact_count; ++c) {
-      const Node<T>& sum = in[contacts[c].node];
+      const T* sum = sums + contacts[c].node * node_values;
+      T* out = velocities + contacts[c].node * node_values;
       if (sum[0] > least_mass) {
-        Node<T> node = out[contacts[c].node];
+        Half node = load_half(out);
         apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
-        out[contacts[c].node] = with_second_half(node, velocity(sum));
+        store_velocity(out, node, velocity(sum));
         low = node < low ? node : low;
         high = node > high ? node : high;
       } else {
@@ -61,22 +62,21 @@ struct NodeKernels {
       stats.low[d] = double(low[d]);
       stats.high[d] = double(high[d]);
     }
-    if constexpr (energy) record_kinetic_energy(step, in, out, stats);
+    if constexpr (energy) record_kinetic_energy(step, sums, velocities, stats);
   }
 
   static void carried_motion(const T* tile, const T* const* sums, const T* const* velocities,
                              CarriedMotion& motion) {
-    const Node<T>* snow = reinterpret_cast<const Node<T>*>(tile);
     double mass = 0, change[D] = {}, squared = 0;
     for_each_shared_row<D, basis>([&](int neighbour, int node, int tile_node, auto length) {
       for (int k = 0; k < length; ++k) {
-        const double m = double(snow[tile_node + k][0]);
+        const double m = double(tile[(tile_node + k) * node_values]);
         mass += m;
         if (!sums[neighbour] || m == 0) continue;
-        const Node<T>& sum = reinterpret_cast<const Node<T>*>(sums[neighbour])[node + k];
-        const Node<T>& now = reinterpret_cast<const Node<T>*>(velocities[neighbour])[node + k];
+        const T* sum = sums[neighbour] + (node + k) * node_values;
+        const T* now = velocities[neighbour] + (node + k) * node_values;
         if (!(sum[0] > least_mass)) continue;
-        const Node<T> before = velocity(sum);
+        const Half before = velocity(sum);
         for (int d = 0; d < D; ++d) {
           squared += m * double(now[d]) * double(now[d]);
           change[d] += m * (double(now[d]) - double(before[d]));
@@ -88,28 +88,28 @@ struct NodeKernels {
   }
 
  private:
-  /// Velocity before the step, in the first three values (the fourth is zero).
-  static SNOWSHED_INLINE Node<T> velocity(const Node<T>& sum) {
-    return __builtin_shufflevector(sum, sum, 1, 2, 3, 7, 7, 7, 7, 7) / sum[0];
-  }
-  static SNOWSHED_INLINE Node<T> force(const Node<T>& sum) {
-    return __builtin_shufflevector(sum, sum, 4, 5, 6, 7, 7, 7, 7, 7);
+  /// Velocity before the step; the fourth value is zero.
+  static SNOWSHED_INLINE Half velocity(const T* sum) {
+    const Half momentum = __builtin_shufflevector(load_half(sum), Half{}, 1, 2, 3, 4);
+    return momentum / sum[0];
   }
   /// What the particles' velocities take from the node goes into its second half.
-  static SNOWSHED_INLINE Node<T> with_second_half(const Node<T>& now, const Node<T>& old) {
-    const Node<T> second = flip ? Node<T>(now - old) : now;
-    return __builtin_shufflevector(now, second, 0, 1, 2, 3, 8, 9, 10, 11);
+  static SNOWSHED_INLINE void store_velocity(T* node, const Half& now, const Half& old) {
+    store_half(node, now);
+    store_half(node + 4, flip ? Half(now - old) : now);
   }
 
-  static void record_kinetic_energy(const StepParameters<T>& step, const Node<T>* in,
-                                    const Node<T>* out, NodeStats& stats) {
+  static void record_kinetic_energy(const StepParameters<T>& step, const T* sums,
+                                    const T* velocities, NodeStats& stats) {
     for (int k = 0; k < block_nodes<D>; ++k) {
-      const double mass = double(in[k][0]);
+      const T* in = sums + k * node_values;
+      const T* out = velocities + k * node_values;
+      const double mass = double(in[0]);
       if (!(mass > double(least_mass))) continue;
       for (int d = 0; d < D; ++d) {
-        stats.kinetic_before += 0.5 * double(in[k][1 + d]) * double(in[k][1 + d]) / mass;
-        stats.kinetic_after += 0.5 * mass * double(out[k][d]) * double(out[k][d]);
-        stats.stress_work += double(step.dt) * double(in[k][4 + d]) * double(in[k][1 + d]) / mass;
+        stats.kinetic_before += 0.5 * double(in[1 + d]) * double(in[1 + d]) / mass;
+        stats.kinetic_after += 0.5 * mass * double(out[d]) * double(out[d]);
+        stats.stress_work += double(step.dt) * double(in[4 + d]) * double(in[1 + d]) / mass;
       }
     }
   }
@@ -145,7 +145,7 @@ struct NodeKernels {
   }
 
   /// Work of a node's stresses at the change of a velocity.
-  static double work(const StepParameters<T>& step, const Node<T>& sum, const T (&from)[D],
+  static double work(const StepParameters<T>& step, const T* sum, const T (&from)[D],
                      const T (&to)[D]) {
     double w = 0;
     for (int d = 0; d < D; ++d) w += double(sum[4 + d]) * (double(to[d]) - double(from[d]));
@@ -197,7 +197,7 @@ struct NodeKernels {
   /// has left: the store drains at least in the time that the snow takes to slide over a given part
   /// of a cell.
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
-                    const Node<T>& sum, Node<T>& node, NodeStats& stats) {
+                    const T* sum, Half& node, NodeStats& stats) {
     const T mass = sum[0];
     T before[D], free[D], stored_impulses[D], after[D];
     T normal_speed = 0;

@@ -38,10 +38,12 @@ struct ParticleKernels {
   };
 
   SNOWSHED_INLINE void read(State& s, int at, int n) const {
+    SNOWSHED_UNROLL
     for (int d = 0; d < D; ++d) {
       s.cell[d] = load(p.cell[d] + at, n);
       s.velocity[d] = load(p.velocity[d] + at, n);
     }
+    SNOWSHED_UNROLL
     for (int k = 0; k < Tensor::size; ++k)
       s.be_minus_identity.c[k] = load(p.be_minus_identity[k] + at, n);
     if constexpr (apic)
@@ -51,10 +53,12 @@ struct ParticleKernels {
   }
 
   SNOWSHED_INLINE void write(const State& s, int at, int n) const {
+    SNOWSHED_UNROLL
     for (int d = 0; d < D; ++d) {
       store(p.cell[d] + at, s.cell[d], n);
       store(p.velocity[d] + at, s.velocity[d], n);
     }
+    SNOWSHED_UNROLL
     for (int k = 0; k < Tensor::size; ++k)
       store(p.be_minus_identity[k] + at, s.be_minus_identity.c[k], n);
     if constexpr (apic)
@@ -67,20 +71,47 @@ struct ParticleKernels {
   SNOWSHED_INLINE static auto gradient_only(const Stencil<T, D, basis>& stencil, int l) {
     return [&stencil, l](int d, int k) { return stencil.gradient[d][k][l]; };
   }
-  /// APIC: the first four values of a node meet the derivative, the others the arm.
+  /// APIC: the first half of a node meets the derivative, the second the arm.
   SNOWSHED_INLINE static auto gradient_then_arm(const Stencil<T, D, basis>& stencil, int l) {
     return [&stencil, l](int d, int k) {
-      const T g = stencil.gradient[d][k][l];
-      const T a = stencil.weight[d][k][l] * stencil.arm(d, k, l);
-      return Node<T>{g, g, g, g, a, a, a, a};
+      return Node<T>::of_halves(stencil.gradient[d][k][l],
+                                stencil.weight[d][k][l] * stencil.arm(d, k, l));
     };
   }
   SNOWSHED_INLINE static auto arm_then_gradient(const Stencil<T, D, basis>& stencil, int l) {
     return [&stencil, l](int d, int k) {
-      const T g = stencil.gradient[d][k][l];
-      const T a = stencil.weight[d][k][l] * stencil.arm(d, k, l);
-      return Node<T>{a, a, a, a, g, g, g, g};
+      return Node<T>::of_halves(stencil.weight[d][k][l] * stencil.arm(d, k, l),
+                                stencil.gradient[d][k][l]);
     };
+  }
+
+  /// The least multiple of a pack's lanes that holds n values.
+  static constexpr int whole_packs(int n) { return (n + W - 1) / W * W; }
+
+  /// From a row of values for each particle to a pack for each value.
+  template <int count>
+  SNOWSHED_INLINE static void transpose_rows(const T (&rows)[W][count], V (&columns)[count]) {
+    SNOWSHED_UNROLL
+    for (int c = 0; c < count; c += W) {
+      V square[W];
+      SNOWSHED_UNROLL
+      for (int l = 0; l < W; ++l) std::memcpy(&square[l], &rows[l][c], sizeof(V));
+      transpose(square);
+      SNOWSHED_UNROLL
+      for (int l = 0; l < W; ++l) columns[c + l] = square[l];
+    }
+  }
+  template <int count>
+  SNOWSHED_INLINE static void transpose_columns(const V (&columns)[count], T (&rows)[W][count]) {
+    SNOWSHED_UNROLL
+    for (int c = 0; c < count; c += W) {
+      V square[W];
+      SNOWSHED_UNROLL
+      for (int l = 0; l < W; ++l) square[l] = columns[c + l];
+      transpose(square);
+      SNOWSHED_UNROLL
+      for (int l = 0; l < W; ++l) std::memcpy(&rows[l][c], &square[l], sizeof(V));
+    }
   }
 
   /// Everything the grid tells a chunk.
@@ -91,30 +122,36 @@ struct ParticleKernels {
 
   SNOWSHED_INLINE void interpolate(const Stencil<T, D, basis>& stencil, const T* tile, int n,
                                    Motion& m) const {
-    constexpr int row = (1 + D) * node_values;
-    alignas(64) T raw[W][row];
+    constexpr int derived = apic ? node_values : 4;  // values of a derivative that count
+    constexpr int row = node_values + D * derived;
+    alignas(64) T rows[W][whole_packs(row)];
     for (int l = 0; l < n; ++l) {
-      NodeSums<T, D> sums;
-      if constexpr (apic)
-        sums = interpolate_nodes(stencil, l, tile, gradient_then_arm(stencil, l));
-      else
-        sums = interpolate_nodes(stencil, l, tile, gradient_only(stencil, l));
-      std::memcpy(raw[l], &sums, sizeof sums);
+      if constexpr (apic) {
+        const auto sums =
+            interpolate_nodes<Halves::both>(stencil, l, tile, gradient_then_arm(stencil, l));
+        sums.value.store(rows[l]);
+        for (int j = 0; j < D; ++j) sums.along[j].store(rows[l] + node_values + j * derived);
+      } else {
+        const auto sums =
+            interpolate_nodes<Halves::first>(stencil, l, tile, gradient_only(stencil, l));
+        sums.value.store(rows[l]);
+        for (int j = 0; j < D; ++j)
+          sums.along[j].store_first_half(rows[l] + node_values + j * derived);
+      }
     }
-    for (int l = n; l < W; ++l) std::memcpy(raw[l], raw[0], sizeof raw[0]);
-    const auto column = [&raw](int c) {
-      V v;
-      for (int l = 0; l < W; ++l) v[l] = raw[l][c];
-      return v;
-    };
+    for (int l = n; l < W; ++l) std::memcpy(rows[l], rows[0], row * sizeof(T));
+    V columns[whole_packs(row)];
+    transpose_rows(rows, columns);
     const T per_step = step.dt / step.dx;
+    SNOWSHED_UNROLL
     for (int i = 0; i < D; ++i) {
-      m.pic[i] = column(i);
-      if constexpr (!apic) m.change[i] = column(4 + i);
+      m.pic[i] = columns[i];
+      if constexpr (!apic) m.change[i] = columns[4 + i];
+      SNOWSHED_UNROLL
       for (int j = 0; j < D; ++j) {
-        m.gradient[i][j] = column(node_values * (1 + j) + i) * per_step;
-        if constexpr (apic)
-          m.affine[i * D + j] = column(node_values * (1 + j) + 4 + i) * (apic_scale / step.dx);
+        const V* along = columns + node_values + j * derived;
+        m.gradient[i][j] = along[i] * per_step;
+        if constexpr (apic) m.affine[i * D + j] = along[4 + i] * (apic_scale / step.dx);
       }
     }
   }
@@ -238,33 +275,33 @@ struct ParticleKernels {
   /// Adds a chunk to the tile: mass, momentum, and the force -V0 tau grad w (1.2.13).
   SNOWSHED_INLINE void scatter_chunk(const Stencil<T, D, basis>& stencil, const State& s,
                                      const Tensor& tau, const Snow& snow, int n, T* tile) const {
-    V momentum[D], force[D][D], shear[D][D];
+    constexpr int row = 4 * (1 + D * (apic ? 2 : 1));
+    V columns[whole_packs(row)]{};
+    const auto half = [&columns](int h) { return columns + 4 * h; };
     const V force_scale = s.mass * (-snow.specific_volume / step.dx);
+    half(0)[0] = s.mass;
+    SNOWSHED_UNROLL
     for (int i = 0; i < D; ++i) {
-      momentum[i] = s.mass * s.velocity[i];
+      half(0)[1 + i] = s.mass * s.velocity[i];
+      SNOWSHED_UNROLL
       for (int j = 0; j < D; ++j) {
-        force[i][j] = force_scale * tau(i, j);
-        if constexpr (apic) shear[i][j] = s.mass * s.affine[i * D + j] * step.dx;
+        half(1 + j)[i] = force_scale * tau(i, j);
+        if constexpr (apic) half(1 + D + j)[1 + i] = s.mass * s.affine[i * D + j] * step.dx;
       }
     }
+    alignas(64) T rows[W][whole_packs(row)];
+    transpose_columns(columns, rows);
     for (int l = 0; l < n; ++l) {
-      // Built from scalars, not element by element: that would go through memory and stall.
+      const T* nothing = nullptr;
       NodeSums<T, D> a;
-      const T third = D == 3 ? momentum[D - 1][l] : T(0);
-      a.value = Node<T>{s.mass[l], momentum[0][l], momentum[1][l], third, 0, 0, 0, 0};
-      for (int j = 0; j < D; ++j) {
-        const T f0 = force[0][j][l], f1 = force[1][j][l], f2 = D == 3 ? force[D - 1][j][l] : T(0);
-        if constexpr (apic) {
-          const T s0 = shear[0][j][l], s1 = shear[1][j][l], s2 = D == 3 ? shear[D - 1][j][l] : T(0);
-          a.along[j] = Node<T>{0, s0, s1, s2, f0, f1, f2, 0};
-        } else {
-          a.along[j] = Node<T>{0, 0, 0, 0, f0, f1, f2, 0};
-        }
-      }
+      a.value = Node<T>::of_halves(rows[l], nothing);
+      for (int j = 0; j < D; ++j)
+        a.along[j] =
+            Node<T>::of_halves(apic ? rows[l] + 4 * (1 + D + j) : nothing, rows[l] + 4 * (1 + j));
       if constexpr (apic)
-        scatter_nodes(stencil, l, a, tile, arm_then_gradient(stencil, l));
+        scatter_nodes<Halves::both>(stencil, l, a, tile, arm_then_gradient(stencil, l));
       else
-        scatter_nodes(stencil, l, a, tile, gradient_only(stencil, l));
+        scatter_nodes<Halves::second>(stencil, l, a, tile, gradient_only(stencil, l));
     }
   }
 

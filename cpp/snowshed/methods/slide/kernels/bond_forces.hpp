@@ -6,39 +6,30 @@
 SNOWSHED_VARIANT_BEGIN
 
 /// The force of a bond is its modulus times its strain times its contact area, h L / sqrt 3.
-SNOWSHED_INLINE QuadMask stretch_lanes(const SlideView& s, const Lanes& l) {
-  Quad rows[4];
-  for (int i = 0; i < 4; ++i) {
+SNOWSHED_INLINE PackMask stretch_lanes(const SlideView& s, const Lanes& l) {
+  const PackRecord r = taken_apart([&](int i) SNOWSHED_INLINE_LAMBDA {
     const std::ptrdiff_t b = l.first + (i < l.count ? i : 0);
     const Quad first = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_first[b]));
     const Quad second = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_second[b]));
-    rows[i] = __builtin_shufflevector(Quad(second - first), Quad(second + first), 0, 1, 2, 7);
-  }
-  transpose(rows[0], rows[1], rows[2], rows[3]);
-  const QuadVec d{rows[0], rows[1], rows[2]};
-  const Quad length = length_from(dot(d, d)), strain = length / l.load(s.rest_length) - 1.0;
-  const QuadMask acts = length > s.min_bond_length;
-  const QuadMask breaks = acts & (abs(strain) > s.max_strain);
+    return __builtin_shufflevector(Quad(second - first), Quad(second + first), 0, 1, 2, 7);
+  });
+  const PackVec d{r.a, r.b, r.c};
+  const Pack length = length_from(dot(d, d)), strain = length / l.load(s.rest_length) - 1.0;
+  const PackMask acts = length > s.min_bond_length;
+  const PackMask breaks = acts & (abs(strain) > s.max_strain);
   const double stiffness = s.bond_modulus * 0.5 / 1.7320508075688772;
-  const Quad pull = select(QuadMask(acts & ~breaks), Quad(stiffness * strain * rows[3]), Quad{});
-  rows[0] = pull * d.x;
-  rows[1] = pull * d.y;
-  rows[2] = pull * d.z;
-  rows[3] = Quad{};
-  transpose(rows[0], rows[1], rows[2], rows[3]);
-  for (int i = 0; i < l.count; ++i) {
-    store_row(s.bond_force + 4 * (l.first + i), rows[i]);
-    s.broken[l.first + i] = breaks[i] != 0;
-  }
+  const Pack pull = select(PackMask(acts & ~breaks), Pack(stiffness * strain * r.d), Pack{});
+  l.store_records(s.bond_force, {pull * d.x, pull * d.y, pull * d.z, Pack{}});
+  l.store_flags(s.broken, breaks);
   return breaks;
 }
 
 SNOWSHED_INLINE void pull_particle(const SlideView& s, std::ptrdiff_t i) {
+  static constexpr double signs[2] = {1, -1};
   Quad sum{};
   for (std::uint32_t e = s.bond_begin[i]; e < s.bond_begin[i + 1]; ++e) {
     const std::uint32_t entry = s.bond_entry[e];
-    const double sign = 1 - 2 * double(entry & 1);
-    sum += sign * load_row(s.bond_force + 4 * std::ptrdiff_t(entry >> 1));
+    sum += signs[entry & 1] * load_row(s.bond_force + 4 * std::ptrdiff_t(entry >> 1));
   }
   const double per_mass = 1 / s.mass[i];
   s.ax[i] += per_mass * sum[0];

@@ -5,28 +5,35 @@
 
 SNOWSHED_VARIANT_BEGIN
 
-SNOWSHED_INLINE void map_pressure_row(const SlideView& s, int row) {
+template <int count>
+SNOWSHED_INLINE void map_pressure_on(const SlideView& s, double factor, std::uint32_t first,
+                                     const Neighbourhood& around) {
   using V = SimdPack<double>;
-  constexpr std::uint32_t width = simd_width<double>;
-  const double factor = spiky_constant(s.cell) * s.gravity / s.density;
-  V gx{}, gy{};
-  const auto add = [&](std::uint32_t k, std::uint32_t begin,
-                       std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
-    for (std::uint32_t e = begin; e < end; e += width) {
-      const V dx = load_beyond<V>(s.sorted_x + e) - s.sorted_x[k];
-      const V dy = load_beyond<V>(s.sorted_y + e) - s.sorted_y[k];
-      const V w = load_beyond<V>(s.sorted_mass + e) * spiky_gradient(V(dx * dx + dy * dy), s.cell);
-      const V counted = within(w, e, end);
-      gx += counted * dx;
-      gy += counted * dy;
+  V gx[2]{}, gy[2]{};
+  for_each_neighbour(around, [&](std::uint32_t e, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
+    const V x = load_beyond<V>(s.sorted_x + e), y = load_beyond<V>(s.sorted_y + e);
+    const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
+    for (int k = 0; k < count; ++k) {
+      const V dx = x - s.sorted_x[first + k], dy = y - s.sorted_y[first + k];
+      const V w = mass * spiky_gradient(V(dx * dx + dy * dy), s.cell);
+      gx[k] += w * dx;
+      gy[k] += w * dy;
     }
-  };
-  for_each_neighbourhood(s, row, add, [&](std::uint32_t k) SNOWSHED_INLINE_LAMBDA {
-    const std::uint32_t i = s.sorted_particle[k];
-    s.ax[i] += factor * sum_of(gx);
-    s.ay[i] += factor * sum_of(gy);
-    gx = gy = V{};
   });
+  const Quad sums = factor * sums_of(gx[0], gy[0], gx[1], gy[1]);
+  for (int k = 0; k < count; ++k) {
+    const std::uint32_t i = s.sorted_particle[first + k];
+    s.ax[i] += sums[2 * k];
+    s.ay[i] += sums[2 * k + 1];
+  }
+}
+
+SNOWSHED_INLINE void map_pressure_row(const SlideView& s, int row) {
+  const double factor = spiky_constant(s.cell) * s.gravity / s.density;
+  for_each_neighbourhood(
+      s, row, [&](std::uint32_t e, auto count, const Neighbourhood& around) SNOWSHED_INLINE_LAMBDA {
+        map_pressure_on<count>(s, factor, e, around);
+      });
 }
 
 SNOWSHED_VARIANT_END

@@ -2,6 +2,8 @@
 // cell.
 #pragma once
 
+#include <type_traits>
+
 #include "snowshed/methods/slide/kernels/places.hpp"
 
 SNOWSHED_VARIANT_BEGIN
@@ -22,15 +24,23 @@ SNOWSHED_INLINE V load_beyond(const double* p) {
   return v;
 }
 
-/// The way from a particle to some neighbours, in space, from entry e on in the order of cells.
+/// Some neighbours, from entry e on in the order of cells, where they are.
+template <class V>
+struct Neighbours {
+  V x, y, z;
+
+  SNOWSHED_INLINE Neighbours(const SlideView& s, std::uint32_t e)
+      : x(load_beyond<V>(s.sorted_x + e)),
+        y(load_beyond<V>(s.sorted_y + e)),
+        z(load_beyond<V>(s.sorted_z + e)) {}
+};
+/// The way to them from a particle.
 template <class V>
 struct Way {
   V x, y, z;
 
-  SNOWSHED_INLINE Way(const SlideView& s, std::uint32_t from, std::uint32_t e)
-      : x(load_beyond<V>(s.sorted_x + e) - s.sorted_x[from]),
-        y(load_beyond<V>(s.sorted_y + e) - s.sorted_y[from]),
-        z(load_beyond<V>(s.sorted_z + e) - s.sorted_z[from]) {}
+  SNOWSHED_INLINE Way(const SlideView& s, std::uint32_t from, const Neighbours<V>& to)
+      : x(to.x - s.sorted_x[from]), y(to.y - s.sorted_y[from]), z(to.z - s.sorted_z[from]) {}
   SNOWSHED_INLINE V square() const { return x * x + y * y + z * z; }
 };
 
@@ -54,34 +64,58 @@ SNOWSHED_INLINE double spiky_constant(double radius) {
   return -30 / (pi * radius * radius * radius * radius * radius);
 }
 
+/// The sums over the lanes of four packs.
 template <class V>
-SNOWSHED_INLINE double sum_of(const V& v) {
+SNOWSHED_INLINE Quad sums_of(const V& a, const V& b, const V& c, const V& d) {
   if constexpr (sizeof(V) == 64) {
-    Quad halves[2];
-    std::memcpy(halves, &v, sizeof v);
-    return sum_of(Quad(halves[0] + halves[1]));
+    const auto folded = [](const V& v) SNOWSHED_INLINE_LAMBDA {
+      return Quad(__builtin_shufflevector(v, v, 0, 1, 2, 3) +
+                  __builtin_shufflevector(v, v, 4, 5, 6, 7));
+    };
+    return sums_of<Quad>(folded(a), folded(b), folded(c), folded(d));
+  } else if constexpr (sizeof(V) == 32) {
+    Quad rows[4] = {a, b, c, d};
+    transpose(rows[0], rows[1], rows[2], rows[3]);
+    return (rows[0] + rows[1]) + (rows[2] + rows[3]);
   } else {
-    double sum = 0;
-    for (int i = 0; i < int(sizeof(V) / sizeof(double)); ++i) sum += v[i];
-    return sum;
+    return Quad{a[0] + a[1], b[0] + b[1], c[0] + c[1], d[0] + d[1]};
   }
 }
 
-/// Calls sum(entry, begin, end) for the particles of a row of cells, each with the three runs of
-/// entries that its neighbours are in, and after them done(entry).
-template <class Sum, class Done>
-SNOWSHED_INLINE void for_each_neighbourhood(const SlideView& s, int row, const Sum& sum,
-                                            const Done& done) {
+/// A run of entries, in the order of cells.
+struct EntryRun {
+  std::uint32_t begin, end;
+};
+/// Those that the neighbours of the particles of a cell are in.
+using Neighbourhood = EntryRun[3];
+
+/// Calls visit(e, n) for the particles of a cell with their neighbourhood: the entry e, and where n
+/// is Two the next one, too. Two particles that are treated together share what is read.
+using One = std::integral_constant<int, 1>;
+using Two = std::integral_constant<int, 2>;
+template <class Visit>
+SNOWSHED_INLINE void for_each_neighbourhood(const SlideView& s, int row, const Visit& visit) {
   for (int column = 1; column + 1 < s.cell_columns; ++column) {
     const std::uint32_t* begin = s.cell_begin + std::ptrdiff_t(row) * s.cell_columns + column;
-    for (std::uint32_t e = begin[0]; e < begin[1]; ++e) {
-      for (int k = -1; k <= 1; ++k) {
-        const std::uint32_t* neighbours = begin + std::ptrdiff_t(k) * s.cell_columns;
-        sum(e, neighbours[-1], neighbours[2]);
-      }
-      done(e);
+    std::uint32_t e = begin[0];
+    const std::uint32_t end = begin[1];
+    if (e == end) continue;
+    Neighbourhood around;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t* neighbours = begin + std::ptrdiff_t(k - 1) * s.cell_columns;
+      around[k] = {neighbours[-1], neighbours[2]};
     }
+    for (; e + 1 < end; e += 2) visit(e, Two(), around);
+    if (e < end) visit(e, One(), around);
   }
+}
+
+/// Calls add(e, end) for packs of entries of a neighbourhood, from e on, in a run up to `end`.
+template <class Add>
+SNOWSHED_INLINE void for_each_neighbour(const Neighbourhood& around, const Add& add) {
+  constexpr std::uint32_t width = simd_width<double>;
+  for (int k = 0; k < 3; ++k)
+    for (std::uint32_t e = around[k].begin; e < around[k].end; e += width) add(e, around[k].end);
 }
 
 SNOWSHED_VARIANT_END

@@ -22,26 +22,30 @@ SNOWSHED_INLINE V raised_pressure(const V& seen) {
   return min(broadcast<V>(2.0), V(1.0 + few_neighbours.factor * more));
 }
 
-/// Finds how many particles each particle of a row of cells sees, by mass, within its kernel.
-SNOWSHED_INLINE void count_row(const SlideView& s, int row) {
+/// Finds how many particles each of some particles sees, by mass, within its kernel.
+template <int count>
+SNOWSHED_INLINE void count_neighbours_of(const SlideView& s, std::uint32_t first,
+                                         const Neighbourhood& around) {
   using V = SimdPack<double>;
-  constexpr std::uint32_t width = simd_width<double>;
-  const double constant = 10 / (s.cell * s.cell * s.cell);  // of the kernel, over a disc's area
-  V sum{};
-  const auto add = [&](std::uint32_t k, std::uint32_t begin,
-                       std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
-    for (std::uint32_t e = begin; e < end; e += width) {
-      const Way<V> way(s, k, e);
-      const V square = max(way.square(), broadcast<V>(least_square));
+  V sum[2]{};
+  for_each_neighbour(around, [&](std::uint32_t e, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
+    const Neighbours<V> there(s, e);
+    const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
+    for (int k = 0; k < count; ++k) {
+      const V square = max(Way<V>(s, first + k, there).square(), broadcast<V>(least_square));
       const V inside = max(V{}, V(s.cell - square * inverse_sqrt(square)));
-      const V share = load_beyond<V>(s.sorted_mass + e) * inside * inside * inside;
-      sum += within(share, e, end);
+      sum[k] += mass * inside * inside * inside;
     }
-  };
-  for_each_neighbourhood(s, row, add, [&](std::uint32_t k) SNOWSHED_INLINE_LAMBDA {
-    s.sorted_pressing[k] = constant * sum_of(sum) / s.sorted_mass[k];
-    sum = V{};
   });
+  const double constant = 10 / (s.cell * s.cell * s.cell);  // of the kernel, over a disc's area
+  const Quad sums = constant * sums_of(sum[0], sum[1], V{}, V{});
+  for (int k = 0; k < count; ++k) s.sorted_pressing[first + k] = sums[k] / s.sorted_mass[first + k];
+}
+
+SNOWSHED_INLINE void count_row(const SlideView& s, int row) {
+  for_each_neighbourhood(s, row,
+                         [&](std::uint32_t e, auto count, const Neighbourhood& around)
+                             SNOWSHED_INLINE_LAMBDA { count_neighbours_of<count>(s, e, around); });
 }
 
 /// Turns these numbers into what pressure is multiplied by.
@@ -58,33 +62,40 @@ SNOWSHED_INLINE void weigh_entries(const SlideView& s, std::ptrdiff_t begin, std
   }
 }
 
-SNOWSHED_INLINE void surface_pressure_row(const SlideView& s, int row) {
+template <int count>
+SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, double factor, std::uint32_t first,
+                                         const Neighbourhood& around) {
   using V = SimdPack<double>;
-  constexpr std::uint32_t width = simd_width<double>;
-  const double factor = 0.5 * spiky_constant(s.cell) * s.gravity / s.density;
-  V sx{}, sy{}, sz{};
-  const auto add = [&](std::uint32_t k, std::uint32_t begin,
-                       std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
-    for (std::uint32_t e = begin; e < end; e += width) {
-      const Way<V> way(s, k, e);
-      const V pressing = load_beyond<V>(s.sorted_pressing + e) + s.sorted_pressing[k];
-      const V w =
-          load_beyond<V>(s.sorted_mass + e) * pressing * spiky_gradient(way.square(), s.cell);
-      const V counted = within(w, e, end);
-      sx += counted * way.x;
-      sy += counted * way.y;
-      sz += counted * way.z;
+  V sx[2]{}, sy[2]{}, sz[2]{};
+  for_each_neighbour(around, [&](std::uint32_t e, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
+    const Neighbours<V> there(s, e);
+    const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
+    const V theirs = mass * load_beyond<V>(s.sorted_pressing + e);
+    for (int k = 0; k < count; ++k) {
+      const Way<V> way(s, first + k, there);
+      const V pressing = theirs + mass * s.sorted_pressing[first + k];
+      const V w = pressing * spiky_gradient(way.square(), s.cell);
+      sx[k] += w * way.x;
+      sy[k] += w * way.y;
+      sz[k] += w * way.z;
     }
-  };
-  for_each_neighbourhood(s, row, add, [&](std::uint32_t k) SNOWSHED_INLINE_LAMBDA {
-    const std::uint32_t i = s.sorted_particle[k];
-    const double px = factor * sum_of(sx), py = factor * sum_of(sy), pz = factor * sum_of(sz);
-    const double lift = px * s.nx[i] + py * s.ny[i] + pz * s.nz[i];
-    s.ax[i] += px - lift * s.nx[i];
-    s.ay[i] += py - lift * s.ny[i];
-    s.az[i] += pz - lift * s.nz[i];
-    sx = sy = sz = V{};
   });
+  for (int k = 0; k < count; ++k) {
+    const std::uint32_t i = s.sorted_particle[first + k];
+    const Quad p = factor * sums_of(sx[k], sy[k], sz[k], V{});
+    const double lift = p[0] * s.nx[i] + p[1] * s.ny[i] + p[2] * s.nz[i];
+    s.ax[i] += p[0] - lift * s.nx[i];
+    s.ay[i] += p[1] - lift * s.ny[i];
+    s.az[i] += p[2] - lift * s.nz[i];
+  }
+}
+
+SNOWSHED_INLINE void surface_pressure_row(const SlideView& s, int row) {
+  const double factor = 0.5 * spiky_constant(s.cell) * s.gravity / s.density;
+  for_each_neighbourhood(
+      s, row, [&](std::uint32_t e, auto count, const Neighbourhood& around) SNOWSHED_INLINE_LAMBDA {
+        surface_pressure_on<count>(s, factor, e, around);
+      });
 }
 
 SNOWSHED_VARIANT_END

@@ -1,0 +1,101 @@
+"""Compare the speed of grains with Yade, side by side in one run.
+
+Usage: python benchmarks/beside_yade.py [--size 40] [--threads 2]
+
+Both take steps of the same length in the same confined compression of the same clumps, bonds and
+plates (see benchmarks/engines); the best of two runs counts. A step of one sphere on the surface
+of a grain is the unit. Writes benchmarks/results/DATE-grains.json. Nothing else should run on the
+machine meanwhile.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.engines.press import Press  # noqa: E402
+from benchmarks.engines.random_snow import random_snow  # noqa: E402
+from benchmarks.engines.run import press_with_yade, yade_program  # noqa: E402
+from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
+
+from snowshed import GrainsSettings, LoadingStage  # noqa: E402
+from snowshed.run.machine import cpu_name  # noqa: E402
+from snowshed.run.simulation import Simulation  # noqa: E402
+from snowshed.scene.builders import grains_scene  # noqa: E402
+
+VOXEL = 5e-5  # m
+GRAIN = 8  # voxels
+REPETITIONS = 2
+PRESS = Press(time_step=1e-8, strain=0.3, damping=0.2)
+
+
+def our_speed(labels: np.ndarray, threads: int, steps: int, folder: Path) -> float:
+    """Return sphere steps a second."""
+    file = folder / "labels.npy"
+    np.save(file, labels)
+    settings = GrainsSettings(damping=PRESS.damping, threads=threads)
+    stage = LoadingStage(kind="compress", speed=PRESS.speed, strain=PRESS.strain)
+    scene = grains_scene(file, VOXEL, [stage], settings=settings).update({"gravity": 0})
+    simulation = Simulation(scene)
+    simulation.begin_event()
+    simulation.step(10)
+    begin = time.perf_counter()
+    simulation.step(steps)
+    wall = time.perf_counter() - begin
+    spheres = np.count_nonzero(VoxelSample.of_labels(labels, VOXEL).surface)
+    return spheres * steps / wall
+
+
+def main() -> None:
+    """Measure both, print, and keep the numbers."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--size", type=int, default=40, help="voxels along an edge")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--steps", type=int, default=1000)
+    options = parser.parse_args()
+    if yade_program() is None:
+        raise SystemExit("error: this benchmark needs Yade (apt-get install yade)")
+    labels = random_snow(options.size, GRAIN, ice=0.36)
+    sample = VoxelSample.of_labels(labels, VOXEL)
+    spheres = int(np.count_nonzero(sample.surface))
+    cases = []
+    with tempfile.TemporaryDirectory() as name:
+        for threads in sorted({1, options.threads}):
+            ours, theirs = [], []
+            for _ in range(REPETITIONS):
+                ours.append(our_speed(labels, threads, options.steps, Path(name)))
+                steps = max(50, options.steps // 10)
+                record = press_with_yade(sample, PRESS, Path(name), steps=steps, threads=threads)
+                theirs.append(spheres * steps / record.wall_s)
+            case = {
+                "threads": threads,
+                "grains": len(sample.mass),
+                "spheres": spheres,
+                "bonds": len(sample.bonds),
+                "snowshed_sphere_steps_per_s": max(ours),
+                "yade_sphere_steps_per_s": max(theirs),
+                "ratio": max(ours) / max(theirs),
+            }
+            cases.append(case)
+            print(
+                f"{threads} threads, {spheres} spheres: snowshed {max(ours) / 1e6:.1f} M, "
+                f"Yade {max(theirs) / 1e6:.2f} M sphere steps a second, ratio {case['ratio']:.1f}"
+            )
+    date = datetime.date.today().isoformat()
+    record = {"date": date, "cpu": cpu_name(), "cases": cases}
+    file = ROOT / "benchmarks" / "results" / f"{date}-grains.json"
+    file.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+"""A small sample that looks like snow."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+
+def random_snow(size: int, grain: float, ice: float = 0.45, seed: int = 1) -> np.ndarray:
+    """Return labels (size, size, size) of a smoothed random field, cut into cells.
+
+    Parameters
+    ----------
+    size
+        Voxels along an edge.
+    grain
+        About the width of a grain, voxels.
+    ice
+        Share of the volume before pieces of fewer than eight voxels are left out.
+    """
+    random = np.random.default_rng(seed)
+    field = ndimage.gaussian_filter(
+        random.standard_normal((size,) * 3), 0.35 * grain, mode="nearest"
+    )
+    solid = field > np.quantile(field, 1 - ice)
+    pieces, _ = ndimage.label(solid)
+    solid = pieces == np.argmax(np.bincount(pieces.ravel())[1:]) + 1
+    seeds = random.uniform(0, size, (round((size / grain) ** 3), 3))
+    places = np.argwhere(np.ones((size,) * 3)) + 0.5
+    distance = ((places[:, None, :] - seeds[None, :, :]) ** 2).sum(axis=2)
+    cells = 1 + distance.argmin(axis=1).reshape((size,) * 3)
+    labels = np.where(solid, cells, 0)
+    small = np.bincount(labels.ravel()) < 8
+    return np.where(small[labels], 0, labels).astype(np.int32)

@@ -1,0 +1,118 @@
+"""Measure every kernel with every instruction set, and name the cells that are out of line.
+
+Usage: python benchmarks/matrix.py path/to/snowshed_bench
+
+Prints nanoseconds of processor time for each particle update, on one thread, and writes
+benchmarks/results/DATE-matrix.json. A cell is out of line if it takes more than twice what its
+neighbours predict: those that differ from it in one choice only, such as the transfer, scaled by
+what this choice costs elsewhere.
+"""
+
+from __future__ import annotations
+
+import datetime
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from snowshed.run.machine import cpu_name
+
+RESULTS = Path(__file__).parent / "results"
+VARIANTS = ("baseline", "avx2", "avx512")
+CHOICES = ("dimension", "precision", "transfer", "basis", "snow")
+#: A cell that is this many times off its neighbours is a finding.
+OUT_OF_LINE = 2.0
+#: Largest time in double precision, over that in single precision.
+DOUBLE_OVER_FLOAT = 2.3
+
+Cell = tuple[str, ...]
+Times = dict[Cell, float]
+
+
+def measure(program: str, variant: str, repetitions: int = 3) -> Times:
+    """Return the least processor time of an update, in ns, of each cell."""
+    command = [
+        program,
+        "--benchmark_format=json",
+        "--benchmark_filter=matrix/",
+        "--benchmark_min_time=0.05",
+        f"--benchmark_repetitions={repetitions}",
+        "--benchmark_enable_random_interleaving=true",
+    ]
+    environment = {**os.environ, "SNOWSHED_KERNELS": variant}
+    done = subprocess.run(command, check=True, capture_output=True, env=environment)
+    found: Times = {}
+    for row in json.loads(done.stdout)["benchmarks"]:
+        if row["run_type"] != "iteration":
+            continue
+        cell = tuple(row["name"].split("/")[1 : 1 + len(CHOICES)])
+        updates = row["items_per_second"] * row["real_time"] * 1e-3  # in a step
+        found[cell] = min(found.get(cell, np.inf), row["cpu_time"] * 1e6 / updates)
+    return found
+
+
+def predicted(times: Times, cell: Cell) -> float:
+    """Return what the other cells predict: additive in the logarithms, by least squares."""
+    others = [one for one in times if one != cell]
+    values = [sorted({one[i] for one in times}) for i in range(len(CHOICES))]
+
+    def features(one: Cell) -> list[float]:
+        chosen = [float(one[i] == v) for i in range(len(CHOICES)) for v in values[i][1:]]
+        return [1.0, *chosen]
+
+    matrix = np.array([features(one) for one in others])
+    logarithms = np.log([times[one] for one in others])
+    weights, *_ = np.linalg.lstsq(matrix, logarithms, rcond=None)
+    return float(np.exp(np.array(features(cell)) @ weights))
+
+
+def findings(times: Times) -> Iterator[str]:
+    """Yield a sentence for each cell that is out of line, or too slow in double precision."""
+    for cell, time in times.items():
+        expected = predicted(times, cell)
+        if not 1 / OUT_OF_LINE < time / expected < OUT_OF_LINE:
+            yield f"{'/'.join(cell)}: {time:.1f} ns, where its neighbours predict {expected:.1f}"
+        if cell[1] == "double":
+            ratio = time / times[(cell[0], "float", *cell[2:])]
+            if ratio > DOUBLE_OVER_FLOAT:
+                yield f"{'/'.join(cell)}: {ratio:.2f} times as long as in single precision"
+
+
+def table(found: dict[str, Times]) -> str:
+    """Return the matrix as a table in Markdown: float and double of each set of instructions."""
+    head = [f"{v}, {p}" for v in found for p in ("float", "double")]
+    lines = ["| kernel | " + " | ".join(head) + " |", "| --- |" + " ---: |" * len(head)]
+    cells = [one for one in next(iter(found.values())) if one[1] == "float"]
+    for cell in cells:
+        numbers = [
+            f"{times[(cell[0], precision, *cell[2:])]:.0f}"
+            for times in found.values()
+            for precision in ("float", "double")
+        ]
+        name = " ".join([cell[0], *cell[2:]])
+        lines.append(f"| {name} | " + " | ".join(numbers) + " |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Measure, print and keep the matrix."""
+    if len(sys.argv) != 2:
+        raise SystemExit(__doc__)
+    found = {variant: measure(sys.argv[1], variant) for variant in VARIANTS}
+    print(table(found))
+    for variant, times in found.items():
+        for finding in findings(times):
+            print(f"{variant}: {finding}")
+    today = datetime.date.today().isoformat()
+    kept = {v: {"/".join(c): round(t, 2) for c, t in times.items()} for v, times in found.items()}
+    facts = {"date": today, "machine": cpu_name(), "unit": "ns of processor time", "kernels": kept}
+    (RESULTS / f"{today}-matrix.json").write_text(json.dumps(facts, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

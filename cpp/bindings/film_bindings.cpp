@@ -1,0 +1,85 @@
+// Films of runs, frame by frame.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "array_copies.hpp"
+#include "bindings.hpp"
+#include "snowshed/core/memory.hpp"
+#include "snowshed/geometry/readers/mesh_io.hpp"
+#include "snowshed/io/film_file.hpp"
+
+namespace py = pybind11;
+
+namespace snowshed {
+namespace {
+
+py::list quantity_list(const FilmHeader& header) {
+  py::list list;
+  for (const FilmQuantity& q : header.quantities)
+    list.append(py::make_tuple(q.name, q.unit, q.meaning, q.step));
+  return list;
+}
+
+/// Columns as an array (n, columns).
+py::array_t<std::int32_t> table(const std::vector<std::vector<std::int32_t>>& columns,
+                                std::size_t rows) {
+  py::array_t<std::int32_t> a({py::ssize_t(rows), py::ssize_t(columns.size())});
+  auto out = a.mutable_unchecked<2>();
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    for (std::size_t i = 0; i < rows; ++i) out(py::ssize_t(i), py::ssize_t(c)) = columns[c][i];
+  return a;
+}
+
+py::dict next_frame(FilmReader& reader) {
+  if (reader.position() == reader.frames().size())
+    throw py::stop_iteration("the film has no more frames");
+  const FilmFrame frame = reader.next();
+  py::dict d;
+  d["time"] = frame.time;
+  d["event"] = frame.event;
+  d["ids"] = column<std::int64_t>(frame.ids);
+  d["events"] = column<std::int64_t>(frame.events);
+  d["materials"] = column<std::int64_t>(frame.materials);
+  d["radii"] = column<std::int32_t>(frame.radii);
+  d["positions"] = table(frame.positions, frame.ids.size());
+  d["codes"] = table(frame.values, frame.ids.size());
+  return d;
+}
+
+py::tuple mesh_arrays(const std::filesystem::path& path, double scale) {
+  const TriangleMesh mesh = read_mesh(path, scale);
+  py::array_t<std::int64_t> triangles({py::ssize_t(mesh.triangles.size()), py::ssize_t(3)});
+  auto out = triangles.mutable_unchecked<2>();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) out(py::ssize_t(t), py::ssize_t(k)) = mesh.triangles[t][k];
+  return py::make_tuple(rows(mesh.vertices), triangles);
+}
+
+}  // namespace
+
+void bind_film(py::module_& m) {
+  using namespace py::literals;
+  py::class_<FilmReader>(m, "FilmReader")
+      .def(py::init<std::filesystem::path>(), "path"_a)
+      .def("next", &next_frame)
+      .def_property_readonly("whole", &FilmReader::whole)
+      .def_property_readonly("axes", [](const FilmReader& r) { return r.header().axes; })
+      .def_property_readonly("quantum_m", [](const FilmReader& r) { return r.header().quantum; })
+      .def_property_readonly("interval_s", [](const FilmReader& r) { return r.header().interval; })
+      .def_property_readonly("share", [](const FilmReader& r) { return r.header().share; })
+      .def_property_readonly("quantities",
+                             [](const FilmReader& r) { return quantity_list(r.header()); })
+      .def_property_readonly("frames", [](const FilmReader& r) {
+        py::list list;
+        for (const FilmFrameFacts& f : r.frames())
+          list.append(py::make_tuple(f.time, f.event, f.particles));
+        return list;
+      });
+  m.def("available_memory_bytes", &available_memory_bytes,
+        "Memory that can be had now without swapping.");
+  m.def("read_mesh", &mesh_arrays, "path"_a, "scale"_a = 1.0,
+        "Vertices (n, 3), m, and triangles (m, 3) of an STL, OBJ or PLY file.");
+}
+
+}  // namespace snowshed

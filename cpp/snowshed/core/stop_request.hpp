@@ -1,0 +1,36 @@
+// Giving up work that takes long, on request.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+
+namespace snowshed {
+
+/// Asked from time to time by work that takes long; true: give it up. Where it is empty, nobody
+/// asks.
+using StopRequest = std::function<bool()>;
+
+/// Thrown by work that was given up. What it was to change is as it was.
+class Stopped : public std::runtime_error {
+ public:
+  Stopped() : std::runtime_error("interrupted") {}
+};
+
+/// Asks every few thousand turns of a loop, so that asking costs nothing.
+class StopCheck {
+ public:
+  explicit StopCheck(const StopRequest& request) : request_(request) {}
+
+  /// Throws `Stopped` where the work is to be given up.
+  void operator()() {
+    if (++turns_ % turns_between == 0 && request_ && request_()) throw Stopped();
+  }
+
+ private:
+  static constexpr unsigned turns_between = 4096;
+
+  const StopRequest& request_;
+  unsigned turns_ = 0;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,57 @@
+// How many threads take a short step: as many as make it faster, which only a trial can tell.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+
+namespace snowshed {
+
+/// Tries now and then whether steps are faster with one thread or with many, and goes on with what
+/// was faster. Threads that share few microseconds of work, or their cores with other programs,
+/// wait longer for each other than they save. For steps whose results do not depend on it.
+class ThreadChoice {
+ public:
+  /// Returns the number of threads for the step that begins, 1 or `most`.
+  int begin(int most) {
+    if (most == 1) return 1;
+    step_ = steps_++ % period;
+    if (step_ == 0) many_ = gave_up_ = false;
+    trial_ = step_ < 2 * trials && !gave_up_;
+    if (!trial_) return many_ ? most : 1;
+    begin_ = Clock::now();
+    return step_ < trials ? 1 : most;
+  }
+
+  /// To be called after each step that `begin` was called for.
+  void end() {
+    if (!trial_) return;
+    const double spent = std::chrono::duration<double>(Clock::now() - begin_).count();
+    seconds_[step_ / trials][step_ % trials] = spent;
+    if (step_ + 1 == trials) with_one_ = median(seconds_[0]);
+    // Cores that other programs use make threads wait for long: twice is enough.
+    if (step_ == trials + 1) gave_up_ = std::min(spent, seconds_[1][0]) > 2 * with_one_;
+    if (step_ + 1 == 2 * trials) many_ = median(seconds_[1]) < worthwhile * with_one_;
+    trial_ = false;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::size_t period = 1024, trials = 9;  // steps
+  static constexpr double worthwhile = 0.9;                // of the time with one thread
+  using Times = std::array<double, trials>;
+
+  static double median(Times times) {
+    std::nth_element(times.begin(), times.begin() + trials / 2, times.end());
+    return times[trials / 2];
+  }
+
+  std::size_t steps_ = 0, step_ = 0;
+  bool trial_ = false, many_ = false, gave_up_ = false;
+  double with_one_ = 0;  // s
+  Clock::time_point begin_;
+  std::array<Times, 2> seconds_{};  // of the trials, s: with one thread and with many
+};
+
+}  // namespace snowshed

@@ -1,0 +1,59 @@
+// Frames of a film as bytes: differences to what the frames before foretell, as variable-length
+// numbers, deflated.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "snowshed/io/film_frame.hpp"
+
+namespace snowshed {
+
+/// Turns frames into bytes and back, one after the other: both sides must have seen the same frames
+/// before. A position is foretold from the two before it, a value from the one before.
+class FilmCodec {
+ public:
+  explicit FilmCodec(const FilmHeader& header) : header_(header) {}
+
+  /// Whether a frame has other particles than the one before, so that its bytes list them.
+  bool lists_particles(const FilmFrame& frame) const { return frame.ids != last_.ids; }
+
+  std::vector<std::uint8_t> encode(const FilmFrame&);
+
+  /// Fills a frame of so many particles. Throws InputError, in the name of `where`, where the bytes
+  /// are not those of such a frame; then the codec is of no further use.
+  void decode(const std::vector<std::uint8_t>& bytes, bool lists_particles, std::size_t particles,
+              const std::string& where, FilmFrame& frame);
+
+  /// The least number of bytes of a frame.
+  std::size_t least_bytes(std::size_t particles) const {
+    return particles * (std::size_t(header_.axes) + header_.quantities.size());
+  }
+
+ private:
+  std::vector<std::int64_t> places_before(const FilmFrame&) const;
+  template <class Stream>
+  void transfer(Stream&, FilmFrame&);
+  void keep(const FilmFrame&, const std::vector<std::int64_t>& before);
+
+  FilmHeader header_;
+  FilmFrame last_;
+  std::vector<std::vector<std::int32_t>> steps_;  // by axis, from the frame before the last
+};
+
+/// Deflated bytes (zlib format, RFC 1950); throws std::bad_alloc for lack of memory.
+std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes);
+
+/// Whether deflate can make so few bytes of so many: no more than 1032 to 1.
+bool could_be_deflated(std::size_t packed, std::size_t raw);
+
+/// The bytes that were deflated; throws InputError, in the name of `where`, unless there are `raw`.
+std::vector<std::uint8_t> inflated(const std::uint8_t* packed, std::size_t packed_bytes,
+                                   std::size_t raw, const std::string& where);
+
+/// CRC-32 of RFC 1952.
+std::uint32_t crc32_of(const void* data, std::size_t bytes);
+
+}  // namespace snowshed

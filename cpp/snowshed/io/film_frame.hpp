@@ -1,0 +1,49 @@
+// A film of particles: what its header and its frames hold, in whole numbers. docs/view.md
+// describes the file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace snowshed {
+
+/// A quantity of particles in a film. A value v is stored as round(64 asinh(v / (64 step))): in
+/// steps where it is small, to 1.6 % where it is large.
+struct FilmQuantity {
+  std::string name, unit, meaning;
+  double step = 0;
+
+  static constexpr double linear_steps = 64;
+  std::int32_t code(double value) const;
+  double value(std::int32_t code) const;
+};
+
+struct FilmHeader {
+  int axes = 3;         // 2: x and z; 3: x, y and z
+  double quantum = 0;   // m, of positions
+  double interval = 0;  // s, between frames; longer in events that last
+  double share = 1;     // of the particles that are recorded, chosen by their ids
+  bool has_radius = false;
+  std::vector<FilmQuantity> quantities;
+
+  /// Whether the particle is recorded; the same in every frame.
+  bool records(std::uint32_t id) const {
+    return double(id * 2654435769u) < share * 4294967296.0;  // multiples of the golden ratio
+  }
+};
+
+/// All recorded particles at a time, ordered by id.
+struct FilmFrame {
+  double time = 0;  // s, through all events
+  std::uint32_t event = 0;
+  std::vector<std::uint32_t> ids;
+  std::vector<std::uint16_t> events;                 // of the particles
+  std::vector<std::uint8_t> materials;               // of the particles
+  std::vector<std::int32_t> radii;                   // in quanta; empty where the header has none
+  std::vector<std::vector<std::int32_t>> positions;  // by axis, in quanta
+  std::vector<std::vector<std::int32_t>> values;     // by quantity, codes
+};
+
+}  // namespace snowshed

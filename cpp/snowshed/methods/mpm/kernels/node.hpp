@@ -1,0 +1,120 @@
+// The eight values of a grid node, in as few registers as hold them, and in halves of four: what is
+// carried (mass and momentum, or the velocity), and what acts (force, or the change of velocity).
+#pragma once
+
+#include "snowshed/core/simd_pack.hpp"
+#include "snowshed/methods/mpm/kernel_api.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+template <class T>
+struct NodeTypes;
+template <>
+struct NodeTypes<float> {
+  static constexpr int register_bytes = simd_bytes < 32 ? simd_bytes : 32;
+  typedef float part __attribute__((vector_size(register_bytes), may_alias));
+  typedef float half __attribute__((vector_size(16), may_alias));
+};
+template <>
+struct NodeTypes<double> {
+  static constexpr int register_bytes = simd_bytes;
+  typedef double part __attribute__((vector_size(register_bytes), may_alias));
+  typedef double half __attribute__((vector_size(32), may_alias));
+};
+
+template <class T>
+using NodeHalf = typename NodeTypes<T>::half;
+
+template <class T>
+SNOWSHED_INLINE NodeHalf<T> load_half(const T* values) {
+  NodeHalf<T> half;
+  std::memcpy(&half, values, sizeof half);
+  return half;
+}
+template <class T>
+SNOWSHED_INLINE void store_half(T* values, const NodeHalf<T>& half) {
+  std::memcpy(values, &half, sizeof half);
+}
+
+/// A node's values, or what each of them is multiplied by.
+template <class T>
+struct Node {
+  using Part = typename NodeTypes<T>::part;
+  static constexpr int parts = node_values * int(sizeof(T)) / int(sizeof(Part));
+  static constexpr int part_values = node_values / parts;
+  Part part[parts];
+
+  static SNOWSHED_INLINE Node load(const T* values) {
+    Node n;
+    for (int i = 0; i < parts; ++i) std::memcpy(&n.part[i], values + i * part_values, sizeof(Part));
+    return n;
+  }
+  SNOWSHED_INLINE void store(T* values) const {
+    for (int i = 0; i < parts; ++i) std::memcpy(values + i * part_values, &part[i], sizeof(Part));
+  }
+
+  SNOWSHED_INLINE void store_first_half(T* values) const {
+    if constexpr (parts == 1)
+      store_half(values, NodeHalf<T>(__builtin_shufflevector(part[0], part[0], 0, 1, 2, 3)));
+    else
+      for (int i = 0; i < parts / 2; ++i)
+        std::memcpy(values + i * part_values, &part[i], sizeof(Part));
+  }
+
+  /// The first half all `low`, the second all `high`.
+  static SNOWSHED_INLINE Node of_halves(T low, T high) {
+    Node n;
+    if constexpr (parts == 1)
+      n.part[0] = Part{low, low, low, low, high, high, high, high};
+    else
+      for (int i = 0; i < parts; ++i) n.part[i] = (i < parts / 2 ? low : high) - Part{};
+    return n;
+  }
+  /// Each half from memory, or zero where there is none.
+  static SNOWSHED_INLINE Node of_halves(const T* low, const T* high) {
+    Node n{};
+    if constexpr (parts == 1) {
+      const NodeHalf<T> zero{};
+      n.part[0] = __builtin_shufflevector(low ? load_half(low) : zero,
+                                          high ? load_half(high) : zero, 0, 1, 2, 3, 4, 5, 6, 7);
+    } else {
+      for (int i = 0; i < parts; ++i) {
+        const T* from = i < parts / 2 ? low : high;
+        if (from) std::memcpy(&n.part[i], from + i % (parts / 2) * part_values, sizeof(Part));
+      }
+    }
+    return n;
+  }
+};
+
+/// Which registers of a node hold values of a half. A register that holds both belongs to both.
+enum class Halves { both, first, second };
+template <class T, Halves halves>
+inline constexpr int first_part =
+    halves == Halves::second && Node<T>::parts > 1 ? Node<T>::parts / 2 : 0;
+template <class T, Halves halves>
+inline constexpr int end_part =
+    halves == Halves::first && Node<T>::parts > 1 ? Node<T>::parts / 2 : Node<T>::parts;
+
+/// sum += weight * node, in the registers of some halves; the weight is a number, or one for each
+/// value.
+template <Halves halves = Halves::both, class T>
+SNOWSHED_INLINE void add_scaled(Node<T>& sum, T weight, const Node<T>& node) {
+  for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
+    sum.part[i] += weight * node.part[i];
+}
+template <Halves halves = Halves::both, class T>
+SNOWSHED_INLINE void add_scaled(Node<T>& sum, const Node<T>& weight, const Node<T>& node) {
+  for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
+    sum.part[i] += weight.part[i] * node.part[i];
+}
+/// weight * node, in the registers of some halves; zero in the others.
+template <Halves halves = Halves::both, class T>
+SNOWSHED_INLINE Node<T> scaled(T weight, const Node<T>& node) {
+  Node<T> r{};
+  for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
+    r.part[i] = weight * node.part[i];
+  return r;
+}
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,163 @@
+// Packs of particles, and records of four values that nodes hold: read for a pack of places at
+// once.
+#pragma once
+
+#include "snowshed/core/simd_quad.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// A pack holds one value of four particles, or of eight where a register has room for them: at
+/// least as many as the values of a record, which are taken apart into packs.
+inline constexpr int pack_bytes = simd_bytes > 32 ? simd_bytes : 32;
+inline constexpr int pack_lanes = pack_bytes / int(sizeof(double));
+typedef double Pack __attribute__((vector_size(pack_bytes), may_alias));
+typedef std::int64_t PackMask __attribute__((vector_size(pack_bytes), may_alias));
+typedef std::int32_t PackIndex __attribute__((vector_size(pack_bytes / 2), may_alias));
+
+inline constexpr PackMask all_lanes = ~PackMask{};
+
+SNOWSHED_INLINE bool any_lane(const PackMask& mask) {
+#ifdef __AVX512F__
+  return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
+#else
+  return any(mask);
+#endif
+}
+
+SNOWSHED_INLINE double sum_of_lanes(const Pack& v) {
+  double sum = 0;
+  for (int i = 0; i < pack_lanes; ++i) sum += v[i];
+  return sum;
+}
+
+struct PackRecord {
+  Pack a, b, c, d;
+};
+
+/// Exchanges rows and columns of four packs, within each half of a pack where it has eight lanes.
+SNOWSHED_INLINE PackRecord transposed(const PackRecord& r) {
+#ifdef __AVX512F__
+  const Pack even_ab = __builtin_shufflevector(r.a, r.b, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Pack odd_ab = __builtin_shufflevector(r.a, r.b, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Pack even_cd = __builtin_shufflevector(r.c, r.d, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Pack odd_cd = __builtin_shufflevector(r.c, r.d, 1, 9, 3, 11, 5, 13, 7, 15);
+  return {__builtin_shufflevector(even_ab, even_cd, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(even_ab, even_cd, 2, 3, 10, 11, 6, 7, 14, 15),
+          __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 10, 11, 6, 7, 14, 15)};
+#else
+  PackRecord t = r;
+  transpose(t.a, t.b, t.c, t.d);
+  return t;
+#endif
+}
+
+/// A record of each lane, taken apart into its four values; record(i) is that of lane i.
+template <class RecordOf>
+SNOWSHED_INLINE PackRecord taken_apart(const RecordOf& record) {
+#ifdef __AVX512F__
+  const auto both = [&](int i) SNOWSHED_INLINE_LAMBDA {
+    return __builtin_shufflevector(record(i), record(i + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  return transposed({both(0), both(1), both(2), both(3)});
+#else
+  return transposed({record(0), record(1), record(2), record(3)});
+#endif
+}
+
+/// The values of each lane, put together into a record.
+struct PackRows {
+  Quad of[pack_lanes];
+};
+SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
+  const PackRecord t = transposed(r);
+#ifdef __AVX512F__
+  const auto low = [](const Pack& v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); };
+  const auto high = [](const Pack& v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); };
+  return {{low(t.a), low(t.b), low(t.c), low(t.d), high(t.a), high(t.b), high(t.c), high(t.d)}};
+#else
+  return {{t.a, t.b, t.c, t.d}};
+#endif
+}
+
+SNOWSHED_INLINE Pack load_pack(const double* p) {
+  Pack v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+SNOWSHED_INLINE void store_pack(double* p, const Pack& v) { std::memcpy(p, &v, sizeof v); }
+
+/// What is read of the records of the four nodes around a place.
+enum class NodeRecord {
+  mean,             // the bilinear mean
+  mean_and_known,   // the same, but the last value is NaN where the first one of node 0 is
+  mean_and_middle,  // the bilinear mean of the first value, the plain means of the others
+};
+
+/// The bilinear weights of the nodes in the south-west (0), south-east, north-west and north-east.
+struct NodeWeights {
+  Pack of[4];
+};
+
+#ifdef __AVX512F__
+/// The nodes to the west and to the east are neighbours in memory and fill a register.
+template <NodeRecord record>
+SNOWSHED_INLINE Pack node_record(const Pack& south, const Pack& north, const Pack& south_weights,
+                                 const Pack& north_weights) {
+  // The same height to the last bit, whatever else is read: snow at rest must not creep.
+  const Pack parts = (Pack)_mm512_fmadd_pd((__m512d)south_weights, (__m512d)south,
+                                           _mm512_mul_pd((__m512d)north_weights, (__m512d)north));
+  if constexpr (record == NodeRecord::mean) return parts;
+  if constexpr (record == NodeRecord::mean_and_known)  // areas are finite
+    return __builtin_shufflevector(parts, south, 0, 1, 2, 8, 4, 5, 6, 15);
+  const Pack quarter = 0.25 * (south + north);
+  return __builtin_shufflevector(parts, quarter, 0, 9, 10, 11, 4, 13, 14, 15);
+}
+
+/// Records of a pack of places, the first nodes of which are given.
+template <NodeRecord record>
+SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const PackIndex& first,
+                                      const NodeWeights& weights) {
+  Pack parts[8];
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) {
+    const double* south = nodes + 4 * std::ptrdiff_t(first[i]);
+    const PackMask lane = PackMask{0, 0, 0, 0, 8, 8, 8, 8} + i;
+    parts[i] = node_record<record>(load_pack(south), load_pack(south + 4 * std::ptrdiff_t(columns)),
+                                   __builtin_shuffle(weights.of[0], weights.of[1], lane),
+                                   __builtin_shuffle(weights.of[2], weights.of[3], lane));
+  }
+  const auto whole = [&](int i) SNOWSHED_INLINE_LAMBDA {  // lanes i and i + 4, west and east added
+    const Pack &a = parts[i], &b = parts[i + 4];
+    return Pack(__builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
+                __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15));
+  };
+  return transposed({whole(0), whole(1), whole(2), whole(3)});
+}
+#else
+template <NodeRecord record>
+SNOWSHED_INLINE Quad node_record(const Quad (&n)[4], const double (&w)[4]) {
+  const Quad mean = w[0] * n[0] + w[1] * n[1] + w[2] * n[2] + w[3] * n[3];
+  if constexpr (record == NodeRecord::mean) return mean;
+  if constexpr (record == NodeRecord::mean_and_known)
+    return __builtin_shufflevector(mean, n[0], 0, 1, 2, 4);
+  const Quad quarter = 0.25 * (n[0] + n[1] + n[2] + n[3]);
+  return __builtin_shufflevector(mean, quarter, 0, 5, 6, 7);
+}
+
+/// Records of a pack of places, the first nodes of which are given.
+template <NodeRecord record>
+SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const PackIndex& first,
+                                      const NodeWeights& weights) {
+  alignas(pack_bytes) double w[4][pack_lanes];
+  for (int k = 0; k < 4; ++k) store_pack(w[k], weights.of[k]);
+  return taken_apart([&](int i) SNOWSHED_INLINE_LAMBDA {
+    const double* a = nodes + 4 * std::ptrdiff_t(first[i]);
+    const double* b = a + 4 * std::ptrdiff_t(columns);
+    return node_record<record>({load_row(a), load_row(a + 4), load_row(b), load_row(b + 4)},
+                               {w[0][i], w[1][i], w[2][i], w[3][i]});
+  });
+}
+#endif
+
+SNOWSHED_VARIANT_END

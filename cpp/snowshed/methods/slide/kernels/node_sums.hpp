@@ -1,0 +1,81 @@
+// The snow on the nodes of the grid, from the masses and momenta that particles hand on to the four
+// nodes around them.
+#pragma once
+
+#include "snowshed/methods/slide/kernels/places.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// The two nodes on one side of a cell.
+struct NodePair {
+  Quad south, north;
+};
+
+/// What the particles of a cell hand on to the nodes to the west and to the east; adds to them.
+SNOWSHED_INLINE void hand_on(const SlideView& s, std::uint32_t begin, std::uint32_t end,
+                             NodePair& west, NodePair& east) {
+  for (std::uint32_t e = begin; e < end; ++e) {
+    const std::uint32_t i = s.sorted_particle[e];
+    const double mass = s.mass[i];
+    const Quad carried{mass, mass * s.ux[i], mass * s.uy[i], mass * s.uz[i]};
+    const Quad to_east = s.east[i] * carried, to_west = carried - to_east;
+    const Quad north_east = s.north[i] * to_east, north_west = s.north[i] * to_west;
+    west.south += to_west - north_west;
+    west.north += north_west;
+    east.south += to_east - north_east;
+    east.north += north_east;
+  }
+}
+
+/// Raises the peak speed at a node of the terrain to the root of a square.
+SNOWSHED_INLINE void raise_speed(const SlideView& s, std::ptrdiff_t node, double square) {
+  if (square > s.peak_speed[node] * s.peak_speed[node]) s.peak_speed[node] = std::sqrt(square);
+}
+
+/// Turns the sums of a row of nodes into thickness and velocity, and raises the peaks.
+SNOWSHED_INLINE void finish_nodes(const SlideView& s, int row) {
+  double* record = s.nodes + 4 * std::ptrdiff_t(row) * s.flow_columns;
+  const std::ptrdiff_t first =
+      std::ptrdiff_t(s.flow_row + row) * s.columns + s.flow_column;  // in the terrain
+  for (int column = 0; column < s.flow_columns; ++column, record += 4) {
+    const Quad sums = load_row(record);
+    if (s.sums) store_row(s.sums + (record - s.nodes), sums);
+    const double mass = sums[0];
+    if (!(mass > 0)) continue;
+    const std::ptrdiff_t node = first + column;
+    const double column_mass = s.ground[4 * node + 3] * s.density;  // kg/m
+    const double share = 1 / (mass * column_mass);
+    Quad flow = (share * column_mass) * sums;
+    const double square = flow[1] * flow[1] + flow[2] * flow[2] + flow[3] * flow[3];
+    const double thickness = mass * (share * mass);
+    flow[0] = thickness;
+    store_row(record, flow);
+    if (!s.peak_thickness) continue;
+    if (thickness > s.peak_thickness[node]) s.peak_thickness[node] = thickness;
+    if (!s.sums) raise_speed(s, node, square);
+  }
+}
+
+/// Hands on what a row of cells holds to the rows of nodes south and north of it. Every other row
+/// comes first, and begins the sums of all nodes; the rows between add to them and finish them.
+SNOWSHED_INLINE void sum_on_nodes(const SlideView& s, int row) {
+  const bool begins = row % 2 == 0, has_north = row + 1 < s.cell_rows;
+  double* south = s.nodes + 4 * std::ptrdiff_t(row) * s.flow_columns;
+  double* north = south + 4 * std::ptrdiff_t(s.flow_columns);
+  const std::uint32_t* begin = s.cell_begin + std::ptrdiff_t(row) * s.cell_columns;
+  NodePair west{};
+  for (int column = 0; column < s.cell_columns; ++column) {
+    NodePair east{};
+    hand_on(s, begin[column], begin[column + 1], west, east);
+    const std::ptrdiff_t at = 4 * std::ptrdiff_t(column);
+    store_row(south + at, begins ? west.south : Quad(load_row(south + at) + west.south));
+    if (has_north)
+      store_row(north + at, begins ? west.north : Quad(load_row(north + at) + west.north));
+    west = east;
+  }
+  if (begins) return;
+  finish_nodes(s, row);
+  if (has_north) finish_nodes(s, row + 1);
+}
+
+SNOWSHED_VARIANT_END

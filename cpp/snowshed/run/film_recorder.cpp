@@ -1,0 +1,175 @@
+#include "snowshed/run/film_recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "snowshed/particles/quantities.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr double frames_of_all_events = 400;
+constexpr double least_frames = 12, most_frames = 40;  // of one event, as long as it should last
+constexpr int frames_before_longer = 240;  // then the interval doubles: endless events stay small
+constexpr double coarsest_quantum = 1.0 / 1024;  // m
+constexpr double most_quanta = 1 << 30;
+
+double automatic_interval(const Scene& scene, const CostEstimate& cost) {
+  const double frames =
+      std::clamp(frames_of_all_events / scene.events.count, least_frames, most_frames);
+  return std::max(cost.event_time, 1e-9) / frames;
+}
+
+/// The smallest length that matters in a picture, m: a part of a grain's radius, or the resolution;
+/// zero where a slide leaves it to its raster, which is coarse.
+double smallest_length(const Scene& scene, const Method& solver, bool has_radius) {
+  if (!has_radius || solver.size() == 0) return resolution(scene.numerics);
+  const FieldView radii = solver.field("equivalent_radius");
+  double smallest = *radii.at<double>(0);
+  for (std::size_t i = 1; i < radii.count; ++i) smallest = std::min(smallest, *radii.at<double>(i));
+  return smallest / 8;  // grains move little
+}
+
+/// A power of two, so that positions in single precision are exact.
+double quantum_for(double resolution) {
+  if (!(resolution > 0)) return coarsest_quantum;
+  return std::min(coarsest_quantum, std::exp2(std::floor(std::log2(resolution / 8))));
+}
+
+const FieldInfo* find(const std::vector<FieldInfo>& fields, const std::string& name) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&name](const FieldInfo& info) { return info.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+/// The chosen particles' values of a field: `convert` of each, all components.
+template <class Convert>
+void each_value(const FieldView& view, const std::vector<std::uint32_t>& places, Convert convert) {
+  with_field_type(view.info.type, [&](auto zero) {
+    using T = decltype(zero);
+    for (std::size_t i = 0; i < places.size(); ++i) convert(i, view.at<T>(places[i]));
+  });
+}
+
+template <class T>
+std::vector<T> whole_values(const Method& solver, const std::string& name,
+                            const std::vector<std::uint32_t>& places) {
+  std::vector<T> values(places.size());
+  each_value(solver.field(name), places, [&](std::size_t i, const auto* v) { values[i] = T(*v); });
+  return values;
+}
+
+std::int32_t in_quanta(double metres, double quantum) {
+  return std::int32_t(std::lround(std::clamp(metres / quantum, -most_quanta, most_quanta)));
+}
+
+/// Where the recorded particles are stored, ordered by id; `ids` are theirs.
+std::vector<std::uint32_t> recorded_places(const Method& solver, const FilmHeader& header,
+                                           std::vector<std::uint32_t>& ids) {
+  const std::vector<std::uint32_t>& order = solver.order_by_id();
+  const auto all = whole_values<std::uint32_t>(solver, "id", order);
+  std::vector<std::uint32_t> places;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    if (header.records(all[k])) {
+      places.push_back(order[k]);
+      ids.push_back(all[k]);
+    }
+  return places;
+}
+
+std::vector<std::int32_t> codes(const Method& solver, const FilmQuantity& quantity,
+                                const std::vector<std::uint32_t>& places) {
+  std::vector<std::int32_t> values(places.size());
+  const bool speed = quantity.name == "speed";
+  each_value(solver.field(speed ? "velocity" : quantity.name), places,
+             [&](std::size_t i, const auto* v) {
+               values[i] = quantity.code(speed ? std::hypot(v[0], v[1], v[2]) : double(*v));
+             });
+  return values;
+}
+
+FilmFrame frame_of(const Method& solver, const FilmHeader& header, int event) {
+  FilmFrame frame;
+  frame.time = solver.time();
+  frame.event = std::uint32_t(event);
+  const auto places = recorded_places(solver, header, frame.ids);
+  const std::vector<FieldInfo> fields = solver.fields();
+  frame.events = whole_values<std::uint16_t>(solver, "event", places);
+  frame.materials = find(fields, "material_id")
+                        ? whole_values<std::uint8_t>(solver, "material_id", places)
+                        : std::vector<std::uint8_t>(places.size());
+  if (header.has_radius) {
+    frame.radii.resize(places.size());
+    each_value(solver.field("equivalent_radius"), places, [&](std::size_t i, const auto* r) {
+      frame.radii[i] = in_quanta(double(*r), header.quantum);
+    });
+  }
+  frame.positions.assign(std::size_t(header.axes), std::vector<std::int32_t>(places.size()));
+  each_value(solver.field("position"), places, [&](std::size_t i, const auto* x) {
+    for (int axis = 0; axis < header.axes; ++axis)
+      frame.positions[std::size_t(axis)][i] =
+          in_quanta(double(x[header.axes == 2 ? 2 * axis : axis]), header.quantum);
+  });
+  for (const FilmQuantity& quantity : header.quantities)
+    frame.values.push_back(codes(solver, quantity, places));
+  return frame;
+}
+
+}  // namespace
+
+FilmHeader film_header(const Scene& scene, const Method& solver, const CostEstimate& cost) {
+  FilmHeader header;
+  header.axes = scene.dimension;
+  header.interval =
+      scene.output.film_interval > 0 ? scene.output.film_interval : automatic_interval(scene, cost);
+  header.share = std::min(1.0, FilmRecorder::most_particles / std::max(cost.total_particles, 1.0));
+  const std::vector<FieldInfo> fields = solver.fields();
+  header.has_radius = find(fields, "equivalent_radius") != nullptr;
+  header.quantum = quantum_for(smallest_length(scene, solver, header.has_radius));
+  for (const Quantity& q : quantities())
+    if (q.film_step > 0 && find(fields, q.name == "speed" ? "velocity" : q.name))
+      header.quantities.push_back({q.name, q.unit, q.meaning, q.film_step});
+  return header;
+}
+
+FilmRecorder::FilmRecorder(const std::filesystem::path& file, const FilmHeader& header,
+                           const RunPlace& place)
+    : film_([&] {
+        auto earlier = FilmWriter::reopen(file, [&place](const FilmFrameFacts& frame) {
+          const int event = int(frame.event);
+          if (event != place.event) return event < place.event;
+          return !place.running || frame.time < place.time;
+        });
+        return earlier ? std::move(*earlier) : FilmWriter(file, header);
+      }()) {}
+
+bool FilmRecorder::begun(int event) const {
+  return !film_.frames().empty() && int(film_.frames().back().event) == event;
+}
+
+/// Depends on the frames so far alone, so that a resumed run goes on as an uninterrupted one.
+double FilmRecorder::next_time() const {
+  const std::vector<FilmFrameFacts>& frames = film_.frames();
+  auto first = frames.end() - 1;
+  while (first != frames.begin() && (first - 1)->event == frames.back().event) --first;
+  const auto count = frames.end() - first;
+  const double interval =
+      film_.header().interval * std::exp2(double((count - 1) / frames_before_longer));
+  const double passed = (frames.back().time - first->time) / interval;
+  return first->time + (std::floor(passed + 1e-9) + 1) * interval;
+}
+
+bool FilmRecorder::due(const RunPlace& place) const {
+  return !begun(place.event) || place.time >= next_time();
+}
+
+void FilmRecorder::record(const Method& solver, int event) {
+  film_.append(frame_of(solver, film_.header(), event));
+}
+
+void FilmRecorder::record_end(const Method& solver, int event) {
+  if (!begun(event) || film_.frames().back().time < solver.time()) record(solver, event);
+}
+
+}  // namespace snowshed

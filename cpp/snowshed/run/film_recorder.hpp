@@ -1,0 +1,46 @@
+// Records a run as a film: the particles at even intervals, from which the view is made.
+#pragma once
+
+#include <filesystem>
+
+#include "snowshed/io/film_file.hpp"
+#include "snowshed/methods/method.hpp"
+#include "snowshed/run/cost_estimate.hpp"
+
+namespace snowshed {
+
+/// Where a run stands.
+struct RunPlace {
+  int event = 0;
+  bool running = false;
+  double time = 0;  // s, through all events
+};
+
+/// Chooses what a film holds of a run: of at most about `most_particles` particles, some, chosen by
+/// their ids; positions to a 16th of the resolution (grains: to a 128th of the smallest radius),
+/// and to half a millimetre at least; frames at the scene's output.film_interval, or so that an
+/// event has 40 of them, and fewer where there are more than ten events.
+FilmHeader film_header(const Scene&, const Method&, const CostEstimate&);
+
+class FilmRecorder {
+ public:
+  static constexpr double most_particles = 40000;
+
+  /// Begins a film, or goes on with the frames that a run had recorded when it stood at `place`, so
+  /// that a resumed run makes the same film.
+  FilmRecorder(const std::filesystem::path& file, const FilmHeader& header, const RunPlace& place);
+
+  /// Whether the first frame of an event is missing, or the next one's time has come.
+  bool due(const RunPlace&) const;
+  void record(const Method&, int event);
+  /// The last frame of an event, unless it is recorded already.
+  void record_end(const Method&, int event);
+
+ private:
+  bool begun(int event) const;
+  double next_time() const;
+
+  FilmWriter film_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,139 @@
+"""The loading tests of the reproduction: a stage for each part of what the paper says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from hagenmuller.size import Size
+from hagenmuller.snows import (
+    COARSER,
+    DENSITY,
+    FEWER_GRAINS,
+    HEAVY,
+    LIGHT,
+    THIN,
+    WIDE,
+    field_snow,
+    pack_snow,
+)
+from snowshed.analysis.grains.samples import LabelledSample
+from snowshed.analysis.grains.variants import (
+    BASE,
+    Comparison,
+    Variant,
+    other_spheres,
+    sensitivity_variants,
+)
+from snowshed.methods.grains.settings import GrainsSettings
+from snowshed.scene.builders.grains import grains_scene
+from snowshed.scene.loading import LoadingStage
+from snowshed.scene.scene import Scene
+
+#: 20 mm/s up to 30 %, with ice ten times as dense: inertia up to which stresses were seen to stay.
+STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.3)
+SETTINGS = GrainsSettings(density_scaling=10.0)
+#: Loading within the elastic phase, and back: slow, so that waves are small.
+ELASTIC_STRAIN, ELASTIC_SPEED = 1e-4, 5e-4
+#: The trap: far too much inertia.
+TOO_DENSE = 1e4
+LIGHT_SNOW, HEAVY_SNOW = f"{LIGHT:.0f} kg/m3", f"{HEAVY:.0f} kg/m3"
+THIN_NECKS, WIDE_NECKS = "thin necks", "wide necks"
+FEWER, TRAP, ELASTIC = "fewer grains", "density of ice x 10000", "elastic"
+
+Snow = Callable[[int], LabelledSample]
+
+
+class Comparisons:
+    """The comparisons of a reproduction, made when they are needed: their samples take a while.
+
+    Parameters
+    ----------
+    size
+        How much.
+    folder
+        Where the samples' files are.
+    """
+
+    def __init__(self, size: Size, folder: Path) -> None:
+        self.size = size
+        self.folder = folder
+        self._made: dict[str, Comparison] = {}
+
+    def __getitem__(self, stage: str) -> Comparison:
+        if stage not in self._made:
+            self._made[stage] = MAKERS[stage](self)
+        return self._made[stage]
+
+    def base_snow(self) -> list[LabelledSample]:
+        """Return the samples of the base before they are made coarser."""
+        return self.samples(lambda seed: field_snow(self.size.edge, seed, DENSITY))
+
+    def samples(self, snow: Snow) -> list[LabelledSample]:
+        """Return as many samples as there are to be."""
+        return [snow(seed) for seed in range(1, self.size.samples + 1)]
+
+    def variant(self, name: str, varied: str, snow: Snow) -> Variant:
+        """Return a variant that is another snow."""
+        coarse = [one.coarser(COARSER) for one in self.samples(snow)]
+        files = [one.write(self.folder) for one in coarse]
+        return Variant(name, varied, files, coarse[0].voxel_size)
+
+
+def sensitivity(made: Comparisons) -> Comparison:
+    """Return what `snowshed grains sensitivity` varies."""
+    return sensitivity_variants(made.base_snow(), made.folder, STAGE, SETTINGS, coarser=COARSER)
+
+
+def snows(made: Comparisons) -> Comparison:
+    """Return other densities, necks and numbers of grains, and the trap of too much inertia."""
+    edge = made.size.edge
+    base = made.variant(BASE, BASE, lambda seed: field_snow(edge, seed, DENSITY))
+    variants = [
+        base,
+        made.variant(LIGHT_SNOW, "density", lambda seed: field_snow(edge, seed, LIGHT)),
+        made.variant(HEAVY_SNOW, "density", lambda seed: field_snow(edge, seed, HEAVY)),
+        made.variant(THIN_NECKS, "necks", lambda seed: pack_snow(edge, seed, THIN)),
+        made.variant(WIDE_NECKS, "necks", lambda seed: pack_snow(edge, seed, WIDE)),
+        made.variant(
+            FEWER, "segmentation", lambda seed: field_snow(edge, seed, DENSITY, FEWER_GRAINS)
+        ),
+        Variant(
+            TRAP,
+            "density of ice",
+            base.samples,
+            base.voxel_size,
+            {"numerics.density_scaling": TOO_DENSE},
+        ),
+    ]
+    return Comparison(_scene(base, [STAGE]), variants, "hagenmuller-snows")
+
+
+def elastic(made: Comparisons) -> Comparison:
+    """Return loading within the elastic phase, and back until the plate is free."""
+    edge = made.size.edge
+    base = made.variant(ELASTIC, ELASTIC, lambda seed: field_snow(edge, seed, DENSITY))
+    there = LoadingStage(kind="compress", speed=ELASTIC_SPEED, strain=ELASTIC_STRAIN)
+    back = LoadingStage(kind="unload", speed=ELASTIC_SPEED, strain=2 * ELASTIC_STRAIN)
+    return Comparison(_scene(base, [there, back]), [base], "hagenmuller-elastic")
+
+
+def _scene(base: Variant, stages: Sequence[LoadingStage]) -> Scene:
+    return grains_scene(base.samples[0], base.voxel_size, stages, settings=SETTINGS)
+
+
+def spheres(made: Comparisons) -> Comparison:
+    """Return spheres half as large, which take ten times as long."""
+    samples = made.base_snow()
+    base = [one.coarser(COARSER) for one in samples]
+    same = Variant(BASE, BASE, [one.write(made.folder) for one in base], base[0].voxel_size)
+    finer = other_spheres(samples, made.folder, COARSER - 1)
+    return Comparison(_scene(same, [STAGE]), [same, finer], "hagenmuller-spheres")
+
+
+MAKERS: Mapping[str, Callable[[Comparisons], Comparison]] = {
+    "elastic": elastic,
+    "snows": snows,
+    "sensitivity": sensitivity,
+    "spheres": spheres,
+}

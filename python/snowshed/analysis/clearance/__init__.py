@@ -1,0 +1,7 @@
+"""How high a panel's lower edge must be, so that the snow it sheds does not reach it."""
+
+from snowshed.analysis.clearance.answer import Answer, clearance_of
+from snowshed.analysis.clearance.design import Design, Ranges
+from snowshed.analysis.clearance.winters import Winter, winters_of
+
+__all__ = ["Answer", "Design", "Ranges", "Winter", "clearance_of", "winters_of"]

@@ -1,0 +1,173 @@
+"""The files of the clearance answer: a page, a table and a summary."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Optional
+
+from snowshed.analysis.clearance import words
+from snowshed.analysis.clearance.answer import Answer
+from snowshed.analysis.clearance.design import Ranges
+from snowshed.analysis.clearance.statistics import burial_interval
+from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import csv_text
+from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
+from snowshed.plot.html_page import Grid, Picture, template
+
+
+def write_report(
+    answers: Sequence[Answer], ranges: Ranges, folder: Path, notes: Sequence[str] = ()
+) -> None:
+    """Write clearance.html, clearance.csv and clearance.json into a folder.
+
+    Parameters
+    ----------
+    answers
+        One for each panel.
+    ranges
+        What varied.
+    folder
+        Where to.
+    notes
+        On how the weather was read.
+    """
+    import pandas as pd
+
+    table = pd.concat([answer.table() for answer in answers], ignore_index=True)
+    write_text(folder / "clearance.csv", csv_text(table, float_format="%.6g"))
+    write_text(folder / "clearance.json", json.dumps(summary(answers, ranges), indent=2) + "\n")
+    page = template("snowshed.plot", "clearance.html.j2").render(
+        title="How high must the lower edge be?",
+        sentence=words.sentence(answers),
+        warnings=words.warnings(answers),
+        panels=[_panel(answer, folder) for answer in answers],
+        chart=_chart(answers) if len(answers) > 1 else None,
+        ranges=Grid(("not known", "from", "to"), words.range_rows(ranges), "lrr"),
+        assumptions=[*notes, *words.assumptions(answers[0])],
+    )
+    write_text(folder / "clearance.html", page)
+
+
+def summary(answers: Sequence[Answer], ranges: Ranges) -> dict[str, Any]:
+    """Return the answer as JSON data."""
+    return {
+        "sentence": words.sentence(answers),
+        "warnings": words.warnings(answers),
+        "ranges": {name: list(span) for name, span in ranges.spans.items()},
+        "draws": ranges.draws,
+        "panels": [
+            {
+                **vars(answer.design),
+                "winters": list(answer.winters),
+                "levels": [vars(level) for level in answer.levels],
+                "heights": [
+                    {"height": height, "buried": answer.buried(height)} for height in answer.heights
+                ],
+                "shares": {share.cause: share.part for share in answer.shares},
+            }
+            for answer in answers
+        ],
+    }
+
+
+def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
+    levels = [(one.probability, one.height, one.low, one.high) for one in answer.levels]
+    shares = {words.cause_in_words(share.cause): share.part for share in answer.shares}
+    name = f"{answer.design.slope_length:g}-{answer.design.tilt:g}"
+    causes: Optional[Picture] = None
+    if shares:
+        caption = "Parts of the variance over all seasons; linear effects."
+        causes = Picture.drawn(causes_figure(shares), f"causes-{name}", "Causes", caption)
+    return {
+        "title": f"Slope length {answer.design.slope_length:g} m, tilt {answer.design.tilt:g}°",
+        "levels": _level_grid(answer),
+        "heights": _height_grid(answer),
+        "burial": Picture.drawn(
+            burial_figure(answer.required, levels),
+            f"burial-{name}",
+            "Probability of burial",
+            "Steps: the seasons that were simulated. Points: the answer, with 90 % confidence.",
+        ),
+        "causes": causes,
+        "advice": words.advice(answer),
+        "worst": _worst(answer),
+        "picture": _worst_picture(answer),
+    }
+
+
+def _level_grid(answer: Answer) -> Grid:
+    rows = [
+        (
+            f"{100 * one.probability:g} %",
+            f"{one.height:.2f}",
+            f"{one.low:.2f} to {one.high:.2f}",
+            f"{one.return_period:.0f}",
+            "counted" if one.counted else "extrapolated (Gumbel)",
+        )
+        for one in answer.levels
+    ]
+    head = ("stays clear in", "height, m", "90 % confidence, m", "buried once in years", "how")
+    return Grid(head, rows, "lrrrl")
+
+
+def _height_grid(answer: Answer) -> Grid:
+    rows = []
+    for height in answer.heights:
+        buried = answer.buried(height)
+        low, high = burial_interval(buried, len(answer.winters))
+        years = f"{1 / buried:.1f}" if buried else f"more than {len(answer.winters)}"
+        rows.append(
+            (f"{height:g}", f"{100 * buried:.0f}", f"{100 * low:.0f} to {100 * high:.0f}", years)
+        )
+    head = ("height, m", "buried in, %", "90 % confidence, %", "return period, years")
+    return Grid(head, rows, "rrrr")
+
+
+def _worst(answer: Answer) -> str:
+    case, found = answer.cases[answer.worst], answer.outcomes[answer.worst]
+    first = next((one for one in found if one.contact), None)
+    fell = f"{case.winter.name}: {case.winter.snowfall:.1f} m of new snow in all. "
+    if first is None or first.contact is None:
+        return f"{fell}Its snow reaches none of the heights."
+    contact = first.contact
+    return (
+        f"{fell}At {first.height:g} m, {contact.words} on {contact.date[:10]}; an edge at "
+        f"{answer.required[answer.worst]:.2f} m would have stayed clear."
+    )
+
+
+def _worst_picture(answer: Answer) -> Optional[Picture]:
+    """Return the picture of the worst winter, simulated once more at its last height."""
+    from tempfile import TemporaryDirectory
+
+    from snowshed.run.season.driver import run_season
+
+    case, found = answer.cases[answer.worst], answer.outcomes[answer.worst]
+    if not case.slides:
+        return None
+    reached = [one.height for one in found if one.contact] or [found[0].height]
+    with TemporaryDirectory() as folder:
+        out = Path(folder) / "season"
+        run_season(case.winter.days, case.panel(reached[-1]), out, settings=case.season)
+        return Picture.read(
+            out / "season.png",
+            f"The worst winter, {case.winter.name}",
+            f"Lower edge at {reached[-1]:g} m; here the stack settles between slide-offs.",
+            dpi=160,
+        )
+
+
+def _chart(answers: Sequence[Answer]) -> Picture:
+    found = []
+    for answer in answers:
+        level = next(one for one in answer.levels if one.probability == words.OWNERS)
+        design = answer.design
+        found.append((design.slope_length, design.tilt, level.height, (level.low, level.high)))
+    return Picture.drawn(
+        design_figure(found, words.OWNERS),
+        "designs",
+        "Required height",
+        "Bars: 90 % confidence over winters.",
+    )

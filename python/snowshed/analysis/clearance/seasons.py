@@ -1,0 +1,132 @@
+"""Seasons of a panel as runs of a study, and how near their snow comes to the lower edge.
+
+The slide-offs of a season are a scene, and are computed and kept by the engine of studies. Between
+them the simulated stack does not age, which makes it too high rather than too low; the natural
+snow cover is added to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+
+from snowshed.analysis.clearance.design import Design, scene_of, season_settings
+from snowshed.analysis.clearance.winters import Winter
+from snowshed.run.season.accumulation import Day, accumulate
+from snowshed.run.season.clearance import Contact, first_contact
+from snowshed.run.season.settings import SeasonSettings
+from snowshed.run.season.slabs import season_scene
+from snowshed.run.season.table import season_table
+from snowshed.scene.scene import ResolvedScene
+from snowshed.study.scene_hash import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How near the snow of a season comes to the lower edge of a panel.
+
+    Attributes
+    ----------
+    height
+        Of the edge above the ground, m.
+    margin
+        Between the edge and the highest snow, less a cell, m; not above 0 if it touches the panel.
+    contact
+        The first contact; None: there is none.
+    """
+
+    height: float
+    margin: float
+    contact: Optional[Contact]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A panel in a winter, with drawn values of what is not known.
+
+    Attributes
+    ----------
+    design, winter
+        What is simulated.
+    values
+        The drawn values.
+    seed
+        Of the particles' places.
+    settings
+        Of the season, but for the drawn values.
+    base
+        Values of the scene that replace the defaults.
+    """
+
+    design: Design
+    winter: Winter
+    values: Mapping[str, float]
+    seed: int
+    settings: SeasonSettings
+    base: Mapping[str, Any]
+
+    @cached_property
+    def season(self) -> SeasonSettings:
+        """The settings of the season."""
+        return season_settings(self.settings, self.values, self.design.dx)
+
+    @cached_property
+    def days(self) -> list[Day]:
+        """The snow on the panel, row after row."""
+        return accumulate(self.winter.days, self.season, self.design.tilt)
+
+    @property
+    def slides(self) -> bool:
+        """True if any snow is released."""
+        return any(day.released for day in self.days)
+
+    def panel(self, height: float) -> ResolvedScene:
+        """Return the scene of the panel at a height, without slabs."""
+        return scene_of(self.design, height, self.values, self.seed, self.base)
+
+    def run(self, height: float) -> Run:
+        """Return the slide-offs of the season as a run of a study."""
+        return Run.of(season_scene(self.panel(height), self.days, self.season))
+
+    def outcome(self, height: float, events: pd.DataFrame) -> Outcome:
+        """Return how near the snow comes.
+
+        Parameters
+        ----------
+        height
+            Of the lower edge, m.
+        events
+            The rows of the run's slide-offs; none if nothing slides.
+        """
+        import pandas as pd
+
+        outlines = pd.DataFrame({"event": [], "x": [], "z": []})
+        table = season_table(self.panel(height).data, self.days, self.season, events, outlines)
+        dx = self.design.dx
+        contact = first_contact(table, dx)
+        sunk = table["stack_height_m"] - table["settled_height_m"]
+        margin = float((table["crest_clearance_m"] + sunk).min()) - dx
+        return Outcome(height, min(margin, 0.0) if contact else margin, contact)
+
+
+def cases_of(
+    design: Design,
+    winters: Sequence[Winter],
+    values: Sequence[Mapping[str, float]],
+    settings: SeasonSettings,
+    base: Mapping[str, Any],
+) -> list[Case]:
+    """Return the cases of a panel: every winter with its draws, in order."""
+    draws = len(values) // len(winters)
+    seeds = np.random.default_rng(len(values)).integers(1, 2**31, len(values))
+    return [
+        Case(design, winters[number // draws], one, int(seed), settings, base)
+        for number, (one, seed) in enumerate(zip(values, seeds))
+    ]

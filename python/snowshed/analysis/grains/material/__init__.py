@@ -1,0 +1,1 @@
+"""From loading tests of grains to snow for the material point method."""

@@ -1,0 +1,275 @@
+"""The snow that loading tests of grains make, with the ranges of its parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Optional, TypeVar
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.analysis.grains.material import readings
+from snowshed.analysis.grains.material.law import CamClay, Elasticity
+from snowshed.analysis.grains.material.tests import (
+    COMPACTION,
+    CONFINED,
+    ISOTROPIC,
+    SHEAR,
+    TENSION,
+    Curves,
+)
+from snowshed.analysis.grains.ratios import LogMean
+from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.phases import LINEAR
+from snowshed.scene.components import Snow
+
+Reading = TypeVar("Reading")
+#: Ratio of the law to the grains from which it is said.
+POOR = 2.0
+#: p0 over K above which the law's elastic strains are no longer small.
+SOFT = 0.1
+
+
+@dataclass(frozen=True)
+class Range:
+    """A parameter over the samples.
+
+    Attributes
+    ----------
+    value
+        Its mean; that of what is positive is geometric.
+    low, high
+        The 95 % interval of the mean by Student's t; NaN with one sample.
+    deviation
+        Between samples: the standard deviation of the logarithm, or of the value itself.
+    samples
+        How many.
+    """
+
+    value: float
+    low: float
+    high: float
+    deviation: float
+    samples: int
+
+    @classmethod
+    def of(cls, values: Sequence[float], *, logarithmic: bool = True) -> Range:
+        """Return the range of some values.
+
+        Examples
+        --------
+        >>> Range.of([1.0, 4.0]).value, round(Range.of([0.1, 0.3], logarithmic=False).value, 9)
+        (2.0, 0.2)
+        """
+        if logarithmic:
+            found = LogMean.of(values)
+            deviation = found.error * math.sqrt(found.count)
+            return cls(found.value, *found.interval(), deviation, found.count)
+        found = LogMean.of([math.exp(value) for value in values])
+        low, high = (math.log(one) for one in found.interval())
+        return cls(found.mean, low, high, found.error * math.sqrt(found.count), found.count)
+
+
+@dataclass
+class FittedSnow:
+    """A snow, and where its parameters come from.
+
+    Attributes
+    ----------
+    law
+        The parameters.
+    ranges
+        Each parameter's range, by its name in `Snow`; and ``critical_ratio`` (q/p),
+        ``tension_pa`` (axial), ``hardening_residual``, ``confined_yield_over_law``.
+    notes
+        What should be known before it is used.
+    """
+
+    law: CamClay
+    ranges: dict[str, Range]
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def steps(self) -> float:
+        """Time steps of the material point method over those of the calibrated snow.
+
+        They are as many as the speed of elastic waves is high.
+        """
+        return self.law.wave_speed / CamClay.of(Snow.preset("calibrated")).wave_speed
+
+
+def isotropic_strength(curves: Curves) -> float:
+    """Return the geometric mean of p0 over the samples, Pa, for the shear tests."""
+    return Range.of(_read(curves, ISOTROPIC, readings.isotropic_yield, [])).value
+
+
+def fit_material(
+    curves: Curves, density: float, *, modulus: Optional[float] = None, few_grains: int = 0
+) -> FittedSnow:
+    """Return the snow whose law agrees with the tests.
+
+    E and nu come from the elastic phase of confined compression, p0 from the peak of isotropic
+    compression, M from the ratio q/p that shear ends with, beta from the tensile strength, and xi
+    from the hardening in isotropic compression.
+
+    Parameters
+    ----------
+    curves
+        From `read_curves`.
+    density
+        Of the snow, kg/m3.
+    modulus
+        Young's modulus to take instead of the grains', Pa, so that steps may be longer; xi then
+        makes up for it.
+    few_grains
+        Grains of the smallest sample, if they are too few.
+
+    Raises
+    ------
+    InputError
+        If a parameter cannot be read from any sample, or the law would mean nothing.
+    """
+    notes: list[str] = []
+    found = _read(curves, CONFINED, readings.elasticity, notes)
+    ranges = {
+        "youngs_modulus": Range.of([one.youngs_modulus for one, _ in found]),
+        "poissons_ratio": Range.of([one.poissons_ratio for one, _ in found], logarithmic=False),
+    }
+    nu = min(max(ranges["poissons_ratio"].value, 0.0), readings.LARGEST_POISSON)
+    elastic = Elasticity(modulus or ranges["youngs_modulus"].value, nu)
+    linearity = min(one for _, one in found)
+    if linearity < LINEAR:
+        notes.append(f"the elastic phase is not linear (R2 {linearity:.2f}): E is doubtful")
+    strengths = _read(curves, ISOTROPIC, readings.isotropic_yield, notes)
+    ranges["preconsolidation_pressure"] = Range.of(strengths)
+    p0 = ranges["preconsolidation_pressure"].value
+    if p0 > SOFT * elastic.bulk_modulus:
+        raise InputError(
+            f"p0 {p0:.3g} Pa is {p0 / elastic.bulk_modulus:.2g} of the bulk modulus "
+            f"{elastic.bulk_modulus:.3g} Pa: the law would yield at large elastic strains only; "
+            f"up to {SOFT:g} are allowed"
+        )
+    _read_strengths(curves, ranges, p0, notes)
+    _read_hardening(curves, ranges, elastic, p0, notes)
+    law = CamClay(
+        density,
+        elastic,
+        ranges["critical_state_slope"].value,
+        p0,
+        ranges["cohesion"].value,
+        ranges["hardening_factor"].value,
+    )
+    _check_confined(curves, ranges, law, notes)
+    fitted = FittedSnow(law, ranges, notes)
+    _note_meaning(fitted, modulus, few_grains)
+    return fitted
+
+
+def _read(
+    curves: Curves, test: str, read: Callable[[LoadingCurve], Reading], notes: list[str]
+) -> list[Reading]:
+    """Return a reading of each sample; those that have none are noted."""
+    values, failures = [], []
+    for (name, sample), curve in sorted(curves.items(), key=lambda item: item[0]):
+        if name.partition(" ")[0] == test:
+            try:
+                values.append(read(curve))
+            except InputError as error:
+                failures.append(f"{name}, sample {sample + 1}: {error}")
+    if not values:
+        raise InputError("; ".join(failures) or f"no test {test} is computed")
+    notes.extend(failures)
+    return values
+
+
+def _read_strengths(curves: Curves, ranges: dict[str, Range], p0: float, notes: list[str]) -> None:
+    """Read M and beta, which depend on each other."""
+    ratios = _read(curves, SHEAR, readings.critical_ratio, notes)
+    ranges["critical_ratio"] = ratio = Range.of(ratios)
+    tensions = _read(curves, TENSION, readings.tension, notes)
+    ranges["tension_pa"] = Range.of([_axial(*one) for one in tensions])
+    mean_p, mean_q = (float(np.mean([one[axis] for one in tensions])) for axis in (0, 1))
+    slope, beta = readings.slope_and_cohesion(ratio.value, mean_p, mean_q, p0)
+    scale = slope / ratio.value
+    each = [readings.cohesion(*one, p0, slope) for one in tensions]
+    of_ratio, of_beta = Range.of([scale * one for one in ratios]), Range.of(each, logarithmic=False)
+    ranges["critical_state_slope"] = of_ratio
+    ranges["cohesion"] = Range(beta, of_beta.low, of_beta.high, of_beta.deviation, len(each))
+    if beta in (0.0, 1.0):
+        notes.append(
+            f"beta {beta:g} is the end of what the law takes: its tensile strength is not the "
+            f"grains' of {ranges['tension_pa'].value:.3g} Pa"
+        )
+
+
+def _axial(p: float, q: float) -> float:
+    """Return the axial tension of a stretched sample, from p < 0 and q = side - axial."""
+    return -p + 2 * q / 3
+
+
+def _read_hardening(
+    curves: Curves, ranges: dict[str, Range], elastic: Elasticity, p0: float, notes: list[str]
+) -> None:
+    found = _read(curves, COMPACTION, lambda curve: readings.hardening(curve, elastic, p0), notes)
+    ranges["hardening_factor"] = Range.of([one.factor for one in found])
+    ranges["hardening_residual"] = Range.of([one.residual for one in found])
+    excess = max(one.excess for one in found)
+    if excess > POOR:
+        notes.append(
+            f"between its brittle peak and hardening the snow is up to {excess:.2g} times weaker "
+            "than the law, which does not soften while it compacts"
+        )
+
+
+def _check_confined(
+    curves: Curves, ranges: dict[str, Range], law: CamClay, notes: list[str]
+) -> None:
+    """Compare the peak of confined compression, to which nothing is fitted."""
+    stress = law.confined_yield()
+    peaks = _read(curves, CONFINED, readings.confined_peak, notes)
+    ranges["confined_yield_over_law"] = found = Range.of([peak / stress for peak in peaks])
+    if not 1 / POOR <= found.value <= POOR:
+        notes.append(
+            f"in confined compression the grains' peak is {found.value:.2g} times the law's yield "
+            "stress, to which nothing is fitted"
+        )
+
+
+def _note_meaning(fitted: FittedSnow, modulus: Optional[float], few_grains: int) -> None:
+    notes = fitted.notes
+    own = fitted.ranges["youngs_modulus"].value
+    if modulus is not None:
+        notes.append(
+            f"E is given; that of the grains is {own:.3g} Pa. The hardening factor makes up for it"
+        )
+    notes.append(
+        f"the material point method takes {fitted.steps:.2g} times as many steps as with the "
+        "calibrated snow; the law has lost its strength after "
+        f"{100 * fitted.law.lost_after:.2g} % of plastic dilation"
+    )
+    if few_grains:
+        notes.append(f"{few_grains} grains: such a small sample hardly stands for its snow")
+    if fitted.ranges["preconsolidation_pressure"].samples < 2:
+        notes.append("one sample: the ranges of the parameters are not known")
+
+
+def exponents(laws: Sequence[CamClay]) -> dict[str, float]:
+    """Return the exponents n with which E and p0 grow as density^n; empty for one density.
+
+    Examples
+    --------
+    >>> laws = [CamClay(d, Elasticity(d**4, 0.3), 0.5, d, 0.2, 0.1) for d in (100.0, 200.0)]
+    >>> {name: round(n, 6) for name, n in exponents(laws).items()}
+    {'youngs_modulus': 4.0, 'preconsolidation_pressure': 1.0}
+    """
+    densities = np.log([one.density for one in laws])
+    if len(set(densities)) < 2:
+        return {}
+    moduli = np.log([one.elastic.youngs_modulus for one in laws])
+    pressures = np.log([one.preconsolidation_pressure for one in laws])
+    return {
+        "youngs_modulus": float(np.polyfit(densities, moduli, 1)[0]),
+        "preconsolidation_pressure": float(np.polyfit(densities, pressures, 1)[0]),
+    }

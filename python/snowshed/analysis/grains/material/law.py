@@ -1,0 +1,123 @@
+"""The cohesive Cam-Clay law of the material point method (thesis 1.2.5-1.2.7), in closed form."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed.io.arrays import Floats
+from snowshed.scene.components import Snow
+
+
+@dataclass(frozen=True)
+class Elasticity:
+    """Elastic constants.
+
+    Attributes
+    ----------
+    youngs_modulus
+        E, Pa.
+    poissons_ratio
+        nu.
+    """
+
+    youngs_modulus: float
+    poissons_ratio: float
+
+    @property
+    def bulk_modulus(self) -> float:
+        """K of the hardening law (1.2.7), Pa."""
+        return self.youngs_modulus / (3 - 6 * self.poissons_ratio)
+
+    @property
+    def confined_modulus(self) -> float:
+        """Stress over strain without sideways strain, Pa."""
+        nu = self.poissons_ratio
+        return self.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+
+    def hardened(self, p0: float, factor: float, compaction: Floats) -> Floats:
+        """Return p0 after plastic volumetric compaction, Pa: K sinh(asinh(p0/K) + xi e)."""
+        bulk = self.bulk_modulus
+        return np.asarray(bulk * np.sinh(math.asinh(p0 / bulk) + factor * compaction))
+
+
+@dataclass(frozen=True)
+class CamClay:
+    """The parameters of the law.
+
+    Attributes
+    ----------
+    density
+        kg/m3.
+    elastic
+        E and nu.
+    critical_state_slope, preconsolidation_pressure, cohesion, hardening_factor
+        M, p0 in Pa, beta, xi.
+    """
+
+    density: float
+    elastic: Elasticity
+    critical_state_slope: float
+    preconsolidation_pressure: float
+    cohesion: float
+    hardening_factor: float
+
+    @classmethod
+    def of(cls, snow: Snow) -> CamClay:
+        """Return the law of a complete snow."""
+        data = {name: float(value) for name, value in snow.to_data().items() if name != "model"}  # type: ignore[arg-type]
+        elastic = Elasticity(data.pop("youngs_modulus"), data.pop("poissons_ratio"))
+        return cls(elastic=elastic, **data)
+
+    @property
+    def snow(self) -> Snow:
+        """The snow of a scene."""
+        return Snow(
+            density=self.density,
+            youngs_modulus=self.elastic.youngs_modulus,
+            poissons_ratio=self.elastic.poissons_ratio,
+            critical_state_slope=self.critical_state_slope,
+            preconsolidation_pressure=self.preconsolidation_pressure,
+            cohesion=self.cohesion,
+            hardening_factor=self.hardening_factor,
+        )
+
+    @property
+    def wave_speed(self) -> float:
+        """Speed of elastic waves, m/s, to which the number of time steps is proportional."""
+        return math.sqrt(self.elastic.confined_modulus / self.density)
+
+    @property
+    def lost_after(self) -> float:
+        """Plastic dilation after which no strength is left: asinh(p0/K)/xi."""
+        p0, bulk = self.preconsolidation_pressure, self.elastic.bulk_modulus
+        return math.asinh(p0 / bulk) / self.hardening_factor
+
+    def hardened(self, compaction: Floats) -> Floats:
+        """Return the pressure of isotropic compression after a plastic compaction, Pa."""
+        p0, factor = self.preconsolidation_pressure, self.hardening_factor
+        return self.elastic.hardened(p0, factor, compaction)
+
+    def yield_stress(self, pressure: Floats) -> Floats:
+        """Return q on the yield surface, Pa, at pressures between -beta p0 and p0."""
+        p0, beta = self.preconsolidation_pressure, self.cohesion
+        inside = np.maximum((pressure + beta * p0) * (p0 - pressure), 0.0)
+        return np.asarray(self.critical_state_slope * np.sqrt(inside / (1 + 2 * beta)))
+
+    def confined_yield(self) -> float:
+        """Return the axial stress at which confined compression yields, Pa.
+
+        Examples
+        --------
+        >>> round(CamClay(210, Elasticity(1e6, 0.3), 0.5, 7e3, 0.2, 0.1).confined_yield())
+        3030
+        """
+        p0, beta = self.preconsolidation_pressure, self.cohesion
+        side = self.elastic.poissons_ratio / (1 - self.elastic.poissons_ratio)
+        per_p, per_q = (1 + 2 * side) / 3, 1 - side  # of the axial stress
+        a = (1 + 2 * beta) * per_q**2 + (self.critical_state_slope * per_p) ** 2
+        b = self.critical_state_slope**2 * per_p * (beta - 1) * p0
+        c = -(self.critical_state_slope**2) * beta * p0**2
+        return (-b + math.sqrt(b**2 - 4 * a * c)) / (2 * a)

@@ -1,0 +1,294 @@
+"""What loading tests tell of the cohesive Cam-Clay law, parameter by parameter.
+
+Stresses are positive in compression. p is the mean stress and q the Mises stress. The law's yield
+surface is (1 + 2 beta) q^2 + M^2 (p + beta p0)(p - p0) = 0 (thesis 1.2.6), and it hardens with
+p0 = K sinh(xi e), where K = E/(3 - 6 nu) and e is the plastic volumetric compaction (1.2.7).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.analysis.grains.material.law import Elasticity
+from snowshed.io.arrays import Floats
+from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.phases import LEAST_ROWS, PEAK_BELOW
+
+#: Shear strain from which on the strength is that of the critical state.
+CRITICAL_FROM = 0.15
+#: Strain from which on a peak counts: before, it is that of the plate's impact.
+PEAK_FROM = 5e-4
+#: Plastic compactions, over which stresses are averaged before hardening is fitted.
+HARDENING_BIN = 0.02
+#: Ranges of the law's parameters as scenes take them (`snowshed.Snow`).
+LARGEST_POISSON, LARGEST_HARDENING = 0.49, 1000.0
+
+
+@dataclass(frozen=True)
+class Hardening:
+    """The hardening law.
+
+    Attributes
+    ----------
+    factor
+        xi.
+    residual
+        Root mean square of what it misses, over that of the stresses.
+    excess
+        Largest ratio of the law's stress to that of the grains: between the brittle peak and
+        hardening, grains are weaker than the law, which cannot soften while it compacts.
+    """
+
+    factor: float
+    residual: float
+    excess: float
+
+
+def axial_stress(curve: LoadingCurve) -> Floats:
+    """Return the stress along z as the mean over both plates, Pa: waves make one the larger."""
+    return np.asarray(0.5 * (curve["top_stress_pa"] + curve["bottom_stress_pa"]))
+
+
+def invariants(curve: LoadingCurve, *, isotropic: bool = False) -> tuple[Floats, Floats]:
+    """Return p and q of the law, Pa, row by row; the stress on x and y is that on the sides.
+
+    The law's are Kirchhoff stresses: forces over initial areas, as curves have them, times the
+    stretch along the force.
+
+    Parameters
+    ----------
+    curve
+        Of a test.
+    isotropic
+        Whether the sides move inward as the plate does; else they stand still.
+    """
+    stretch = 1.0 - curve["axial_strain"]
+    along = stretch * axial_stress(curve)
+    side = (stretch if isotropic else 1.0) * curve["side_stress_pa"]
+    shear = math.sqrt(3.0) * curve["shear_stress_pa"]
+    return np.asarray((along + 2.0 * side) / 3.0), np.hypot(along - side, shear)
+
+
+def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
+    """Return E and nu, and R2 of the line, from confined compression before the first bond breaks.
+
+    The stress has the slope E (1 - nu) / ((1 + nu)(1 - 2 nu)) over the strain, and that on the
+    sides nu/(1 - nu) over that on the plate. Lines are those of least squares through the origin,
+    to which waves at the beginning matter little.
+
+    Raises
+    ------
+    InputError
+        If the elastic phase has too few rows, or no stiffness.
+
+    Examples
+    --------
+    >>> from snowshed.methods.grains.curve import COLUMNS
+    >>> columns = {name: np.zeros(9) for name in COLUMNS}
+    >>> strain = np.linspace(0, 1e-4, 9)
+    >>> columns.update(axial_strain=strain, top_stress_pa=1.35e6 * strain)
+    >>> columns.update(bottom_stress_pa=1.35e6 * strain, side_stress_pa=0.578e6 * strain)
+    >>> found, linearity = elasticity(LoadingCurve(columns))
+    >>> round(found.youngs_modulus, -4), round(found.poissons_ratio, 2)
+    (1000000.0, 0.3)
+    """
+    broken = np.flatnonzero(curve.broken > curve.broken[0])
+    rows = slice(0, int(broken[0]) if broken.size else len(curve))
+    strain, along = curve["axial_strain"][rows], axial_stress(curve)[rows]
+    if len(strain) < LEAST_ROWS:
+        raise InputError(
+            f"{len(strain)} rows before the first bond breaks; the elastic phase needs {LEAST_ROWS}"
+        )
+    slope = float(strain @ along / (strain @ strain))
+    spread = np.sum((along - along.mean()) ** 2)
+    linearity = 1.0 - np.sum((along - slope * strain) ** 2) / spread if spread > 0 else 0.0
+    if not slope > 0:
+        raise InputError("the stress does not grow in the elastic phase: no stiffness to be read")
+    ratio = max(float(strain @ curve["side_stress_pa"][rows] / (strain @ along)), 0.0)
+    nu = min(ratio / (1 + ratio), LARGEST_POISSON)
+    modulus = float(slope) * (1 + nu) * (1 - 2 * nu) / (1 - nu)
+    return Elasticity(modulus, nu), float(linearity)
+
+
+def isotropic_yield(curve: LoadingCurve) -> float:
+    """Return p0, Pa: the largest mean stress of isotropic compression up to a strain of 5 %.
+
+    Raises
+    ------
+    InputError
+        If there is no pressure.
+    """
+    strain = curve["axial_strain"]
+    counted = (strain >= PEAK_FROM) & (strain <= PEAK_BELOW)
+    pressure = invariants(curve, isotropic=True)[0][counted]
+    peak = float(pressure.max(initial=0.0))
+    if not peak > 0:
+        raise InputError("no pressure in isotropic compression: no strength to be read")
+    return peak
+
+
+def confined_peak(curve: LoadingCurve) -> float:
+    """Return the largest stress of confined compression, Pa, that is no impact."""
+    counted = curve["axial_strain"] >= PEAK_FROM
+    return float(axial_stress(curve)[counted].max(initial=0.0))
+
+
+def critical_ratio(curve: LoadingCurve) -> float:
+    """Return q/p at the critical state: means over shear strains above `CRITICAL_FROM`.
+
+    There the law strains at constant volume in pure shear, and as its flow is associated, the
+    stress is shear alone beside an equal pressure on all sides: p is the normal stress, and q is
+    the shear stress times the root of 3. Stresses on the sides are not used.
+
+    Raises
+    ------
+    InputError
+        If the test ends before, or there is no pressure.
+    """
+    rows = curve["shear_strain"] >= CRITICAL_FROM
+    if not rows.any():
+        raise InputError(f"sheared by less than {CRITICAL_FROM:.0%}: no critical state")
+    pressure = float(axial_stress(curve)[rows].mean())
+    shear = float(curve["shear_stress_pa"][rows].mean())
+    if not (pressure > 0 and shear > 0):
+        raise InputError(
+            "no shear under pressure at the critical state: the plate came off the snow"
+        )
+    return math.sqrt(3.0) * shear / pressure
+
+
+def tension(curve: LoadingCurve) -> tuple[float, float]:
+    """Return p and q, Pa, at the largest tension of a sample that is stretched.
+
+    Raises
+    ------
+    InputError
+        If there is no tension.
+    """
+    along = np.where(curve["axial_strain"] <= -PEAK_FROM, axial_stress(curve), np.inf)
+    row = int(np.argmin(along))
+    if not along[row] < 0:
+        raise InputError("no tension: is the snow frozen to the plates (bonded_plates)?")
+    pressure, deviator = invariants(curve)
+    return float(pressure[row]), float(deviator[row])
+
+
+def cohesion(p: float, q: float, p0: float, slope: float) -> float:
+    """Return beta of the yield surface through a stress, 0 to 1; the surface is linear in it.
+
+    Parameters
+    ----------
+    p, q
+        Of the stress, Pa; p is negative in tension.
+    p0, slope
+        Preconsolidation pressure, Pa, and M.
+
+    Examples
+    --------
+    >>> beta, m, p0, p = 0.2, 0.5, 7e3, -1e3
+    >>> q = m * np.sqrt((p + beta * p0) * (p0 - p) / (1 + 2 * beta))
+    >>> round(float(cohesion(p, q, p0, m)), 6)
+    0.2
+    """
+    outside = q**2 + slope**2 * p * (p - p0)
+    per_beta = 2 * q**2 + slope**2 * p0 * (p - p0)
+    if per_beta >= 0:
+        return 1.0 if outside > 0 else 0.0
+    return min(max(-outside / per_beta, 0.0), 1.0)
+
+
+def slope_of(ratio: float, beta: float) -> float:
+    """Return M of the law whose critical state has a ratio q/p.
+
+    There p = (1 - beta) p0 / 2 and q = M (1 + beta) p0 / 2 / sqrt(1 + 2 beta), the ellipse's top.
+
+    Examples
+    --------
+    >>> slope_of(0.8, 0.0)
+    0.8
+    """
+    return ratio * (1 - beta) * math.sqrt(1 + 2 * beta) / (1 + beta)
+
+
+def slope_and_cohesion(ratio: float, p: float, q: float, p0: float) -> tuple[float, float]:
+    """Return M and beta that have both a ratio q/p at the critical state and a tensile strength.
+
+    Parameters
+    ----------
+    ratio
+        q/p at the critical state.
+    p, q, p0
+        As of `cohesion`.
+    """
+    slope = ratio
+    beta = 0.0
+    for _ in range(100):
+        beta, last = cohesion(p, q, p0, slope), beta
+        slope = slope_of(ratio, min(beta, 0.99))
+        if abs(beta - last) < 1e-12:
+            break
+    return slope, beta
+
+
+def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:
+    """Return xi from isotropic compression: the least squares of the law's pressure.
+
+    Pressures are averaged over plastic compactions of 2 %, so that each counts once. The largest
+    decide, which are those of hardening.
+
+    Parameters
+    ----------
+    curve
+        Of isotropic compression, with the same rate of strain along all axes.
+    elastic
+        Elastic constants; E may be another than the grains', then xi makes up for it.
+    p0
+        Where hardening begins, Pa.
+
+    Raises
+    ------
+    InputError
+        If the sample is compacted too little for a fit, or E is too soft for its pressure.
+    """
+    from scipy.optimize import least_squares
+
+    pressure = invariants(curve, isotropic=True)[0]
+    compaction = -3.0 * np.log1p(-np.abs(curve["axial_strain"]))
+    plastic = compaction - pressure / elastic.bulk_modulus
+    if plastic[-1] < 0.5 * compaction[-1]:
+        raise InputError(
+            f"E {elastic.youngs_modulus:.3g} Pa is too soft for the hardening: more than half of "
+            "the compaction would be elastic"
+        )
+    bins = np.floor(plastic / HARDENING_BIN).astype(int)
+    used = np.unique(bins[bins >= 0])
+    if len(used) < LEAST_ROWS:
+        raise InputError(
+            f"compacted by {compaction[-1]:.1%}: too little for a hardening factor; "
+            f"{LEAST_ROWS * HARDENING_BIN:.0%} of plastic compaction at least"
+        )
+    means = [[values[bins == one].mean() for one in used] for values in (plastic, pressure)]
+    x, y = np.array(means)
+
+    def law(factor: float) -> Floats:
+        return elastic.hardened(p0, factor, np.maximum(x, 0.0))
+
+    # In logarithms, as factors of all sizes are possible; beginning at that of the last stress.
+    last = math.asinh(max(y[-1], 1.01 * p0) / elastic.bulk_modulus)
+    guess = math.log(max((last - math.asinh(p0 / elastic.bulk_modulus)) / x[-1], 1e-6))
+    ends = (math.log(1e-9), math.log(LARGEST_HARDENING))
+    found = least_squares(lambda log: (law(math.exp(log[0])) - y) / y.max(), [guess], bounds=ends)
+    factor = math.exp(float(found.x[0]))
+    fitted = law(factor)
+    residual = float(np.sqrt(np.sum((fitted - y) ** 2) / np.sum(y**2)))
+    if residual > 1.0:
+        raise InputError(
+            f"the hardening law misses the stresses by {residual:.2g} of their size: snow stays "
+            f"weaker than its peak of {p0:.3g} Pa, which the law cannot"
+        )
+    positive = y > 0
+    return Hardening(factor, residual, float((fitted[positive] / y[positive]).max()))

@@ -1,0 +1,114 @@
+"""The loading tests from which a snow is fitted, and their curves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from snowshed.analysis.grains.samples import LabelledSample
+from snowshed.analysis.grains.variants import Comparison, Variant
+from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.settings import GrainsSettings
+from snowshed.methods.grains.summary import FEW_GRAINS
+from snowshed.scene.builders.grains import grains_scene
+from snowshed.scene.loading import LoadingStage
+from snowshed.study.store import Store
+
+CONFINED, ISOTROPIC, COMPACTION, TENSION, SHEAR = (
+    "confined", "isotropic", "compaction", "tension", "shear"
+)  # fmt: skip
+FROZEN: Mapping[str, Any] = {"numerics.bonded_plates": True}
+#: How each is loaded. What begins with a strength is slow: the plate's impact on soft snow is as
+#: large as its strength otherwise. The snow is frozen to the plates: else they touch a few spheres,
+#: whose contacts would be all that yields.
+SLOW: Mapping[str, Any] = {"loading.0.speed": 1e-3, "loading.0.strain": 0.01, **FROZEN}
+LOADINGS: Mapping[str, Mapping[str, Any]] = {
+    CONFINED: {"loading.0.kind": "compress", **SLOW},
+    ISOTROPIC: {"loading.0.kind": "isotropic", **SLOW},
+    COMPACTION: {"loading.0.kind": "isotropic", "loading.0.strain": 0.12, **FROZEN},
+    TENSION: {"loading.0.kind": "stretch", **SLOW},
+}
+SHEARING: Mapping[str, Any] = {
+    "loading.0.kind": "shear", "loading.0.strain": 0.25,
+    "numerics.sides": "periodic", **FROZEN,
+}  # fmt: skip
+#: Normal stresses of the shear tests, of the yield stress in isotropic compression.
+NORMAL_STRESSES = (0.1, 0.3)
+SPEED = 0.02  # m/s, of the others
+
+Curves = Mapping[tuple[str, int], LoadingCurve]
+
+
+class MaterialTests:
+    """The tests of samples of one snow.
+
+    Parameters
+    ----------
+    samples
+        Of about the same density and one voxel size.
+    folder
+        For the samples' files.
+    settings
+        Of the method.
+    """
+
+    def __init__(
+        self, samples: Sequence[LabelledSample], folder: Path, settings: GrainsSettings
+    ) -> None:
+        self.samples = list(samples)
+        self.files = [one.write(folder) for one in samples]
+        self.voxel_size = samples[0].voxel_size
+        density = settings.density or 917.0
+        self.density = density * sum(one.ice_fraction for one in samples) / len(samples)
+        self.scene = grains_scene(
+            self.files[0], self.voxel_size, [LoadingStage(speed=SPEED)], settings=settings
+        )
+
+    @property
+    def few_grains(self) -> int:
+        """Grains of the smallest sample, if they are few; else 0."""
+        least = min(one.grains for one in self.samples)
+        return least if least < FEW_GRAINS else 0
+
+    def without_shear(self) -> Comparison:
+        """Return the tests that need no other test before."""
+        return self._comparison("", {name: dict(loading) for name, loading in LOADINGS.items()})
+
+    def shear(self, pressure: float) -> Comparison:
+        """Return the shear tests, whose normal stresses are parts of a pressure in Pa."""
+        stresses = {
+            f"{SHEAR} under {part:g} p0": {
+                **SHEARING,
+                "loading.0.stress": float(f"{part * pressure:.2g}"),
+            }
+            for part in NORMAL_STRESSES
+        }
+        return self._comparison("-shear", stresses)
+
+    def _comparison(self, ending: str, tests: Mapping[str, Mapping[str, Any]]) -> Comparison:
+        variants = [
+            Variant(name, name.partition(" ")[0], self.files, self.voxel_size, changes)
+            for name, changes in tests.items()
+        ]
+        return Comparison(self.scene, variants, f"material-{self.density:.0f}{ending}")
+
+
+def read_curves(comparison: Comparison, runs: Path) -> Curves:
+    """Return the curves of the computed tests, by their names and the samples' numbers.
+
+    Parameters
+    ----------
+    comparison
+        The tests; they were computed with their particles kept.
+    runs
+        Folder of the store.
+    """
+    hashes = comparison.hashes()
+    with Store.open(runs) as store:
+        kept = {key: store.particles(hash_) for key, hash_ in hashes.items()}
+    return {
+        key: LoadingCurve.parse(found[1].decode("utf-8"), f"{runs}: {key[0]}")
+        for key, found in kept.items()
+        if 1 in found
+    }

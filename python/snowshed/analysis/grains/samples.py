@@ -1,0 +1,185 @@
+"""Samples of segmented snow for studies: coarser spheres, parts of a sample, other directions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Optional
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.array_arguments import positive
+from snowshed.io.arrays import AnyIntegers
+from snowshed.io.paths import PathLike
+from snowshed.methods.grains.image.downscaling import downscaled
+from snowshed.methods.grains.image.ice_image import IceImage
+from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
+
+#: Voxels along an edge without which a sample is none.
+LEAST_VOXELS = 6
+
+
+@dataclass(frozen=True)
+class LabelledSample:
+    """Labels of grains with the size of their voxels, as a loading test takes them.
+
+    Attributes
+    ----------
+    name
+        Of the sample; its file is called so.
+    labels : (nz, ny, nx)
+        0 air, else a grain.
+    voxel_size
+        Edge of a voxel, m: the diameter of the spheres.
+    source
+        How it was made, if it is synthetic and that is known; else empty.
+    """
+
+    name: str
+    labels: AnyIntegers
+    voxel_size: float
+    source: str = ""
+
+    @classmethod
+    def read(cls, path: PathLike, voxel_size: Optional[float] = None) -> LabelledSample:
+        """Read the labels of a sample.
+
+        Parameters
+        ----------
+        path
+            A folder of ``snowshed grains segment`` or ``synthetic``, which names the sample, or an
+            NPY file.
+        voxel_size
+            Edge of a voxel, m; None: as the folder says.
+
+        Raises
+        ------
+        InputError
+            If there are no labels, or nothing says how large a voxel is.
+        OSError
+            If the file cannot be read.
+        """
+        found = find_sample(path, LABELS)
+        size = found.voxel_size if voxel_size is None else voxel_size
+        if size is None:
+            raise InputError(f"{found.file}: how large is a voxel? Give its edge in m (--voxel)")
+        positive("voxel size", size)
+        try:
+            labels = np.load(found.file, mmap_mode="r", allow_pickle=False)
+        except (ValueError, EOFError) as error:
+            raise InputError(f"{found.file}: no NPY file: {error}") from None
+        if not isinstance(labels, np.ndarray) or labels.ndim != 3 or labels.dtype.kind not in "iu":
+            raise InputError(f"{found.file}: no labels; they are whole numbers (nz, ny, nx)")
+        named = found.file.resolve().parent if found.file.name == LABELS else found.file
+        return cls(named.stem, np.asarray(labels), size, found.source)
+
+    @property
+    def ice_fraction(self) -> float:
+        """Voxels of ice over all."""
+        return float(np.count_nonzero(self.labels) / self.labels.size)
+
+    @property
+    def grains(self) -> int:
+        """How many grains there are."""
+        return int(np.count_nonzero(np.unique(self.labels)))
+
+    def coarser(self, factor: int) -> LabelledSample:
+        """Return the sample with voxels `factor` times as large, and the same ice fraction.
+
+        Where there is ice, `downscaled` decides; it belongs to the grain that has most of it there.
+
+        Examples
+        --------
+        >>> labels = np.zeros((12, 12, 12), dtype=np.int32)
+        >>> labels[:6], labels[6:, :7] = 1, 2
+        >>> sample = LabelledSample("two", labels, 5e-5)
+        >>> coarse = sample.coarser(2)
+        >>> coarse.labels.shape, coarse.voxel_size
+        ((6, 6, 6), 0.0001)
+        >>> abs(coarse.ice_fraction - sample.ice_fraction) < 1e-3
+        True
+        """
+        if factor == 1:
+            return self
+        counts = [length // factor for length in self.labels.shape]
+        if factor < 1 or min(counts) < LEAST_VOXELS:
+            raise InputError(
+                f"{self.name}: {self.labels.shape} voxels cannot be made {factor} times coarser; "
+                f"at least {LEAST_VOXELS} must remain along each edge"
+            )
+        image = downscaled(IceImage(self.labels > 0, self.voxel_size, self.name), factor)
+        nz, ny, nx = counts
+        whole = self.labels[: nz * factor, : ny * factor, : nx * factor]
+        blocks = whole.reshape(nz, factor, ny, factor, nx, factor).transpose(0, 2, 4, 1, 3, 5)
+        labels = np.zeros(image.ice.shape, dtype=self.labels.dtype)
+        labels[image.ice] = _most_frequent(blocks[image.ice].reshape(-1, factor**3))
+        name = f"{self.name}-coarser{factor}"
+        return LabelledSample(name, labels, image.voxel_size, self.source)
+
+    def middle(self, part: float) -> LabelledSample:
+        """Return the middle of the sample, with edges that are a part of its edges.
+
+        Examples
+        --------
+        >>> LabelledSample("one", np.ones((20, 20, 20), dtype=int), 1e-4).middle(0.5).labels.shape
+        (10, 10, 10)
+        """
+        if not 0 < part <= 1:
+            raise InputError(f"part {part:g}: above 0 and up to 1 are allowed")
+        lengths = [round(part * length) for length in self.labels.shape]
+        if min(lengths) < LEAST_VOXELS:
+            raise InputError(
+                f"{self.name}: {part:g} of {self.labels.shape} voxels are fewer than "
+                f"{LEAST_VOXELS} along an edge"
+            )
+        cut = tuple(
+            slice((whole - length) // 2, (whole - length) // 2 + length)
+            for whole, length in zip(self.labels.shape, lengths)
+        )
+        return replace(self, name=f"{self.name}-middle{part:g}", labels=self.labels[cut])
+
+    def turned(self, axis: int) -> LabelledSample:
+        """Return the sample turned so that it is loaded along another axis of its array.
+
+        Examples
+        --------
+        >>> LabelledSample("one", np.ones((6, 7, 8), dtype=int), 1e-4).turned(2).labels.shape
+        (8, 6, 7)
+        """
+        if axis == 0:
+            return self
+        turned = np.ascontiguousarray(np.moveaxis(self.labels, axis, 0))
+        return replace(self, name=f"{self.name}-along-{'zyx'[axis]}", labels=turned)
+
+    def write(self, folder: Path) -> Path:
+        """Write the labels into a folder, and return their file.
+
+        Raises
+        ------
+        InputError
+            If another sample is there under this name.
+        """
+        folder.mkdir(parents=True, exist_ok=True)
+        file = folder / f"{self.name}.npy"
+        if not file.is_file():
+            beside = file.with_name(f".{self.name}.part.npy")
+            np.save(beside, self.labels)
+            beside.replace(file)
+        elif not np.array_equal(np.load(file, mmap_mode="r"), self.labels):
+            raise InputError(f"{file}: holds another sample; take a new folder")
+        return file.resolve()
+
+
+def _most_frequent(blocks: AnyIntegers) -> AnyIntegers:
+    """Return the label other than 0 that each row has most often; the smaller of equals."""
+    rows = np.sort(blocks, axis=1)
+    best = np.zeros(len(rows), dtype=rows.dtype)
+    length = np.zeros(len(rows), dtype=np.int64)
+    run = np.zeros(len(rows), dtype=np.int64)
+    for column in range(rows.shape[1]):
+        same = rows[:, column] == rows[:, max(column - 1, 0)]
+        run = np.where(same & (column > 0), run + 1, 1)
+        longer = (run > length) & (rows[:, column] != 0)
+        best[longer], length[longer] = rows[longer, column], run[longer]
+    return best

@@ -1,0 +1,49 @@
+"""From computed variants of a loading test to the table and the figure of what matters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from snowshed.analysis.grains.ratios import compare_variants
+from snowshed.analysis.grains.variants import Comparison
+from snowshed.io.atomic import write_text
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+TESTS, TABLE, FIGURE = "tests.csv", "sensitivity.csv", "sensitivity.png"
+
+
+def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd.DataFrame:
+    """Evaluate variants, as far as they are computed; write the table and the figure.
+
+    Parameters
+    ----------
+    comparison
+        The variants.
+    runs
+        Folder of the store.
+    folder
+        For ``tests.csv`` (every test), ``sensitivity.csv`` and ``sensitivity.png``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As of `compare_variants`.
+
+    Raises
+    ------
+    InputError
+        If the base is not computed.
+    """
+    from snowshed.analysis.grains.figures import sensitivity_figure
+    from snowshed.plot.figure_style import save
+
+    tests = comparison.table(runs)
+    found = compare_variants(tests)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / TESTS, tests.to_csv(index=False))
+    write_text(folder / TABLE, found.to_csv(index=False))
+    save(sensitivity_figure(found), folder / FIGURE)
+    return found

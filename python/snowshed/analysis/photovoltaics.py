@@ -1,0 +1,200 @@
+"""Beside what engineers use: the pile of a season in the snow loss models of pvlib.
+
+pvlib is an extra (``pip install "snowshed[pv]"``); its functions are called with the pile of a
+season. Names and angles are those of pvlib: ``surface_tilt`` in degrees from the horizontal.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.extras import require
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+EVENT_DAY = 0.0254  # m: a snowfall event of Townsend's model is a day with more than an inch
+FIXED_ANGLE = 40.0  # degrees, the pile that the model assumes
+LOWEST_ANGLE, HIGHEST_ANGLE = 0.1, 89.0  # degrees
+
+
+def pile_angle(height: float, area: float) -> float:
+    """Return the angle of repose of the pile that Townsend's model should assume, degrees.
+
+    The model lets the snow of a row fill a triangle against the row, of the height H of the lower
+    edge and the area H^2 / (2 tan(angle)) (its ground interference term). A simulated pile with
+    the height h and the cross section A fills such a triangle if tan(angle) = h^2 / (2 A).
+
+    Parameters
+    ----------
+    height
+        h, m.
+    area
+        A, m2: volume over width.
+
+    Examples
+    --------
+    >>> round(pile_angle(1.0, 0.5), 1), round(pile_angle(0.5, 1.0), 1)
+    (45.0, 7.1)
+    """
+    if not (height > 0.0 and area > 0.0):
+        return FIXED_ANGLE
+    angle = math.degrees(math.atan(height**2 / (2.0 * area)))
+    return float(np.clip(angle, LOWEST_ANGLE, HIGHEST_ANGLE))
+
+
+def loss_townsend(
+    monthly: pd.DataFrame,
+    *,
+    surface_tilt: float,
+    slant_height: float,
+    lower_edge_height: float,
+    string_factor: float = 1.0,
+) -> pd.DataFrame:
+    """Return the monthly energy loss of Townsend's model, with its pile and with the simulated one.
+
+    Parameters
+    ----------
+    monthly
+        A row for each month with ``snow_total`` (cm), ``snow_events`` (days above 2.54 cm),
+        ``relative_humidity`` (%), ``temp_air`` (degrees C), ``poa_global`` (Wh/m2 in the month),
+        and ``pile_angle_deg`` (from `monthly_table`).
+    surface_tilt, slant_height, lower_edge_height, string_factor
+        As for `pvlib.snow.loss_townsend`, degrees and m.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``loss_fixed_pile`` and ``loss_own_pile``, parts from 0 to 1, by month.
+
+    Raises
+    ------
+    InputError
+        If a column is missing, or pvlib is not installed.
+    """
+    import pandas as pd
+
+    snow = require("pvlib.snow", "pv", "the loss model of Townsend")
+    needed = ("snow_total", "snow_events", "relative_humidity", "temp_air", "poa_global")
+    for name in (*needed, "pile_angle_deg"):
+        if name not in monthly:
+            raise InputError(f"the monthly table: no column {name!r}")
+    weather = [monthly[name].to_numpy(dtype=float) for name in needed]
+    panel: dict[str, Any] = {
+        "slant_height": slant_height,
+        "lower_edge_height": lower_edge_height,
+        "string_factor": string_factor,
+    }
+    total, events, humidity, temperature, insolation = weather
+    losses = {
+        name: snow.loss_townsend(
+            total, events, surface_tilt, humidity, temperature, insolation,
+            angle_of_repose=angle, **panel,
+        )
+        for name, angle in (
+            ("loss_fixed_pile", FIXED_ANGLE),
+            ("loss_own_pile", monthly["pile_angle_deg"].to_numpy(dtype=float)),
+        )
+    }  # fmt: skip
+    return pd.DataFrame(losses, index=monthly.index)
+
+
+def coverage_nrel(
+    snowfall: pd.Series,
+    poa_irradiance: pd.Series,
+    temp_air: pd.Series,
+    surface_tilt: float,
+    blocked: pd.Series,
+    **options: float,
+) -> pd.Series:
+    """Return the covered part of a row by the NREL model, whose snow cannot slide onto a pile.
+
+    While the pile reaches the lower edge, the model is given air so cold that nothing slides; all
+    else is `pvlib.snow.coverage_nrel`.
+
+    Parameters
+    ----------
+    snowfall, poa_irradiance, temp_air, surface_tilt, options
+        As for `pvlib.snow.coverage_nrel`: cm in each period, W/m2, degrees C, degrees.
+    blocked
+        Booleans with the same index: True while the pile reaches the edge (`blocked_days`).
+
+    Raises
+    ------
+    InputError
+        If the index of `blocked` differs, or pvlib is not installed.
+    """
+    snow = require("pvlib.snow", "pv", "the coverage model of NREL")
+    if not blocked.index.equals(temp_air.index):
+        raise InputError("blocked: its index is not that of temp_air")
+    cold = temp_air.where(~blocked.astype(bool), -1e6)
+    covered: pd.Series = snow.coverage_nrel(snowfall, poa_irradiance, cold, surface_tilt, **options)
+    return covered
+
+
+def blocked_days(season: pd.DataFrame, dx: float) -> pd.Series:
+    """Return on which days the snow below reaches the lower edge; the index holds the dates.
+
+    Parameters
+    ----------
+    season
+        The table of a season, as in season.csv.
+    dx
+        Size of its grid cells, m: a gap of one cell counts as none.
+    """
+    import pandas as pd
+
+    reached = (season["settled_clearance_m"] <= dx) | (season["joined"] > 0)
+    days = pd.to_datetime(season["date"])
+    return pd.Series(reached.to_numpy(), index=days, name="blocked")
+
+
+def monthly_table(season: pd.DataFrame, events: pd.DataFrame, dx: float) -> pd.DataFrame:
+    """Return what engineers ask of a season, month after month.
+
+    Parameters
+    ----------
+    season
+        The table of a season, as in season.csv.
+    events
+        The table of its slide-offs, as in run/events.csv; without rows if nothing slid.
+    dx
+        Size of the grid cells, m.
+
+    Returns
+    -------
+    pandas.DataFrame
+        By month: ``snow_total`` (cm), ``snow_events`` (days above 2.54 cm), ``temp_air`` (mean, of
+        the rows), ``releases``, ``pile_height_m`` and ``clearance_m`` (least), ``blocked_days``,
+        ``pile_angle_deg`` for `loss_townsend`.
+    """
+    import pandas as pd
+
+    days = pd.to_datetime(season["date"])
+    area = dict(zip(events["event"], events["volume_m3"] / events["width_m"].replace(0.0, 1.0)))
+    table = season.assign(
+        month=days.dt.to_period("M"),
+        blocked=blocked_days(season, dx).to_numpy(),
+        area=season["event"].map(area).ffill().fillna(0.0),
+    )
+    rows = []
+    for month, own in table.groupby("month"):
+        height = float(own["stack_height_m"].max())
+        rows.append(
+            {
+                "month": month,
+                "snow_total": 100.0 * own["snowfall_m"].sum(),
+                "snow_events": int((own["snowfall_m"] > EVENT_DAY).sum()),
+                "temp_air": own["temperature_c"].mean(),
+                "releases": int((own["released"] == "yes").sum()),
+                "pile_height_m": height,
+                "clearance_m": own["clearance_m"].min(),
+                "blocked_days": int(own["blocked"].sum()),
+                "pile_angle_deg": pile_angle(height, float(own["area"].max())),
+            }
+        )
+    return pd.DataFrame(rows).set_index("month")

@@ -1,0 +1,170 @@
+"""The command ``snowshed clearance``; slow imports are made when it runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+import click
+
+from snowshed._core import InputError
+from snowshed.cli.exit_codes import Stopped
+from snowshed.io.formatting import about
+
+if TYPE_CHECKING:
+    from snowshed.analysis.clearance import Answer, Design, Ranges, Winter
+    from snowshed.run.season.weather_row import Weather as WeatherRow
+
+EXAMPLE = "example"  # in place of a file: made winters
+PATH = click.Path(path_type=Path)
+
+
+@click.command()
+@click.argument("weather", metavar="WEATHER", type=PATH)
+@click.option("--slope-length", required=True, help="Along the slope, m; several: 3,4,5.")
+@click.option("--tilt", required=True, help="Degrees from the horizontal; several: 40,60.")
+@click.option(
+    "--heights",
+    default="1:4:0.5",
+    show_default=True,
+    help="Candidate heights of the lower edge, m: one, a list, or FROM:TO:STEP.",
+)
+@click.option(
+    "--range",
+    "spans",
+    multiple=True,
+    metavar="NAME=LOW:HIGH",
+    help="What is not known: friction, adhesion, sliding, strength, catch. May be repeated; "
+    "NAME=VALUE sets a known value.",
+)
+@click.option("--draws", type=int, default=3, show_default=True, help="Seasons for each winter.")
+@click.option("--seed", type=int, default=1, show_default=True, help="Of the drawing.")
+@click.option("--jobs", type=int, help="Processes at once.  [default: cores]")
+@click.option("-o", "--output", "folder", type=PATH, required=True, help="Results folder.")
+@click.option("--dry-run", is_flag=True, help="Say how long it takes, and end.")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+def clearance(
+    weather: Path,
+    slope_length: str,
+    tilt: str,
+    heights: str,
+    spans: tuple[str, ...],
+    draws: int,
+    seed: int,
+    jobs: Optional[int],
+    folder: Path,
+    dry_run: bool,
+    quiet: bool,
+) -> None:
+    """Find how high the lower edge must be, so that shed snow does not reach it.
+
+    WEATHER holds years of daily data, in any format that ``snowshed season`` reads, or is the word
+    example: ten made winters. The seasons of all its winters are simulated over the ranges of what
+    nobody knows of the snow. The same command goes on with an interrupted answer.
+
+    \b
+    Example:
+      snowshed clearance winters.csv --slope-length 4 --tilt 60 --heights 1.5:4:0.5 -o answer
+    """  # noqa: D301 - click wants the control character
+    from snowshed.analysis.clearance import Design, Ranges, winters_of
+    from snowshed.analysis.clearance.answer import forecast
+    from snowshed.analysis.clearance.design import DEFAULT_RANGES
+    from snowshed.run.season.weather import read_weather
+
+    ranges = Ranges({**DEFAULT_RANGES, **dict(map(_span, spans))}, draws, seed)
+    designs = [
+        Design(length, angle)
+        for length in numbers("--slope-length", slope_length)
+        for angle in numbers("--tilt", tilt)
+    ]
+    candidates = numbers("--heights", heights)
+    rows, notes = read_weather(weather) if str(weather) != EXAMPLE else _example()
+    winters = winters_of(rows)
+    if dry_run or not quiet:
+        plans = [forecast(one, winters, candidates, ranges=ranges, jobs=jobs) for one in designs]
+        seconds, seasons = sum(plan[0] for plan in plans), sum(plan[1] for plan in plans)
+        click.echo(
+            f"{len(winters)} winters, {len(designs)} panels, about {seasons} seasons: "
+            f"{about(seconds)}"
+        )
+    if dry_run:
+        return
+    for note in () if quiet else notes:
+        click.echo(f"note: {note}")
+    answers = _answers(designs, winters, candidates, ranges, folder, jobs, quiet=quiet)
+    from snowshed.analysis.clearance.report import write_report
+
+    write_report(answers, ranges, folder, notes)
+    if not quiet:
+        from snowshed.cli.display.clearance import print_answers
+
+        print_answers(answers, folder)
+
+
+def _answers(
+    designs: list[Design],
+    winters: list[Winter],
+    heights: list[float],
+    ranges: Ranges,
+    folder: Path,
+    jobs: Optional[int],
+    *,
+    quiet: bool,
+) -> list[Answer]:
+    from snowshed.analysis.clearance import clearance_of
+    from snowshed.cli.progress import progress_bar
+    from snowshed.study.errors import StudyInterrupted
+
+    folder.mkdir(parents=True, exist_ok=True)
+    options: dict[str, Any] = {"ranges": ranges, "jobs": jobs}
+    found = []
+    try:
+        for one in designs:
+            store = folder / f"runs-{one.slope_length:g}-{one.tilt:g}"
+            with progress_bar(quiet=quiet) as progress:
+                found.append(
+                    clearance_of(one, winters, heights, store, progress=progress, **options)
+                )
+    except StudyInterrupted:
+        raise Stopped("interrupted; go on with the same command") from None
+    return found
+
+
+def _example() -> tuple[list[WeatherRow], list[str]]:
+    from snowshed.run.season.generator import EXAMPLE_CLIMATE
+
+    rows = EXAMPLE_CLIMATE.winters(10, seed=7)
+    return rows, ["the weather is that of ten made winters (generator of Richardson 1981)"]
+
+
+def numbers(option: str, text: str) -> list[float]:
+    """Return the numbers of an option: one, some with commas, or FROM:TO:STEP.
+
+    Examples
+    --------
+    >>> numbers("--heights", "1:2:0.5"), numbers("--tilt", "40,60")
+    ([1.0, 1.5, 2.0], [40.0, 60.0])
+    """
+    try:
+        if ":" not in text:
+            return [float(part) for part in text.split(",")]
+        low, high, step = (float(part) for part in text.split(":"))
+        count = int((high - low) / step + 1e-9) + 1
+        if not (step > 0 and 1 <= count <= 1000):
+            raise ValueError
+        return [round(low + n * step, 9) for n in range(count)]
+    except (ValueError, ZeroDivisionError, OverflowError):
+        raise InputError(
+            f"{option}: {text!r}; needed: a number, a list such as 2,3, or FROM:TO:STEP"
+        ) from None
+
+
+def _span(text: str) -> tuple[str, tuple[float, float]]:
+    name, _, values = text.partition("=")
+    try:
+        ends = [float(part) for part in values.split(":")]
+        return name, (ends[0], ends[-1])
+    except ValueError:
+        raise InputError(
+            f"--range: {text!r}; needed: NAME=LOW:HIGH, such as friction=0.3:0.6"
+        ) from None

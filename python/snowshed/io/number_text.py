@@ -1,0 +1,26 @@
+"""Numbers in files that people write: what stands there must be a number, and nothing else."""
+
+from __future__ import annotations
+
+import math
+import re
+
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+LONGEST = 400  # characters
+
+
+def number_in(text: str) -> float:
+    """Return the number that a text is; NaN where it is none, or none that is finite.
+
+    Other than ``float`` it takes no digits of other scripts, no underscores and no words.
+
+    Examples
+    --------
+    >>> number_in("-1.5e3"), number_in(" 2 "), number_in("1_000"), number_in("1e999")
+    (-1500.0, 2.0, nan, nan)
+    """
+    text = text.strip(" \t")
+    if len(text) > LONGEST or not NUMBER.fullmatch(text):
+        return math.nan
+    value = float(text)
+    return value if math.isfinite(value) else math.nan

@@ -1,0 +1,71 @@
+"""Opening a three-dimensional image by its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.io.paths import PathLike
+from snowshed.io.voxels.array_files import open_npy, open_raw
+from snowshed.io.voxels.metaimage import open_metaimage
+from snowshed.io.voxels.pictures import open_slices, open_stack
+from snowshed.io.voxels.voxel_file import VoxelFile
+
+READERS = {
+    ".npy": open_npy,
+    ".mhd": open_metaimage,
+    ".mha": open_metaimage,
+    ".tif": open_stack,
+    ".tiff": open_stack,
+}
+RAW = ".raw"
+
+
+def open_voxels(
+    path: PathLike, shape: Optional[tuple[int, int, int]] = None, kind: Optional[str] = None
+) -> VoxelFile:
+    """Return an image, of which nothing but the size and the type has been read.
+
+    Parameters
+    ----------
+    path
+        A TIFF stack, a folder of TIFF, PNG or BMP slices, a .mhd, .mha, .raw or .npy file.
+    shape
+        Voxels (nz, ny, nx) of a .raw file.
+    kind
+        Type of the numbers of a .raw file, such as "uint16", or "uint16-be" if big-endian.
+
+    Raises
+    ------
+    InputError
+        If it is damaged, or no such file by its name.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     np.save(folder + "/snow.npy", np.zeros((2, 3, 4), dtype=np.uint8))
+    ...     open_voxels(folder + "/snow.npy").shape
+    (2, 3, 4)
+    """
+    file = Path(path)
+    ending = file.suffix.lower()
+    if (ending == RAW) != (shape is not None and kind is not None):
+        raise InputError(
+            f"{file}: a .raw file needs the shape and the type of its numbers (or a .mhd header "
+            "beside it), and no other takes them"
+        )
+    if file.is_dir():
+        return open_slices(file)
+    if shape is not None and kind is not None:
+        return open_raw(file, shape, kind)
+    if ending not in READERS:
+        raise InputError(
+            f"{file}: not an image that is read: folders of slices, and files that end in "
+            f"{', '.join([*READERS, RAW])}"
+        )
+    return READERS[ending](file)

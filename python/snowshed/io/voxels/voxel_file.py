@@ -1,0 +1,81 @@
+"""A three-dimensional image whose size is known and whose layers are read when they are needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import prod
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from snowshed._core import InputError
+from snowshed.io.messages import shortened
+
+MOST_VOXELS = 1 << 32
+MOST_ALONG = 1 << 16
+#: What a voxel may hold, by NumPy's letter for its kind.
+KINDS = "buif"
+
+
+@dataclass(frozen=True)
+class VoxelFile:
+    """An image of one number per voxel.
+
+    Attributes
+    ----------
+    name
+        Of the file or folder, for messages.
+    shape
+        Voxels (nz, ny, nx).
+    dtype
+        Of the numbers.
+    read_layers
+        Called with the first layer and the one after the last; returns (n, ny, nx).
+    voxel_size
+        Edge of a voxel as the file says, m; None: it does not say.
+    """
+
+    name: str
+    shape: tuple[int, int, int]
+    dtype: np.dtype[Any]
+    read_layers: Callable[[int, int], NDArray[Any]]
+    voxel_size: Optional[float] = None
+
+    def __post_init__(self) -> None:
+        check_size(self.name, self.shape)
+        check_type(self.name, self.dtype)
+
+    def layers(self, low: int, high: int) -> NDArray[Any]:
+        """Return some layers, in the byte order of this machine.
+
+        Raises
+        ------
+        InputError
+            If the file is damaged.
+        """
+        found = self.read_layers(low, high)
+        if found.shape != (high - low, *self.shape[1:]):
+            raise InputError(f"{self.name}: layers {low} to {high - 1} have shape {found.shape}")
+        return found.astype(found.dtype.newbyteorder("="), copy=False)
+
+
+def check_size(name: str, shape: tuple[int, ...]) -> None:
+    """Raise InputError unless a shape is that of a three-dimensional image of a sane size."""
+    if len(shape) != 3:
+        raise InputError(f"{name}: {len(shape)} dimensions; an image of snow has 3 (nz, ny, nx)")
+    if min(shape) < 1 or max(shape) > MOST_ALONG or prod(shape) > MOST_VOXELS:
+        raise InputError(
+            f"{name}: {' x '.join(map(str, shape))} voxels; 1 to {MOST_ALONG:,} along an edge and "
+            f"{MOST_VOXELS:,} in all are allowed"
+        )
+
+
+def check_type(name: str, dtype: np.dtype[Any]) -> None:
+    """Raise InputError unless a type is that of numbers."""
+    if dtype.kind not in KINDS or not 1 <= dtype.itemsize <= 8:
+        raise InputError(
+            f"{name}: values of type {shortened(str(dtype))}; whole numbers and floating-point "
+            "numbers of up to 8 bytes are allowed"
+        )

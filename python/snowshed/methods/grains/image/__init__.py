@@ -1,0 +1,1 @@
+"""Images of snow: synthetic ones, their numbers, and their grains."""

@@ -1,0 +1,352 @@
+"""The solids of a scene as triangles, for views in space."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+import snowshed._core as _core
+from snowshed._core import InputError
+from snowshed.io.arrays import Floats, Integers
+from snowshed.io.raster import Raster
+from snowshed.methods.registry import resolution_of
+from snowshed.plot.surface_nets import surface_of
+from snowshed.scene.builders.slope import BOARD_CELLS
+
+ROUND = 24  # sides of what is round
+SAMPLES = 48  # of a solid that is sampled, along its longest side
+TERRAIN_NODES = 220  # along a side, at most
+MOST_TRIANGLES = 200_000  # of one mesh; larger ones are sampled
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box that holds something: its lowest and highest corner, m."""
+
+    low: Floats
+    high: Floats
+
+    @property
+    def size(self) -> Floats:
+        """Edge lengths."""
+        edges: Floats = self.high - self.low
+        return edges
+
+    def widened(self, margin: float) -> Box:
+        """Return the box with a margin on all sides, m."""
+        return Box(self.low - margin, self.high + margin)
+
+    def joined(self, points: Floats) -> Box:
+        """Return a box that holds points as well."""
+        if not len(points):
+            return self
+        return Box(
+            np.minimum(self.low, points.min(axis=0)), np.maximum(self.high, points.max(axis=0))
+        )
+
+
+@dataclass(frozen=True)
+class Solid:
+    """Something that snow collides with.
+
+    Attributes
+    ----------
+    name
+        What it is.
+    kind
+        "ground", "panel" or "solid": how it is painted.
+    corners : (n, 3)
+        m, where it is before it moves.
+    triangles : (m, 3)
+        Which corners each has.
+    motion
+        As in a scene; None if it stays.
+    grid
+        Distance of lines drawn on it, m; 0: none.
+    """
+
+    name: str
+    kind: str
+    corners: Floats
+    triangles: Integers
+    motion: Optional[Mapping[str, Any]] = None
+    grid: float = 0.0
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The solid as a page can hold it."""
+        return {
+            "name": self.name,
+            "kind": self.kind,
+            "corners": _base64(self.corners.astype("<f4")),
+            "triangles": _base64(self.triangles.astype("<u4")),
+            "motion": None if self.motion is None else _motion(self.motion),
+            "grid": self.grid,
+            "cut": self.kind != "ground",
+        }
+
+
+def scene_solids(
+    scene: Mapping[str, Any], base_dir: Path, snow: Box, terrain: Optional[Raster]
+) -> tuple[list[Solid], Box]:
+    """Return the solids of a scene around its snow, and a box that holds all but the ground.
+
+    Parameters
+    ----------
+    scene
+        Complete data, as in scene.json.
+    base_dir
+        Where relative names of files start.
+    snow
+        A box that holds the snow at all times.
+    terrain
+        The ground of a slide; None without.
+    """
+    flat = scene["dimension"] == 2
+    solids = [
+        *([_panel(scene)] if scene.get("panel") else []),
+        *_obstacles(scene, base_dir, snow),
+    ]
+    focus = snow
+    for solid in solids:
+        if solid.kind == "panel" or np.all(np.ptp(solid.corners, axis=0) < 3 * snow.size.max()):
+            focus = focus.joined(solid.corners)
+    if scene.get("ground"):
+        solids.insert(0, _ground(scene["ground"]["tilt"], focus, flat))
+        focus = focus.joined(_below(focus, scene["ground"]["tilt"]))
+    if terrain is not None:
+        solids.insert(0, _terrain(terrain, focus))
+    return [_flattened(one) for one in solids] if flat else solids, focus
+
+
+def _flattened(solid: Solid) -> Solid:
+    """Return a solid of a plane: seen from the side, its depth does not matter."""
+    corners = solid.corners.copy()
+    corners[:, 1] = 0.0
+    return replace(solid, corners=corners)
+
+
+def _below(focus: Box, tilt: float) -> Floats:
+    """Return the points of the ground below two edges of a box."""
+    x = np.array([focus.low[0], focus.high[0]])
+    middle = 0.5 * (focus.low[1] + focus.high[1])
+    return np.column_stack([x, np.full(2, middle), -x * np.tan(np.radians(tilt))])
+
+
+def _panel(scene: Mapping[str, Any]) -> Solid:
+    panel = scene["panel"]
+    tilt = np.radians(panel["tilt"])
+    slope = np.array([np.cos(tilt), 0.0, -np.sin(tilt)])
+    normal = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
+    rise = panel["height"] + 0.5 * panel["length"] * np.sin(tilt)
+    if ground := scene.get("ground"):  # the lower edge stands so high above the ground below it
+        rise -= 0.5 * panel["length"] * np.cos(tilt) * np.tan(np.radians(ground["tilt"]))
+    thickness = max(panel["thickness"], BOARD_CELLS * resolution_of(scene))
+    centre = np.array([0.0, 0.0, rise]) - 0.5 * thickness * normal
+    edges = (panel["length"] * slope, _width(panel) * np.array([0.0, 1.0, 0.0]), thickness * normal)
+    return _box("panel", "panel", centre, edges)
+
+
+def _width(part: Mapping[str, Any]) -> float:
+    return float(part.get("width") or 0.0)
+
+
+def _ground(tilt: float, focus: Box, flat: bool) -> Solid:
+    size = float(focus.size.max())
+    grid = float(10.0 ** np.floor(np.log10(max(size, 1e-9))))
+    low, high = (
+        grid * np.round(edge / grid) for edge in (focus.low - 2 * size, focus.high + 2 * size)
+    )
+    x = np.array([low[0], high[0], high[0], low[0]])
+    z = -x * np.tan(np.radians(tilt))
+    if flat:
+        z[2:] = z.min() - 2 * size  # seen from the side
+        corners = np.column_stack([x, np.zeros(4), z])
+    else:
+        corners = np.column_stack([x, [low[1], low[1], high[1], high[1]], z])
+    return Solid(
+        "ground", "ground", corners, np.array([[0, 1, 2], [0, 2, 3]]), grid=0 if flat else grid
+    )
+
+
+def _terrain(raster: Raster, focus: Box) -> Solid:
+    margin = 0.5 * float(focus.size[:2].max())
+    rows, columns = raster.heights.shape
+    c0, r0 = (int(np.floor((focus.low[k] - margin) / raster.cell)) for k in (0, 1))
+    c1, r1 = (int(np.ceil((focus.high[k] + margin) / raster.cell)) for k in (0, 1))
+    step = max(1, int(np.ceil(max(c1 - c0, r1 - r0) / TERRAIN_NODES)))
+    column = np.arange(max(c0, 0), min(c1, columns - 1) + 1, step)
+    row = np.arange(max(r0, 0), min(r1, rows - 1) + 1, step)
+    z = raster.heights[np.ix_(row, column)]
+    x, y = np.meshgrid(column * raster.cell, row * raster.cell)
+    corners = np.column_stack([x.ravel(), y.ravel(), np.nan_to_num(z).ravel()])
+    at = np.arange(z.size).reshape(z.shape)
+    quads = np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=-1).reshape(-1, 4)
+    quads = quads[np.isfinite(z.ravel()[quads]).all(axis=1)]
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    grid = float(10.0 ** np.round(np.log10(max(focus.size[:2].max(), 1e-9) / 4)))
+    return Solid("terrain", "ground", corners, triangles, grid=grid)
+
+
+def _obstacles(scene: Mapping[str, Any], base_dir: Path, snow: Box) -> Iterator[Solid]:
+    near = snow.widened(0.5 * float(snow.size.max()) + 1e-6)
+    for number, obstacle in enumerate(scene.get("obstacles", ())):
+        name = obstacle.get("name") or f"obstacle {number + 1}"
+        motion = obstacle.get("motion")
+        for part in _parts(obstacle["shape"], scene, base_dir, near):
+            yield replace(part, name=name, motion=motion)
+
+
+def _parts(
+    shape: Mapping[str, Any], scene: Mapping[str, Any], base_dir: Path, near: Box
+) -> Iterator[Solid]:
+    """Yield the triangles of a shape; what has no simple form is sampled."""
+    kind = shape["type"]
+    vector = {
+        k: _in_space(shape[k]) for k in ("center", "size", "normal", "from", "to") if k in shape
+    }
+    if kind == "box":
+        size = vector["size"]
+        if scene["dimension"] == 2:
+            size[1] = 0.0
+        yield _box(kind, "solid", vector["center"], np.diag(size))
+    elif kind == "sphere":
+        yield _capsule(vector["center"], vector["center"], shape["radius"])
+    elif kind == "capsule":
+        yield _capsule(vector["from"], vector["to"], shape["radius"])
+    elif kind == "cylinder" and scene["dimension"] == 3:
+        yield _cylinder(vector["from"], vector["to"], shape["radius"])
+    elif kind == "plate":
+        yield _plate(vector["center"], vector["normal"], shape)
+    elif kind == "union":
+        for one in shape["shapes"]:
+            yield from _parts(one, scene, base_dir, near)
+    elif kind == "mesh" and (found := _mesh(shape, base_dir)) is not None:
+        yield found
+    else:
+        found = _sampled(shape, scene, base_dir, near)
+        if len(found.triangles):
+            yield found
+
+
+def _in_space(vector: Any) -> Floats:
+    x = np.asarray(vector, dtype=float)
+    return np.array([x[0], 0.0, x[1]]) if len(x) == 2 else x
+
+
+def _mesh(shape: Mapping[str, Any], base_dir: Path) -> Optional[Solid]:
+    corners, triangles = _core.read_mesh(base_dir / shape["file"], shape.get("scale", 1.0))
+    if len(triangles) > MOST_TRIANGLES:
+        return None
+    return Solid("mesh", "solid", corners, triangles)
+
+
+def _sampled(
+    shape: Mapping[str, Any], scene: Mapping[str, Any], base_dir: Path, near: Box
+) -> Solid:
+    """Return the surface of any shape where the snow may come, from samples of its distance."""
+    alone = _core.Simulation(_only(shape, scene), str(base_dir))
+    spacing = float(near.size.max()) / SAMPLES
+    flat = scene["dimension"] == 2
+    axes = [
+        np.zeros(1)
+        if flat and axis == 1
+        else np.arange(near.low[axis], near.high[axis] + spacing, spacing)
+        for axis in range(3)
+    ]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    distance = alone.obstacle_distance(points.reshape(-1, 3)).reshape(points.shape[:3])
+    if flat:  # a slice, closed before and behind
+        distance = np.concatenate([distance, distance], axis=1)
+    distance = np.pad(distance, 1, constant_values=spacing)
+    corners, triangles = surface_of(distance)
+    corners = near.low + (corners - 1.0) * spacing
+    return Solid(shape["type"], "solid", corners, triangles)
+
+
+def _only(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> str:
+    """Return the JSON of a scene with a shape and hardly any snow."""
+    import json
+
+    dimension = scene["dimension"]
+    drop = {"type": "sphere", "center": [0.0] * dimension, "radius": 0.05}
+    bare = {"snowshed": scene["snowshed"], "dimension": dimension, "numerics": {"dx": 0.05}}
+    bare |= {"obstacles": [{"shape": dict(shape)}], "bodies": [{"shape": drop}]}
+    return str(_core.parse_scene(json.dumps(bare)))
+
+
+def _box(name: str, kind: str, centre: Floats, edges: Any) -> Solid:
+    signs = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
+    sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    triangles = np.array([t for a, b, c, d in sides for t in ([a, b, c], [a, c, d])])
+    return Solid(name, kind, centre + signs @ np.asarray(edges), triangles)
+
+
+def _plate(centre: Floats, normal: Floats, shape: Mapping[str, Any]) -> Solid:
+    up = normal / np.linalg.norm(normal)
+    across = np.array([0.0, 1.0, 0.0])
+    slope = np.cross(across, up)
+    slope /= np.linalg.norm(slope)
+    across = np.cross(up, slope)
+    edges = (shape["length"] * slope, _width(shape) * across, shape["thickness"] * up)
+    return _box("plate", "solid", centre - 0.5 * shape["thickness"] * up, edges)
+
+
+def _frame_along(axis: Floats) -> tuple[Floats, Floats, Floats]:
+    length = np.linalg.norm(axis)
+    along = axis / length if length > 0 else np.array([0.0, 0.0, 1.0])
+    side = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+    side /= np.linalg.norm(side)
+    return along, side, np.cross(along, side)
+
+
+def _turned(rings: list[tuple[Floats, float]], side: Floats, other: Floats) -> Solid:
+    """Return the solid of revolution through rings: centre and radius of each, end to end."""
+    angle = np.linspace(0.0, 2.0 * np.pi, ROUND, endpoint=False)
+    circle = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * other
+    corners = np.concatenate([centre + radius * circle for centre, radius in rings])
+    triangles = []
+    for ring in range(len(rings) - 1):
+        for k in range(ROUND):
+            a, b = ring * ROUND + k, ring * ROUND + (k + 1) % ROUND
+            triangles += [[a, b, a + ROUND], [b, b + ROUND, a + ROUND]]
+    return Solid("round", "solid", corners, np.array(triangles))
+
+
+def _cylinder(start: Floats, end: Floats, radius: float) -> Solid:
+    _, side, other = _frame_along(end - start)
+    return _turned([(start, 0.0), (start, radius), (end, radius), (end, 0.0)], side, other)
+
+
+def _capsule(start: Floats, end: Floats, radius: float) -> Solid:
+    along, side, other = _frame_along(end - start)
+    quarter = np.linspace(0.0, 0.5 * np.pi, ROUND // 4 + 1)
+    first = [(start - radius * np.cos(a) * along, radius * float(np.sin(a))) for a in quarter]
+    last = [(end + radius * np.sin(a) * along, radius * float(np.cos(a))) for a in quarter]
+    return _turned(first + last, side, other)
+
+
+def _motion(spec: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a motion with all its keys, in space."""
+    turning = np.atleast_1d(np.asarray(spec.get("angular_velocity", [0.0, 0.0, 0.0]), dtype=float))
+    if turning.size not in (1, 3):
+        raise InputError(f"motion: an angular velocity of {turning.size} numbers")
+    return {
+        "velocity": _in_space(spec.get("velocity", [0.0, 0.0, 0.0])).tolist(),
+        "angular_velocity": [0.0, float(turning[0]), 0.0]
+        if turning.size == 1
+        else turning.tolist(),
+        "pivot": _in_space(spec.get("pivot", [0.0, 0.0, 0.0])).tolist(),
+        "start": float(spec.get("start", 0.0)),
+        "end": float(spec.get("end", 1e9)),
+    }
+
+
+def _base64(values: NDArray[Any]) -> str:
+    return base64.b64encode(values.tobytes()).decode()

@@ -1,0 +1,42 @@
+"""One row of a season's weather."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Optional
+
+#: No more snow was measured in 24 hours than 1.93 m (Silver Lake, Colorado, 1921).
+MOST_SNOWFALL = 3.0  # m in a row
+
+
+@dataclass(frozen=True)
+class Weather:
+    """One row of a season.
+
+    Attributes
+    ----------
+    line
+        Line in the file, or row in the table, from 1.
+    date
+        Date at which the snow had fallen.
+    snowfall
+        Depth of the new snow on level ground, m.
+    density
+        Density of the new snow, kg/m3; None: not measured.
+    temperature
+        Temperature of the air, degrees C, until the next row.
+    friction, adhesion
+        Friction and adhesion (Pa) of the panel on that day; None: those of the settings.
+    snow_depth
+        Depth of the natural snow cover, m; None: not measured.
+    """
+
+    line: int
+    date: datetime
+    snowfall: float
+    density: Optional[float]
+    temperature: float
+    friction: Optional[float] = None
+    adhesion: Optional[float] = None
+    snow_depth: Optional[float] = None

@@ -1,0 +1,35 @@
+"""What a run writes besides its tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+from snowshed.io.record import Record
+
+
+@dataclass
+class Output(Record):
+    """Files that a run writes besides its tables.
+
+    Attributes
+    ----------
+    snapshot_interval : float
+        Simulated time between particle snapshots; 0: only at the end of an event [s]. 0 <= value
+        <= 1e+09; default 0.
+    film : bool
+        Record the particles over time, for snowshed view. Default True.
+    film_interval : float
+        Simulated time between frames of the film; 0: chosen by how long an event should last [s].
+        0 <= value <= 1e+09; default 0.
+    energy : bool
+        Keep the energy balance. Default False.
+    checkpoint_interval : float
+        Wall time between checkpoints; 0: none [s]. 0 <= value <= 1e+09; default 60.
+    """
+
+    snapshot_interval: Optional[float] = None
+    film: Optional[bool] = None
+    film_interval: Optional[float] = None
+    energy: Optional[bool] = None
+    checkpoint_interval: Optional[float] = None

@@ -1,0 +1,99 @@
+"""What snow rests on: the ground, the panel, or a structure.
+
+A stack is what lies below the panel. Snow that hangs over the panel's edge, or lies on a roof, a
+guard or another panel, has not come down: it is told apart by the body of snow it belongs to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.snow.stack.connected_components import connected_bodies
+
+AGROUND = 2.0  # cells between the ground and the lowest snow of a body that lies on it
+ALOFT = 4.0  # cells between the snow on the ground and a body that falls
+
+
+@dataclass(frozen=True)
+class Support:
+    """What the snow beside that on the panel rests on, and whether it touches that on the panel.
+
+    Attributes
+    ----------
+    at_panel, on_structure, falling : (n,)
+        Booleans: True for particles of bodies that do not reach the ground, because the snow on the
+        panel or a structure holds them, or because they still fall.
+    joined
+        Whether a body that lies on the ground touches the snow on the panel.
+    """
+
+    at_panel: Booleans
+    on_structure: Booleans
+    falling: Booleans
+    joined: bool
+
+
+def supports(
+    snow: Floats, on_panel_snow: Floats, touches_structure: Booleans, heights: Floats, dx: float
+) -> Support:
+    """Return what snow rests on.
+
+    Parameters
+    ----------
+    snow : (n, 3)
+        Positions of snow that does not lie on the panel, m.
+    on_panel_snow : (k, 3)
+        Positions of that on the panel.
+    touches_structure : (n,)
+        Whether each particle touches a structure other than the panel.
+    heights : (n,)
+        Above the ground below, m.
+    dx
+        Size of the grid cells, m: snow closer than that is one body.
+
+    Examples
+    --------
+    >>> eaves, pile = np.array([[0.0, 0, 2]]), np.array([[0.1, 0, 0]])
+    >>> snow = np.vstack([eaves, pile])
+    >>> found = supports(snow, eaves - [0.05, 0, 0], np.zeros(2, bool), snow[:, 2], 0.1)
+    >>> found.at_panel.tolist(), found.joined
+    ([True, False], False)
+    """
+    if len(snow) == 0:
+        none = np.zeros(0, dtype=bool)
+        return Support(none, none, none, False)
+    at_panel = _near(snow, on_panel_snow, dx)
+    bodies = connected_bodies(snow, dx)
+    lowest = np.full(bodies.max() + 1, np.inf)
+    np.minimum.at(lowest, bodies, heights)
+    aground = lowest <= AGROUND * dx
+    by_panel = _has(bodies, at_panel) & ~aground
+    by_structure = _has(bodies, touches_structure) & ~aground & ~by_panel
+    rest = ~(aground | by_panel | by_structure)
+    aloft = np.zeros(len(aground), dtype=bool)
+    if rest.any():
+        loose = rest[bodies]
+        near = _near(snow[loose], snow[aground[bodies]], ALOFT * dx)
+        aloft = rest & ~np.isin(np.arange(len(rest)), bodies[loose][near])
+    joined = bool((aground[bodies] & at_panel).any())
+    return Support(by_panel[bodies], by_structure[bodies], aloft[bodies], joined)
+
+
+def _has(bodies: Integers, marked: Booleans) -> Booleans:
+    """Return which bodies have a marked particle."""
+    has: Booleans = np.bincount(bodies, weights=marked) > 0
+    return has
+
+
+def _near(snow: Floats, others: Floats, distance: float) -> Booleans:
+    """Return which particles are nearer than a distance to any of the others."""
+    from scipy.spatial import cKDTree  # here: it takes longer to load than all of snowshed
+
+    if len(snow) == 0 or len(others) == 0:
+        return np.zeros(len(snow), dtype=bool)
+    found, _ = cKDTree(others).query(snow, distance_upper_bound=distance)
+    near: Booleans = np.isfinite(found)
+    return near

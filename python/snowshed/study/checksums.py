@@ -1,0 +1,98 @@
+"""Checksums in a store: a damaged row is found when it is read.
+
+Each is of one thing, by name: ``run HASH`` what is to be computed, ``study NAME`` the runs of a
+study, ``results HASH`` what was measured and ``particles HASH`` what is kept of the snow. What an
+earlier version wrote gets them when it is opened.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sqlite3
+from collections.abc import Sequence
+from typing import Any
+
+TABLE = (
+    "CREATE TABLE IF NOT EXISTS checksum"
+    " (name TEXT PRIMARY KEY, digest TEXT NOT NULL) WITHOUT ROWID"
+)
+#: The tables of results; a column that came later is empty in rows from before, and not counted.
+RESULTS = ("event", "event_timing", "run_timing")
+
+
+def note(write: sqlite3.Connection, name: str, content: object) -> None:
+    """Store the checksum of something that is written in the same transaction."""
+    write.execute("INSERT OR REPLACE INTO checksum VALUES (?, ?)", (name, digest(content)))
+
+
+def note_run(write: sqlite3.Connection, hash_: str) -> None:
+    """Store the checksum of a run that is to be computed."""
+    columns = "SELECT hash, version, scene FROM run WHERE hash = ?"
+    note(write, f"run {hash_}", write.execute(columns, (hash_,)).fetchone())
+
+
+def note_study(write: sqlite3.Connection, study: str) -> None:
+    """Store the checksum of the axes and the runs of a study."""
+    note(write, f"study {study}", study_of(write, study))
+
+
+def note_results(write: sqlite3.Connection, hash_: str) -> None:
+    """Store the checksums of the results of a run, and of its particles if it kept them."""
+    note(write, f"results {hash_}", results_of(write, hash_))
+    query = "SELECT event, data FROM event_particles WHERE hash = ? ORDER BY event"
+    if particles := write.execute(query, (hash_,)).fetchall():
+        note(write, f"particles {hash_}", particles)
+
+
+def note_all(write: sqlite3.Connection) -> None:
+    """Store the checksums of all that a store of an earlier version holds."""
+    for hash_, status in write.execute("SELECT hash, status FROM run").fetchall():
+        note_run(write, hash_)
+        if status != "pending":
+            note_results(write, hash_)
+    for (study,) in write.execute("SELECT name FROM study").fetchall():
+        note_study(write, study)
+
+
+def study_of(connection: sqlite3.Connection, study: str) -> Sequence[Any]:
+    """Return what a store holds of a study."""
+    axes = connection.execute("SELECT axes FROM study WHERE name = ?", (study,)).fetchall()
+    query = "SELECT position, hash FROM study_run WHERE study = ? ORDER BY position"
+    return [axes, connection.execute(query, (study,)).fetchall()]
+
+
+def digest(content: object) -> str:
+    """Return the checksum of numbers, texts, bytes, and lists of them.
+
+    Examples
+    --------
+    >>> digest(["a", 1.5, None]) == digest(("a", 1.5, None))
+    True
+    """
+    text = json.dumps(content, default=_digest_of_bytes)
+    return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
+
+
+def _digest_of_bytes(value: object) -> str:
+    return hashlib.blake2b(value, digest_size=16).hexdigest()  # type: ignore[arg-type]
+
+
+def results_of(connection: sqlite3.Connection, hash_: str) -> Sequence[Any]:
+    """Return what a store holds of the results of a run, without its particles."""
+    parts: list[Any] = connection.execute(
+        "SELECT status, error FROM run WHERE hash = ?", (hash_,)
+    ).fetchall()
+    for table in RESULTS:
+        cursor = connection.execute(f"SELECT * FROM {table} WHERE hash = ?", (hash_,))
+        names = [column[0] for column in cursor.description]
+        rows = [
+            sorted((name, value) for name, value in zip(names, row) if value is not None)
+            for row in cursor
+        ]
+        parts.append(sorted(rows, key=_event_of))
+    return parts
+
+
+def _event_of(row: Sequence[tuple[str, Any]]) -> str:
+    return str(dict(row).get("event", "")).zfill(9)

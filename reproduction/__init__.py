@@ -1,0 +1,1 @@
+"""What reproductions of publications share: claims and verdicts, stages, sections, the report."""

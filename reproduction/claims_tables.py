@@ -1,0 +1,36 @@
+"""Tables of claims with their findings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from reproduction.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, Judged
+from snowshed.plot.html_page import Grid
+
+VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
+
+
+def claims_grid(claims: Sequence[Judged], author: str) -> Grid:
+    """Return claims and findings, contradictions first; `author` heads what the claims say."""
+    ordered = sorted(claims, key=lambda one: VERDICTS.index(one.finding.verdict))
+    rows = [[one.finding.verdict, one.source, one.text, one.finding.sentence] for one in ordered]
+    return Grid(["verdict", "section", author, "here"], rows, "llll")
+
+
+def rules_grid(claims: Sequence[Judged]) -> Grid:
+    """Return when each claim counts as confirmed."""
+    rows = [[one.source, one.text, one.rule] for one in claims]
+    return Grid(["section", "claim", "confirmed if"], rows, "lll")
+
+
+def claims_csv(claims: Sequence[Judged]) -> str:
+    """Return claims and findings as CSV."""
+    import pandas as pd
+
+    rows = [
+        (one.source, one.text, one.rule, one.finding.verdict, one.finding.sentence)
+        for one in claims
+    ]
+    columns = ["source", "claim", "confirmed_if", "verdict", "finding"]
+    text: str = pd.DataFrame(rows, columns=columns).to_csv(index=False)
+    return text

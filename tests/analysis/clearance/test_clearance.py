@@ -1,0 +1,210 @@
+"""The clearance answer: what it counts, its probabilities, its statistics, its words."""
+
+import json
+import os
+import signal
+
+import numpy as np
+import pytest
+
+from snowshed import InputError
+from snowshed.analysis.clearance import Design, Ranges, clearance_of, winters_of
+from snowshed.analysis.clearance.answer import forecast
+from snowshed.analysis.clearance.report import write_report
+from snowshed.analysis.clearance.statistics import burial_interval, levels_of, shares_of
+from snowshed.cli.main import main
+from snowshed.run.season import SeasonSettings, run_season
+from snowshed.run.season.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
+from snowshed.study.errors import StudyInterrupted
+
+#: A short winter, so that a season takes a second.
+SHORT = Climate(
+    {
+        12: MonthClimate(0.08, 0.3, 1.5, 0.06, -4.0, 3.0),
+        1: MonthClimate(0.08, 0.3, 1.5, 0.06, -4.0, 3.0),
+        2: MonthClimate(0.0, 0.0, 1.0, 0.1, -4.0, 3.0),
+    }
+)
+DESIGN = Design(0.6, 60.0)
+KNOWN = Ranges({"friction": (0.4, 0.4), "adhesion": (10.0, 10.0), "sliding": (0.2, 0.2)}, draws=1)
+STILL = SeasonSettings(settling=None)
+HEIGHT = 0.45
+
+
+def answer_of(winters, folder, heights=(HEIGHT,), **options):
+    return clearance_of(DESIGN, winters, heights, folder, ranges=KNOWN, settings=STILL, **options)
+
+
+@pytest.fixture(scope="module")
+def winters():
+    return winters_of(SHORT.winters(4, seed=3))
+
+
+@pytest.fixture(scope="module")
+def answer(winters, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("clearance") / "runs"
+    return answer_of(winters, folder, (0.25, HEIGHT, 0.9)), folder
+
+
+def test_it_counts_the_burials_that_seasons_have(answer, winters, tmp_path):
+    """The study's seasons are those of `run_season`, which reads other files."""
+    found, _ = answer
+    table = found.table().set_index(["winter", "height_m"])
+    for case in found.cases:
+        for height in {one for name, one in table.index if name == case.winter.name}:
+            out = tmp_path / f"{case.winter.name[:4]}-{height:g}"
+            season = run_season(
+                case.winter.days, case.panel(height), out, settings=case.season, pictures=False
+            )
+            touched = table.loc[(case.winter.name, height), "touched"]
+            assert touched == (season.contact is not None), (case.winter.name, height)
+    assert 0 < table["touched"].mean() < 1  # both are there
+
+
+def test_a_higher_edge_is_needed_between_the_heights_that_decide(answer):
+    found, _ = answer
+    table = found.table()
+    for _, own in table.groupby("case"):
+        required = own["required_m"].iloc[0]
+        assert (own["height_m"][own["touched"] == 1] <= required).all()
+        assert (own["height_m"][own["touched"] == 0] >= required).all()
+
+
+def test_interrupted_and_resumed_it_is_the_same(answer, winters, tmp_path):
+    found, _ = answer
+
+    def interrupt(progress):
+        if progress.done >= 1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(StudyInterrupted):
+        answer_of(winters, tmp_path / "runs", (0.25, HEIGHT, 0.9), jobs=1, progress=interrupt)
+    again = answer_of(winters, tmp_path / "runs", (0.25, HEIGHT, 0.9))
+    assert again.table().to_csv() == found.table().to_csv()
+
+
+def test_the_page_and_the_summary(answer, tmp_path):
+    found, _ = answer
+    write_report([found], KNOWN, tmp_path)
+    page = (tmp_path / "clearance.html").read_text()
+    assert "must be" in page and "What is assumed" in page and "Gumbel" in page
+    assert "http" not in page.replace("http://www.w3.org", "")
+    summary = json.loads((tmp_path / "clearance.json").read_text())
+    assert [level["probability"] for level in summary["panels"][0]["levels"]] == [0.5, 0.9, 0.98]
+
+
+def test_a_forecast_counts_the_seasons(winters):
+    seconds, seasons = forecast(DESIGN, winters, [HEIGHT], ranges=KNOWN, settings=STILL)
+    assert seconds > 0.0 and seasons == 4
+
+
+@pytest.mark.slow
+def test_its_probability_is_that_of_counting(tmp_path):
+    """Known friction and adhesion: burial in 200 made winters and in 200 others."""
+    asked = winters_of(SHORT.winters(200, seed=11))
+    counted = winters_of(SHORT.winters(200, seed=12))
+    told = answer_of(asked, tmp_path / "runs").buried(HEIGHT)
+    buried = []
+    for number, case in enumerate(answer_cases(counted)):
+        season = run_season(
+            case.winter.days,
+            case.panel(HEIGHT),
+            tmp_path / f"season-{number}",
+            settings=case.season,
+            pictures=False,
+        )
+        buried.append(season.contact is not None)
+    share = float(np.mean(buried))
+    print(f"told {told}, counted {share}")
+    error = np.sqrt(2.0 * share * (1.0 - share) / 200.0)
+    assert 0.05 < share < 0.95
+    assert abs(told - share) < 2.6 * error  # 99 %
+
+
+def answer_cases(winters):
+    from snowshed.analysis.clearance.seasons import cases_of
+
+    return cases_of(DESIGN, winters, KNOWN.drawn(len(winters)), STILL, {})
+
+
+# --- statistics ----------------------------------------------------------------------------
+
+
+def test_confidence_holds_the_true_height_as_often_as_it_says():
+    """Required heights from a known Gumbel distribution, 30 winters with two draws each."""
+    random = np.random.default_rng(5)
+    true = 2.0 - 0.3 * np.log(-np.log(0.9))
+    inside = 0
+    for _ in range(100):
+        winter = random.gumbel(2.0, 0.3, 30)
+        required = np.repeat(winter, 2) + random.normal(0.0, 0.02, 60)
+        level = levels_of(required, np.repeat(np.arange(30.0), 2))[1]
+        inside += level.low <= true <= level.high
+    assert inside >= 75
+
+
+def test_causes_get_the_variance_that_they_make():
+    random = np.random.default_rng(1)
+    winters = np.repeat(np.arange(20.0), 5)
+    adhesion, friction = random.random(100), random.random(100)
+    required = 0.5 * adhesion + random.normal(0, 0.3, 20)[winters.astype(int)]
+    parts = {
+        share.cause: share.part
+        for share in shares_of(required, winters, {"adhesion": adhesion, "friction": friction})
+    }
+    assert parts["friction"] < 0.02 and parts["chance"] < 0.02
+    assert parts["adhesion"] == pytest.approx(0.25 / 12 / (0.25 / 12 + 0.09), abs=0.12)
+
+
+def test_no_burial_in_ten_winters_is_no_proof():
+    assert burial_interval(0.0, 10) == (0.0, pytest.approx(0.259, abs=1e-3))
+    assert burial_interval(1.0, 10)[1] == 1.0
+
+
+# --- made winters --------------------------------------------------------------------------
+
+
+def test_made_winters_have_the_climate_that_they_are_fitted_to():
+    fitted = Climate.fit(EXAMPLE_CLIMATE.winters(60, seed=4))
+    for month, one in EXAMPLE_CLIMATE.months.items():
+        again = fitted.months[month]
+        assert again.after_snow == pytest.approx(one.after_snow, abs=0.06)
+        assert again.after_dry == pytest.approx(one.after_dry, abs=0.04)
+        assert again.shape * again.scale == pytest.approx(one.shape * one.scale, rel=0.15)
+        assert again.deviation == pytest.approx(one.deviation, rel=0.1)
+    assert fitted.persistence == pytest.approx(EXAMPLE_CLIMATE.persistence, abs=0.1)
+
+
+def test_the_same_seed_makes_the_same_winters():
+    assert SHORT.winters(2, seed=1) == SHORT.winters(2, seed=1) != SHORT.winters(2, seed=2)
+
+
+# --- bad input -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--tilt", "95"], "tilt: 95 degrees; allowed: 5 to 85"),
+        (["--heights", "3:1:1"], "--heights: '3:1:1'; needed"),
+        (["--range", "friction=lots"], "--range: 'friction=lots'; needed"),
+        (["--range", "adhesoin=1:2"], "range of 'adhesoin'; allowed: friction, adhesion"),
+        (["--draws", "0"], "draws: 0; allowed: 1 to 1000"),
+        (["--slope-length", "-4"], "slope length: -4 m"),
+    ],
+)
+def test_bad_questions_are_refused(options, message, tmp_path, capsys):
+    file = tmp_path / "winters.csv"
+    rows = "".join(
+        f"{r.date.date()},{r.snowfall},{r.temperature}\n" for r in SHORT.winters(1, seed=1)
+    )
+    file.write_text(f"date,snowfall_m,temperature_c\n{rows}")
+    given = ["clearance", str(file), "--slope-length", "1", "--tilt", "60", *options]
+    assert main([*given, "-o", str(tmp_path / "out")]) == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_too_short_weather_is_refused():
+    with pytest.raises(InputError, match="no winter of 60 days"):
+        winters_of(SHORT.winters(1, seed=1)[:20])

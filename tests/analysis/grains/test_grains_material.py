@@ -1,0 +1,186 @@
+"""Snow fitted to loading tests: known parameters come back from the law's rate equations."""
+
+import json
+
+import numpy as np
+import pytest
+from validation.rate_equations import RateEquations, evenly
+
+from snowshed import InputError, Snow
+from snowshed.analysis.grains.material import readings
+from snowshed.analysis.grains.material.figures import material_figure
+from snowshed.analysis.grains.material.fit import Range, fit_material
+from snowshed.analysis.grains.material.law import CamClay, Elasticity
+from snowshed.analysis.grains.material.report import write_snow
+from snowshed.analysis.grains.material.tests import NORMAL_STRESSES
+from snowshed.methods.grains.curve import COLUMNS, LoadingCurve
+
+E, NU, M, BETA, XI, P0 = 4e6, 0.25, 0.8, 0.15, 0.3, 2e4
+SNOW = RateEquations(E, NU, M, BETA, XI, dimension=3)
+
+
+def curve_of(states, rate, times, broken):
+    """What a loading test would measure: forces over initial areas; compression is positive."""
+    stress = np.vstack([np.zeros(3), -SNOW.stress(states)])  # Kirchhoff
+    stretch = np.exp(np.multiply.outer(np.concatenate([[0.0], times]), rate))
+    nominal = stress / stretch
+    columns = {name: np.zeros(len(stress)) for name in COLUMNS}
+    columns.update(
+        axial_strain=1 - stretch[:, 2],
+        top_stress_pa=nominal[:, 2],
+        bottom_stress_pa=nominal[:, 2],
+        side_stress_pa=nominal[:, 0],
+        broken_in_shear=broken(np.concatenate([[0.0], times])),
+    )
+    return LoadingCurve(columns)
+
+
+def path(rate, end, count=400, broken=lambda times: 0.0 * times):
+    times = evenly(end, count)
+    rate = np.array(rate)
+    return curve_of(SNOW.integrate(SNOW.initial_state(P0), rate, times), rate, times, broken)
+
+
+def sheared(normal):
+    """A test at the law's critical state, under a normal stress; its sides have the same stress."""
+    columns = {name: np.zeros(50) for name in COLUMNS}
+    ratio = M * (1 + BETA) / ((1 - BETA) * np.sqrt(1 + 2 * BETA))
+    columns.update(
+        shear_strain=np.linspace(0, 0.3, 50),
+        top_stress_pa=np.full(50, normal),
+        bottom_stress_pa=np.full(50, normal),
+        side_stress_pa=np.full(50, normal),
+        shear_stress_pa=np.full(50, ratio * normal / np.sqrt(3)),
+    )
+    return LoadingCurve(columns)
+
+
+def stretched():
+    """Tension up to the yield surface without stress sideways, and less afterwards."""
+    ends = [0.0, 2e4]
+    for _ in range(100):  # the tension on the yield surface, by bisection
+        tension = 0.5 * sum(ends)
+        p, q = -tension / 3, tension
+        inside = (1 + 2 * BETA) * q**2 + M**2 * (p + BETA * P0) * (p - P0) < 0
+        ends[0 if inside else 1] = tension
+    columns = {name: np.zeros(3) for name in COLUMNS}
+    along = -np.array([0.0, ends[0], 0.1 * ends[0]])
+    strain = np.array([0.0, -2e-3, -4e-3])
+    along = along / (1 - strain)  # a force over the initial area
+    columns.update(axial_strain=strain, top_stress_pa=along, bottom_stress_pa=along)
+    return LoadingCurve(columns)
+
+
+@pytest.fixture(scope="module")
+def curves():
+    isotropic = path((-1.0, -1.0, -1.0), 0.127)
+    # The law hardens from its yield stress on, so that the peak below 5 % is made that.
+    pressure = readings.invariants(isotropic, isotropic=True)[0]
+    early = isotropic["axial_strain"] <= 0.05
+    capped = np.where(early, np.minimum(1.0, P0 / np.maximum(pressure, 1.0)), 1.0)
+    columns = dict(isotropic.columns)
+    for name in ("top_stress_pa", "bottom_stress_pa", "side_stress_pa"):
+        columns[name] = columns[name] * capped
+    return {
+        ("confined", 0): path((0.0, 0.0, -1.0), 5e-3, 2000, broken=lambda t: 1.0 * (t > 1e-4)),
+        ("isotropic", 0): LoadingCurve(columns),
+        ("compaction", 0): path((-1.0, -1.0, -1.0), 0.127),
+        ("tension", 0): stretched(),
+        **{(f"shear under {part} p0", 0): sheared(part * P0) for part in NORMAL_STRESSES},
+    }
+
+
+def test_each_reading_finds_what_the_law_was_made_with():
+    elastic, linearity = readings.elasticity(path((0.0, 0.0, -1.0), 1e-4, 20))
+    assert elastic.youngs_modulus == pytest.approx(E, rel=1e-3)
+    assert elastic.poissons_ratio == pytest.approx(NU, rel=1e-3)
+    assert linearity > 0.9999
+    found = readings.hardening(path((-1.0, -1.0, -1.0), 0.127), Elasticity(E, NU), P0)
+    assert found.factor == pytest.approx(XI, rel=1e-3)
+    assert found.residual < 0.01 and 1.0 <= found.excess < 1.1  # of the elastic rows at first
+    ratio = readings.critical_ratio(sheared(5e3))
+    slope, beta = readings.slope_and_cohesion(ratio, *readings.tension(stretched()), P0)
+    assert (slope, beta) == pytest.approx((M, BETA), rel=1e-6)
+
+
+def test_confined_compression_yields_where_the_rate_equations_do():
+    law = CamClay(300.0, Elasticity(E, NU), M, P0, BETA, XI)
+    times = evenly(2e-2, 4000)
+    states = SNOW.integrate(SNOW.initial_state(P0), np.array([0.0, 0.0, -1.0]), times)
+    first = np.flatnonzero(np.abs(states[:, -1] - states[0, -1]) > 1e-12)[0]  # or dilates
+    assert -SNOW.stress(states)[first, 2] == pytest.approx(law.confined_yield(), rel=2e-3)
+
+
+def test_rows_after_the_first_broken_bond_do_not_count(curves):
+    broken = path((0.0, 0.0, -1.0), 5e-3, 200, broken=lambda times: np.floor(times / 2e-4))
+    assert readings.elasticity(broken)[0].youngs_modulus == pytest.approx(E, rel=1e-3)
+
+
+def test_the_fit_finds_all_parameters(curves):
+    fitted = fit_material(curves, 300.0)
+    assert fitted.law.elastic.youngs_modulus == pytest.approx(E, rel=0.01)
+    assert fitted.law.elastic.poissons_ratio == pytest.approx(NU, rel=0.01)
+    assert fitted.law.preconsolidation_pressure == pytest.approx(P0, rel=0.01)
+    assert fitted.law.critical_state_slope == pytest.approx(M, rel=0.01)
+    assert fitted.law.cohesion == pytest.approx(BETA, rel=0.01)
+    assert fitted.law.hardening_factor == pytest.approx(XI, rel=0.01)
+    assert any("one sample" in note for note in fitted.notes)
+    assert material_figure(fitted, curves, synthetic=True).axes
+
+
+def test_another_modulus_keeps_the_hardening(curves):
+    laws = [fit_material(curves, 300.0, modulus=factor * E).law for factor in (0.5, 1.0, 3.0)]
+    plastic = np.linspace(0.0, 0.4, 400)
+    found = []
+    for law in laws:
+        pressure = law.hardened(plastic)
+        total = plastic + pressure / law.elastic.bulk_modulus
+        found.append(np.interp([0.2, 0.35], total, pressure))
+    assert found[0] == pytest.approx(found[1], rel=0.1)
+    assert found[2] == pytest.approx(found[1], rel=0.1)
+
+
+def test_what_means_nothing_is_refused(curves):
+    with pytest.raises(InputError, match="large elastic strains only"):
+        fit_material(curves, 300.0, modulus=2e4)
+    with pytest.raises(InputError, match="too soft for the hardening"):
+        fit_material(curves, 300.0, modulus=E / 4)
+    without = {key: curve for key, curve in curves.items() if key[0] != "tension"}
+    with pytest.raises(InputError, match="no test tension"):
+        fit_material(without, 300.0)
+    loose = {**curves, ("tension", 0): curves["confined", 0]}
+    columns = {**loose["tension", 0].columns, "top_stress_pa": np.ones(2001)}
+    loose["tension", 0] = LoadingCurve({**columns, "bottom_stress_pa": np.ones(2001)})
+    with pytest.raises(InputError, match="tension, sample 1: no tension"):
+        fit_material(loose, 300.0)
+
+
+def test_ranges_tell_the_scatter():
+    found = Range.of([1.0, 2.0, 4.0])
+    assert found.value == pytest.approx(2.0)
+    assert found.deviation == pytest.approx(np.log(2.0))
+    assert found.low < 2.0 < found.high
+    assert np.isnan(Range.of([3.0]).low)
+
+
+def test_the_file_is_a_snow_of_scenes_and_says_where_it_comes_from(curves, tmp_path):
+    fitted = fit_material(curves, 300.0)
+    file = write_snow(tmp_path, fitted, {"samples": []})
+    snow = Snow.load(file)
+    assert snow.preconsolidation_pressure == pytest.approx(P0, rel=0.01)
+    assert set(snow.to_data()) == set(json.loads(file.read_text())) - {"provenance"}
+    provenance = json.loads(file.read_text())["provenance"]
+    assert provenance["ranges"]["cohesion"]["value"] == pytest.approx(BETA, rel=0.01)
+    assert provenance["ranges"]["cohesion"]["low"] is None  # of one sample no range is known
+
+
+def test_a_snow_by_name_or_file(tmp_path):
+    file = tmp_path / "mine.json"
+    file.write_text('{"density": 150, "provenance": {"by": "hand"}}')
+    assert Snow.named(str(file)).density == 150
+    assert Snow.named("calibrated").density == 210
+    with pytest.raises(InputError, match=r"calibrated.*JSON file"):
+        Snow.named("claibrated")
+    file.write_text('{"densty": 150}')
+    with pytest.raises(InputError, match=r"mine.json: .*densty"):
+        Snow.named(str(file))

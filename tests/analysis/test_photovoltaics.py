@@ -1,0 +1,81 @@
+"""The pile of a season in pvlib's snow loss models."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from snowshed import InputError
+from snowshed.analysis.photovoltaics import (
+    blocked_days,
+    coverage_nrel,
+    loss_townsend,
+    monthly_table,
+    pile_angle,
+)
+
+pvlib_snow = pytest.importorskip("pvlib.snow")
+MONTHLY = pd.DataFrame(
+    {
+        "snow_total": [80.0, 60.0],
+        "snow_events": [8, 6],
+        "relative_humidity": [80.0, 75.0],
+        "temp_air": [-5.0, -3.0],
+        "poa_global": [80e3, 100e3],
+        "pile_angle_deg": [40.0, 20.0],
+    }
+)
+PANEL = {"surface_tilt": 35.0, "slant_height": 3.0, "lower_edge_height": 0.6}
+
+
+def test_the_own_pile_is_that_of_the_model_where_it_has_its_angle():
+    loss = loss_townsend(MONTHLY, **PANEL)
+    assert loss["loss_own_pile"][0] == loss["loss_fixed_pile"][0] > 0.0
+    assert loss["loss_own_pile"][1] < loss["loss_fixed_pile"][1]  # a flatter pile interferes less
+    by_pvlib = pvlib_snow.loss_townsend(
+        np.array([80.0, 60.0]), np.array([8, 6]), 35.0, np.array([80.0, 75.0]),
+        np.array([-5.0, -3.0]), np.array([80e3, 100e3]), 3.0, 0.6,
+    )  # fmt: skip
+    np.testing.assert_allclose(loss["loss_fixed_pile"], by_pvlib)
+
+
+def test_a_triangle_against_the_row_has_its_own_angle():
+    for angle in (20.0, 40.0, 60.0):
+        area = 0.5 * 1.3**2 / np.tan(np.radians(angle))
+        assert pile_angle(1.3, area) == pytest.approx(angle)
+
+
+def test_no_snow_slides_while_the_pile_reaches_the_edge():
+    hours = pd.date_range("2024-01-01", periods=48, freq="h")
+    fall = pd.Series(np.where(np.arange(48) == 1, 5.0, 0.0), index=hours)
+    sun, warm = pd.Series(400.0, index=hours), pd.Series(2.0, index=hours)
+    never, always = pd.Series(False, index=hours), pd.Series(True, index=hours)
+    free = coverage_nrel(fall, sun, warm, 40.0, never)
+    pd.testing.assert_series_equal(free, pvlib_snow.coverage_nrel(fall, sun, warm, 40.0))
+    assert free.iloc[-1] == 0.0
+    assert coverage_nrel(fall, sun, warm, 40.0, always).iloc[-1] == 1.0
+    with pytest.raises(InputError, match="its index is not that of temp_air"):
+        coverage_nrel(fall, sun, warm, 40.0, never.iloc[:-1])
+
+
+def test_a_season_month_after_month():
+    season = pd.DataFrame(
+        {
+            "event": pd.array([None, 1, 2], dtype="Int64"),
+            "date": ["2024-01-05", "2024-01-20", "2024-02-03"],
+            "released": ["no", "yes", "yes"],
+            "snowfall_m": [0.02, 0.3, 0.2],
+            "temperature_c": [-4.0, -2.0, -6.0],
+            "stack_height_m": [0.0, 0.4, 0.6],
+            "clearance_m": [0.6, 0.2, 0.0],
+            "settled_clearance_m": [0.6, 0.2, 0.0],
+            "joined": [0, 0, 1],
+        }
+    )
+    events = pd.DataFrame({"event": [1, 2], "volume_m3": [0.3, 0.5], "width_m": [1.0, 1.0]})
+    table = monthly_table(season, events, 0.03)
+    assert table["snow_total"].tolist() == pytest.approx([32.0, 20.0])
+    assert table["snow_events"].tolist() == [1, 1]
+    assert table["blocked_days"].tolist() == [0, 1]
+    assert table["pile_height_m"].tolist() == [0.4, 0.6]
+    assert table["pile_angle_deg"].iloc[0] == pytest.approx(pile_angle(0.4, 0.3))
+    assert blocked_days(season, 0.03).tolist() == [False, False, True]

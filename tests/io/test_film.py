@@ -1,0 +1,135 @@
+"""Films, read as docs/view.md describes them: against files that were written by hand."""
+
+import json
+import struct
+import zlib
+
+import film_files
+import numpy as np
+import pytest
+
+from snowshed import InputError
+from snowshed.io.film import Film
+
+
+@pytest.fixture
+def file(tmp_path):
+    return tmp_path / "film.bin"
+
+
+@pytest.mark.parametrize("axes", ["xz", "xyz"])
+def test_a_film_is_read_as_it_is_described(file, axes):
+    frames = film_files.falling_film(axes=axes)
+    file.write_bytes(film_files.film_bytes(frames, axes=axes))
+    film = Film(file)
+    assert film.dimension == len(axes) and film.whole and film.interval == 0.02
+    assert [one.particles for one in film.frames] == [len(frame[2]) for frame in frames]
+    for found, (time, event, ids, events, places, codes) in zip(film, frames):
+        assert (found.time, found.event) == (time, event)
+        assert np.array_equal(found.ids, ids) and np.array_equal(found.events, events)
+        expected = np.zeros((len(ids), 3))
+        expected[:, [0, 2] if axes == "xz" else [0, 1, 2]] = places * film.quantum
+        assert np.array_equal(found.positions, expected)
+        assert np.array_equal(found.codes, codes)
+
+
+def test_particles_that_come_and_go_keep_their_places(file):
+    """A film whose list of particles changes in every frame, as that of a slide may."""
+    random = np.random.default_rng(4)
+    frames = []
+    for number in range(12):
+        ids = np.flatnonzero(random.random(60) < 0.7)
+        places = (ids[:, None] * [5, -7, 11] + np.multiply(number, [3, 1, -2])).astype(int)
+        frames.append((0.1 * number, 1, ids, 1 + ids % 3, places, ids[:, None] - number))
+    file.write_bytes(film_files.film_bytes(frames))
+    for found, frame in zip(Film(file), frames):
+        assert np.array_equal(found.positions, frame[4] * 2.0**-10)
+        assert np.array_equal(found.codes, frame[5]) and np.array_equal(found.events, frame[3])
+
+
+def test_values_are_exact_to_a_step_or_to_a_hundredth(file):
+    file.write_bytes(film_files.film_bytes(film_files.falling_film(20, 4)))
+    quantity = Film(file).quantities[0]
+    for value in (0.0, 0.004, 0.3, 25.0, -140.0):
+        code = round(64 * np.arcsinh(value / (64 * quantity.step)))
+        assert quantity.values(np.array([code]))[0] == pytest.approx(value, abs=0.006, rel=0.009)
+
+
+def test_a_film_that_is_cut_off_anywhere_keeps_its_whole_frames(file):
+    frames = film_files.falling_film(20, 4)
+    whole = film_files.film_bytes(frames)
+    ends = [len(film_files.film_bytes(frames[:count])) for count in range(5)]
+    for length in range(ends[0], len(whole)):
+        file.write_bytes(whole[:length])
+        film = Film(file)
+        assert len(film.frames) == sum(end <= length for end in ends[1:])
+        assert film.whole == (length in ends)
+    assert len(list(film)) == 3
+
+
+def test_no_damage_gives_more_than_an_error(file):
+    """Every damage is told, or ends the film before it."""
+    frames = film_files.falling_film(40, 6)
+    whole = film_files.film_bytes(frames)
+    random = np.random.default_rng(7)
+    for _ in range(400):
+        damaged = bytearray(whole)
+        for at in random.integers(0, len(whole), random.integers(1, 4)):
+            damaged[at] = random.integers(0, 256)
+        file.write_bytes(damaged)
+        try:
+            found = list(Film(file))
+        except InputError as error:
+            assert str(file) in str(error)
+            continue
+        for one, frame in zip(found, frames):
+            assert np.array_equal(one.positions, frame[4] * 2.0**-10)
+
+
+def forged(raw=b"\0" * 40, **facts):
+    """Return a film of one frame whose checksum is right, whatever it says."""
+    honest = {"time": 0.0, "event": 1, "lists": 1, "particles": 5}
+    return film_files.header() + film_files.record(raw, **{**honest, **facts})
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        forged(particles=4_000_000_000),
+        forged(raw=b""),
+        forged(lists=0),
+        forged(time=float("nan")),
+        forged(raw=b"\xff" * 60),
+        forged(raw=b"\1" + b"\0" * 40),
+        film_files.header(axes="yx"),
+        film_files.header(quantum=0.0),
+        film_files.header(share=7.0),
+        film_files.header(quantities=[{"name": "speed"}]),
+        film_files.header(quantities=[{**film_files.SPEED, "step": -1.0}]),
+        b"SNOWFILM" + struct.pack("<IIII", 1, 4_000_000_000, 0, 0),
+        b"SNOWFILM" + struct.pack("<IIII", 9, 0, 0, 0),
+        b"SNOWFILM" + struct.pack("<IIII", 1, 2, zlib.crc32(b"[]"), 0) + b"[]",
+        b"no film at all, but long enough to be one",
+        b"",
+    ],
+)
+def test_forged_films_are_refused(file, content):
+    file.write_bytes(content)
+    with pytest.raises(InputError, match=r"film\.bin"):
+        list(Film(file))
+
+
+def test_more_bytes_than_deflate_can_make_are_refused_before_they_are_allocated(file):
+    packed = zlib.compress(b"\0" * 100)
+    head = struct.pack("<dIIIIII", 0.0, 1, 1, 10, 1 << 30, len(packed), 0)
+    record = struct.pack("<II", 0x4D415246, zlib.crc32(head + packed)) + head + packed
+    file.write_bytes(film_files.header() + record)
+    with pytest.raises(InputError, match="sizes of a frame"):
+        Film(file)
+
+
+def test_the_header_is_json(file):
+    text = film_files.header(share=0.25)[24:]
+    assert json.loads(text)["share"] == 0.25
+    file.write_bytes(film_files.header(share=0.25))
+    assert Film(file).share == 0.25 and Film(file).frames == ()

@@ -1,0 +1,89 @@
+"""A process that reads mutated files: ``child.py FOLDER TRIES FIRST MEMORY_MB READER...``.
+
+It prints a line of JSON before and after each file, from the FIRST of all readers' files on. It is
+killed by a file that takes too long or too much memory; whoever started it goes on behind that.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import shutil
+import signal
+import sys
+import warnings
+from pathlib import Path
+
+HANG_S = 10.0  # of processor time, which a busy machine does not change
+LONGEST = 20_000  # characters of a message, which the command line cuts
+
+
+def main() -> None:
+    """Read the files."""
+    folder, tries, first, memory = Path(sys.argv[1]), *map(int, sys.argv[2:5])
+    sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
+    from readers import tries_of
+
+    warnings.simplefilter("ignore")
+    every = [(name, seed) for name in sys.argv[5:] for seed in range(tries_of(name, tries))]
+    good = None
+    for name, seed in every[first:]:
+        if good is None or good.name != name:
+            limit_memory(resource.RLIM_INFINITY)
+            good = Good(name, folder / name.replace(" ", "-"))
+            limit_memory(used() + (memory << 20))  # what it needs is imported by now
+        tell(reader=name, seed=seed)
+        signal.setitimer(signal.ITIMER_PROF, HANG_S)  # ends the process, also in the core
+        outcome = good.outcome(seed)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        tell(reader=name, seed=seed, outcome=outcome)
+
+
+def tell(**facts: object) -> None:
+    print(json.dumps(facts), flush=True)
+
+
+class Good:
+    """A reader with its good file, and what that holds."""
+
+    def __init__(self, name: str, folder: Path) -> None:
+        from readers import READERS
+
+        self.name = name
+        self.reader = READERS[name]
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        self.file = self.reader.make(folder)
+        self.content = self.file.read_bytes()
+        self.wanted = self.reader.read(self.file)
+
+    def outcome(self, seed: int) -> str:
+        """Return what becomes of the file with the changes of a seed."""
+        from mutate import mutated
+        from readers import REFUSED
+
+        content = mutated(self.content, seed)
+        self.file.write_bytes(content)
+        try:
+            found = self.reader.read(self.file)
+        except REFUSED as error:
+            return "refused" if len(str(error)) <= LONGEST else "LONG MESSAGE"
+        except MemoryError:
+            return "MEMORY"
+        except BaseException as error:
+            return f"TRACEBACK {type(error).__name__}: {error}"[:500]
+        return "SILENT" if self.reader.exact and found != self.wanted else "accepted"
+
+
+def limit_memory(limit: int) -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
+
+
+def used() -> int:
+    """Return the address space of this process, bytes."""
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    return pages * resource.getpagesize()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,52 @@
+"""Mutated files of every kind: no traceback, signal, hang or flood of memory, no silent damage."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from mutations.readers import READERS, tries_of
+
+FEW, MANY = 12, 440  # files of most readers: in the tests that run always, and in `make test-slow`
+MEMORY_MB = 2048  # that reading may take
+CHILD = Path(__file__).with_name("child.py")
+GOOD = {"accepted", "refused"}
+
+
+def outcomes(names: list[str], folder: Path, tries: int) -> dict[tuple[str, int], str]:
+    """Return what became of each file, by its reader and seed."""
+    found: dict[tuple[str, int], str] = {}
+    count = sum(tries_of(name, tries) for name in names)
+    while len(found) < count:
+        command = [sys.executable, CHILD, folder, tries, len(found), MEMORY_MB, *names]
+        done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        ended = {(line["reader"], line["seed"]): line.get("outcome") for line in lines}
+        assert ended, f"a good file is not read: {done.stderr[-2000:]}"
+        found.update({key: outcome for key, outcome in ended.items() if outcome})
+        if done.returncode != 0:  # by the file that it told of last
+            found.setdefault([*ended][-1], f"DIED with {done.returncode}: {done.stderr[-500:]}")
+    return found
+
+
+def check(names: list[str], folder: Path, tries: int) -> Counter[str]:
+    found = outcomes(names, folder, tries)
+    bad = {key: outcome for key, outcome in found.items() if outcome not in GOOD}
+    assert not bad, bad
+    return Counter(found.values())
+
+
+def test_a_few_mutated_files(tmp_path):
+    check([*READERS], tmp_path, FEW)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", READERS)
+def test_many_mutated_files(name, tmp_path, capsys):
+    counts = check([name], tmp_path, MANY)
+    with capsys.disabled():
+        print(f"\n{name}: {dict(counts)}")

@@ -1,0 +1,86 @@
+"""What every HTML page must hold, checked on the templates and the style that all pages share."""
+
+import re
+
+import pytest
+from paths import ROOT
+
+TEMPLATES = sorted(
+    path
+    for path in (*ROOT.glob("python/snowshed/**/*.j2"), *ROOT.glob("validation/**/*.j2"),
+                 *ROOT.glob("thesis/**/*.j2"))
+    if ".venv" not in path.parts
+)  # fmt: skip
+SHARED = ROOT / "python/snowshed/plot/templates/page.html.j2"
+VIEWER = ROOT / "python/snowshed/plot/viewer"
+LEAST_CONTRAST = 4.5  # WCAG 2.2, success criterion 1.4.3
+
+
+def luminance(colour):
+    """Return the relative luminance of #rgb or #rrggbb (WCAG 2.2)."""
+    digits = colour[1:] if len(colour) == 7 else "".join(2 * one for one in colour[1:])
+    parts = [int(digits[k : k + 2], 16) / 255 for k in (0, 2, 4)]
+    linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one, other):
+    high, low = sorted((luminance(one), luminance(other)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+def themes():
+    """Yield each set of colours that a style sheet defines, over what it starts from."""
+    first = {}
+    for sheet in (SHARED, VIEWER / "view.css"):
+        for block in re.findall(r":root[^{]*\{([^}]*)\}", sheet.read_text(encoding="utf-8")):
+            colours = dict(re.findall(r"(--[\w-]+):\s*(#[0-9a-fA-F]{3,6})\b", block))
+            first = first or colours
+            if "--paper" in colours:
+                yield colours
+
+
+@pytest.mark.parametrize("colours", [*themes()], ids=lambda one: one["--paper"])
+def test_text_stands_out(colours):
+    text = [name for name in ("--ink", "--faint", "--good", "--bad", "--link") if name in colours]
+    for ground in ("--paper", "--back"):
+        for name in text:
+            assert contrast(colours[name], colours[ground]) >= LEAST_CONTRAST, (name, ground)
+
+
+def test_measures_stand_out_from_the_picture():
+    sheet = (VIEWER / "view.css").read_text(encoding="utf-8")
+    for block in re.findall(r"\{([^{}]*--measure:[^{}]*)\}", sheet):
+        colours = dict(re.findall(r"(--[\w-]+):\s*(#[0-9a-fA-F]{6})", block))
+        assert contrast(colours["--measure"], colours["--sky"]) >= LEAST_CONTRAST
+
+
+def test_the_dark_colours_are_used():
+    """A media query that no browser understands is left out in silence."""
+    queries = re.findall(r"@media([^{]*)\{", SHARED.read_text(encoding="utf-8"))
+    assert any("prefers-color-scheme: dark" in one for one in queries)
+    assert not [one for one in queries if re.search(r"\(\s*not (print|screen)", one)]
+
+
+@pytest.mark.parametrize("page", TEMPLATES, ids=lambda path: path.name)
+def test_nothing_comes_from_elsewhere_and_all_is_named(page):
+    text = page.read_text(encoding="utf-8")
+    loaded = (
+        r"""(src|srcset|poster|data-src)\s*=\s*["']?https?:|<link\b|@import|url\(\s*["']?https?:"""
+    )
+    assert re.findall(loaded, text) == []
+    for image in re.findall(r"<img\b[^>]*>", text):
+        assert re.search(r'alt="[^"]+"', image), image
+    for drawing in re.findall(r"<svg\b[^>]*>", text):
+        assert "aria-label" in drawing or "aria-hidden" in drawing, drawing
+    if "<html" in text:
+        assert re.search(r'<html lang="\w+"', text) and 'name="viewport"' in text
+        assert "<title>" in text
+
+
+def test_scripts_ask_for_nothing():
+    for script in VIEWER.glob("*.js"):
+        text = script.read_text(encoding="utf-8")
+        found = re.findall(r"\b(fetch|XMLHttpRequest|WebSocket|import)\s*\(|https?:", text)
+        assert [one for one in re.findall(r"https?://\S+", text) if "www.w3.org" not in one] == []
+        assert not [one for one in found if one]

@@ -1,0 +1,200 @@
+"""The moving view: what the page holds, and what it does in a browser."""
+
+import base64
+import json
+import re
+
+import film_files
+import numpy as np
+import pytest
+from pages import Page
+from plot.browser import open_page
+
+from snowshed import InputError, Results
+from snowshed.io.film import Film
+from snowshed.plot.film_page import VIEWER, MeasureLine, ViewContent, write_view_page
+from snowshed.plot.film_summary import summarise_film
+from snowshed.plot.solids import scene_solids
+from snowshed.run.video import write_video
+from snowshed.run.view import view_content, write_view
+
+READY = "document.body.dataset.ready === 'true'"
+POST = {"type": "cylinder", "from": [0.9, 0, 0], "to": [0.9, 0, 0.5], "radius": 0.05}
+BLOCK = {"type": "box", "center": [0, 0.6, 0.1], "size": [0.2, 0.2, 0.2]}
+SCENE = {
+    "dimension": 3, "numerics": {"dx": 0.02}, "ground": {"tilt": 0.0},
+    "panel": {"height": 0.8, "length": 0.8, "width": 0.6, "tilt": 40.0, "thickness": 0.05},
+    "obstacles": [
+        {"name": "post", "shape": POST},
+        {"shape": {"type": "capsule", "from": [-1, 0, 0], "to": [-1, 0, 0.5], "radius": 0.1}},
+        {"shape": BLOCK, "motion": {"velocity": [1, 0, 0]}},
+    ],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """The page of a small film, written by hand, with all that a page may have."""
+    folder = tmp_path_factory.mktemp("page")
+    file = folder / "film.bin"
+    file.write_bytes(film_files.film_bytes(film_files.falling_film(600, 24), share=0.1))
+    film = Film(file)
+    solids, focus = scene_solids(SCENE, folder, summarise_film(film).bounds, None)
+    content = ViewContent(
+        title="Snow </script> & more",
+        sentence="Two slide-offs.",
+        facts=[("scene", "a panel")],
+        solids=solids,
+        focus=focus,
+        measures=[MeasureLine(2, (0, 0, 0), (0, 0, 0.4), "height 0.4 m")],
+        events=2,
+    )
+    write_view_page(folder / "view.html", film, content)
+    return folder / "view.html"
+
+
+def test_the_page_needs_nothing_else(page):
+    text = page.read_text(encoding="utf-8")
+    read = Page(text)
+    assert len(read.ids) == len(set(read.ids))
+    assert all(source.startswith("data:image/png;base64,") for source in read.sources)
+    assert "one of 10 particles" in text and "Snow &lt;/script&gt; &amp; more" in text
+    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
+    assert [one["name"] for one in data["colourings"]] == ["event", "speed"]
+    assert {one["kind"] for one in data["meshes"]} == {"ground", "panel", "solid"}
+
+
+def picture(shown):
+    """Return what the canvas shows, as bytes of a PNG."""
+    return shown.locator("#picture").screenshot()
+
+
+def test_it_moves_and_obeys(page):
+    with open_page(page, reduced_motion="reduce") as (shown, told):
+        shown.wait_for_function(READY, timeout=60_000)
+        assert shown.inner_text("#clock").startswith("event 2 of 2")
+        assert "height 0.4 m" in shown.inner_text("#told")
+        seen = [picture(shown)]
+        shown.focus("#picture")
+        for key in ("Home", ".", "ArrowLeft", "Shift+ArrowUp", "+", "r"):
+            shown.keyboard.press(key)
+            seen.append(picture(shown))
+        assert len({*seen}) >= 6  # R brings back what was seen before the camera moved
+        box = shown.locator("#picture").bounding_box()
+        shown.mouse.move(box["x"] + 300, box["y"] + 200)
+        shown.mouse.down()
+        shown.mouse.move(box["x"] + 420, box["y"] + 260)
+        shown.mouse.up()
+        seen.append(picture(shown))
+        shown.mouse.wheel(0, -400)
+        seen.append(picture(shown))
+        shown.select_option("#colour", label="speed")
+        assert "Speed, m/s" in shown.inner_text("#legend")
+        seen.append(picture(shown))
+        shown.select_option("#axis", label="across")
+        seen.append(picture(shown))
+        shown.click("#theme")
+        seen.append(picture(shown))
+        assert len({*seen[-6:]}) == 6
+        shown.click("#play")
+        before = shown.inner_text("#clock")
+        shown.wait_for_function(
+            "text => document.getElementById('clock').textContent !== text",
+            arg=before,
+        )
+        shown.keyboard.press("Space")
+        assert shown.inner_text("#play") in ("Play", "Pause")
+        assert [one for one in told if not one.startswith("file:")] == []
+
+
+def test_positions_in_the_browser_are_those_of_the_film(page):
+    """The decoder of the page is another one than that of the library."""
+    film = Film(page.with_name("film.bin"))
+    source = (VIEWER / "film.js").read_text(encoding="utf-8")
+    last = list(film)[-1]
+    with open_page(page, reduced_motion="reduce") as (shown, _):
+        shown.wait_for_function(READY, timeout=60_000)
+        places, codes = shown.evaluate(
+            "async ([source, film, bounds]) => {"
+            " const make = new Function(source + '; return { Film, bytesOfBase64 };')();"
+            " const read = await new make.Film(make.bytesOfBase64(film), bounds).decode(() => {});"
+            " const last = read.frames[read.frames.length - 1];"
+            " return [Array.from(last.positions), Array.from(last.codes[0])]; }",
+            [
+                source,
+                base64.b64encode(film.path.read_bytes()).decode(),
+                {"low": [-2, -2, -2], "high": [2, 2, 2]},
+            ],
+        )
+    found = np.array(places).reshape(-1, 3) * 4.0 / 65535 - 2.0
+    assert np.abs(found - last.positions).max() < 4.0 / 65535
+    assert codes == last.codes[:, 0].tolist()
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(390, "light"), (1280, "dark")])
+def test_it_fits_and_can_be_read(page, width, scheme):
+    with open_page(page, width=width, color_scheme=scheme) as (shown, _):
+        shown.wait_for_function(READY, timeout=60_000)
+        assert shown.evaluate("document.documentElement.scrollWidth") <= width
+        unnamed = shown.evaluate(
+            "[...document.querySelectorAll('button, input, select, canvas, summary')].filter("
+            "e => !(e.ariaLabel || e.textContent.trim() || (e.labels && e.labels.length))).length"
+        )
+        assert unnamed == 0
+
+
+def test_without_webgl_there_is_the_still_picture(page):
+    with open_page(page, java_script_enabled=False) as (shown, _):
+        assert shown.is_visible("figure.still img") and not shown.is_visible("#picture")
+
+
+def test_a_run_is_shown_with_its_measures(finished, tmp_path):
+    file = write_view(finished, tmp_path / "page.html")
+    content = view_content(Results(finished), Results(finished).film)
+    assert {one.label.split(" ")[0] for one in content.measures} == {"height", "length", "free"}
+    assert "2 slide-offs" in file.read_text(encoding="utf-8")
+
+
+def test_no_film_no_page(tmp_path, finished):
+    with pytest.raises(InputError, match="no results"):
+        write_view(tmp_path)
+    (tmp_path / "scene.json").write_bytes((finished / "scene.json").read_bytes())
+    with pytest.raises(InputError, match=r"film\.bin: not there"):
+        write_view(tmp_path)
+    (tmp_path / "film.bin").write_bytes(film_files.header())
+    with pytest.raises(InputError, match="no particles yet"):
+        write_view(tmp_path)
+    assert not (tmp_path / "view.html").exists()
+
+
+@pytest.mark.parametrize("kind", ["gif", "mp4"])
+def test_videos_move(finished, tmp_path, kind):
+    file = write_video(finished, tmp_path / f"film.{kind}", seconds=2.0, width=200)
+    if kind == "mp4":
+        assert b"ftyp" in file.read_bytes()[:16]
+        return
+    from PIL import Image
+
+    with Image.open(file) as image:
+        assert image.n_frames > 3 and image.size[0] == 200
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"video": "film.avi"}, r"\.mp4"),
+        ({"width": 3}, "width"),
+        ({"seconds": 0}, "seconds"),
+        ({"colour": "sped"}, "speed"),
+    ],
+)
+def test_wrong_videos_are_refused(finished, tmp_path, wrong, told):
+    options = {"video": "film.gif", **wrong}
+    with pytest.raises(InputError, match=told):
+        write_video(finished, tmp_path / options.pop("video"), **options)
+
+
+def test_an_mp4_needs_its_library(finished, tmp_path, hide):
+    hide("imageio_ffmpeg")
+    with pytest.raises(InputError, match=r"snowshed\[video\]"):
+        write_video(finished, tmp_path / "film.mp4")

@@ -1,0 +1,106 @@
+"""A store may come from anybody: nothing outside it is touched, and damage is found."""
+
+import random
+import sqlite3
+
+import pytest
+from study_helpers import outcome, tiny_study
+
+from snowshed import InputError
+from snowshed.study import StudyError, session
+from snowshed.study.database import FILE
+from snowshed.study.owner import release_dead
+from snowshed.study.store import Store
+from snowshed.study.table import read_table
+
+RUNS = tiny_study().runs()
+
+
+@pytest.fixture
+def folder(tmp_path):
+    with Store.create(tmp_path / "store") as store:
+        store.register("tiny", ["panel.friction"], RUNS)
+        for run in RUNS:
+            store.record(outcome(run.hash))
+    return tmp_path / "store"
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def change(folder, *queries):
+    connection = sqlite3.connect(folder / FILE)
+    with connection:
+        for query in queries:
+            connection.execute(query)
+    connection.close()
+
+
+def test_a_link_in_the_place_of_the_runs_is_refused(folder, tmp_path):
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home/precious").write_text("x")
+    (folder / "running").rmdir()
+    (folder / "running").symlink_to(tmp_path / "home")
+    with pytest.raises(InputError, match="running: a link"):
+        session.resume(folder)
+    assert names(tmp_path / "home") == ["precious"]
+
+
+def test_what_is_not_ours_stays(folder):
+    mine = folder / "running/mine"
+    mine.mkdir()
+    (mine / "a.txt").write_text("x")
+    (folder / "running/notes.lock").write_text("x")
+    (folder / "running" / ("0" * 32)).symlink_to(mine)
+    session.resume(folder)
+    assert names(folder / "running") == ["0" * 32, "mine", "notes.lock"]
+    assert names(mine) == ["a.txt"]
+
+
+def test_the_name_of_an_owner_leads_nowhere(folder, tmp_path):
+    (tmp_path / "victim.lock").write_text("x")
+    change(folder, "UPDATE run SET owner = '../../victim'")
+    with Store.open(folder) as store:
+        release_dead(store)
+        assert store.owners() == []
+    assert (tmp_path / "victim.lock").exists()
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "UPDATE run SET hash = '../../evil' WHERE rowid = 1",
+        "UPDATE run SET scene = replace(scene, '9.81', '9.82')",
+        "UPDATE run SET version = '0.0.0'",
+        "UPDATE run SET status = 'pending'",
+        "UPDATE run SET status = 'failed'",
+        "UPDATE event SET height_m = height_m + 1e-6",
+        "UPDATE run_timing SET run_wall_s = 2",
+        "DELETE FROM event WHERE event = 2",
+        "DELETE FROM study_run WHERE position = 1",
+        "UPDATE study SET axes = '[\"panel.tilt\"]'",
+        "UPDATE checksum SET digest = 'x'",
+    ],
+)
+def test_a_changed_store_is_found(folder, query):
+    change(folder, "PRAGMA ignore_check_constraints = on", query)
+    with pytest.raises(InputError, match="damaged: "):
+        read_table(folder, timing=True)
+
+
+def test_flipped_bits_are_found_or_change_nothing(folder):
+    whole = read_table(folder, timing=True)
+    file = folder / FILE
+    good = file.read_bytes()
+    chance = random.Random(1)
+    for _ in range(40):
+        at = chance.randrange(len(good))
+        file.write_bytes(good[:at] + bytes([good[at] ^ 1 << chance.randrange(8)]) + good[at + 1 :])
+        for extra in ("-wal", "-shm"):
+            (folder / f"{FILE}{extra}").unlink(missing_ok=True)
+        try:
+            found = read_table(folder, timing=True)
+        except (InputError, StudyError):
+            continue
+        assert found.equals(whole), at
