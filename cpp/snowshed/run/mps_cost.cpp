@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "snowshed/scene/shape_measure.hpp"
 #include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/shape_measure.hpp"
 
 namespace snowshed {
 namespace {

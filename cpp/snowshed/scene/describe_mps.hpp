@@ -17,7 +17,8 @@ void describe(V& v, MpsSettings& s) {
            "Longest way of a particle in a step, over l0");
   v.number("density", s.density, "kg/m3", positive.up_to(1e4), "Density, which stays");
   v.choice("rheology", s.rheology, "Law of the shear stress");
-  v.choice("regularisation", s.regularisation, "How the yield stress is approached at small shear rates");
+  v.choice("regularisation", s.regularisation,
+           "How the yield stress is approached at small shear rates");
   v.number("viscosity", s.viscosity, "Pa s", non_negative.up_to(1e6), "Plastic viscosity");
   v.number("cohesion", s.cohesion, "Pa", non_negative.up_to(1e6),
            "Yield stress without pressure (adhesive force)");

@@ -57,9 +57,10 @@ struct EnumNames<GrainSides> {
 
 template <>
 struct EnumNames<MpsRheology> {
-  static constexpr Named<MpsRheology> list[] = {{MpsRheology::newtonian, "newtonian"},
-                                                {MpsRheology::bingham, "bingham"},
-                                                {MpsRheology::bingham_dilatant, "bingham_dilatant"}};
+  static constexpr Named<MpsRheology> list[] = {
+      {MpsRheology::newtonian, "newtonian"},
+      {MpsRheology::bingham, "bingham"},
+      {MpsRheology::bingham_dilatant, "bingham_dilatant"}};
 };
 
 template <>

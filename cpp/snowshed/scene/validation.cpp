@@ -210,14 +210,14 @@ class SceneRules {
     if (scene_.events.between == Between::reseed && scene_.events.count > 1)
       fail(scene_.events.between, "snow of the method \"mps\" can only be carried on");
     if (s.erosion && s.deposition_pressure >= s.erosion_pressure)
-      fail(s.deposition_pressure,
-           show(s.deposition_pressure) + " Pa must be less than " + path_and_value(s.erosion_pressure));
+      fail(s.deposition_pressure, show(s.deposition_pressure) + " Pa must be less than " +
+                                      path_and_value(s.erosion_pressure));
     if (s.erosion && s.deposition_speed >= s.erosion_speed)
       fail(s.deposition_speed,
            show(s.deposition_speed) + " m/s must be less than " + path_and_value(s.erosion_speed));
     if (scene_.output.energy && s.order == MpsOrder::published)
-      fail(scene_.output.energy, "the balance is kept with " + path_of(scene_, s.order) +
-                                     " \"single_move\" only");
+      fail(scene_.output.energy,
+           "the balance is kept with " + path_of(scene_, s.order) + " \"single_move\" only");
   }
 
   /// Stages follow on each other: what a stage undoes must have been done.

@@ -47,10 +47,10 @@ void MpsSolver<D>::save(BinaryWriter& out) const {
   const EnergyBalance& e = s.energy;
   out.add("energy", std::vector<double>{e.plastic, e.friction, e.sticking, e.transfer, e.added});
   const StepCounters& c = s.counters;
-  out.add("counters",
-          std::vector<std::int64_t>{c.steps, c.rejected, c.particle_updates, std::int64_t(s.next_id),
-                                    s.pressure_iterations, s.viscosity_iterations,
-                                    s.solves.pressure.iterations, s.solves.viscosity.iterations});
+  out.add("counters", std::vector<std::int64_t>{
+                          c.steps, c.rejected, c.particle_updates, std::int64_t(s.next_id),
+                          s.pressure_iterations, s.viscosity_iterations,
+                          s.solves.pressure.iterations, s.solves.viscosity.iterations});
 }
 
 template <int D>

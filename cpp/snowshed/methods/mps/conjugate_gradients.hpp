@@ -77,8 +77,7 @@ SolveReport conjugate_gradients(std::size_t n, double tolerance, double scale, i
     else
       cg::for_each(n, threads, [&](std::size_t i) { p[i] = z[i] + beta * p[i]; });
     apply(p, q);
-    const double pq =
-        cg::sum_of(n, threads, work.sums, [&](std::size_t i) { return p[i] * q[i]; });
+    const double pq = cg::sum_of(n, threads, work.sums, [&](std::size_t i) { return p[i] * q[i]; });
     if (!(pq > 0)) break;
     const double alpha = rz / pq;
     r2 = cg::sum_of(n, threads, work.sums, [&](std::size_t i) {

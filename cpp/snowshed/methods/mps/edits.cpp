@@ -17,8 +17,10 @@ void check_count(const char* what, std::size_t given, std::size_t particles) {
 /// All particles stand for the same mass: the method conserves momentum only so.
 void check_mass(double mass, double expected) {
   if (std::abs(mass - expected) > 1e-6 * expected)
-    throw InputError("mass", std::to_string(mass) + " kg; a particle has density times spacing to "
-                             "the power of the dimension, " + std::to_string(expected) + " kg");
+    throw InputError("mass", std::to_string(mass) +
+                                 " kg; a particle has density times spacing to "
+                                 "the power of the dimension, " +
+                                 std::to_string(expected) + " kg");
 }
 
 }  // namespace

@@ -15,8 +15,9 @@ EnergyBalance stored_energy(const MpsModel<D>& model, const MpsParticles<D>& par
 }
 
 /// The work of each force of the step is its impulse times the mean of the velocities before and
-/// after: the sum of all is the change of the kinetic energy. Gravity's work differs from the change
-/// of its potential, since particles move with the velocity after the step; that is the residual.
+/// after: the sum of all is the change of the kinetic energy. Gravity's work differs from the
+/// change of its potential, since particles move with the velocity after the step; that is the
+/// residual.
 template <int D>
 void MpsSolver<D>::book_energy(MpsState<D>& next, double dt) const {
   const MpsParticles<D>& after = next.particles;

@@ -30,8 +30,8 @@ struct Surroundings {
 
 /// Equation (23) is lost; its form is inferred: an erodible particle begins to move where the
 /// pressure is above p_e and a neighbour faster than u_e; a moving one is deposited on what is at
-/// rest where the pressure is below p_d and its speed below u_d. p_d < p_e and u_d < u_e, so that it
-/// does not change its mind at once.
+/// rest where the pressure is below p_d and its speed below u_d. p_d < p_e and u_d < u_e, so that
+/// it does not change its mind at once.
 template <int D>
 void erode_and_deposit(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
   const MpsSettings& s = model.settings();

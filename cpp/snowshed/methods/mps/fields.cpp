@@ -23,7 +23,8 @@ void MpsSolver<D>::visit_fields(Visit visit) const {
   of_each("position", [&p](std::size_t i) { return embed(p.position[i]); });
   of_each("velocity", [&p](std::size_t i) { return embed(p.velocity[i]); });
   column("mass", p.mass);
-  of_each("density", [this, &p](std::size_t i) { return model_.settings().density * p.density[i]; });
+  of_each("density",
+          [this, &p](std::size_t i) { return model_.settings().density * p.density[i]; });
   column("number_density", p.density);
   column("pressure", p.pressure);
   column("shear_rate", p.rate);

@@ -22,9 +22,9 @@ double least_pressure(const MpsParticles<D>& particles, const MpsNeighbourhood<D
   return least;
 }
 
-/// The gradient of the pressure, Pa/m: the sum of (p_j + base) w r/r^2 over the neighbours, with the
-/// particle's own pressure for `base`, so that each pair has equal and opposite forces, or less the
-/// least pressure around as in equation (4).
+/// The gradient of the pressure, Pa/m: the sum of (p_j + base) w r/r^2 over the neighbours, with
+/// the particle's own pressure for `base`, so that each pair has equal and opposite forces, or less
+/// the least pressure around as in equation (4).
 template <int D>
 VecD<D> gradient_among_snow(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
                             std::size_t i, double base, bool conservative) {
@@ -54,13 +54,13 @@ VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& parti
     for (const int k : {0, 1}) {
       if (m->rise[k] == 0) continue;
       const WallContact<D>& wall = near.wall(*m, k);
-      pressure -= m->rise[k] * per_velocity *
-                  (particles.velocity[i] - wall.velocity).dot(wall.normal);
+      pressure -=
+          m->rise[k] * per_velocity * (particles.velocity[i] - wall.velocity).dot(wall.normal);
       across += m->way.dot(wall.normal) * wall.normal;
     }
     // Along the wall the forces between a particle and an image are equal and opposite.
-    sum += double(m->slope) *
-           ((level + base) * m->way + (std::max(0.0, pressure) - level) * across);
+    sum +=
+        double(m->slope) * ((level + base) * m->way + (std::max(0.0, pressure) - level) * across);
   }
   return sum;
 }
@@ -88,14 +88,12 @@ void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& partic
     work.change[i].setZero();
     particles.support[i] = 0;
     if (!particles.moves(i)) return;
-    const double base =
-        conservative ? particles.pressure[i] : -least_pressure(particles, near, i);
+    const double base = conservative ? particles.pressure[i] : -least_pressure(particles, near, i);
     const VecD<D> at_walls = gradient_at_walls(model, particles, near, i, base, dt);
-    const VecD<D> gradient =
-        gradient_among_snow(particles, near, i, base, conservative) + at_walls;
+    const VecD<D> gradient = gradient_among_snow(particles, near, i, base, conservative) + at_walls;
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
-      particles.support[i] = std::max(particles.support[i], -model.gradient() *
-                                                                at_walls.dot(c->normal) / s.density);
+      particles.support[i] =
+          std::max(particles.support[i], -model.gradient() * at_walls.dot(c->normal) / s.density);
     const VecD<D> before = particles.velocity[i];
     VecD<D> velocity = before - per_pressure * model.gradient() * gradient;
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)

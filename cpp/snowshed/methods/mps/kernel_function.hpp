@@ -16,8 +16,8 @@ struct KernelConstants {
 /// w(r) = r_e/r - 1 within r_e, equation (3) of Saito and others (2012).
 inline double kernel_weight(double r, double radius) { return r < radius ? radius / r - 1 : 0.0; }
 
-/// n0 and lambda of a particle within a square or cubic lattice of spacing 1. A neighbour exactly at
-/// the radius weighs nothing.
+/// n0 and lambda of a particle within a square or cubic lattice of spacing 1. A neighbour exactly
+/// at the radius weighs nothing.
 inline KernelConstants kernel_constants(int dimension, double radius) {
   const int reach = int(std::ceil(radius));
   double n = 0, moment = 0;

@@ -8,17 +8,18 @@
 namespace snowshed {
 namespace {
 
-constexpr float jacobi_damping = 0.7f;       // of Jacobi sweeps
-constexpr float enlargement = 1.6f;   // of corrections that are constant within aggregates
+constexpr float jacobi_damping = 0.7f;   // of Jacobi sweeps
+constexpr float enlargement = 1.6f;      // of corrections that are constant within aggregates
 constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
 constexpr std::size_t most_levels = 24;
 constexpr std::ptrdiff_t rows_in_piece = 512;
 
 template <class F>
 void for_each_row(std::size_t n, int threads, F f) {
-  parallel_pieces(std::ptrdiff_t(n), threads, rows_in_piece, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
-  });
+  parallel_pieces(std::ptrdiff_t(n), threads, rows_in_piece,
+                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
+                  });
 }
 
 /// Where among the 3^D aggregates around one another of them lies.
@@ -166,7 +167,8 @@ void Multigrid<D>::factor_coarsest() {
     }
   }
   coarsest_.compute(a);
-  if (coarsest_.info() != Eigen::Success) coarsest_.compute(Eigen::MatrixXf(a.diagonal().asDiagonal()));
+  if (coarsest_.info() != Eigen::Success)
+    coarsest_.compute(Eigen::MatrixXf(a.diagonal().asDiagonal()));
 }
 
 template <int D>
@@ -192,7 +194,8 @@ void Multigrid<D>::update(const NeighbourLists<D>& lists, const AlignedVector<fl
     fill_next(levels_[levels_.size() - 2], levels_.back());
   }
   for (Level& level : levels_) {
-    for (auto* vector : {&level.x, &level.b, &level.r, &level.inverse}) vector->resize(level.size());
+    for (auto* vector : {&level.x, &level.b, &level.r, &level.inverse})
+      vector->resize(level.size());
     for (std::size_t i = 0; i < level.size(); ++i)
       level.inverse[i] = level.diagonal[i] > 0 ? jacobi_damping / level.diagonal[i] : 0.0f;
   }

@@ -14,8 +14,8 @@ namespace snowshed {
 
 /// Aggregation multigrid (Notay 2010; Braess 1995, doi:10.1007/BF02238484): the unknowns of a cell
 /// are one unknown of the next level, those of 2^D cells one of the level after it. Corrections are
-/// constant within an aggregate, and enlarged to make up for that. A damped Jacobi sweep goes before
-/// and one after each correction, which is symmetric, as conjugate gradients need it.
+/// constant within an aggregate, and enlarged to make up for that. A damped Jacobi sweep goes
+/// before and one after each correction, which is symmetric, as conjugate gradients need it.
 template <int D>
 class Multigrid {
  public:
@@ -41,9 +41,9 @@ class Multigrid {
     std::vector<Coordinates> at;
     std::vector<std::uint32_t> child_first;  // of the level below, whose `child` they list
     std::vector<std::uint32_t> child;
-    std::vector<std::uint32_t> parent;  // in the level above
-    AlignedVector<float> value;                     // stencil of each row, positive couplings
-    AlignedVector<std::int32_t> column;             // or -1
+    std::vector<std::uint32_t> parent;   // in the level above
+    AlignedVector<float> value;          // stencil of each row, positive couplings
+    AlignedVector<std::int32_t> column;  // or -1
     AlignedVector<float> diagonal, inverse, x, b, r;
     std::int32_t period = 0;
     std::size_t size() const { return at.size(); }

@@ -15,8 +15,8 @@ constexpr double least_asymmetry = 0.12;
 constexpr double sparse = 0.75;
 
 template <int D>
-void sort_particles(const CellOrder<D>& cells, MpsParticles<D>& particles,
-                    MpsParticles<D>& spare, int threads) {
+void sort_particles(const CellOrder<D>& cells, MpsParticles<D>& particles, MpsParticles<D>& spare,
+                    int threads) {
   if (cells.is_sorted()) return;
   const std::size_t n = particles.size();
   spare.resize(n);

@@ -17,8 +17,8 @@ double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
   const VecD<D>& own = particles.velocity[i];
   double sum = 0, flow = 0;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-    sum += double(near.slope[e]) *
-           near.way(e).dot(particles.velocity[near.lists.neighbour(e)] - own);
+    sum +=
+        double(near.slope[e]) * near.way(e).dot(particles.velocity[near.lists.neighbour(e)] - own);
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     VecD<D> along = particles.velocity[m->of] - own;
     for (const int k : {0, 1}) {
@@ -53,8 +53,7 @@ double compensation_time(const MpsModel<D>& model, double dt, const MpsParticles
 /// pressure of snow at rest; here its weight is one.
 template <int D>
 double source(const MpsModel<D>& model, double dt, double compensation_time,
-              const MpsParticles<D>& particles,
-              const MpsNeighbourhood<D>& near, std::size_t i) {
+              const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near, std::size_t i) {
   const MpsSettings& s = model.settings();
   double excess = near.density[i] / model.kernel.number_density - 1;
   if (s.source == MpsSource::published) return -s.density / (dt * dt) * excess;
@@ -111,9 +110,8 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
     if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
     work.source[i] = value;
   });
-  const bool enclosed =
-      std::none_of(near.surface.begin(), near.surface.begin() + std::ptrdiff_t(n),
-                   [](std::uint8_t at_surface) { return at_surface != 0; });
+  const bool enclosed = std::none_of(near.surface.begin(), near.surface.begin() + std::ptrdiff_t(n),
+                                     [](std::uint8_t at_surface) { return at_surface != 0; });
   if (enclosed) balance_sources(work, n);
 
   double square = 0;
@@ -131,8 +129,8 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
   };
   const auto solve = [&](const auto& precondition) {
     return conjugate_gradients(n, s.pressure_tolerance, std::sqrt(square), s.max_iterations,
-                               threads, work.cg, work.pressure.data(), work.source.data(),
-                               apply, precondition);
+                               threads, work.cg, work.pressure.data(), work.source.data(), apply,
+                               precondition);
   };
   SolveReport report;
   if (s.preconditioner == MpsPreconditioner::multigrid) {

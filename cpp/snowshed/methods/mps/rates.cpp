@@ -28,9 +28,9 @@ Eigen::Matrix<double, D, D> velocity_gradient(const MpsModel<D>& model,
   return moment.determinant() > least_determinant ? Matrix(sum * moment.inverse()) : sum;
 }
 
-/// The pressures of the last step, smoothed over the neighbours with the weight function and cut off
-/// at zero. Walls continue them hydrostatically, and the free surface with the opposite sign, so
-/// that a pressure that grows linearly stays as it is.
+/// The pressures of the last step, smoothed over the neighbours with the weight function and cut
+/// off at zero. Walls continue them hydrostatically, and the free surface with the opposite sign,
+/// so that a pressure that grows linearly stays as it is.
 template <int D>
 double smooth_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
                        const MpsNeighbourhood<D>& near, std::size_t i) {
@@ -45,8 +45,8 @@ double smooth_pressure(const MpsModel<D>& model, const MpsParticles<D>& particle
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     double pressure = particles.pressure[m->of];
     for (const int k : {0, 1})
-      pressure += m->rise[k] * weight_of_snow *
-                  std::max(0.0, -model.gravity.dot(near.wall(*m, k).normal));
+      pressure +=
+          m->rise[k] * weight_of_snow * std::max(0.0, -model.gravity.dot(near.wall(*m, k).normal));
     sum += double(m->weight) * pressure;
   }
   const double missing = near.surface[i] ? model.kernel.number_density - n : 0.0;
@@ -72,8 +72,7 @@ void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles, MpsW
     return;
   }
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    const Eigen::Matrix<double, D, D> gradient =
-        velocity_gradient(model, particles, work.near, i);
+    const Eigen::Matrix<double, D, D> gradient = velocity_gradient(model, particles, work.near, i);
     const Eigen::Matrix<double, D, D> strain = 0.5 * (gradient + gradient.transpose());
     particles.rate[i] = std::sqrt(2 * strain.squaredNorm());
     work.smooth_pressure[i] = smooth_pressure(model, particles, work.near, i);

@@ -34,9 +34,7 @@ struct Rheology {
             s.regularisation == MpsYield::bi_viscous};
   }
 
-  bool is_newtonian() const {
-    return cohesion == 0 && friction == 0 && dilatant_rate == HUGE_VAL;
-  }
+  bool is_newtonian() const { return cohesion == 0 && friction == 0 && dilatant_rate == HUGE_VAL; }
 
   /// Pa; `pressure` in Pa.
   double yield_stress(double pressure) const {

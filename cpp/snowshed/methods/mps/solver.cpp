@@ -29,10 +29,10 @@ std::string in_words(double value) {
 
 void require_converged(const SolveReport& report, const char* what, int most) {
   if (report.converged) return;
-  throw SimulationError(std::string("the ") + what + " equation has not converged: " +
-                        in_words(report.residual) + " of its right-hand side is left after " +
-                        std::to_string(report.iterations) + " iterations; allowed: " +
-                        std::to_string(most));
+  throw SimulationError(
+      std::string("the ") + what + " equation has not converged: " + in_words(report.residual) +
+      " of its right-hand side is left after " + std::to_string(report.iterations) +
+      " iterations; allowed: " + std::to_string(most));
 }
 
 }  // namespace
@@ -73,20 +73,19 @@ double MpsSolver<D>::pressure_step(const MpsParticles<D>& particles) const {
 }
 
 /// The longest step in which no particle moves farther than the Courant factor times the spacing,
-/// also with the speed that gravity adds in it: (u + g dt) dt = C l0. Viscosity is implicit and does
-/// not limit it.
+/// also with the speed that gravity adds in it: (u + g dt) dt = C l0. Viscosity is implicit and
+/// does not limit it.
 template <int D>
 double MpsSolver<D>::choose_step(const MpsParticles<D>& particles) const {
   const MpsSettings& s = model_.settings();
-  const double speed = std::max(largest_speed(particles),
-                                largest_wall_speed(work_.near.contacts));
+  const double speed = std::max(largest_speed(particles), largest_wall_speed(work_.near.contacts));
   const double g = model_.gravity.norm(), way = s.courant_factor * s.spacing;
   const double root = std::sqrt(speed * speed + 4 * g * way);
   double dt = std::min(s.max_time_step, pressure_step(particles));
   if (speed + root > 0) dt = std::min(dt, 2 * way / (speed + root));
   if (!(dt > 1e-9 * s.max_time_step))
-    throw SimulationError("the time step has fallen to " + in_words(dt) + " s: a particle moves at " +
-                          in_words(speed) + " m/s");
+    throw SimulationError("the time step has fallen to " + in_words(dt) +
+                          " s: a particle moves at " + in_words(speed) + " m/s");
   return dt;
 }
 
@@ -96,7 +95,8 @@ void MpsSolver<D>::move(double dt, MpsParticles<D>& particles) const {
   for_each_particle(particles.size(), model_.threads_for(particles.size()), [&](std::size_t i) {
     if (!particles.moves(i)) return;
     particles.position[i] += dt * particles.velocity[i];
-    if (period > 0) particles.position[i][0] -= period * std::floor(particles.position[i][0] / period);
+    if (period > 0)
+      particles.position[i][0] -= period * std::floor(particles.position[i][0] / period);
   });
 }
 

@@ -26,8 +26,8 @@ struct MpsReport {
   int pressure_iterations = 0, viscosity_iterations = 0;
   double pressure_residual = 0, viscosity_residual = 0;  // relative
   double mean_pressure_iterations = 0, mean_viscosity_iterations = 0;
-  double density_error = 0;   // root mean square of n/n0 - 1 within the snow
-  double largest_density = 0; // of n/n0
+  double density_error = 0;    // root mean square of n/n0 - 1 within the snow
+  double largest_density = 0;  // of n/n0
 };
 
 /// MPS as a method, and what only it has.

@@ -46,8 +46,8 @@ struct MpsModel {
 
   /// Threads for a step of so many particles.
   int threads_for(std::size_t particles) const {
-    return int(std::clamp<std::size_t>(particles / mps_particles_per_thread, 1,
-                                       std::size_t(threads)));
+    return int(
+        std::clamp<std::size_t>(particles / mps_particles_per_thread, 1, std::size_t(threads)));
   }
 };
 
@@ -62,8 +62,8 @@ struct MpsState {
   double time = 0, dt = 0;  // s
   std::uint32_t next_id = 0;
   StepCounters counters;
-  EnergyBalance energy;  // its sums over steps
-  MpsSolves solves;      // of the last step
+  EnergyBalance energy;                                            // its sums over steps
+  MpsSolves solves;                                                // of the last step
   std::int64_t pressure_iterations = 0, viscosity_iterations = 0;  // of all steps
 };
 
@@ -90,11 +90,11 @@ template <int D>
 struct MpsWork {
   MpsParticles<D> next, spare;
   MpsNeighbourhood<D> near;
-  AlignedVector<VecD<D>> velocity;        // right-hand side, m/s
+  AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
   AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
   AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
   AlignedVector<double> drag;                         // of each contact with a wall, 1/s
-  AlignedVector<VecD<D>> change;          // of velocities by the pressure, m/s
+  AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
   AlignedVector<float> coupling;          // of velocities, of each pair
   AlignedVector<double> smooth_pressure;  // Pa

@@ -17,13 +17,13 @@ inline double between(double a, double b) { return a + b > 0 ? 2 * a * b / (a + 
 }  // namespace
 
 /// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
-/// distance; the velocity continues linearly into the wall and is zero at the surface. Its frictional
-/// part follows from the force with which the wall supports the particle, so that the friction of
-/// all particles is Coulomb's of their weight, however they lie. Where the obstacle is not sticky,
-/// it is at most the obstacle's own friction.
+/// distance; the velocity continues linearly into the wall and is zero at the surface. Its
+/// frictional part follows from the force with which the wall supports the particle, so that the
+/// friction of all particles is Coulomb's of their weight, however they lie. Where the obstacle is
+/// not sticky, it is at most the obstacle's own friction.
 template <int D>
-double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                 const MpsWork<D>& work, std::size_t i, const WallContact<D>& c) {
+double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, const MpsWork<D>& work,
+                 std::size_t i, const WallContact<D>& c) {
   const MpsSettings& s = model.settings();
   const double height = std::max(c.distance, nearest_friction * s.spacing);
   const VecD<D> relative = particles.velocity[i] - c.velocity;
@@ -69,8 +69,7 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
       for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
         double& drag = work.drag[near.contacts.place(c)];
         drag = wall_drag(model, particles, work, i, *c);
-        const Matrix along = dt * drag *
-                             (Matrix::Identity() - c->normal * c->normal.transpose());
+        const Matrix along = dt * drag * (Matrix::Identity() - c->normal * c->normal.transpose());
         block += along;
         right += along * c->velocity;
       }

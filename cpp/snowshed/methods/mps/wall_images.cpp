@@ -9,7 +9,8 @@ namespace {
 constexpr std::size_t particles_with_images = 256;
 /// Nearer to a wall than this, in l0, a particle's image keeps away.
 constexpr double nearest_image = 0.1;
-/// Two walls make a corner, with images behind both, if the cosine between their normals is smaller.
+/// Two walls make a corner, with images behind both, if the cosine between their normals is
+/// smaller.
 constexpr double corner = 0.7;
 
 /// Another particle's contact with the same obstacle, or null.
@@ -37,8 +38,8 @@ struct ImageMaker {
     const std::uint32_t second = b ? std::uint32_t(contacts.place(b)) : first;
     VecD<D> to = way - rise_a * a->normal;
     if (b) to -= rise_b * b->normal;
-    list.push_back({std::uint32_t(k), weight, float(weight / r2), to, {first, second},
-                    {rise_a, rise_b}});
+    list.push_back(
+        {std::uint32_t(k), weight, float(weight / r2), to, {first, second}, {rise_a, rise_b}});
     return weight;
   }
 
@@ -65,10 +66,9 @@ struct ImageMaker {
 }  // namespace
 
 template <int D>
-void WallImages<D>::update(const NeighbourLists<D>& lists,
-                           const RowLists<WallContact<D>>& contacts, double reach, double spacing,
-                           int threads, const AlignedVector<float>& direct,
-                           AlignedVector<float>& weight) {
+void WallImages<D>::update(const NeighbourLists<D>& lists, const RowLists<WallContact<D>>& contacts,
+                           double reach, double spacing, int threads,
+                           const AlignedVector<float>& direct, AlignedVector<float>& weight) {
   weight.resize(lists.pairs());
   images_.update(lists.size(), particles_with_images, threads,
                  [&](std::size_t begin, std::size_t end, std::uint32_t* first,

@@ -12,11 +12,11 @@ namespace snowshed {
 /// curved walls, too: so i sees the image of k as far away as k that of i.
 template <int D>
 struct WallImage {
-  std::uint32_t of;         // k, which may be i itself
-  float weight, slope;      // w, and w/r'^2 in 1/m2
-  VecD<D> way;              // from i to the image, m
-  std::uint32_t contact[2]; // of i, among all contacts; both the same where there is one wall
-  double rise[2];           // twice the distance of k from each wall, m; 0 for the second of one
+  std::uint32_t of;          // k, which may be i itself
+  float weight, slope;       // w, and w/r'^2 in 1/m2
+  VecD<D> way;               // from i to the image, m
+  std::uint32_t contact[2];  // of i, among all contacts; both the same where there is one wall
+  double rise[2];            // twice the distance of k from each wall, m; 0 for the second of one
 };
 
 template <int D>
@@ -38,7 +38,8 @@ class WallImages {
 
 /// Sums over the layers of a lattice behind a plane wall: 2 d/(lambda n0) sum of w z, times l0, for
 /// a particle at a distance (in l0), where z is the way along the normal. Times a shear stress over
-/// density and l0 it is the deceleration by the wall: summed over the layers of the snow, it is one.
+/// density and l0 it is the deceleration by the wall: summed over the layers of the snow, it is
+/// one.
 template <int D>
 class WallFriction {
  public:
