@@ -64,7 +64,7 @@ def _scene(folder: Path) -> Path:
 
 
 def _results(folder: Path) -> Path:
-    scene = tiny_scene(**{"output.energy": True, "events.max_time": 0.1})
+    scene = tiny_scene(**{"output.energy": True, "events.max_time": 0.6})
     run_events(scene, folder / "out", pictures=False)
     return folder / "out"
 
@@ -123,7 +123,7 @@ def _polygons(suffix: str) -> Callable[[Path], Path]:
 
 
 def _checkpoint(folder: Path) -> Path:
-    simulation = _core.Simulation(tiny_scene(**{"events.max_time": 0.1}).resolve().json)
+    simulation = _core.Simulation(tiny_scene(**{"events.max_time": 0.6}).resolve().json)
     simulation.begin_event()
     simulation.save(str(folder / "checkpoint.bin"))
     return folder / "checkpoint.bin"

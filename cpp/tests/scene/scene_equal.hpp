@@ -75,8 +75,8 @@ inline auto tied(const Events& s) {
   return std::tie(a, b, c, d, e);
 }
 inline auto tied(const Output& s) {
-  auto& [a, b, c] = s;
-  return std::tie(a, b, c);
+  auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
 }
 inline auto tied(const Domain& s) {
   auto& [a, b] = s;

@@ -162,7 +162,7 @@ class Results:
         table = read_csv(path)
         if missing := [column for column in columns if column not in table]:
             raise InputError(f"{path}: no column {', '.join(missing)}")
-        for column in table:
+        for column in table if len(table) else ():
             if table[column].dtype.kind not in "if" or not np.isfinite(table[column]).all():
                 raise InputError(f"{path}: no finite numbers in the column {column}")
         return table

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
-from PIL import Image
 
 from snowshed._core import InputError
 from snowshed.io.atomic import replacing
@@ -22,6 +21,12 @@ from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results_reader import Results
 from snowshed.run.view import view_content
 from snowshed.scene.scene import PathLike
+
+
+def pillow() -> Any:
+    """Return the module of Pillow that reads and writes pictures."""
+    return require("PIL.Image", "video", "a video")
+
 
 RATE = {".mp4": 30.0, ".gif": 12.5}  # pictures per second
 LONGEST = 12.0  # s, unless asked for
@@ -120,7 +125,7 @@ def _pictures(
     colouring: Colouring,
     times: Sequence[float],
     progress: Optional[Reporter],
-) -> Iterator[Image.Image]:
+) -> Iterator[Any]:
     frames = iter(film)
     number, now = 0, next(frames)
     after = next(frames, now)
@@ -133,10 +138,10 @@ def _pictures(
             progress(Progress((count + 1) / len(times), count + 1, len(times), "pictures"))
 
 
-def _picture(painter: FilmPainter, frame: FilmFrame, colouring: Colouring) -> Image.Image:
+def _picture(painter: FilmPainter, frame: FilmFrame, colouring: Colouring) -> Any:
     file = io.BytesIO()
     painter.draw(frame, colouring).savefig(file, format="png", dpi=DPI)
-    return Image.open(file).convert("RGB")
+    return pillow().open(file).convert("RGB")
 
 
 def _between(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
@@ -145,10 +150,10 @@ def _between(now: FilmFrame, after: FilmFrame, part: float) -> FilmFrame:
     return replace(now, positions=now.positions + part * (after.positions - now.positions))
 
 
-def _write_gif(file: Path, pictures: Iterator[Image.Image], palette: Image.Image) -> None:
+def _write_gif(file: Path, pictures: Iterator[Any], palette: Any) -> None:
     """Write a GIF, which the few colours of one picture keep small."""
-    few = palette.quantize(COLOURS_OF_GIF, dither=Image.Dither.NONE)
-    quantized = (one.quantize(palette=few, dither=Image.Dither.NONE) for one in pictures)
+    few = palette.quantize(COLOURS_OF_GIF, dither=pillow().Dither.NONE)
+    quantized = (one.quantize(palette=few, dither=pillow().Dither.NONE) for one in pictures)
     first, others = next(quantized), quantized
     first.save(
         file,
@@ -161,7 +166,7 @@ def _write_gif(file: Path, pictures: Iterator[Image.Image], palette: Image.Image
     )
 
 
-def _write_mp4(encoder: Any, file: Path, pictures: Iterator[Image.Image]) -> None:
+def _write_mp4(encoder: Any, file: Path, pictures: Iterator[Any]) -> None:
     first = next(pictures)
     width, height = (side - side % 2 for side in first.size)  # as the encoder needs it
     stream = encoder.write_frames(

@@ -74,6 +74,9 @@ def read_table(
     columns += [*settings, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
     types: dict[str, Any] = {**dict.fromkeys(COUNTS, "Int64"), **dict.fromkeys(NUMBERS, float)}
+    for column in measured:
+        if column not in types and table[column].isna().all():  # the table of no stack at all
+            types[column] = float
     return with_trimming(table.astype({k: v for k, v in types.items() if k in table}))
 
 

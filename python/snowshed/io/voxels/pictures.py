@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from snowshed._core import InputError
 from snowshed.io.damage import DAMAGED
+from snowshed.io.extras import require
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size
 
 if TYPE_CHECKING:
@@ -137,7 +138,7 @@ def _numbered(folder: Path) -> list[Path]:
 @contextmanager
 def _opened(path: Path) -> Iterator[Image]:
     """Yield a picture as its ending says, whose errors say that it is damaged."""
-    from PIL import Image as pillow  # noqa: N813 - what the library calls it
+    pillow = require("PIL.Image", "images", "reading pictures")
 
     kind = FORMATS[path.suffix.lower()]
     with path.open("rb"):  # a missing file is told as such
