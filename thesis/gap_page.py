@@ -127,7 +127,8 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
         *_left_over(stacks),
         "### Regressions with each deviation undone",
         f"ε-SVR of H/L of the same rows ({errors['rows'].max():.0f} for each), by "
-        f"{SCHEME.rounds} round{'s' if SCHEME.rounds > 1 else ''} of {SCHEME.folds} outer and {SCHEME.inner_folds} inner folds. The "
+        f"{SCHEME.rounds} round{'s' if SCHEME.rounds > 1 else ''} of {SCHEME.folds} outer and "
+        f"{SCHEME.inner_folds} inner folds. The "
         "quartiles are those of the predictions. A sample has a tenth of the rows of the data set, "
         "so that its errors are to be compared with each other.",
         markdown(deviations_section.errors_grid(errors, stacks)),

@@ -76,7 +76,8 @@ TEST(SceneJson, EveryFieldIsRead) {
                  "sleep_time": 0.7, "threads": 3},
     "events": {"count": 4, "between": "reseed", "max_time": 3, "rest_speed": 0.1,
                "rest_time": 0.2},
-    "output": {"snapshot_interval": 0.25, "energy": true, "checkpoint_interval": 30}})");
+    "output": {"snapshot_interval": 0.25, "film": false, "film_interval": 0.5,
+               "energy": true, "checkpoint_interval": 30}})");
   EXPECT_EQ(scene.title, "all");
   EXPECT_EQ(scene.gravity, 1.62);
   EXPECT_TRUE(scene.snow == (Snow{SnowModel::elastic, 300, 2e6, 0.2, 0.6, 8000, 0.3, 1}));
@@ -88,7 +89,7 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_TRUE(scene.mpm() == (MpmSettings{0.02, Precision::float64, Transfer::apic, 0.5,
                                           std::nullopt, Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
-  EXPECT_TRUE(scene.output == (Output{0.25, true, 30}));
+  EXPECT_TRUE(scene.output == (Output{0.25, false, 0.5, true, 30}));
 
   ASSERT_EQ(scene.obstacles.size(), 1u);
   const ObstacleSpec& post = scene.obstacles[0];
