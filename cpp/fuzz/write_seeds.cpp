@@ -90,6 +90,10 @@ void write_scenes(const fs::path& folder) {
     write(folder / ("rich-" + std::to_string(dimension) + "d.json"),
           write_scene(parse_scene(rich_scene_in(dimension))));
   write(folder / "grains.json", write_scene(parse_scene(grains_scene)));
+  write(folder / "mps.json",
+        R"({"snowshed": 2, "method": "mps", "dimension": 2, "numerics": {"spacing": 0.05},)"
+        R"( "ground": {}, "bodies": [{"shape": {"type": "box", "center": [0, 0.5],)"
+        R"( "size": [1, 1]}}]})");
   write(folder / "slide.json", write_scene(parse_scene(slide_scene)));
   write(folder / "least.json", R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere",)"
                                R"( "center": [0, 0, 1], "radius": 1e-1}}]})");

@@ -27,6 +27,7 @@ if _TYPE_CHECKING:
     from snowshed.analysis.dimension_ratio import dimension_ratio
     from snowshed.methods.grains.settings import GrainsSettings
     from snowshed.methods.mpm import MpmSettings
+    from snowshed.methods.mps import MpsSettings
     from snowshed.methods.slide import SlideSettings
     from snowshed.run.events import run_events
     from snowshed.run.interrupt import Interrupted
@@ -70,6 +71,7 @@ __all__ = [
     "LoadingStage",
     "Motion",
     "MpmSettings",
+    "MpsSettings",
     "Obstacle",
     "Output",
     "Panel",
@@ -112,6 +114,7 @@ _MODULES = {
     "LoadingStage": "snowshed.scene.loading",
     "Motion": "snowshed.scene.components",
     "MpmSettings": "snowshed.methods.mpm",
+    "MpsSettings": "snowshed.methods.mps",
     "Obstacle": "snowshed.scene.components",
     "Output": "snowshed.scene.output",
     "Panel": "snowshed.scene.components",

@@ -65,6 +65,12 @@ double seed_body(const BodySpec& body, const Scene& scene, const std::string& pa
                  ParticleBatch& batch) {
   const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
   const double dx = resolution(scene.numerics);
+  if (scene.uses<MpsSettings>()) {
+    batch.positions = seed_lattice(*shape, scene.dimension, dx, stop);
+    batch.mass = std::get<MpsSettings>(scene.numerics).density * std::pow(dx, scene.dimension);
+    batch.velocity = body.velocity;
+    return batch.total_mass();
+  }
   const Snow& snow = snow_of(scene, body);
   batch.positions = snowshed::seed(*shape, scene.dimension, dx, scene.seeding.particles_per_voxel,
                                    scene.seeding.pattern, seed, stop);
@@ -108,6 +114,21 @@ double slab_mass(const Scene& scene, int event) {
   for (const BodySpec& layer : assemble_slab(scene, event))
     mass += snow_of(scene, layer).density * shape_volume(layer.shape, scene.dimension).value();
   return mass;
+}
+
+std::vector<double> count_lattice_particles(const Scene& scene,
+                                            const std::filesystem::path& base_dir) {
+  std::vector<double> counts;
+  const double cell = std::pow(resolution(scene.numerics), scene.dimension);
+  for (int event = 1; event <= scene.events.count; ++event) {
+    const std::vector<BodySpec> bodies = assemble_bodies(scene, event);
+    const std::vector<std::string> paths = body_paths(scene, event);
+    double volume = 0;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      volume += body_volume(bodies[i], scene, paths[i], base_dir);
+    counts.push_back(std::round(volume / cell));
+  }
+  return counts;
 }
 
 std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir) {

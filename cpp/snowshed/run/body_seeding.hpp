@@ -34,4 +34,8 @@ double slab_mass(const Scene& scene, int event);
 /// of bodies. Throws InputError where a body cannot be built or is too small for a particle.
 std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir);
 
+/// The particles that each event adds where they stand on a lattice, one for each cell of it.
+std::vector<double> count_lattice_particles(const Scene& scene,
+                                            const std::filesystem::path& base_dir);
+
 }  // namespace snowshed

@@ -52,6 +52,21 @@ void list_features_of(const GrainsSettings& grains, const Scene& s, CostReport& 
   feature(s.output.snapshot_interval > 0, "snapshots during the loading");
 }
 
+void list_features_of(const MpsSettings& mps, const Scene& s, CostReport& report) {
+  const auto feature = [&report](bool used, const std::string& name) {
+    list_feature(report, used, name);
+  };
+  feature(s.dimension == 3, "third dimension");
+  feature(mps.rheology != MpsRheology::newtonian, "yield stress");
+  feature(mps.rheology == MpsRheology::bingham_dilatant, "dilatant branch");
+  feature(mps.erosion, "erosion and deposition");
+  feature(mps.spacing_law == MpsSpacing::collision, "collisions");
+  feature(mps.spacing_law == MpsSpacing::shifting, "particle shifting");
+  feature(mps.preconditioner == MpsPreconditioner::multigrid, "multigrid");
+  feature(s.output.energy, "energy balance");
+  feature(s.output.snapshot_interval > 0, "snapshots during events");
+}
+
 void list_features_of(const MpmSettings& mpm, const Scene& s, CostReport& report) {
   const auto feature = [&report](bool used, const std::string& name) {
     list_feature(report, used, name);

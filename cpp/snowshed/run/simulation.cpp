@@ -14,6 +14,7 @@
 #include "snowshed/run/fingerprint.hpp"
 #include "snowshed/run/grains_cost.hpp"
 #include "snowshed/run/loading_curve.hpp"
+#include "snowshed/run/mps_cost.hpp"
 #include "snowshed/run/slide_cost.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/scene/assemble.hpp"
@@ -31,6 +32,10 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
       rest_(scene.events.rest_speed, scene.events.rest_time) {
   if (scene_.uses<MpmSettings>()) {  // told by the scene: before anything is built
     cost_ = estimate_cost(scene_, count_particles(scene_, base_dir));
+    check_memory(cost_.bytes);
+  }
+  if (scene_.uses<MpsSettings>()) {
+    cost_ = estimate_mps_cost(scene_, count_lattice_particles(scene_, base_dir));
     check_memory(cost_.bytes);
   }
   shape_prints_ = fingerprints_of_shapes(scene_, base_dir_);

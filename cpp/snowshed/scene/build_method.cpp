@@ -2,6 +2,7 @@
 
 #include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
+#include "snowshed/methods/mps/solver.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/build_sample.hpp"
@@ -31,6 +32,17 @@ std::unique_ptr<Method> build(const GrainsSettings& settings, const Scene& scene
                               const std::vector<Snow>&, const Surroundings& surroundings) {
   return make_grains({settings, scene.gravity, surroundings.sample, scene.loading,
                       scene.cone.value_or(Cone{}), scene.output.energy});
+}
+
+std::unique_ptr<Method> build(const MpsSettings& settings, const Scene& scene,
+                              const std::vector<Snow>&, const Surroundings& surroundings) {
+  MpsOptions o;
+  o.dimension = scene.dimension;
+  o.settings = settings;
+  o.gravity = -scene.gravity * Vec3::UnitZ();
+  o.obstacles = surroundings.obstacles;
+  o.energy = scene.output.energy;
+  return make_mps(std::move(o));
 }
 
 }  // namespace

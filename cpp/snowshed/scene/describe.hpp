@@ -29,6 +29,7 @@
 
 #include "snowshed/scene/allowed.hpp"
 #include "snowshed/scene/describe_grains.hpp"
+#include "snowshed/scene/describe_mps.hpp"
 #include "snowshed/scene/enum_names.hpp"
 #include "snowshed/scene/scene.hpp"
 

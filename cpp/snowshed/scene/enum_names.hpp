@@ -56,6 +56,59 @@ struct EnumNames<GrainSides> {
 };
 
 template <>
+struct EnumNames<MpsRheology> {
+  static constexpr Named<MpsRheology> list[] = {
+      {MpsRheology::newtonian, "newtonian"},
+      {MpsRheology::bingham, "bingham"},
+      {MpsRheology::bingham_dilatant, "bingham_dilatant"}};
+};
+
+template <>
+struct EnumNames<MpsYield> {
+  static constexpr Named<MpsYield> list[] = {{MpsYield::papanastasiou, "papanastasiou"},
+                                             {MpsYield::bi_viscous, "bi_viscous"}};
+};
+
+template <>
+struct EnumNames<MpsSource> {
+  static constexpr Named<MpsSource> list[] = {{MpsSource::published, "published"},
+                                              {MpsSource::compensated, "compensated"}};
+};
+
+template <>
+struct EnumNames<MpsGradient> {
+  static constexpr Named<MpsGradient> list[] = {{MpsGradient::published, "published"},
+                                                {MpsGradient::conservative, "conservative"}};
+};
+
+template <>
+struct EnumNames<MpsSurface> {
+  static constexpr Named<MpsSurface> list[] = {{MpsSurface::published, "published"},
+                                               {MpsSurface::mirrored, "mirrored"}};
+};
+
+template <>
+struct EnumNames<MpsOrder> {
+  static constexpr Named<MpsOrder> list[] = {{MpsOrder::published, "published"},
+                                             {MpsOrder::single_move, "single_move"}};
+};
+
+template <>
+struct EnumNames<MpsSpacing> {
+  static constexpr Named<MpsSpacing> list[] = {{MpsSpacing::none, "none"},
+                                               {MpsSpacing::collision, "collision"},
+                                               {MpsSpacing::shifting, "shifting"}};
+};
+
+template <>
+struct EnumNames<MpsPreconditioner> {
+  static constexpr Named<MpsPreconditioner> list[] = {
+      {MpsPreconditioner::jacobi, "jacobi"},
+      {MpsPreconditioner::incomplete_cholesky, "incomplete_cholesky"},
+      {MpsPreconditioner::multigrid, "multigrid"}};
+};
+
+template <>
 struct EnumNames<LoadingKind> {
   static constexpr Named<LoadingKind> list[] = {{LoadingKind::compress, "compress"},
                                                 {LoadingKind::unload, "unload"},

@@ -12,12 +12,13 @@
 
 #include "snowshed/methods/grains/settings.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
+#include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 
 namespace snowshed {
 
 /// The settings of the method that a scene has chosen; the first is the default.
-using MethodSettings = std::variant<MpmSettings, SlideSettings, GrainsSettings>;
+using MethodSettings = std::variant<MpmSettings, SlideSettings, GrainsSettings, MpsSettings>;
 
 /// The parts of a scene that a method can use.
 struct TakenParts {
@@ -60,6 +61,12 @@ inline constexpr MethodInfo method_info<GrainsSettings>{
     "grains",
     "Discrete elements of snow: rigid clumps of spheres with bonds that break",
     {false, false, false, false, false, false, false, true, false, false}};
+
+template <>
+inline constexpr MethodInfo method_info<MpsSettings>{
+    "mps",
+    "The moving particle semi-implicit method: snow as a Bingham and dilatant fluid",
+    {true, true, true, true, true, true, false, false, false, false}};
 
 /// The method that has been chosen.
 inline const MethodInfo& info_of(const MethodSettings& settings) {

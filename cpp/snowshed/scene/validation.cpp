@@ -28,6 +28,7 @@ class SceneRules {
     check_snows();
     check_seeding(scene_.seeding);
     if (scene_.uses<MpmSettings>()) check_damping(scene_.mpm());
+    if (scene_.uses<MpsSettings>()) check_mps();
     if (scene_.events.rest_time > scene_.events.max_time)
       fail(scene_.events.rest_time, show(scene_.events.rest_time) + " s is longer than an event (" +
                                         path_and_value(scene_.events.max_time) + " s)");
@@ -195,6 +196,28 @@ class SceneRules {
     const auto pushed_in = [](const LoadingStage& s) { return s.kind == LoadingKind::penetrate; };
     if (scene_.cone && std::none_of(scene_.loading.begin(), scene_.loading.end(), pushed_in))
       fail(*scene_.cone, "no stage pushes it in; give one of the kind \"penetrate\"");
+  }
+
+  /// The snow of MPS is that of its settings.
+  void check_mps() const {
+    const MpsSettings& s = std::get<MpsSettings>(scene_.numerics);
+    const auto refuse = [&](const auto& part) {
+      if (part.snow) fail(*part.snow, "the method \"mps\" takes the snow of its settings");
+    };
+    for (const BodySpec& body : scene_.bodies) refuse(body);
+    if (scene_.slab)
+      for (const Layer& layer : scene_.slab->layers) refuse(layer);
+    if (scene_.events.between == Between::reseed && scene_.events.count > 1)
+      fail(scene_.events.between, "snow of the method \"mps\" can only be carried on");
+    if (s.erosion && s.deposition_pressure >= s.erosion_pressure)
+      fail(s.deposition_pressure, show(s.deposition_pressure) + " Pa must be less than " +
+                                      path_and_value(s.erosion_pressure));
+    if (s.erosion && s.deposition_speed >= s.erosion_speed)
+      fail(s.deposition_speed,
+           show(s.deposition_speed) + " m/s must be less than " + path_and_value(s.erosion_speed));
+    if (scene_.output.energy && s.order == MpsOrder::published)
+      fail(scene_.output.energy,
+           "the balance is kept with " + path_of(scene_, s.order) + " \"single_move\" only");
   }
 
   /// Stages follow on each other: what a stage undoes must have been done.

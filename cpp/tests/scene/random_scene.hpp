@@ -75,6 +75,7 @@ class Randomizer {
     std::visit([&](auto& own) { fill(own); }, settings);
   }
   void method_ahead(const char*, MethodSettings& settings) {
+    if (chance(0.2)) settings = MpsSettings();
     if (dimension_ != 3) return;
     if (chance(0.3)) settings = SlideSettings();
     if (chance(0.2)) settings = GrainsSettings();
@@ -150,6 +151,19 @@ inline void mend_grains(Randomizer& randomizer, Scene& scene) {
   if (scene.cone) scene.loading.push_back({LoadingKind::penetrate, 0.5, 0.2, 0});
 }
 
+/// Makes a scene one of MPS, whose snow is that of its settings.
+inline void mend_mps(Scene& scene) {
+  scene.snow = {};
+  scene.seeding = {};
+  scene.events.between = Between::carry;
+  for (auto& body : scene.bodies) body.snow.reset();
+  if (scene.slab)
+    for (auto& layer : scene.slab->layers) layer.snow.reset();
+  MpsSettings& settings = std::get<MpsSettings>(scene.numerics);
+  settings.erosion = false;
+  settings.order = MpsOrder::single_move;
+}
+
 /// Its fields are independent of each other, so what the rules between them demand is mended.
 inline Scene random_scene(std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -186,9 +200,13 @@ inline Scene random_scene(std::uint64_t seed) {
       scene.slab->thickness = 0.1;
   }
   if (!scene.slab) describe(randomizer, scene.bodies.emplace_back());
-  MpmSettings& numerics = scene.mpm();
-  if (numerics.transfer != Transfer::flip) numerics.damping_rate.reset();
-  if (numerics.damping_rate) numerics.flip_ratio = MpmSettings{}.flip_ratio;
+  if (scene.uses<MpsSettings>()) {
+    mend_mps(scene);
+  } else {
+    MpmSettings& numerics = scene.mpm();
+    if (numerics.transfer != Transfer::flip) numerics.damping_rate.reset();
+    if (numerics.damping_rate) numerics.flip_ratio = MpmSettings{}.flip_ratio;
+  }
   for (auto& body : scene.bodies) body.event = std::min(body.event, scene.events.count);
   for (auto& obstacle : scene.obstacles)
     if (obstacle.motion)

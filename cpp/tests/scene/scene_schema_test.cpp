@@ -89,8 +89,8 @@ TEST(SceneSchema, EveryObjectIsClosedAndEveryFieldExplained) {
   });
   // The structs of scene.hpp but ShapeSpec, snow of layers and bodies, and the kinds of shape;
   // terrain with its three kinds of areas and their holes, and the settings of the slide; sample,
-  // stage, cone and settings of grains.
-  EXPECT_EQ(objects, 14 + 2 + 12 + 7 + 1 + 4);
+  // stage, cone and settings of grains; the settings of MPS.
+  EXPECT_EQ(objects, 14 + 2 + 12 + 7 + 1 + 4 + 1);
 }
 
 TEST(SceneSchema, CarriesUnitsLimitsDefaultsAndChoices) {
@@ -105,7 +105,7 @@ TEST(SceneSchema, CarriesUnitsLimitsDefaultsAndChoices) {
   EXPECT_EQ(properties["snow"]["properties"]["density"], density);
   EXPECT_EQ(properties["snow"]["properties"]["poissons_ratio"]["exclusiveMaximum"], 0.5);
   EXPECT_EQ(numerics["precision"]["enum"], json::parse(R"(["float", "double"])"));
-  EXPECT_EQ(properties["method"]["enum"], json::parse(R"(["mpm", "slide", "grains"])"));
+  EXPECT_EQ(properties["method"]["enum"], json::parse(R"(["mpm", "slide", "grains", "mps"])"));
   EXPECT_EQ(numerics["dx"]["x-accuracy"], true);
   EXPECT_FALSE(numerics["threads"].contains("x-accuracy"));
   EXPECT_EQ(numerics["courant_factor"]["x-aliases"], json::parse(R"(["step_factor"])"));

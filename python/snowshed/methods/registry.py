@@ -14,10 +14,11 @@ from snowshed.io.json_file import JsonValue
 from snowshed.io.messages import suggestion
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mps import MpsSettings
 from snowshed.methods.settings import MethodSettings
 from snowshed.methods.slide import SlideSettings
 
-MethodName = Literal["mpm", "slide", "grains"]
+MethodName = Literal["mpm", "slide", "grains", "mps"]
 DEFAULT: MethodName = "mpm"
 
 #: The class of the settings of every method, by its name in a scene.
@@ -25,6 +26,7 @@ METHODS: Mapping[str, type[MethodSettings]] = {
     "mpm": MpmSettings,
     "slide": SlideSettings,
     "grains": GrainsSettings,
+    "mps": MpsSettings,
 }
 
 #: Where in a scene the name of the method and its settings stand.

@@ -122,6 +122,6 @@ def _near_section(positions: Floats, scene: dict[str, Any]) -> Floats:
 
 def _dot(scene: dict[str, Any], width: float) -> float:
     """Return the area of a particle's dot, points squared, so that dots nearly touch."""
-    count = scene["seeding"]["particles_per_voxel"]
+    count = scene.get("seeding", {}).get("particles_per_voxel", 1.0)
     spacing = resolution_of(scene) / count ** (1.0 / scene["dimension"])
     return float(np.clip((0.9 * spacing * 72.0 * (WIDTH - 1.0) / width) ** 2, 1.0, 60.0))

@@ -157,7 +157,7 @@ def _draw_particles(axes: Axes, simulation: _core.Simulation, stack: Booleans) -
 
 def _spacing(scene: dict[str, Any]) -> float:
     """Return the mean distance of particles as they are seeded, m."""
-    count: float = scene["seeding"]["particles_per_voxel"]
+    count: float = scene.get("seeding", {}).get("particles_per_voxel", 1.0)
     return float(resolution_of(scene) / count ** (1 / scene["dimension"]))
 
 

@@ -135,7 +135,7 @@ class _GrainsRuns:
 
 
 _RUNS: Mapping[str, MethodRuns] = MappingProxyType(
-    {"mpm": _StackRuns(), "slide": _SlideRuns(), "grains": _GrainsRuns()}
+    {"mpm": _StackRuns(), "slide": _SlideRuns(), "grains": _GrainsRuns(), "mps": _StackRuns()}
 )
 
 

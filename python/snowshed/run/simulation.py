@@ -266,7 +266,7 @@ class Simulation:
 
     def _seeded_mass(self, snow: Snow) -> float:
         voxel = self._core.resolution**self.dimension
-        per_voxel = self._data["seeding"]["particles_per_voxel"]
+        per_voxel = self._data.get("seeding", {}).get("particles_per_voxel", 1.0)
         return float(cast(float, snow.density) * voxel / per_voxel)
 
     # --- reading ---------------------------------------------------------------------------

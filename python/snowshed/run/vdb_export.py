@@ -92,7 +92,7 @@ def _write(file: Path, output: Path, scene: dict[str, Any], width: Optional[floa
         particles["mass"],
         dimension=scene["dimension"],
         dx=resolution_of(scene),
-        particles_per_voxel=scene["seeding"]["particles_per_voxel"],
+        particles_per_voxel=scene.get("seeding", {}).get("particles_per_voxel", 1.0),
         width=width,
         attributes=points,
     )

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from snowshed.io.renamed import renamed
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mps import MpsSettings
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.components import (
     Area,
@@ -50,6 +51,7 @@ __all__ = [
     "LoadingStage",
     "Motion",
     "MpmSettings",
+    "MpsSettings",
     "Obstacle",
     "Output",
     "Panel",

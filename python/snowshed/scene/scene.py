@@ -25,6 +25,7 @@ from snowshed.io.paths import PathLike
 from snowshed.io.record import DEEPEST, Record, check_instead, check_once
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mps import MpsSettings
 from snowshed.methods.registry import NAME_KEY, SETTINGS_KEY, MethodName, settings_class
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.components import (
@@ -90,7 +91,7 @@ class Scene(Record):
         A box with sticky sides; unbounded without it.
     seeding : Seeding
         How snow is filled with particles.
-    method : {"mpm", "slide", "grains"}
+    method : {"mpm", "slide", "grains", "mps"}
         The numerical method. Default "mpm".
     numerics : MpmSettings
         The method's settings.
@@ -125,7 +126,7 @@ class Scene(Record):
     domain: Optional[Domain] = None
     seeding: Optional[Seeding] = None
     method: Optional[MethodName] = None
-    numerics: Optional[Union[MpmSettings, SlideSettings, GrainsSettings]] = None
+    numerics: Optional[Union[MpmSettings, SlideSettings, GrainsSettings, MpsSettings]] = None
     events: Optional[Events] = None
     output: Optional[Output] = None
 

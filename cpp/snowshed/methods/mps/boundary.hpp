@@ -1,0 +1,50 @@
+// Which particles are near which walls.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/methods/mps/row_lists.hpp"
+#include "snowshed/methods/obstacle.hpp"
+
+namespace snowshed {
+
+/// A particle within the radius of an obstacle's surface.
+template <int D>
+struct WallContact {
+  std::uint32_t obstacle;
+  double distance;   // m
+  double thickness;  // m, of the obstacle, at most
+  VecD<D> normal;    // out of the obstacle
+  VecD<D> velocity;  // m/s, of the obstacle's surface
+};
+
+/// An obstacle where it is at some time.
+struct PlacedObstacle {
+  const Obstacle* obstacle;
+  std::uint32_t number;
+  RigidPose pose;
+  double thickness;  // m
+
+  double distance(const Vec3& x) const {
+    return obstacle->shape->distance(obstacle->motion ? pose.to_body(x) : x);
+  }
+  Vec3 normal(const Vec3& x) const {
+    if (!obstacle->motion) return obstacle->shape->normal(x);
+    return pose.normal_to_world(obstacle->shape->normal(pose.to_body(x)));
+  }
+};
+std::vector<PlacedObstacle> place_obstacles(const std::vector<Obstacle>&, double time);
+
+/// Finds the contacts of particles within `reach` of obstacles, m, ordered by obstacle.
+template <int D>
+void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
+                   const AlignedVector<VecD<D>>& points, double time, int threads,
+                   RowLists<WallContact<D>>& contacts);
+
+/// The largest speed of an obstacle's surface at a contact, m/s.
+template <int D>
+double largest_wall_speed(const RowLists<WallContact<D>>& contacts);
+
+}  // namespace snowshed

@@ -1,0 +1,111 @@
+// What others do to the snow between steps. The new state is built beside the old one.
+#include <cmath>
+#include <string>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mps/solver_impl.hpp"
+
+namespace snowshed {
+namespace {
+
+void check_count(const char* what, std::size_t given, std::size_t particles) {
+  if (given != particles)
+    throw InputError(
+        what, std::to_string(given) + " given for " + std::to_string(particles) + " particles");
+}
+
+/// All particles stand for the same mass: the method conserves momentum only so.
+void check_mass(double mass, double expected) {
+  if (std::abs(mass - expected) > 1e-6 * expected)
+    throw InputError("mass", std::to_string(mass) +
+                                 " kg; a particle has density times spacing to "
+                                 "the power of the dimension, " +
+                                 std::to_string(expected) + " kg");
+}
+
+}  // namespace
+
+template <int D>
+void MpsSolver<D>::append(MpsState<D>& state, const ParticleBatch& batch) const {
+  check_batch(batch, 1);
+  const MpsSettings& s = model_.settings();
+  MpsParticles<D>& p = state.particles;
+  const std::vector<PlacedObstacle> walls = place_obstacles(model_.options.obstacles, state.time);
+  const std::size_t old = p.size();
+  p.resize(old + batch.positions.size());
+  for (std::size_t k = 0; k < batch.positions.size(); ++k) {
+    const std::size_t i = old + k;
+    if (!batch.positions[k].allFinite()) throw InputError("positions", "not finite");
+    check_mass(batch.mass_of(k), model_.particle_mass());
+    p.position[i] = section<D>(batch.positions[k]);
+    if (model_.options.period > 0)
+      p.position[i][0] -=
+          model_.options.period * std::floor(p.position[i][0] / model_.options.period);
+    p.velocity[i] = section<D>(batch.velocity);
+    p.pressure[i] = p.rate[i] = p.support[i] = 0;
+    p.mass[i] = batch.mass_of(k);
+    p.density[i] = 1;
+    p.viscosity[i] = model_.rheology.viscosity;
+    p.kind[i] = MpsKind::moving;
+    if (s.erosion && s.erodible_thickness > 0)
+      for (const PlacedObstacle& wall : walls)
+        if (!wall.obstacle->motion && wall.distance(embed(p.position[i])) < s.erodible_thickness)
+          p.kind[i] = MpsKind::erodible;
+    if (p.kind[i] == MpsKind::erodible) p.velocity[i].setZero();
+    p.id[i] = state.next_id++;
+    p.event[i] = std::uint16_t(batch.event);
+  }
+}
+
+/// Takes over a state; the balance counts what it holds beyond the present one as added.
+template <int D>
+void MpsSolver<D>::accept(MpsState<D> next) {
+  CellOrder<D>().update(next.particles.position, model_.reach(), model_.options.period);
+  if (model_.options.energy)
+    next.energy.added += stored_energy(model_, next.particles).stored() -
+                         stored_energy(model_, state_.particles).stored();
+  state_ = std::move(next);
+  order_known_ = false;
+}
+
+template <int D>
+void MpsSolver<D>::add(const std::vector<ParticleBatch>& batches) {
+  MpsState<D> next = state_;
+  for (const ParticleBatch& batch : batches) append(next, batch);
+  accept(std::move(next));
+}
+
+template <int D>
+void MpsSolver<D>::replace(const std::vector<ParticleBatch>& batches) {
+  MpsState<D> next = state_;
+  next.particles.resize(0);
+  for (const ParticleBatch& batch : batches) append(next, batch);
+  accept(std::move(next));
+}
+
+template <int D>
+void MpsSolver<D>::add_velocity(const std::vector<Vec3>& changes) {
+  const std::vector<std::uint32_t>& at = order_by_id();
+  check_count("velocity_changes", changes.size(), at.size());
+  for (const Vec3& change : changes)
+    if (!change.allFinite()) throw InputError("velocity_changes", "not finite");
+  MpsState<D> next = state_;
+  for (std::size_t k = 0; k < at.size(); ++k)
+    if (next.particles.moves(at[k])) next.particles.velocity[at[k]] += section<D>(changes[k]);
+  accept(std::move(next));
+}
+
+template <int D>
+void MpsSolver<D>::settle(const std::vector<double>& drops, const std::vector<double>& plastic) {
+  const std::vector<std::uint32_t>& at = order_by_id();
+  check_count("drops", drops.size(), at.size());
+  check_count("plastic changes", plastic.size(), at.size());
+  for (std::size_t k = 0; k < drops.size(); ++k)
+    if (drops[k] != 0 || plastic[k] != 0)
+      throw InputError("settling", "snow of constant density does not settle between events");
+}
+
+template class MpsSolver<2>;
+template class MpsSolver<3>;
+
+}  // namespace snowshed

@@ -1,0 +1,49 @@
+// The balance of energy.
+#include "snowshed/methods/mps/solver_impl.hpp"
+
+namespace snowshed {
+
+template <int D>
+EnergyBalance stored_energy(const MpsModel<D>& model, const MpsParticles<D>& particles) {
+  EnergyBalance e;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (particles.is_wall(i)) continue;
+    e.kinetic += 0.5 * particles.mass[i] * particles.velocity[i].squaredNorm();
+    e.gravitational -= particles.mass[i] * model.gravity.dot(particles.position[i]);
+  }
+  return e;
+}
+
+/// The work of each force of the step is its impulse times the mean of the velocities before and
+/// after: the sum of all is the change of the kinetic energy. Gravity's work differs from the
+/// change of its potential, since particles move with the velocity after the step; that is the
+/// residual.
+template <int D>
+void MpsSolver<D>::book_energy(MpsState<D>& next, double dt) const {
+  const MpsParticles<D>& after = next.particles;
+  EnergyBalance& e = next.energy;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    if (!work_.moved[i]) continue;
+    const VecD<D>&before = work_.before[i], &viscous = work_.viscous[i];
+    const VecD<D> mean = 0.5 * (before + work_.projected[i]);
+    const double mass = after.mass[i];
+    double friction = 0;
+    for (const WallContact<D>* c = work_.near.contacts.begin(i); c < work_.near.contacts.end(i);
+         ++c) {
+      const VecD<D> relative = viscous - c->velocity;
+      friction += dt * mass * work_.drag[work_.near.contacts.place(c)] *
+                  (relative - relative.dot(c->normal) * c->normal).dot(mean);
+    }
+    e.friction += friction;
+    e.plastic -= mass * (viscous - before - dt * model_.gravity).dot(mean) + friction;
+    e.transfer -= mass * (work_.projected[i] - viscous).dot(mean);
+    if (!after.moves(i)) e.sticking += 0.5 * mass * work_.projected[i].squaredNorm();
+  }
+}
+
+template EnergyBalance stored_energy(const MpsModel<2>&, const MpsParticles<2>&);
+template EnergyBalance stored_energy(const MpsModel<3>&, const MpsParticles<3>&);
+template void MpsSolver<2>::book_energy(MpsState<2>&, double) const;
+template void MpsSolver<3>::book_energy(MpsState<3>&, double) const;
+
+}  // namespace snowshed

@@ -1,0 +1,62 @@
+// Snow at rest that is taken up, and moving snow that is deposited.
+#include "snowshed/methods/mps/forces.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Snow is deposited on what is no farther away than this, in l0.
+constexpr double touching = 1.5;
+
+/// The fastest particle among the neighbours, and whether one of them, or a wall, can carry it.
+template <int D>
+struct Surroundings {
+  double fastest2 = 0;
+  bool carried = false;
+
+  Surroundings(const MpsModel<D>& model, const MpsParticles<D>& particles,
+               const MpsNeighbourhood<D>& near, std::size_t i) {
+    const double limit = touching * model.settings().spacing;
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const std::size_t j = near.lists.neighbour(e);
+      fastest2 = std::max(fastest2, particles.velocity[j].squaredNorm());
+      carried = carried || (!particles.moves(j) && near.way(e).norm() < limit);
+    }
+    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
+      carried = carried || (c->distance < limit && c->velocity.isZero());
+  }
+};
+
+}  // namespace
+
+/// Equation (23) is lost; its form is inferred: an erodible particle begins to move where the
+/// pressure is above p_e and a neighbour faster than u_e; a moving one is deposited on what is at
+/// rest where the pressure is below p_d and its speed below u_d. p_d < p_e and u_d < u_e, so that
+/// it does not change its mind at once.
+template <int D>
+void erode_and_deposit(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
+  const MpsSettings& s = model.settings();
+  if (!s.erosion) return;
+  work.fixed.resize(particles.size());
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    work.fixed[i] = false;
+    const double pressure = particles.pressure[i];
+    if (particles.kind[i] == MpsKind::erodible && pressure > s.erosion_pressure) {
+      const Surroundings<D> around(model, particles, work.near, i);
+      work.fixed[i] = around.fastest2 > s.erosion_speed * s.erosion_speed;
+    } else if (particles.moves(i) && pressure < s.deposition_pressure &&
+               particles.velocity[i].squaredNorm() < s.deposition_speed * s.deposition_speed) {
+      work.fixed[i] = Surroundings<D>(model, particles, work.near, i).carried;
+    }
+  });
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    if (!work.fixed[i]) return;
+    const bool erodes = particles.kind[i] == MpsKind::erodible;
+    particles.kind[i] = erodes ? MpsKind::moving : MpsKind::erodible;
+    if (!erodes) particles.velocity[i].setZero();
+  });
+}
+
+template void erode_and_deposit(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
+template void erode_and_deposit(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
+
+}  // namespace snowshed

@@ -1,0 +1,118 @@
+// What the MPS method tells of its particles.
+#include <cmath>
+
+#include "snowshed/methods/mps/solver_impl.hpp"
+#include "snowshed/particles/field_sources.hpp"
+
+namespace snowshed {
+
+/// Calls visit(info, view) for each field; view() returns its view.
+template <int D>
+template <class Visit>
+void MpsSolver<D>::visit_fields(Visit visit) const {
+  const MpsParticles<D>& p = state_.particles;
+  const auto column = [&](const char* name, const auto& array) {
+    const FieldInfo info =
+        field_of(quantity(name), field_type<std::decay_t<decltype(array[0])>>(), true);
+    visit(info, [&] { return stored_view(info, array); });
+  };
+  const auto of_each = [&](const char* name, auto value) {
+    const FieldInfo info = field_of(quantity(name), FieldType::float64, false);
+    visit(info, [&] { return computed_view(info, values_of_each(size(), model_.threads, value)); });
+  };
+  of_each("position", [&p](std::size_t i) { return embed(p.position[i]); });
+  of_each("velocity", [&p](std::size_t i) { return embed(p.velocity[i]); });
+  column("mass", p.mass);
+  of_each("density",
+          [this, &p](std::size_t i) { return model_.settings().density * p.density[i]; });
+  column("number_density", p.density);
+  column("pressure", p.pressure);
+  column("shear_rate", p.rate);
+  column("apparent_viscosity", p.viscosity);
+  const FieldInfo kind = field_of(quantity("particle_kind"), FieldType::uint8, false);
+  visit(kind, [&] {
+    std::vector<std::uint8_t> kinds(size());
+    for (std::size_t i = 0; i < size(); ++i) kinds[i] = std::uint8_t(p.kind[i]);
+    return computed_view(kind, std::move(kinds));
+  });
+  column("id", p.id);
+  column("event", p.event);
+}
+
+template <int D>
+std::vector<FieldInfo> MpsSolver<D>::fields() const {
+  return listed_fields([this](const auto& visit) { visit_fields(visit); });
+}
+
+template <int D>
+FieldView MpsSolver<D>::field(const std::string& name) const {
+  return found_field(name, [this](const auto& visit) { visit_fields(visit); });
+}
+
+template <int D>
+ParticleState MpsSolver<D>::state() const {
+  const MpsParticles<D>& p = state_.particles;
+  ParticleState s;
+  s.plastic_strains.assign(size(), 0.0);
+  for (const std::uint32_t i : order_by_id()) {
+    s.positions.push_back(embed(p.position[i]));
+    s.velocities.push_back(embed(p.velocity[i]));
+    s.masses.push_back(p.mass[i]);
+    s.volume_ratios.push_back(1.0);
+    s.densities.push_back(model_.settings().density);
+    s.pressures.push_back(p.pressure[i]);
+    s.ids.push_back(p.id[i]);
+    s.events.push_back(p.event[i]);
+  }
+  return s;
+}
+
+template <int D>
+EnergyBalance MpsSolver<D>::energy() const {
+  if (!model_.options.energy) return {};
+  EnergyBalance e = state_.energy;
+  const EnergyBalance now = stored_energy(model_, state_.particles);
+  e.kinetic = now.kinetic;
+  e.gravitational = now.gravitational;
+  return e;
+}
+
+template <int D>
+MotionSummary MpsSolver<D>::motion(double limit) const {
+  MotionSummary m;
+  double twice_kinetic = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const double speed2 = state_.particles.velocity[i].squaredNorm();
+    const double mass = state_.particles.mass[i];
+    m.mass += mass;
+    twice_kinetic += mass * speed2;
+    if (speed2 > limit * limit) m.moving_mass += mass;
+  }
+  m.rms_speed = m.mass > 0 ? std::sqrt(twice_kinetic / m.mass) : 0;
+  return m;
+}
+
+template <int D>
+std::size_t MpsSolver<D>::bytes() const {
+  std::size_t total = work_.near.cells.bytes() + work_.near.lists.bytes() +
+                      work_.near.contacts.bytes() + work_.multigrid.bytes();
+  const auto count = [&total](const auto& vector) {
+    total += vector.capacity() * sizeof(vector[0]);
+  };
+  for (const auto* particles : {&state_.particles, &work_.spare})
+    particles->for_each_array([&](const char*, const auto& array) { count(array); });
+  count(work_.near.weight);
+  count(work_.near.slope);
+  count(work_.coupling);
+  count(work_.block);
+  count(work_.inverse_block);
+  for (const auto* vector : {&work_.diagonal, &work_.source, &work_.pressure, &work_.cg.r,
+                             &work_.cg.z, &work_.cg.p, &work_.cg.q})
+    count(*vector);
+  return total;
+}
+
+template class MpsSolver<2>;
+template class MpsSolver<3>;
+
+}  // namespace snowshed

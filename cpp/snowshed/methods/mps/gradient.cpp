@@ -1,0 +1,110 @@
+// What the pressure does to the velocities.
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/methods/mps/forces.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Particles do not come nearer to walls than this, in l0, and those that are nearer are pushed out
+/// by at most a part of l0 in a step.
+constexpr double nearest_place = 0.25, largest_push = 0.1;
+
+/// The least pressure among a particle and its neighbours, Pa.
+template <int D>
+double least_pressure(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
+                      std::size_t i) {
+  double least = particles.pressure[i];
+  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
+    if (particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall)
+      least = std::min(least, particles.pressure[near.lists.neighbour(e)]);
+  return least;
+}
+
+/// The gradient of the pressure, Pa/m: the sum of (p_j + base) w r/r^2 over the neighbours, with
+/// the particle's own pressure for `base`, so that each pair has equal and opposite forces, or less
+/// the least pressure around as in equation (4).
+template <int D>
+VecD<D> gradient_among_snow(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
+                            std::size_t i, double base, bool conservative) {
+  VecD<D> sum = VecD<D>::Zero();
+  const double own = particles.pressure[i];
+  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+    const std::size_t j = near.lists.neighbour(e);
+    const bool dummy = particles.kind[j] == MpsKind::dummy_wall;
+    if (dummy && !conservative) continue;
+    const double other = dummy ? own : particles.pressure[j];
+    sum += (other + base) * double(near.slope[e]) * near.way(e);
+  }
+  return sum;
+}
+
+/// The part of the images behind walls. Their pressure grows along the normal as it must to stop
+/// what moves into the wall; a wall never pulls.
+template <int D>
+VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                          const MpsNeighbourhood<D>& near, std::size_t i, double base, double dt) {
+  VecD<D> sum = VecD<D>::Zero();
+  const double per_velocity = model.settings().density / dt;
+  for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
+    const double level = particles.pressure[m->of];
+    double pressure = level;
+    VecD<D> across = VecD<D>::Zero();  // the part of the way along the normals
+    for (const int k : {0, 1}) {
+      if (m->rise[k] == 0) continue;
+      const WallContact<D>& wall = near.wall(*m, k);
+      pressure -=
+          m->rise[k] * per_velocity * (particles.velocity[i] - wall.velocity).dot(wall.normal);
+      across += m->way.dot(wall.normal) * wall.normal;
+    }
+    // Along the wall the forces between a particle and an image are equal and opposite.
+    sum +=
+        double(m->slope) * ((level + base) * m->way + (std::max(0.0, pressure) - level) * across);
+  }
+  return sum;
+}
+
+/// Takes from a velocity what would bring the particle too near to a wall within the step.
+template <int D>
+void keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& velocity) {
+  const double approach = (velocity - c.velocity).dot(c.normal);
+  const double room = c.distance - nearest_place * spacing;
+  const double slowest = std::min(-room, largest_push * spacing) / dt;
+  if (approach < slowest) velocity += (slowest - approach) * c.normal;
+}
+
+}  // namespace
+
+template <int D>
+void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
+                    MpsWork<D>& work) {
+  const MpsSettings& s = model.settings();
+  const MpsNeighbourhood<D>& near = work.near;
+  const bool conservative = s.gradient == MpsGradient::conservative;
+  const double per_pressure = dt / s.density;
+  work.change.resize(particles.size());
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    work.change[i].setZero();
+    particles.support[i] = 0;
+    if (!particles.moves(i)) return;
+    const double base = conservative ? particles.pressure[i] : -least_pressure(particles, near, i);
+    const VecD<D> at_walls = gradient_at_walls(model, particles, near, i, base, dt);
+    const VecD<D> gradient = gradient_among_snow(particles, near, i, base, conservative) + at_walls;
+    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
+      particles.support[i] =
+          std::max(particles.support[i], -model.gradient() * at_walls.dot(c->normal) / s.density);
+    const VecD<D> before = particles.velocity[i];
+    VecD<D> velocity = before - per_pressure * model.gradient() * gradient;
+    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
+      keep_out(*c, s.spacing, dt, velocity);
+    work.change[i] = velocity - before;
+  });
+  for_each_particle(particles.size(), model.threads_for(particles.size()),
+                    [&](std::size_t i) { particles.velocity[i] += work.change[i]; });
+}
+
+template void apply_pressure(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
+template void apply_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
+
+}  // namespace snowshed

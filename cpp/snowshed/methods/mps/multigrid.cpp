@@ -1,0 +1,293 @@
+#include "snowshed/methods/mps/multigrid.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "snowshed/core/parallel.hpp"
+
+namespace snowshed {
+namespace {
+
+constexpr float jacobi_damping = 0.7f;   // of Jacobi sweeps
+constexpr float enlargement = 1.6f;      // of corrections that are constant within aggregates
+constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
+constexpr std::size_t most_levels = 24;
+constexpr std::ptrdiff_t rows_in_piece = 512;
+
+template <class F>
+void for_each_row(std::size_t n, int threads, F f) {
+  parallel_pieces(std::ptrdiff_t(n), threads, rows_in_piece,
+                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
+                  });
+}
+
+/// Where among the 3^D aggregates around one another of them lies.
+template <std::size_t D>
+int slot_of(const std::array<std::int32_t, D>& from, const std::array<std::int32_t, D>& to,
+            std::int32_t period) {
+  int slot = 0;
+  for (int d = int(D) - 1; d >= 0; --d) {
+    std::int32_t step = to[std::size_t(d)] - from[std::size_t(d)];
+    if (d == 0 && period > 0) {
+      if (2 * step > period) step -= period;
+      if (2 * step < -period) step += period;
+    }
+    slot = 3 * slot + step + 1;
+  }
+  return slot;
+}
+
+}  // namespace
+
+/// One aggregate for each cell.
+template <int D>
+void Multigrid<D>::make_first(const CellOrder<D>& cells, std::int32_t period_cells) {
+  Level& level = levels_.front();
+  level.period = period_cells;
+  level.at.resize(cells.cells());
+  level.child_first.resize(cells.cells() + 1);
+  level.child.clear();  // the points of a cell follow on each other
+  parent_.resize(size_);
+  for (std::size_t c = 0; c < cells.cells(); ++c) {
+    level.at[c] = cells.coordinates(c);
+    --level.at[c][0];
+    level.child_first[c] = cells.begin(c);
+    for (std::uint32_t i = cells.begin(c); i < cells.end(c); ++i) parent_[i] = std::uint32_t(c);
+  }
+  level.child_first.back() = std::uint32_t(size_);
+}
+
+/// One aggregate for 2^D of the level below.
+template <int D>
+void Multigrid<D>::make_next() {
+  levels_.emplace_back();
+  Level& level = levels_.back();
+  Level& below = levels_[levels_.size() - 2];
+  level.period = below.period > 0 ? (below.period + 1) / 2 : 0;
+  keys_.clear();
+  for (std::uint32_t i = 0; i < below.size(); ++i) {
+    std::uint64_t key = 0;
+    for (int d = D - 1; d >= 0; --d)
+      key = (key << (D == 2 ? 31 : 21)) | std::uint64_t(below.at[i][std::size_t(d)] >> 1);
+    keys_.emplace_back(key, i);
+  }
+  std::sort(keys_.begin(), keys_.end());
+  below.parent.resize(below.size());
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    const std::uint32_t i = keys_[k].second;
+    if (k == 0 || keys_[k].first != keys_[k - 1].first) {
+      Coordinates at = below.at[i];
+      for (auto& c : at) c >>= 1;
+      level.at.push_back(at);
+      level.child_first.push_back(std::uint32_t(k));
+    }
+    level.child.push_back(i);
+    below.parent[i] = std::uint32_t(level.size() - 1);
+  }
+  level.child_first.push_back(std::uint32_t(keys_.size()));
+}
+
+template <int D>
+void Multigrid<D>::fill_first() {
+  Level& level = levels_.front();
+  level.value.resize(level.size() * stencil);
+  level.column.resize(level.size() * stencil);
+  level.diagonal.resize(level.size());
+  for_each_row(level.size(), threads_, [&](std::size_t c) {
+    float* const value = &level.value[c * stencil];
+    std::int32_t* const column = &level.column[c * stencil];
+    std::fill_n(value, stencil, 0.0f);
+    std::fill_n(column, stencil, -1);
+    float own = 0;
+    for (std::uint32_t i = level.child_first[c]; i < level.child_first[c + 1]; ++i) {
+      if (diagonal_[i] == 0) continue;
+      own += diagonal_[i];
+      for (std::uint32_t e = lists_->begin(i); e < lists_->end(i); ++e) {
+        const std::uint32_t j = lists_->neighbour(e);
+        if (diagonal_[j] == 0) continue;
+        const std::uint32_t other = parent_[j];
+        if (other == c) {
+          own -= weight_[e];
+          continue;
+        }
+        const int slot = slot_of(level.at[c], level.at[other], level.period);
+        value[slot] += weight_[e];
+        column[slot] = std::int32_t(other);
+      }
+    }
+    level.diagonal[c] = own;
+  });
+}
+
+template <int D>
+void Multigrid<D>::fill_next(const Level& below, Level& level) {
+  level.value.resize(level.size() * stencil);
+  level.column.resize(level.size() * stencil);
+  level.diagonal.resize(level.size());
+  for_each_row(level.size(), threads_, [&](std::size_t c) {
+    float* const value = &level.value[c * stencil];
+    std::int32_t* const column = &level.column[c * stencil];
+    std::fill_n(value, stencil, 0.0f);
+    std::fill_n(column, stencil, -1);
+    float own = 0;
+    for (std::uint32_t k = level.child_first[c]; k < level.child_first[c + 1]; ++k) {
+      const std::uint32_t i = level.child[k];
+      own += below.diagonal[i];
+      for (int s = 0; s < stencil; ++s) {
+        const std::int32_t j = below.column[i * stencil + std::size_t(s)];
+        if (j < 0) continue;
+        const float v = below.value[i * stencil + std::size_t(s)];
+        const std::uint32_t other = below.parent[std::size_t(j)];
+        if (other == c) {
+          own -= v;
+          continue;
+        }
+        const int slot = slot_of(level.at[c], level.at[other], level.period);
+        value[slot] += v;
+        column[slot] = std::int32_t(other);
+      }
+    }
+    level.diagonal[c] = own;
+  });
+}
+
+/// A little on the diagonal keeps rounding, and a fluid without a free surface, from spoiling it.
+template <int D>
+void Multigrid<D>::factor_coarsest() {
+  const Level& level = levels_.back();
+  const Eigen::Index n = Eigen::Index(level.size());
+  Eigen::MatrixXf a = Eigen::MatrixXf::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const float d = level.diagonal[std::size_t(i)];
+    a(i, i) += d > 0 ? d * 1.0001f : 1.0f;
+    for (int s = 0; s < stencil; ++s) {
+      const std::int32_t j = level.column[std::size_t(i) * stencil + std::size_t(s)];
+      if (j >= 0) a(i, j) -= level.value[std::size_t(i) * stencil + std::size_t(s)];
+    }
+  }
+  coarsest_.compute(a);
+  if (coarsest_.info() != Eigen::Success)
+    coarsest_.compute(Eigen::MatrixXf(a.diagonal().asDiagonal()));
+}
+
+template <int D>
+void Multigrid<D>::update(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
+                          const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
+                          std::int32_t period_cells, int threads) {
+  lists_ = &lists;
+  weight_ = weight.data();
+  size_ = lists.size();
+  threads_ = threads;
+  for (auto* vector : {&diagonal_, &inverse_, &x_, &b_, &r_}) vector->resize(size_);
+  for_each_row(size_, threads_, [&](std::size_t i) {
+    diagonal_[i] = float(diagonal[i]);
+    inverse_[i] = diagonal_[i] > 0 ? jacobi_damping / diagonal_[i] : 0.0f;
+  });
+  levels_.clear();
+  levels_.reserve(most_levels);
+  levels_.emplace_back();
+  make_first(cells, period_cells);
+  fill_first();
+  while (levels_.back().size() > most_direct && levels_.size() < most_levels) {
+    make_next();
+    fill_next(levels_[levels_.size() - 2], levels_.back());
+  }
+  for (Level& level : levels_) {
+    for (auto* vector : {&level.x, &level.b, &level.r, &level.inverse})
+      vector->resize(level.size());
+    for (std::size_t i = 0; i < level.size(); ++i)
+      level.inverse[i] = level.diagonal[i] > 0 ? jacobi_damping / level.diagonal[i] : 0.0f;
+  }
+  factor_coarsest();
+}
+
+/// r = b - A x.
+template <int D>
+void Multigrid<D>::residual(Level& level) {
+  for_each_row(level.size(), threads_, [&](std::size_t i) {
+    float sum = level.b[i] - level.diagonal[i] * level.x[i];
+    for (int s = 0; s < stencil; ++s) {
+      const std::int32_t j = level.column[i * stencil + std::size_t(s)];
+      if (j >= 0) sum += level.value[i * stencil + std::size_t(s)] * level.x[std::size_t(j)];
+    }
+    level.r[i] = sum;
+  });
+}
+
+template <int D>
+void Multigrid<D>::sweep(Level& level) {
+  residual(level);
+  for_each_row(level.size(), threads_,
+               [&](std::size_t i) { level.x[i] += level.inverse[i] * level.r[i]; });
+}
+
+/// Improves x of a level, whose b is given; from zero, or from what is there.
+template <int D>
+void Multigrid<D>::cycle(std::size_t l, bool from_zero) {
+  Level& level = levels_[l];
+  if (l + 1 == levels_.size()) {
+    const Eigen::Map<const Eigen::VectorXf> b(level.b.data(), Eigen::Index(level.size()));
+    Eigen::Map<Eigen::VectorXf>(level.x.data(), Eigen::Index(level.size())) = coarsest_.solve(b);
+    return;
+  }
+  if (from_zero)
+    for_each_row(level.size(), threads_,
+                 [&](std::size_t i) { level.x[i] = level.inverse[i] * level.b[i]; });
+  else
+    sweep(level);
+  residual(level);
+  Level& above = levels_[l + 1];
+  for_each_row(above.size(), threads_, [&](std::size_t c) {
+    float sum = 0;
+    for (std::uint32_t k = above.child_first[c]; k < above.child_first[c + 1]; ++k)
+      sum += level.r[above.child[k]];
+    above.b[c] = sum;
+  });
+  cycle(l + 1, true);
+  if (l + 2 < levels_.size()) cycle(l + 1, false);
+  for_each_row(level.size(), threads_,
+               [&](std::size_t i) { level.x[i] += enlargement * above.x[level.parent[i]]; });
+  sweep(level);
+}
+
+template <int D>
+void Multigrid<D>::apply(const double* r, double* z) {
+  const std::uint32_t *first = lists_->first(), *index = lists_->index();
+  const auto row = [&](std::size_t i) {
+    float sum = b_[i] - diagonal_[i] * x_[i];
+    for (std::uint32_t e = first[i]; e < first[i + 1]; ++e) sum += weight_[e] * x_[index[e]];
+    return sum;
+  };
+  for_each_row(size_, threads_, [&](std::size_t i) {
+    b_[i] = diagonal_[i] > 0 ? float(r[i]) : 0.0f;
+    x_[i] = inverse_[i] * b_[i];
+  });
+  Level& above = levels_.front();
+  for_each_row(above.size(), threads_, [&](std::size_t c) {
+    float sum = 0;
+    for (std::uint32_t i = above.child_first[c]; i < above.child_first[c + 1]; ++i)
+      if (diagonal_[i] > 0) sum += row(i);
+    above.b[c] = sum;
+  });
+  cycle(0, true);
+  if (levels_.size() > 1) cycle(0, false);
+  for_each_row(size_, threads_, [&](std::size_t i) {
+    if (diagonal_[i] > 0) x_[i] += enlargement * above.x[parent_[i]];
+  });
+  for_each_row(size_, threads_,
+               [&](std::size_t i) { z[i] = double(x_[i] + inverse_[i] * row(i)); });
+}
+
+template <int D>
+std::size_t Multigrid<D>::bytes() const {
+  std::size_t total = size_ * (5 * sizeof(float) + sizeof(std::uint32_t));
+  for (const Level& level : levels_)
+    total += level.size() * (stencil * (sizeof(float) + sizeof(std::int32_t)) + 10 * sizeof(float));
+  return total;
+}
+
+template class Multigrid<2>;
+template class Multigrid<3>;
+
+}  // namespace snowshed

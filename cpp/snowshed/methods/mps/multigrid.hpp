@@ -1,0 +1,72 @@
+// A preconditioner for the pressure equation: multigrid over the cells of the neighbour search.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/particles/cell_order.hpp"
+#include "snowshed/particles/neighbour_lists.hpp"
+
+namespace snowshed {
+
+/// Aggregation multigrid (Notay 2010; Braess 1995, doi:10.1007/BF02238484): the unknowns of a cell
+/// are one unknown of the next level, those of 2^D cells one of the level after it. Corrections are
+/// constant within an aggregate, and enlarged to make up for that. A damped Jacobi sweep goes
+/// before and one after each correction, which is symmetric, as conjugate gradients need it.
+template <int D>
+class Multigrid {
+ public:
+  /// The matrix has the given diagonal, and -weight for each pair of neighbours. Unknowns with a
+  /// zero diagonal are left out: their values stay zero. `period_cells`: cells along x after which
+  /// all is repeated, or 0.
+  void update(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
+              const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
+              std::int32_t period_cells, int threads);
+
+  /// z = M^-1 r.
+  void apply(const double* r, double* z);
+
+  std::size_t levels() const { return 1 + levels_.size(); }
+  std::size_t bytes() const;
+
+ private:
+  using Coordinates = std::array<std::int32_t, D>;
+  static constexpr int stencil = D == 2 ? 9 : 27;
+
+  /// A level above the particles: rows of at most `stencil` entries, itself among them.
+  struct Level {
+    std::vector<Coordinates> at;
+    std::vector<std::uint32_t> child_first;  // of the level below, whose `child` they list
+    std::vector<std::uint32_t> child;
+    std::vector<std::uint32_t> parent;   // in the level above
+    AlignedVector<float> value;          // stencil of each row, positive couplings
+    AlignedVector<std::int32_t> column;  // or -1
+    AlignedVector<float> diagonal, inverse, x, b, r;
+    std::int32_t period = 0;
+    std::size_t size() const { return at.size(); }
+  };
+
+  void make_first(const CellOrder<D>& cells, std::int32_t period_cells);
+  void make_next();
+  void fill_first();
+  void fill_next(const Level& below, Level& level);
+  void factor_coarsest();
+  void cycle(std::size_t level, bool from_zero);
+  void sweep(Level& level);
+  void residual(Level& level);
+
+  const NeighbourLists<D>* lists_ = nullptr;
+  const float* weight_ = nullptr;
+  std::size_t size_ = 0;
+  int threads_ = 1;
+  AlignedVector<float> inverse_, diagonal_, x_, b_, r_;
+  std::vector<std::uint32_t> parent_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys_;
+  std::vector<Level> levels_;
+  Eigen::LLT<Eigen::MatrixXf> coarsest_;
+};
+
+}  // namespace snowshed

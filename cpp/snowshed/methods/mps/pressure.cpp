@@ -1,0 +1,161 @@
+// The pressure equation.
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/methods/mps/eigen_solver.hpp"
+#include "snowshed/methods/mps/forces.hpp"
+
+namespace snowshed {
+namespace {
+
+/// The divergence of the velocity, 1/s. Behind a wall, images move along it as the particles do.
+/// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
+/// cancel at rest.
+template <int D>
+double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                  const MpsNeighbourhood<D>& near, std::size_t i) {
+  const VecD<D>& own = particles.velocity[i];
+  double sum = 0, flow = 0;
+  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
+    sum +=
+        double(near.slope[e]) * near.way(e).dot(particles.velocity[near.lists.neighbour(e)] - own);
+  for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
+    VecD<D> along = particles.velocity[m->of] - own;
+    for (const int k : {0, 1}) {
+      if (m->rise[k] == 0) continue;
+      const WallContact<D>& wall = near.wall(*m, k);
+      along -= along.dot(wall.normal) * wall.normal;
+      flow += double(m->weight) * m->rise[k] * (own - wall.velocity).dot(wall.normal);
+    }
+    sum += double(m->slope) * m->way.dot(along);
+  }
+  return model.gradient() * sum + model.laplacian() * flow;
+}
+
+/// The time in which the density's error is taken away by the share `compensation`, s: the step, or
+/// the time in which a particle of usual speed moves by the Courant factor times l0 where that is
+/// longer. With the step alone, snow that one fast particle slows down would be pushed the harder,
+/// the shorter the step. (Ours.)
+template <int D>
+double compensation_time(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles) {
+  const MpsSettings& s = model.settings();
+  double square = 0;
+  for (const VecD<D>& u : particles.velocity) square += u.squaredNorm();
+  const double usual = 3 * std::sqrt(square / double(particles.size())) +
+                       std::sqrt(model.gravity.norm() * s.spacing);
+  return usual > 0 ? std::max(dt, std::min(s.max_time_step, s.courant_factor * s.spacing / usual))
+                   : dt;
+}
+
+/// The right-hand side of lap p = ..., Pa/m2: equation (18), or after Tanaka and Masunaga (2010,
+/// doi:10.1016/j.jcp.2010.02.011) the divergence of the velocities and a share of the density's
+/// error. They weigh the divergence with one less the share, which would take as much from the
+/// pressure of snow at rest; here its weight is one.
+template <int D>
+double source(const MpsModel<D>& model, double dt, double compensation_time,
+              const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near, std::size_t i) {
+  const MpsSettings& s = model.settings();
+  double excess = near.density[i] / model.kernel.number_density - 1;
+  if (s.source == MpsSource::published) return -s.density / (dt * dt) * excess;
+  if (near.surface[i]) excess = std::max(excess, 0.0);
+  return s.density / dt * divergence(model, particles, near, i) -
+         s.compensation * s.density / (dt * compensation_time) * excess;
+}
+
+/// A fluid without a free surface knows its pressure up to a constant: takes the mean from the
+/// sources, so that there is a solution.
+template <int D>
+void balance_sources(MpsWork<D>& work, std::size_t n) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!work.fixed[i]) {
+      sum += work.source[i];
+      ++count;
+    }
+  for (std::size_t i = 0; i < n; ++i)
+    if (!work.fixed[i]) work.source[i] -= sum / count;
+}
+
+}  // namespace
+
+/// All is divided by -2 d/(lambda n0): sum of w (p_i - p_j) + diagonal of the surface.
+template <int D>
+SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
+                           MpsWork<D>& work) {
+  const MpsSettings& s = model.settings();
+  const MpsNeighbourhood<D>& near = work.near;
+  const std::size_t n = particles.size();
+  const int threads = model.threads_for(n);
+  const double n0 = model.kernel.number_density;
+  const double relaxation = compensation_time(model, dt, particles);
+  const bool mirrored = s.surface == MpsSurface::mirrored;
+  work.fixed.resize(n);
+  work.diagonal.resize(n);
+  work.source.resize(n);
+  work.pressure.resize(n);
+  for_each_particle(n, threads, [&](std::size_t i) {
+    const bool fixed = particles.kind[i] == MpsKind::dummy_wall || (near.surface[i] && !mirrored);
+    work.fixed[i] = fixed;
+    work.pressure[i] = fixed ? 0 : particles.pressure[i];
+    work.diagonal[i] = work.source[i] = 0;
+    if (fixed) return;
+    double sum = 0;
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
+      if (particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall)
+        sum += double(near.coupling[e]);
+    // What is missing at a free surface has the pressure of the particle with the opposite sign.
+    if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
+    work.diagonal[i] = std::max(sum, 1e-3 * n0);
+    double value = -source(model, dt, relaxation, particles, near, i) / model.laplacian();
+    if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
+    work.source[i] = value;
+  });
+  const bool enclosed = std::none_of(near.surface.begin(), near.surface.begin() + std::ptrdiff_t(n),
+                                     [](std::uint8_t at_surface) { return at_surface != 0; });
+  if (enclosed) balance_sources(work, n);
+
+  double square = 0;
+  for (std::size_t i = 0; i < n; ++i) square += work.source[i] * work.source[i];
+  const std::uint32_t *first = near.lists.first(), *index = near.lists.index();
+  const float* weight = near.coupling.data();
+  const auto apply = [&](const double* p, double* q) {
+    for_each_particle(n, threads, [&](std::size_t i) {
+      double sum = work.diagonal[i] * p[i];
+      if (work.diagonal[i] > 0)
+        for (std::uint32_t e = first[i]; e < first[i + 1]; ++e)
+          sum -= double(weight[e]) * p[index[e]];
+      q[i] = sum;
+    });
+  };
+  const auto solve = [&](const auto& precondition) {
+    return conjugate_gradients(n, s.pressure_tolerance, std::sqrt(square), s.max_iterations,
+                               threads, work.cg, work.pressure.data(), work.source.data(), apply,
+                               precondition);
+  };
+  SolveReport report;
+  if (s.preconditioner == MpsPreconditioner::multigrid) {
+    work.multigrid.update(near.lists, near.coupling, work.diagonal, near.cells,
+                          near.cells.period_cells(), threads);
+    report = solve([&](const double* r, double* z) { work.multigrid.apply(r, z); });
+  } else if (s.preconditioner == MpsPreconditioner::jacobi) {
+    report = solve([&](const double* r, double* z) {
+      for_each_particle(n, threads, [&](std::size_t i) {
+        z[i] = work.diagonal[i] > 0 ? r[i] / work.diagonal[i] : 0.0;
+      });
+    });
+  } else {
+    report = solve_with_eigen(near.lists, near.coupling, work.diagonal, work.source,
+                              s.pressure_tolerance, s.max_iterations, work.pressure);
+  }
+  const double least =
+      enclosed ? *std::min_element(work.pressure.begin(), work.pressure.begin() + std::ptrdiff_t(n))
+               : 0.0;
+  for (std::size_t i = 0; i < n; ++i)
+    particles.pressure[i] = work.fixed[i] ? 0.0 : std::max(0.0, work.pressure[i] - least);
+  return report;
+}
+
+template SolveReport solve_pressure(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
+template SolveReport solve_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
+
+}  // namespace snowshed

@@ -1,0 +1,87 @@
+// Shear rates and apparent viscosities.
+#include <Eigen/LU>
+#include <cmath>
+
+#include "snowshed/methods/mps/forces.hpp"
+
+namespace snowshed {
+namespace {
+
+/// The gradient of the velocity among the snow, corrected so that it is right for linear velocities
+/// however the neighbours lie (after Randles and Libersky 1996, doi:10.1016/S0045-7825(96)01090-0).
+template <int D>
+Eigen::Matrix<double, D, D> velocity_gradient(const MpsModel<D>& model,
+                                              const MpsParticles<D>& particles,
+                                              const MpsNeighbourhood<D>& near, std::size_t i) {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  Matrix sum = Matrix::Zero(), moment = Matrix::Zero();
+  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+    const std::size_t j = near.lists.neighbour(e);
+    if (particles.is_wall(j)) continue;
+    const VecD<D> r = near.way(e), weighted = double(near.slope[e]) * r;
+    sum += (particles.velocity[j] - particles.velocity[i]) * weighted.transpose();
+    moment += r * weighted.transpose();
+  }
+  sum *= model.gradient();
+  moment *= model.gradient();
+  constexpr double least_determinant = 0.05;  // 1 on a lattice
+  return moment.determinant() > least_determinant ? Matrix(sum * moment.inverse()) : sum;
+}
+
+/// The pressures of the last step, smoothed over the neighbours with the weight function and cut
+/// off at zero. Walls continue them hydrostatically, and the free surface with the opposite sign,
+/// so that a pressure that grows linearly stays as it is.
+template <int D>
+double smooth_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                       const MpsNeighbourhood<D>& near, std::size_t i) {
+  const double own = particles.pressure[i], n = near.density[i];
+  double sum = own, weight = 1 + n;
+  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+    const std::size_t j = near.lists.neighbour(e);
+    sum += double(near.weight[e]) *
+           (particles.kind[j] == MpsKind::dummy_wall ? own : particles.pressure[j]);
+  }
+  const double weight_of_snow = model.settings().density;
+  for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
+    double pressure = particles.pressure[m->of];
+    for (const int k : {0, 1})
+      pressure +=
+          m->rise[k] * weight_of_snow * std::max(0.0, -model.gravity.dot(near.wall(*m, k).normal));
+    sum += double(m->weight) * pressure;
+  }
+  const double missing = near.surface[i] ? model.kernel.number_density - n : 0.0;
+  if (missing > 0) {
+    sum -= missing * own;
+    weight += missing;
+  }
+  return std::max(0.0, sum / weight);
+}
+
+}  // namespace
+
+template <int D>
+void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
+  const Rheology& law = model.rheology;
+  work.smooth_pressure.resize(particles.size());
+  if (law.is_newtonian()) {
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      particles.rate[i] = 0;
+      particles.viscosity[i] = law.viscosity;
+      work.smooth_pressure[i] = std::max(0.0, particles.pressure[i]);
+    }
+    return;
+  }
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    const Eigen::Matrix<double, D, D> gradient = velocity_gradient(model, particles, work.near, i);
+    const Eigen::Matrix<double, D, D> strain = 0.5 * (gradient + gradient.transpose());
+    particles.rate[i] = std::sqrt(2 * strain.squaredNorm());
+    work.smooth_pressure[i] = smooth_pressure(model, particles, work.near, i);
+    particles.viscosity[i] =
+        law.apparent_viscosity(law.yield_stress(work.smooth_pressure[i]), particles.rate[i]);
+  });
+}
+
+template void find_viscosities(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
+template void find_viscosities(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
+
+}  // namespace snowshed

@@ -1,0 +1,60 @@
+// Laws of the shear stress of flowing snow: Bingham, and dilatant at high shear rates.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/core/angles.hpp"
+#include "snowshed/methods/mps/settings.hpp"
+
+namespace snowshed {
+
+/// The shear stress over the shear rate, gdot = sqrt(2 D:D).
+///
+/// Up to `dilatant_rate` it is that of a Bingham fluid, tau = tau0 + eta gdot (20), above it grows
+/// as a power of the rate, tau = tau_c (gdot/gdot_c)^k (21), where tau_c makes it continuous. The
+/// yield stress tau0 = c + max(p, 0) tan(phi) grows with the pressure. Near zero it is approached
+/// as tau0 (1 - exp(-m gdot)) (22; Papanastasiou 1987, doi:10.1122/1.549926), or linearly up to the
+/// rate 1/m (bi-viscous; Dent and Lang 1983). The paper's equations are
+/// lost; their form is inferred from the wording.
+struct Rheology {
+  double viscosity, cohesion, friction;  // Pa s, Pa, tan(phi)
+  double growth;                         // s
+  double dilatant_rate, exponent;        // 1/s; the rate is infinite without that branch
+  bool bi_viscous;
+
+  static Rheology from(const MpsSettings& s) {
+    const bool yields = s.rheology != MpsRheology::newtonian;
+    return {s.viscosity,
+            yields ? s.cohesion : 0.0,
+            yields ? std::tan(radians(s.friction_angle)) : 0.0,
+            s.stress_growth,
+            s.rheology == MpsRheology::bingham_dilatant ? s.dilatant_rate : HUGE_VAL,
+            s.dilatant_exponent,
+            s.regularisation == MpsYield::bi_viscous};
+  }
+
+  bool is_newtonian() const { return cohesion == 0 && friction == 0 && dilatant_rate == HUGE_VAL; }
+
+  /// Pa; `pressure` in Pa.
+  double yield_stress(double pressure) const {
+    return cohesion + std::max(pressure, 0.0) * friction;
+  }
+
+  /// A stress that is reached as soon as something shears, over the shear rate: `stress`/rate, but
+  /// at most `stress` m, Pa s.
+  double regularised(double stress, double rate) const {
+    const double x = growth * rate;
+    if (bi_viscous) return stress * growth / std::max(x, 1.0);
+    return x > 1e-6 ? stress * (1 - std::exp(-x)) / rate : stress * growth * (1 - 0.5 * x);
+  }
+
+  /// The apparent viscosity eta' (22), Pa s.
+  double apparent_viscosity(double yield, double rate) const {
+    if (rate <= dilatant_rate) return viscosity + regularised(yield, rate);
+    const double at_change = viscosity + regularised(yield, dilatant_rate);
+    return at_change * std::pow(rate / dilatant_rate, exponent - 1);
+  }
+};
+
+}  // namespace snowshed

@@ -1,0 +1,66 @@
+// What a scene may choose of the moving particle semi-implicit method.
+#pragma once
+
+namespace snowshed {
+
+/// Laws of the shear stress, see rheology.hpp.
+enum class MpsRheology { newtonian, bingham, bingham_dilatant };
+/// How the yield stress is approached at small shear rates.
+enum class MpsYield { papanastasiou, bi_viscous };
+/// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
+enum class MpsSource { published, compensated };
+/// Pressure gradient: from the least neighbouring pressure, or with equal and opposite forces.
+enum class MpsGradient { published, conservative };
+/// Where the pressure is zero: at particles of low number density, or half a spacing above them.
+enum class MpsSurface { published, mirrored };
+/// When particles move: before the pressure is solved, or once at the end of the step.
+enum class MpsOrder { published, single_move };
+/// What keeps particles apart besides the pressure.
+enum class MpsSpacing { none, collision, shifting };
+/// Preconditioner of the pressure equation.
+enum class MpsPreconditioner { jacobi, incomplete_cholesky, multigrid };
+
+/// Settings of the moving particle semi-implicit method, with the snow of Saito and others (2012,
+/// Annals of Glaciology 53(61)). Their growth coefficient, dilatant branch and thresholds of
+/// erosion are not printed: those here are ours, see docs/mps.md.
+struct MpsSettings {
+  double spacing = 0.01;        // m, l0, of particles
+  double radius = 2.1;          // r_e over l0
+  double max_time_step = 0.01;  // s
+  double courant_factor = 0.2;  // longest way of a particle in a step, over l0
+  double density = 200;         // kg/m3
+
+  MpsRheology rheology = MpsRheology::bingham_dilatant;
+  MpsYield regularisation = MpsYield::papanastasiou;
+  double viscosity = 0.012;    // Pa s, plastic
+  double cohesion = 0;         // Pa, "adhesive force"
+  double friction_angle = 24;  // degrees
+  double stress_growth = 100;  // s, m of Papanastasiou
+  double dilatant_rate = 100;  // 1/s, above which the dilatant branch holds
+  double dilatant_exponent = 1.5;
+
+  bool erosion = false;             // whether snow erodes and is deposited
+  double erodible_thickness = 0;    // m, of the snow on obstacles that is at rest at first
+  double erosion_pressure = 50;     // Pa
+  double erosion_speed = 0.1;       // m/s
+  double deposition_pressure = 25;  // Pa
+  double deposition_speed = 0.05;   // m/s
+
+  MpsSource source = MpsSource::compensated;
+  double compensation = 0.02;  // share of the density's error that a step takes away
+  MpsGradient gradient = MpsGradient::conservative;
+  MpsSurface surface = MpsSurface::mirrored;
+  double surface_ratio = 0.97;  // beta, of number densities
+  MpsOrder order = MpsOrder::single_move;
+  MpsSpacing spacing_law = MpsSpacing::none;
+  MpsPreconditioner preconditioner = MpsPreconditioner::multigrid;
+  double pressure_tolerance = 1e-3;
+  double viscosity_tolerance = 1e-3;
+  int max_iterations = 1000;
+  int threads = 0;  // 0: all
+
+  /// The size of the smallest thing the method resolves, m.
+  double resolution() const { return spacing; }
+};
+
+}  // namespace snowshed

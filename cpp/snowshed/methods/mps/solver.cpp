@@ -1,0 +1,206 @@
+#include "snowshed/methods/mps/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mps/solver_impl.hpp"
+#include "snowshed/particles/id_order.hpp"
+
+namespace snowshed {
+namespace {
+
+/// A particle that would move farther than this in a step, in l0, has it repeated with half its
+/// length: it could pass through a wall. So often it is halved.
+constexpr double longest_way = 0.5;
+constexpr int most_halvings = 20;
+
+/// Pairs repel each other with the sum of their pressures, as springs do: a disturbance of the
+/// lattice runs through it with about twice the root of p/rho. A step is at most this times the
+/// spacing over that root (the form and the number are ours: above 1 columns of water break up).
+constexpr double pressure_courant = 0.5;
+
+std::string in_words(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+void require_converged(const SolveReport& report, const char* what, int most) {
+  if (report.converged) return;
+  throw SimulationError(
+      std::string("the ") + what + " equation has not converged: " + in_words(report.residual) +
+      " of its right-hand side is left after " + std::to_string(report.iterations) +
+      " iterations; allowed: " + std::to_string(most));
+}
+
+}  // namespace
+
+std::unique_ptr<MpsMethod> make_mps(MpsOptions options) {
+  const MpsSettings& s = options.settings;
+  if (options.period > 0 && options.period < 3 * s.radius * s.spacing)
+    throw InputError("period", in_words(options.period) + " m is less than three radii");
+  if (options.dimension == 2) return std::make_unique<MpsSolver<2>>(std::move(options));
+  return std::make_unique<MpsSolver<3>>(std::move(options));
+}
+
+template <int D>
+MpsModel<D>::MpsModel(MpsOptions o)
+    : options(std::move(o)),
+      gravity(section<D>(options.gravity)),
+      kernel(kernel_constants(D, options.settings.radius)),
+      rheology(Rheology::from(options.settings)),
+      wall_friction(options.settings.radius),
+      threads(threads_to_use(options.settings.threads)) {}
+
+template <int D>
+double MpsSolver<D>::largest_speed(const MpsParticles<D>& particles) const {
+  double fastest2 = 0;
+  for (const VecD<D>& u : particles.velocity) {
+    const double speed2 = u.squaredNorm();
+    if (!(speed2 <= fastest2)) fastest2 = speed2;  // not a number, too
+  }
+  return std::sqrt(fastest2);
+}
+
+template <int D>
+double MpsSolver<D>::pressure_step(const MpsParticles<D>& particles) const {
+  const MpsSettings& s = model_.settings();
+  double highest = 0;
+  for (const double p : particles.pressure) highest = std::max(highest, p);
+  return highest > 0 ? pressure_courant * s.spacing * std::sqrt(s.density / highest) : HUGE_VAL;
+}
+
+/// The longest step in which no particle moves farther than the Courant factor times the spacing,
+/// also with the speed that gravity adds in it: (u + g dt) dt = C l0. Viscosity is implicit and
+/// does not limit it.
+template <int D>
+double MpsSolver<D>::choose_step(const MpsParticles<D>& particles) const {
+  const MpsSettings& s = model_.settings();
+  const double speed = std::max(largest_speed(particles), largest_wall_speed(work_.near.contacts));
+  const double g = model_.gravity.norm(), way = s.courant_factor * s.spacing;
+  const double root = std::sqrt(speed * speed + 4 * g * way);
+  double dt = std::min(s.max_time_step, pressure_step(particles));
+  if (speed + root > 0) dt = std::min(dt, 2 * way / (speed + root));
+  if (!(dt > 1e-9 * s.max_time_step))
+    throw SimulationError("the time step has fallen to " + in_words(dt) +
+                          " s: a particle moves at " + in_words(speed) + " m/s");
+  return dt;
+}
+
+template <int D>
+void MpsSolver<D>::move(double dt, MpsParticles<D>& particles) const {
+  const double period = model_.options.period;
+  for_each_particle(particles.size(), model_.threads_for(particles.size()), [&](std::size_t i) {
+    if (!particles.moves(i)) return;
+    particles.position[i] += dt * particles.velocity[i];
+    if (period > 0)
+      particles.position[i][0] -= period * std::floor(particles.position[i][0] / period);
+  });
+}
+
+/// The velocities and pressures after a step of dt, from those in the workspace.
+template <int D>
+void MpsSolver<D>::attempt(double dt, MpsState<D>& next) {
+  const MpsSettings& s = model_.settings();
+  MpsParticles<D>& p = next.particles;
+  next.solves.viscosity = apply_viscosity(model_, dt, p, work_);
+  require_converged(next.solves.viscosity, "viscous", s.max_iterations);
+  if (model_.options.energy) work_.viscous = p.velocity;
+  if (s.order == MpsOrder::published) {
+    move(dt, p);
+    find_neighbours(model_, p, state_.time + dt, work_);
+  }
+  next.solves.pressure = solve_pressure(model_, dt, p, work_);
+  require_converged(next.solves.pressure, "pressure", s.max_iterations);
+  apply_pressure(model_, dt, p, work_);
+  if (s.order == MpsOrder::published) {
+    std::swap(p.velocity, work_.change);
+    move(dt, p);
+    std::swap(p.velocity, work_.change);
+  }
+}
+
+template <int D>
+void MpsSolver<D>::step() {
+  if (size() == 0) throw SimulationError("there is no snow");
+  MpsState<D> next = state_;
+  find_neighbours(model_, next.particles, state_.time, work_);
+  find_viscosities(model_, next.particles, work_);
+  double dt = choose_step(next.particles);
+  const MpsState<D> start = next;
+  const MpsSettings& s = model_.settings();
+  for (int halvings = 0;; ++halvings) {
+    attempt(dt, next);
+    const double way = largest_speed(next.particles) * dt;
+    if (way <= longest_way * s.spacing && dt <= 2 * pressure_step(next.particles)) break;
+    if (halvings == most_halvings || !std::isfinite(way))
+      throw SimulationError("a particle would move " + in_words(way) + " m within a step of " +
+                            in_words(dt) + " s");
+    dt *= 0.5;
+    next = start;
+    ++next.counters.rejected;
+  }
+  if (model_.options.energy) {
+    const std::size_t n = size();
+    work_.before = start.particles.velocity;
+    work_.moved.resize(n);
+    for (std::size_t i = 0; i < n; ++i) work_.moved[i] = start.particles.moves(i);
+  }
+  keep_spacing(model_, dt, next.particles, work_);
+  if (model_.options.energy) work_.projected = next.particles.velocity;
+  if (s.order == MpsOrder::single_move) move(dt, next.particles);
+  erode_and_deposit(model_, next.particles, work_);
+  for (std::size_t i = 0; i < size(); ++i)
+    next.particles.density[i] = work_.near.density[i] / model_.kernel.number_density;
+  if (model_.options.energy) book_energy(next, dt);
+  next.time += dt;
+  next.dt = dt;
+  next.pressure_iterations += next.solves.pressure.iterations;
+  next.viscosity_iterations += next.solves.viscosity.iterations;
+  StepCounters& c = next.counters;
+  ++c.steps;
+  c.particle_updates += std::int64_t(size());
+  c.smallest_dt = c.smallest_dt > 0 ? std::min(c.smallest_dt, dt) : dt;
+  state_ = std::move(next);
+  order_known_ = false;
+}
+
+template <int D>
+const std::vector<std::uint32_t>& MpsSolver<D>::order_by_id() const {
+  if (!order_known_) {
+    order_ = snowshed::order_by_id(state_.particles.id.data(), size());
+    order_known_ = true;
+  }
+  return order_;
+}
+
+template <int D>
+MpsReport MpsSolver<D>::report() const {
+  MpsReport r;
+  r.pressure_iterations = state_.solves.pressure.iterations;
+  r.viscosity_iterations = state_.solves.viscosity.iterations;
+  r.pressure_residual = state_.solves.pressure.residual;
+  r.viscosity_residual = state_.solves.viscosity.residual;
+  const double steps = double(std::max<std::int64_t>(state_.counters.steps, 1));
+  r.mean_pressure_iterations = double(state_.pressure_iterations) / steps;
+  r.mean_viscosity_iterations = double(state_.viscosity_iterations) / steps;
+  double square = 0, count = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const double density = state_.particles.density[i];
+    r.largest_density = std::max(r.largest_density, density);
+    if (density < model_.settings().surface_ratio) continue;  // at the surface
+    square += (density - 1) * (density - 1);
+    ++count;
+  }
+  r.density_error = count > 0 ? std::sqrt(square / count) : 0.0;
+  return r;
+}
+
+template struct MpsModel<2>;
+template struct MpsModel<3>;
+template class MpsSolver<2>;
+template class MpsSolver<3>;
+
+}  // namespace snowshed

@@ -1,0 +1,42 @@
+// The moving particle semi-implicit method (Koshizuka and Oka 1996, doi:10.13182/NSE96-A24205) for
+// snow as a Bingham and dilatant fluid (Saito and others 2012).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/mps/settings.hpp"
+#include "snowshed/methods/obstacle.hpp"
+
+namespace snowshed {
+
+struct MpsOptions {
+  int dimension = 3;
+  MpsSettings settings;
+  Vec3 gravity = Vec3::Zero();  // m/s2
+  std::vector<Obstacle> obstacles;
+  bool energy = false;  // whether to keep the energy balance
+  double period = 0;    // m, with which all is repeated along x, from x = 0; 0: not at all
+};
+
+/// The equations of the last step, and of all steps.
+struct MpsReport {
+  int pressure_iterations = 0, viscosity_iterations = 0;
+  double pressure_residual = 0, viscosity_residual = 0;  // relative
+  double mean_pressure_iterations = 0, mean_viscosity_iterations = 0;
+  double density_error = 0;    // root mean square of n/n0 - 1 within the snow
+  double largest_density = 0;  // of n/n0
+};
+
+/// MPS as a method, and what only it has.
+class MpsMethod : public Method {
+ public:
+  virtual MpsReport report() const = 0;
+};
+
+/// Throws InputError where the settings do not fit each other.
+std::unique_ptr<MpsMethod> make_mps(MpsOptions);
+
+}  // namespace snowshed

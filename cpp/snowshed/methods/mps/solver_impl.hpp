@@ -1,0 +1,65 @@
+// The solver of the MPS method: what it holds, and how its parts go together.
+#pragma once
+
+#include "snowshed/methods/mps/forces.hpp"
+
+namespace snowshed {
+
+template <int D>
+class MpsSolver final : public MpsMethod {
+ public:
+  explicit MpsSolver(MpsOptions options) : model_(std::move(options)) {}
+
+  using Method::add;
+  void add(const std::vector<ParticleBatch>&) override;
+  void replace(const std::vector<ParticleBatch>&) override;
+  void add_velocity(const std::vector<Vec3>&) override;
+  void settle(const std::vector<double>& drops, const std::vector<double>& plastic) override;
+
+  void step() override;
+  bool at_safe_point() const override { return true; }
+  double time() const override { return state_.time; }
+  double time_step() const override { return state_.dt; }
+  const StepCounters& counters() const override { return state_.counters; }
+
+  std::vector<FieldInfo> fields() const override;
+  FieldView field(const std::string&) const override;
+  const std::vector<std::uint32_t>& order_by_id() const override;
+
+  std::size_t size() const override { return state_.particles.size(); }
+  ParticleState state() const override;
+  MotionSummary motion(double speed) const override;
+  EnergyBalance energy() const override;
+  std::size_t bytes() const override;
+
+  void save(BinaryWriter&) const override;
+  void load(const BinaryReader&) override;
+  void check(const BinaryReader&) const override;
+
+  MpsReport report() const override;
+
+ private:
+  void append(MpsState<D>&, const ParticleBatch&) const;
+  void accept(MpsState<D>);
+  void attempt(double dt, MpsState<D>& next);
+  void move(double dt, MpsParticles<D>&) const;
+  void book_energy(MpsState<D>& next, double dt) const;
+  double choose_step(const MpsParticles<D>&) const;
+  double pressure_step(const MpsParticles<D>&) const;
+  double largest_speed(const MpsParticles<D>&) const;
+  MpsState<D> restored(const BinaryReader&) const;
+  template <class Visit>
+  void visit_fields(Visit) const;
+
+  MpsModel<D> model_;
+  MpsState<D> state_;
+  MpsWork<D> work_;
+  mutable std::vector<std::uint32_t> order_;
+  mutable bool order_known_ = false;
+};
+
+/// Kinetic and gravitational energy, J.
+template <int D>
+EnergyBalance stored_energy(const MpsModel<D>&, const MpsParticles<D>&);
+
+}  // namespace snowshed

@@ -1,0 +1,118 @@
+// What the MPS method is made of: a model that never changes, a state that steps change, and a
+// workspace that follows from both and may be thrown away.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/methods/method.hpp"
+#include "snowshed/methods/mps/boundary.hpp"
+#include "snowshed/methods/mps/conjugate_gradients.hpp"
+#include "snowshed/methods/mps/multigrid.hpp"
+#include "snowshed/methods/mps/particles.hpp"
+#include "snowshed/methods/mps/rheology.hpp"
+#include "snowshed/methods/mps/solver.hpp"
+#include "snowshed/methods/mps/wall_images.hpp"
+#include "snowshed/particles/neighbour_lists.hpp"
+
+namespace snowshed {
+
+/// How many particles a thread is started for: one that has little to do costs more than it saves.
+inline constexpr std::size_t mps_particles_per_thread = 1000;
+
+template <int D>
+struct MpsModel {
+  explicit MpsModel(MpsOptions);
+
+  const MpsSettings& settings() const { return options.settings; }
+  double reach() const { return settings().spacing * settings().radius; }
+  /// 2 d/(lambda n0), 1/m2: turns a sum of weighted differences into a Laplacian, equation (5).
+  double laplacian() const {
+    return 2 * D / (kernel.lambda * kernel.number_density) /
+           (settings().spacing * settings().spacing);
+  }
+  /// d/n0: turns a sum over neighbours into a gradient, equation (4).
+  double gradient() const { return D / kernel.number_density; }
+  double particle_mass() const { return settings().density * std::pow(settings().spacing, D); }
+
+  MpsOptions options;
+  VecD<D> gravity;  // m/s2
+  KernelConstants kernel;
+  Rheology rheology;
+  WallFriction<D> wall_friction;
+  int threads;
+
+  /// Threads for a step of so many particles.
+  int threads_for(std::size_t particles) const {
+    return int(
+        std::clamp<std::size_t>(particles / mps_particles_per_thread, 1, std::size_t(threads)));
+  }
+};
+
+/// How well the equations of a step were solved.
+struct MpsSolves {
+  SolveReport pressure, viscosity;
+};
+
+template <int D>
+struct MpsState {
+  MpsParticles<D> particles;
+  double time = 0, dt = 0;  // s
+  std::uint32_t next_id = 0;
+  StepCounters counters;
+  EnergyBalance energy;                                            // its sums over steps
+  MpsSolves solves;                                                // of the last step
+  std::int64_t pressure_iterations = 0, viscosity_iterations = 0;  // of all steps
+};
+
+/// What a step finds out about the particles where they stand.
+template <int D>
+struct MpsNeighbourhood {
+  CellOrder<D> cells;
+  NeighbourLists<D> lists;
+  RowLists<WallContact<D>> contacts;
+  WallImages<D> images;
+  AlignedVector<float> weight;          // w of each pair
+  AlignedVector<float> coupling;        // w of each pair and of the neighbour's images
+  AlignedVector<float> slope;           // w/r^2 of each pair, 1/m2
+  AlignedVector<double> density;        // number density
+  AlignedVector<std::uint8_t> surface;  // whether a particle lies at the free surface
+
+  VecD<D> way(std::size_t entry) const { return lists.way(entry); }
+  const WallContact<D>& wall(const WallImage<D>& image, int k) const {
+    return contacts.all()[image.contact[k]];
+  }
+};
+
+template <int D>
+struct MpsWork {
+  MpsParticles<D> next, spare;
+  MpsNeighbourhood<D> near;
+  AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
+  AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
+  AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
+  AlignedVector<double> drag;                         // of each contact with a wall, 1/s
+  AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
+  AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
+  AlignedVector<float> coupling;          // of velocities, of each pair
+  AlignedVector<double> smooth_pressure;  // Pa
+  AlignedVector<double> diagonal, source, pressure;
+  AlignedVector<std::uint8_t> fixed;  // whose pressure is no unknown
+  CgWork cg;
+  Multigrid<D> multigrid;
+};
+
+inline constexpr std::ptrdiff_t mps_particles_in_piece = 256;
+
+/// f(i) for all particles, in pieces.
+template <class F>
+void for_each_particle(std::size_t count, int threads, F f) {
+  parallel_pieces(std::ptrdiff_t(count), threads, mps_particles_in_piece,
+                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
+                  });
+}
+
+}  // namespace snowshed

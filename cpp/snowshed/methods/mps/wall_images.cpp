@@ -1,0 +1,120 @@
+#include "snowshed/methods/mps/wall_images.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace snowshed {
+namespace {
+
+constexpr std::size_t particles_with_images = 256;
+/// Nearer to a wall than this, in l0, a particle's image keeps away.
+constexpr double nearest_image = 0.1;
+/// Two walls make a corner, with images behind both, if the cosine between their normals is
+/// smaller.
+constexpr double corner = 0.7;
+
+/// Another particle's contact with the same obstacle, or null.
+template <int D>
+const WallContact<D>* contact_with(const RowLists<WallContact<D>>& contacts, std::size_t k,
+                                   std::uint32_t obstacle) {
+  for (const WallContact<D>* c = contacts.begin(k); c < contacts.end(k); ++c)
+    if (c->obstacle == obstacle) return c;
+  return nullptr;
+}
+
+template <int D>
+struct ImageMaker {
+  const RowLists<WallContact<D>>& contacts;
+  double reach, least;
+  std::vector<WallImage<D>>& list;
+
+  double height(const WallContact<D>& c) const { return std::max(c.distance, least); }
+
+  float make(std::size_t k, const VecD<D>& way, double r2, const WallContact<D>* a,
+             const WallContact<D>* b, double rise_a, double rise_b) {
+    if (r2 >= reach * reach) return 0;
+    const float weight = float(reach / std::sqrt(r2) - 1);
+    const std::uint32_t first = std::uint32_t(contacts.place(a));
+    const std::uint32_t second = b ? std::uint32_t(contacts.place(b)) : first;
+    VecD<D> to = way - rise_a * a->normal;
+    if (b) to -= rise_b * b->normal;
+    list.push_back(
+        {std::uint32_t(k), weight, float(weight / r2), to, {first, second}, {rise_a, rise_b}});
+    return weight;
+  }
+
+  /// All images of k; returns the sum of their weights.
+  float make_all(std::size_t i, std::size_t k, const VecD<D>& way) {
+    float sum = 0;
+    const double r2 = way.squaredNorm();
+    for (const WallContact<D>* a = contacts.begin(i); a < contacts.end(i); ++a) {
+      const WallContact<D>* ka = contact_with(contacts, k, a->obstacle);
+      if (!ka || ka->distance > ka->thickness) continue;
+      const double with_a = r2 + 4 * height(*a) * height(*ka);
+      sum += make(k, way, with_a, a, nullptr, 2 * height(*ka), 0);
+      for (const WallContact<D>* b = a + 1; b < contacts.end(i); ++b) {
+        const WallContact<D>* kb = contact_with(contacts, k, b->obstacle);
+        if (!kb || std::abs(a->normal.dot(b->normal)) > corner) continue;
+        sum += make(k, way, with_a + 4 * height(*b) * height(*kb), a, b, 2 * height(*ka),
+                    2 * height(*kb));
+      }
+    }
+    return sum;
+  }
+};
+
+}  // namespace
+
+template <int D>
+void WallImages<D>::update(const NeighbourLists<D>& lists, const RowLists<WallContact<D>>& contacts,
+                           double reach, double spacing, int threads,
+                           const AlignedVector<float>& direct, AlignedVector<float>& weight) {
+  weight.resize(lists.pairs());
+  images_.update(lists.size(), particles_with_images, threads,
+                 [&](std::size_t begin, std::size_t end, std::uint32_t* first,
+                     std::vector<WallImage<D>>& list) {
+                   ImageMaker<D> maker{contacts, reach, nearest_image * spacing, list};
+                   for (std::size_t i = begin; i < end; ++i) {
+                     const std::size_t before = list.size();
+                     const bool near = contacts.begin(i) < contacts.end(i);
+                     if (near) maker.make_all(i, i, VecD<D>::Zero());
+                     for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e) {
+                       weight[e] = direct[e];
+                       if (near) weight[e] += maker.make_all(i, lists.neighbour(e), lists.way(e));
+                     }
+                     first[i + 1] = std::uint32_t(list.size() - before);
+                   }
+                 });
+}
+
+template <int D>
+WallFriction<D>::WallFriction(double radius) : radius_(radius) {
+  const KernelConstants kernel = kernel_constants(D, radius);
+  const int reach = int(std::ceil(radius)), across = D == 3 ? reach : 0;
+  for (std::size_t k = 0; k < table_.size(); ++k) {
+    const double distance = radius * double(k) / double(table_.size() - 1);
+    table_[k] = 0;
+    for (int layer = 0; layer <= reach; ++layer)
+      for (int a = -reach; a <= reach; ++a)
+        for (int b = -across; b <= across; ++b) {
+          const double z = distance + layer + 0.5;
+          table_[k] += kernel_weight(std::sqrt(z * z + a * a + b * b), radius) * z;
+        }
+    table_[k] *= 2 * D / (kernel.lambda * kernel.number_density);
+  }
+}
+
+template <int D>
+double WallFriction<D>::at(double distance) const {
+  const double last = double(table_.size() - 1);
+  const double place = std::min(std::max(distance, 0.0) / radius_ * last, last - 1e-9);
+  const std::size_t k = std::size_t(place);
+  return table_[k] + (place - double(k)) * (table_[k + 1] - table_[k]);
+}
+
+template class WallImages<2>;
+template class WallImages<3>;
+template class WallFriction<2>;
+template class WallFriction<3>;
+
+}  // namespace snowshed

@@ -1,0 +1,54 @@
+// Walls as mirrors: what a particle sees of itself and of its neighbours in them.
+#pragma once
+
+#include "snowshed/methods/mps/boundary.hpp"
+#include "snowshed/methods/mps/kernel_function.hpp"
+#include "snowshed/particles/neighbour_lists.hpp"
+
+namespace snowshed {
+
+/// The image of particle k behind a wall, or behind two at once in a corner, as particle i sees it.
+/// For a plane wall r'^2 = r^2 + 4 h_i h_k with the distances h from the wall, which is used for
+/// curved walls, too: so i sees the image of k as far away as k that of i.
+template <int D>
+struct WallImage {
+  std::uint32_t of;          // k, which may be i itself
+  float weight, slope;       // w, and w/r'^2 in 1/m2
+  VecD<D> way;               // from i to the image, m
+  std::uint32_t contact[2];  // of i, among all contacts; both the same where there is one wall
+  double rise[2];            // twice the distance of k from each wall, m; 0 for the second of one
+};
+
+template <int D>
+class WallImages {
+ public:
+  /// `weight` gets, for each pair of neighbours, the sum of the weights of the neighbour and of its
+  /// images.
+  void update(const NeighbourLists<D>& lists, const RowLists<WallContact<D>>& contacts,
+              double reach, double spacing, int threads, const AlignedVector<float>& direct,
+              AlignedVector<float>& weight);
+
+  const WallImage<D>* begin(std::size_t i) const { return images_.begin(i); }
+  const WallImage<D>* end(std::size_t i) const { return images_.end(i); }
+  std::size_t bytes() const { return images_.bytes(); }
+
+ private:
+  RowLists<WallImage<D>> images_;
+};
+
+/// Sums over the layers of a lattice behind a plane wall: 2 d/(lambda n0) sum of w z, times l0, for
+/// a particle at a distance (in l0), where z is the way along the normal. Times a shear stress over
+/// density and l0 it is the deceleration by the wall: summed over the layers of the snow, it is
+/// one.
+template <int D>
+class WallFriction {
+ public:
+  explicit WallFriction(double radius);
+  double at(double distance) const;
+
+ private:
+  double radius_;
+  std::array<double, 513> table_;
+};
+
+}  // namespace snowshed
