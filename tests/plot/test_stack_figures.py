@@ -6,7 +6,8 @@ import pytest
 from matplotlib.image import imread
 from piles import triangle
 
-from snowshed import Scene, StackMeasure, measure_stack, read_events
+from snowshed import Ground, Scene, StackMeasure, measure_stack, read_events
+from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import save
 from snowshed.plot.stack_figures import growth_figure, stack_figure
 
@@ -99,3 +100,9 @@ def test_what_rolled_far_away_does_not_hide_the_stack():
     low, high = figure.axes[1].get_xlim()
     assert high - low < 3
     assert "97 % of the snow lies within" in figure.get_suptitle()
+
+
+def test_captions_of_a_method_whose_snow_is_in_its_settings_name_none():
+    scene = Scene(dimension=2, method="mps", ground=Ground())
+    caption = scene_caption(scene.resolve().data)
+    assert "spacing" in caption and "kg/m" not in caption

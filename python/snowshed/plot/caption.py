@@ -52,7 +52,8 @@ def scene_caption(scene: dict[str, Any], damping_rate: Optional[float] = None) -
     method = [f"{settings.RESOLUTION} {settings.resolution:g} m"]
     if damping := settings.damping_text(damping_rate):
         method.append(damping)
-    snow = [_snow(scene), BETWEEN[scene["events"]["between"]]]
+    snow = [_snow(scene)] if "snow" in scene else []  # some methods have theirs in their settings
+    snow.append(BETWEEN[scene["events"]["between"]])
     return "\n".join(" · ".join(line) for line in (parts, snow, method))
 
 
