@@ -6,7 +6,7 @@ import pytest
 from matplotlib.image import imread
 from piles import triangle
 
-from snowshed import Ground, Scene, StackMeasure, measure_stack, read_events
+from snowshed import Body, Ground, Scene, Shape, StackMeasure, measure_stack, read_events
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import save
 from snowshed.plot.stack_figures import growth_figure, stack_figure
@@ -103,6 +103,7 @@ def test_what_rolled_far_away_does_not_hide_the_stack():
 
 
 def test_captions_of_a_method_whose_snow_is_in_its_settings_name_none():
-    scene = Scene(dimension=2, method="mps", ground=Ground())
+    body = Body(shape=Shape.box(center=(0, 0.1), size=(0.2, 0.2)))
+    scene = Scene(dimension=2, method="mps", ground=Ground(), bodies=[body])
     caption = scene_caption(scene.resolve().data)
     assert "spacing" in caption and "kg/m" not in caption
