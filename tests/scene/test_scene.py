@@ -112,9 +112,9 @@ def test_the_method_decides_what_the_settings_are(tiny):
     assert tiny.set("method", "mpm").resolve() == Scene.from_data(tiny.to_data()).resolve()
     assert "method" not in tiny.resolve().data
     with pytest.raises(
-        InputError, match=r"^/method: 'mpn' is none of mpm, slide, grains, mps; did you mean mpm"
+        InputError, match=r"^/method: 'mpmm' is none of mpm, slide, grains, mps; did you mean mpm"
     ):
-        tiny.set("method", "mpn")
+        tiny.set("method", "mpmm")
     with pytest.raises(
         InputError, match=r"^/method: 'slide' takes SlideSettings, and the scene has"
     ):

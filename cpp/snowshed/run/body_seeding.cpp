@@ -65,10 +65,10 @@ double seed_body(const BodySpec& body, const Scene& scene, const std::string& pa
                  ParticleBatch& batch) {
   const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
   const double dx = resolution(scene.numerics);
+  batch.velocity = body.velocity;
   if (scene.uses<MpsSettings>()) {
     batch.positions = seed_lattice(*shape, scene.dimension, dx, stop);
     batch.mass = std::get<MpsSettings>(scene.numerics).density * std::pow(dx, scene.dimension);
-    batch.velocity = body.velocity;
     return batch.total_mass();
   }
   const Snow& snow = snow_of(scene, body);
@@ -76,7 +76,6 @@ double seed_body(const BodySpec& body, const Scene& scene, const std::string& pa
                                    scene.seeding.pattern, seed, stop);
   const double mass = snow.density * measure(*shape, scene.dimension, dx, stop);
   batch.mass = mass / double(batch.positions.size());
-  batch.velocity = body.velocity;
   batch.material_id = material_id_of(snow, assemble_snows(scene));
   return mass;
 }

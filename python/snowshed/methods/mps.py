@@ -55,7 +55,8 @@ class MpsSettings(MethodSettings):
     erosion : bool
         Whether snow is eroded and deposited. Default False.
     erodible_thickness : float
-        Snow nearer to obstacles than this is erodible at first [m]. 0 <= value <= 1e+06; default 0.
+        Snow nearer to obstacles than this is erodible at first [m]. 0 <= value <= 1e+06; default
+        0.
     erosion_pressure : float
         Pressure above which erodible snow begins to move [Pa]. 0 <= value <= 1e+09; default 50.
     erosion_speed : float
@@ -82,10 +83,11 @@ class MpsSettings(MethodSettings):
     preconditioner : {"jacobi", "incomplete_cholesky", "multigrid"}
         Preconditioner of the pressure equation. Default "multigrid".
     pressure_tolerance : float
-        Residual of the pressure equation over its right-hand side. 0 < value <= 0.1; default 0.001.
-    viscosity_tolerance : float
-        Residual of the viscous equation over what gravity adds in a step. 0 < value <= 0.1; default
+        Residual of the pressure equation over its right-hand side. 0 < value <= 0.1; default
         0.001.
+    viscosity_tolerance : float
+        Residual of the viscous equation over what gravity adds in a step. 0 < value <= 0.1;
+        default 0.001.
     max_iterations : int
         Iterations after which a run ends with an error. 1 <= value <= 100000; default 1000.
     threads : int
