@@ -87,7 +87,7 @@ def table(found: dict[str, Times]) -> str:
     """Return the matrix as a table in Markdown: float and double of each set of instructions."""
     head = [f"{v}, {p}" for v in found for p in ("float", "double")]
     lines = ["| kernel | " + " | ".join(head) + " |", "| --- |" + " ---: |" * len(head)]
-    cells = [one for one in next(iter(found.values())) if one[1] == "float"]
+    cells = sorted(one for one in next(iter(found.values())) if one[1] == "float")
     for cell in cells:
         numbers = [
             f"{times[(cell[0], precision, *cell[2:])]:.0f}"
@@ -109,7 +109,10 @@ def main() -> None:
         for finding in findings(times):
             print(f"{variant}: {finding}")
     today = datetime.date.today().isoformat()
-    kept = {v: {"/".join(c): round(t, 2) for c, t in times.items()} for v, times in found.items()}
+    kept = {
+        variant: {"/".join(cell): round(time, 2) for cell, time in sorted(times.items())}
+        for variant, times in found.items()
+    }
     facts = {"date": today, "machine": cpu_name(), "unit": "ns of processor time", "kernels": kept}
     (RESULTS / f"{today}-matrix.json").write_text(json.dumps(facts, indent=1) + "\n")
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/run/event_sequence.hpp"
 #include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -129,6 +130,8 @@ int fail(const std::string& message, int code) {
 int run(const Options& o) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) interrupt_on(signal);
   snowshed::EventSequence sequence = open(o);
+  if (const char* slow = snowshed::slow_kernels_note(); *slow && !o.quiet)
+    std::fprintf(stderr, "note: %s\n", slow);
   if (!run_all(sequence, o.quiet)) {
     return fail(
         "interrupted; go on with: snowshed-run " + o.scene + " -o " + o.folder + " --resume", 130);

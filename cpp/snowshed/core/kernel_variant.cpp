@@ -78,4 +78,10 @@ KernelVariant chosen_kernel_variant() {
 
 const char* kernel_variant() { return name_of(chosen_kernel_variant()); }
 
+const char* slow_kernels_note() {
+  if (chosen_kernel_variant() != KernelVariant::baseline) return "";
+  return "the kernels do without AVX2: this takes two to five times as long as on a processor "
+         "that has it (2013 or later)";
+}
+
 }  // namespace snowshed

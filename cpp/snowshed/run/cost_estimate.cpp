@@ -216,11 +216,12 @@ std::string gigabytes(double bytes) {
 
 double stable_time_step(const Scene& scene) {
   double limit = std::numeric_limits<double>::infinity();
+  const MpmSettings& n = scene.mpm();
   for (const Snow& snow : assemble_snows(scene))
     limit =
         std::min(limit, elastic_time_step(snow.youngs_modulus, snow.poissons_ratio, snow.density,
-                                          scene.dimension, scene.mpm().dx, scene.mpm().basis));
-  return next_time_step(limit, 0.0, scene.mpm().dx, scene.mpm().courant_factor);
+                                          scene.dimension, n.dx, n.transfer, n.basis));
+  return next_time_step(limit, 0.0, n.dx, n.courant_factor);
 }
 
 CostEstimate estimate_cost(const Scene& scene) {

@@ -20,6 +20,9 @@ LONG = 600.0  # s; longer runs are announced
 def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
     """Run a scene into a folder with a progress bar, and print its results."""
     run = RUNS.get(str(ready.data.get(NAME_KEY)), _run_events)
+    slow = _core.slow_kernels_note()
+    if slow and not quiet:
+        click.echo(f"note: {slow}", err=True)
     try:
         run(ready, folder, resume, quiet)
     except Interrupted as interrupted:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/geometry/combine.hpp"
@@ -80,46 +81,55 @@ void Boundary<T, D>::find(BlockKey key, double time, bool moving,
 }
 
 template <class T, int D>
-Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
-                                         const std::vector<BlockKey>& grid_blocks, double time,
-                                         int threads) const {
-  const std::ptrdiff_t n = std::ptrdiff_t(grid_blocks.size());
-  std::vector<std::vector<Contact<T>>> found(grid_blocks.size());
-  parallel_for(n, threads, 8, [&](std::ptrdiff_t i) {
-    const auto old = std::lower_bound(blocks_.begin(), blocks_.end(), grid_blocks[i]);
-    if (old != blocks_.end() && *old == grid_blocks[i]) {
-      const std::size_t b = std::size_t(old - blocks_.begin());
-      found[i].assign(contacts_.begin() + first_[b], contacts_.begin() + first_[b + 1]);
-    } else {
-      boundary.find(grid_blocks[i], time, false, found[i]);
-      if (boundary.any_motion()) boundary.find(grid_blocks[i], time, true, found[i]);
-    }
-  });
-  Contacts next;
-  next.blocks_ = grid_blocks;
-  next.first_.reserve(grid_blocks.size() + 1);
+template <class Find>
+Contacts<T, D> Contacts<T, D>::gathered(const std::vector<BlockKey>& blocks, int threads,
+                                        Find find) {
+  std::vector<std::vector<Contact<T>>> found(blocks.size());
+  parallel_for(std::ptrdiff_t(blocks.size()), threads, 8,
+               [&](std::ptrdiff_t b) { find(std::size_t(b), found[b]); });
+  Contacts all;
+  all.blocks_ = blocks;
+  all.first_.reserve(blocks.size() + 1);
   for (const auto& block : found) {
-    next.contacts_.insert(next.contacts_.end(), block.begin(), block.end());
-    next.first_.push_back(next.contacts_.size());
+    all.contacts_.insert(all.contacts_.end(), block.begin(), block.end());
+    all.first_.push_back(all.contacts_.size());
   }
-  return next;
+  return all;
 }
 
 template <class T, int D>
-void Contacts<T, D>::follow(const Boundary<T, D>& boundary, double time) {
+Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
+                                         const std::vector<BlockKey>& grid_blocks, double time,
+                                         int threads) const {
+  return gathered(grid_blocks, threads, [&](std::size_t b, std::vector<Contact<T>>& found) {
+    const auto old = std::lower_bound(blocks_.begin(), blocks_.end(), grid_blocks[b]);
+    if (old != blocks_.end() && *old == grid_blocks[b]) {
+      const std::size_t o = std::size_t(old - blocks_.begin());
+      found.assign(contacts_.begin() + first_[o], contacts_.begin() + first_[o + 1]);
+    } else {
+      boundary.find(grid_blocks[b], time, false, found);
+      if (boundary.any_motion()) boundary.find(grid_blocks[b], time, true, found);
+    }
+  });
+}
+
+template <class T, int D>
+void Contacts<T, D>::follow(const Boundary<T, D>& boundary, double time, int threads) {
   if (!boundary.any_motion()) return;
-  const std::vector<StoredImpulse> stored = stored_impulses();
-  std::vector<Contact<T>> all;
-  std::vector<std::size_t> first{0};
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
-      if (!boundary.is_moving(contacts_[i])) all.push_back(contacts_[i]);
-    boundary.find(blocks_[b], time, true, all);
-    first.push_back(all.size());
-  }
-  contacts_ = std::move(all);
-  first_ = std::move(first);
-  restore(stored);
+  *this = gathered(blocks_, threads, [&](std::size_t b, std::vector<Contact<T>>& found) {
+    const auto begin = contacts_.begin() + first_[b], end = contacts_.begin() + first_[b + 1];
+    std::copy_if(begin, end, std::back_inserter(found),
+                 [&](const Contact<T>& c) { return !boundary.is_moving(c); });
+    const std::size_t still = found.size();
+    boundary.find(blocks_[b], time, true, found);
+    for (std::size_t i = still; i < found.size(); ++i) {
+      Contact<T>& c = found[i];
+      const auto before = std::find_if(begin, end, [&](const Contact<T>& old) {
+        return old.node == c.node && old.obstacle == c.obstacle;
+      });
+      if (before != end) c.normal_impulse = c.next_normal_impulse = before->next_normal_impulse;
+    }
+  });
 }
 
 template <class T, int D>

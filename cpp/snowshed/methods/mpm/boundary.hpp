@@ -61,7 +61,7 @@ class Contacts {
                      double time, int threads = 1) const;
 
   /// Follows moving obstacles to `time`. Nothing to do where none moves. All or nothing.
-  void follow(const Boundary<T, D>& boundary, double time);
+  void follow(const Boundary<T, D>& boundary, double time, int threads = 1);
 
   Contact<T>* of_block(std::size_t block) { return contacts_.data() + first_[block]; }
   int count(std::size_t block) const { return int(first_[block + 1] - first_[block]); }
@@ -99,6 +99,10 @@ class Contacts {
   void restore(const std::vector<StoredImpulse>& stored_impulses);
 
  private:
+  /// The contacts of some blocks, of which `find(index of a block, found)` appends a block's own.
+  template <class Find>
+  static Contacts gathered(const std::vector<BlockKey>& blocks, int threads, Find find);
+
   std::vector<BlockKey> blocks_;
   std::vector<std::size_t> first_{0};
   std::vector<Contact<T>> contacts_;

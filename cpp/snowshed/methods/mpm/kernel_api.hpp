@@ -30,6 +30,9 @@ constexpr int support(Basis basis) { return basis == Basis::quadratic ? 3 : 4; }
 /// Distance, in cells, from a particle's lowest node to the particle, less its fraction.
 constexpr double base_offset(Basis basis) { return basis == Basis::quadratic ? 0.5 : 1.0; }
 
+/// Inverse of APIC's inertia D = sum_i w_i (x_i - x)^2, per cell squared.
+constexpr double apic_inverse_inertia(Basis basis) { return basis == Basis::quadratic ? 4.0 : 3.0; }
+
 /// Edge of a block's tile: its own nodes, those its particles reach beyond, and one more on
 /// either side so that particles may stray by a cell before they must be sorted again.
 template <int D>

@@ -18,7 +18,7 @@ Material::Material(const Snow& s, int dimension, const MpmSettings& n)
     : elastic(Elasticity<double>::from(s.youngs_modulus, s.poissons_ratio, dimension)),
       density(s.density),
       elastic_time_step(snowshed::elastic_time_step(s.youngs_modulus, s.poissons_ratio, s.density,
-                                                    dimension, n.dx, n.basis)) {
+                                                    dimension, n.dx, n.transfer, n.basis)) {
   if (s.model == SnowModel::cam_clay)
     initial_plastic_strain =
         law<double>(s, dimension).initial_plastic_strain(s.preconsolidation_pressure);

@@ -150,7 +150,7 @@ void MpmSolver<T, D>::scatter_block(const StepParameters<T>& step, const Particl
 /// First half of a step: the node sums, and at once the node velocities for a step of dt.
 template <class T, int D>
 void MpmSolver<T, D>::gather_and_update(double dt) {
-  state_.contacts.follow(model_.boundary, time());
+  state_.contacts.follow(model_.boundary, time(), threads());
   if (model_.boundary.any_slip()) state_.contacts.find_pushing_shares(work_.pushing);
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();

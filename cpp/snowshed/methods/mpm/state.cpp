@@ -108,7 +108,7 @@ double MpmState<T, D>::gravitational_energy(const MpmModel<T, D>& model) const {
 template <class T, int D>
 double MpmState<T, D>::kinetic_energy(const MpmModel<T, D>& model) const {
   const MpmSettings& n = model.options.numerics;
-  const double inertia = n.dx * n.dx / (n.basis == Basis::quadratic ? 4.0 : 3.0);
+  const double inertia = n.dx * n.dx / apic_inverse_inertia(n.basis);
   double sum = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     double v2 = 0;

@@ -7,10 +7,10 @@
 namespace snowshed {
 
 double elastic_time_step(double youngs_modulus, double poissons_ratio, double density,
-                         int dimension, double dx, Basis basis) {
+                         int dimension, double dx, Transfer transfer, Basis basis) {
   const auto e = Elasticity<double>::from(youngs_modulus, poissons_ratio, dimension);
   const double stiffness = dimension * e.bulk;  // d lambda + 2 mu
-  return dx * std::sqrt(2 / (stability_number(basis) * stiffness / density));
+  return dx * std::sqrt(2 / (transfer_stability_number(transfer, basis) * stiffness / density));
 }
 
 double next_time_step(double elastic_limit, double speed, double dx, double factor) {

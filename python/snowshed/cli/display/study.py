@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+import snowshed._core as _core
 from snowshed.cli.terminal import PlainConsole
 from snowshed.io.formatting import about
 from snowshed.run.progress import Progress
@@ -16,9 +17,11 @@ def announcement(progress: Progress) -> str:
     """Return the announcement before the first run starts."""
     left = progress.count - progress.done - progress.failed
     earlier = f" ({progress.count - left} of {progress.count} are there already)"
+    slow = _core.slow_kernels_note()
     return (
         f"{_runs(left)} to compute{earlier if left < progress.count else ''}, "
         f"{progress.at_once} at once; expected time: {about(progress.expected_s or 0.0)}"
+        + (f"\nnote: {slow}" if slow else "")
     )
 
 

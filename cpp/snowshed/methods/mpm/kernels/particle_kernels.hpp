@@ -20,8 +20,7 @@ struct ParticleKernels {
   static constexpr int S = support(basis);
   static constexpr int N = tile_edge<D>(basis);
   static constexpr bool apic = transfer == Transfer::apic;
-  /// APIC's inertia D_p = dx^2/4 (quadratic) or dx^2/3 (cubic), inverse, per cell squared.
-  static constexpr T apic_scale = basis == Basis::quadratic ? T(4) : T(3);
+  static constexpr T apic_scale = T(apic_inverse_inertia(basis));
 
   const StepParameters<T>& step;
   const ParticleView<T>& p;
