@@ -198,7 +198,7 @@ $(VENV)/.cpp-tools: $(VENV)/.created
 	touch $@
 
 $(VENV)/.docs-tools: $(VENV)/.created
-	$(PIP) --quiet sphinx myst-parser furo
+	$(PIP) --quiet sphinx myst-nb ipykernel furo
 	touch $@
 
 clean:

@@ -1,4 +1,4 @@
-"""Sphinx configuration: Markdown pages (MyST) and the Python API from its docstrings."""
+"""Sphinx configuration: Markdown pages (MyST), notebooks and the Python API from its docstrings."""
 
 import snowshed
 
@@ -6,9 +6,13 @@ project = "snowshed"
 author = copyright = "snowshed contributors"
 release = snowshed.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
+nb_execution_mode = "cache"  # tutorials, again when they change
+nb_execution_timeout = 300
+nb_execution_raise_on_error = True
+nb_execution_in_temp = True
 napoleon_google_docstring = False
 napoleon_use_ivar = True
 autodoc_member_order = "bysource"
