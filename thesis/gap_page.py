@@ -18,7 +18,7 @@ from reproduction.hypothesis_tests import SIGMAS
 from snowshed._core import InputError
 from snowshed.analysis.deviations import DEVIATIONS
 from snowshed.analysis.regression.dataset import geometry_table
-from snowshed.analysis.regression.rows import read_rows
+from snowshed.analysis.regression.rows import StackRows, read_rows
 from snowshed.analysis.regression.summary import (
     QUARTILES,
     THESIS_QUARTILES,
@@ -48,11 +48,8 @@ if TYPE_CHECKING:
 DATA = Path(__file__).with_name("data")
 PAGE = Path(__file__).parents[1] / "docs" / "thesis-gap.md"
 DEVIATIONS_FILE, SCATTER_FILE, ERRORS_FILE = "deviations.csv", "scatter.csv", FILE.name
-#: Folders of regressions, as `snowshed regress` writes them, and the files that are kept of them.
-REGRESSIONS = ("regression-one-seed", "regression-means")
+#: What is kept of the folders of regressions, as `snowshed regress` writes them.
 KEPT = ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv")
-#: A gap of less is not worth a sentence.
-SMALL_GAP = 0.1
 
 
 def page(data: Path = DATA) -> str:
@@ -176,52 +173,75 @@ def _gaps(ours: list[float]) -> str:
     return "by " + ", ".join(f"{100 * part:+.0f}" for part in parts) + " %"
 
 
+def regressed_rows() -> dict[str, StackRows]:
+    """Return the rows that the regressions of `thesis/data` are of, by the name of their folder.
+
+    For each reading of A.4.2 that the data set has: the rows of one seed, and the means if a row
+    has several.
+    """
+    found = {}
+    for name in TRIMMINGS:
+        try:
+            rows = read_rows(geometry_table(), name)
+        except InputError:  # not measured by this reading
+            continue
+        found[f"regression-{name}"] = rows.of_one_seed()
+        if rows.most_seeds > 1:
+            found[f"regression-{name}-means"] = rows
+    return found
+
+
 def _regression_part(data: Path) -> list[str]:
-    rows = read_rows(geometry_table())
+    parts = regressed_rows()
     found: Mapping[str, Regressed] = {
-        rows_in_words(part): read_regressed(data / folder, len(rows), rows.panel_count)
-        for folder, part in zip(REGRESSIONS, (rows.of_one_seed(), rows))
+        f"{rows.settings['trimming']}, {rows_in_words(rows)}": read_regressed(
+            data / folder, len(rows), rows.panel_count
+        )
+        for folder, rows in parts.items()
     }
     one = next(iter(found.values()))
     rounds, folds = one.scores["round"].nunique(), one.scores["fold"].nunique()
-    quartile = [float(value) for value in one.quartiles.loc["rbf", list(QUARTILES)].to_numpy()]
-    share = float(one.errors["mean_absolute_error"]["rbf"]) / quartile[1]
     times = f"{rounds} round{'s' if rounds > 1 else ''} of {folds} outer folds"
+    gaps = [
+        f"by `{rows.settings['trimming']}` {_gaps(_predicted_quartiles(regression))}"
+        for rows, regression in zip(parts.values(), found.values())
+        if rows.most_seeds == 1
+    ]
+    shares = [
+        f"{percent(_share(regression), 2)} by `{rows.settings['trimming']}`"
+        for rows, regression in zip(parts.values(), found.values())
+        if rows.most_seeds == 1
+    ]
     return [
         "## Tables 5.3.1 and 5.3.2",
         "The rows that come with snowshed ([their settings](regression.md#the-rows-that-come-with-"
-        f"snowshed)), by `{rows.settings['trimming']}`, regressed in {times}. The thesis's table "
+        f"snowshed)), by both readings of A.4.2, regressed in {times}. The thesis's table "
         "holds quartiles of predictions, and its rows are single stacks: our predictions from rows "
-        "of one seed are their like."
-        + "".join(
-            f" By `{name}` the rows are not known: their particles were not kept."
-            for name in TRIMMINGS
-            if not _has(geometry_table(), name)
-        ),
+        "of one seed are their like.",
         markdown(quartiles_grid(found)),
-        f"The RBF kernel's predictions from rows of one seed differ {_gaps(quartile)}.",
+        f"The RBF kernel's predictions from rows of one seed differ {'; '.join(gaps)}.",
         markdown(rows_grid(geometry_table())),
         markdown(errors_grid(found)),
-        f"The RBF kernel's error is {percent(share, 2)} of its median prediction; the thesis's is "
-        f"{percent(thesis_relative_error('rbf'), 2)}. Means of many seeds have "
+        f"The RBF kernel's error is {' and '.join(shares)} of its median prediction; the thesis's "
+        f"is {percent(thesis_relative_error('rbf'), 2)}. Means of several seeds have "
         "smaller errors because they scatter less, which says nothing of the model.",
     ]
 
 
-def _has(table: Path, trimming: str) -> bool:
-    """Return whether a table has stacks by a reading of A.4.2."""
-    try:
-        read_rows(table, trimming)
-    except InputError:
-        return False
-    return True
+def _predicted_quartiles(found: Regressed) -> list[float]:
+    return [float(value) for value in found.quartiles.loc["rbf", list(QUARTILES)].to_numpy()]
+
+
+def _share(found: Regressed) -> float:
+    """Return the RBF kernel's error over its median prediction."""
+    return float(found.errors["mean_absolute_error"]["rbf"]) / _predicted_quartiles(found)[1]
 
 
 def keep(
     data: Path,
     deviations: Optional[Path],
     seeds: Optional[Path],
-    regressions: Mapping[str, Optional[Path]],
+    regressions: Optional[Path],
 ) -> None:
     """Take new results into the folder that the page is written from; None: the old ones stay.
 
@@ -237,27 +257,24 @@ def keep(
     if seeds is not None:
         text = read_scatter(seeds).to_csv(index=False, float_format="%.5g")
         write_text(data / SCATTER_FILE, text)
-    for name, folder in regressions.items():
-        if folder is None:
-            continue
-        for file in KEPT:
-            (data / name / file).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(folder / file, data / name / file)
+    if regressions is not None:
+        for name in regressed_rows():
+            for file in KEPT:
+                (data / name / file).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(regressions / name / file, data / name / file)
 
 
 @click.command()
 @click.option("--deviations", type=click.Path(path_type=Path), help="New deviations/stacks.csv.")
 @click.option("--scatter", "seeds", type=click.Path(path_type=Path), help="New table of seedings.")
-@click.option("--one-seed", type=click.Path(path_type=Path), help="New folder of a regression.")
-@click.option("--means", type=click.Path(path_type=Path), help="New folder of a regression.")
-def main(
-    deviations: Optional[Path],
-    seeds: Optional[Path],
-    one_seed: Optional[Path],
-    means: Optional[Path],
-) -> None:
+@click.option(
+    "--regressions",
+    type=click.Path(path_type=Path),
+    help="New regressions: a folder of those that `regressed_rows` names.",
+)
+def main(deviations: Optional[Path], seeds: Optional[Path], regressions: Optional[Path]) -> None:
     """Write docs/thesis-gap.md from thesis/data, after taking new results into it."""
-    keep(DATA, deviations, seeds, dict(zip(REGRESSIONS, (one_seed, means))))
+    keep(DATA, deviations, seeds, regressions)
     write_text(PAGE, page())
 
 

@@ -81,11 +81,11 @@ def test_new_results_are_taken_in_and_others_refused(data, tmp_path):
     stacks.loc[stacks["variant"] == "reseed", "outermost_first_height_m"] *= 3
     stacks.to_csv(tmp_path / "stacks.csv", index=False)
     before = gap_page.page(data)
-    gap_page.keep(data, tmp_path / "stacks.csv", None, {})
+    gap_page.keep(data, tmp_path / "stacks.csv", None, None)
     after = gap_page.page(data)
     assert after != before and "1. **`reseed`**" in after
     with pytest.raises(InputError, match="no column"):
-        gap_page.keep(data, data / "regression-means" / "scores.csv", None, {})
+        gap_page.keep(data, data / "regression-equal_pace" / "scores.csv", None, None)
     with pytest.raises(InputError, match="one seed; scatter needs several"):
-        gap_page.keep(data, None, tmp_path / "stacks.csv", {})
+        gap_page.keep(data, None, tmp_path / "stacks.csv", None)
     assert gap_page.page(data) == after
