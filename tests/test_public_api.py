@@ -95,7 +95,8 @@ def test_nothing_public_is_any(package, name):
 
 def test_the_page_documents_what_the_package_exports():
     documented = {name for _, name in DOCUMENTED}
-    assert [name for name in snowshed.__all__ if name not in {*documented, "__version__"}] == []
+    whole = {"__version__", "pv"}  # a text, and a module whose functions are documented each
+    assert [name for name in snowshed.__all__ if name not in {*documented, *whole}] == []
 
 
 def test_any_is_found_within_other_types():

@@ -24,6 +24,7 @@ if "OMP_WAIT_POLICY" not in os.environ:
 if _TYPE_CHECKING:
     from snowshed._core import InputError, SimulationError
     from snowshed._core import version as __version__
+    from snowshed.analysis import photovoltaics as pv
     from snowshed.analysis.dimension_ratio import dimension_ratio
     from snowshed.methods.grains.settings import GrainsSettings
     from snowshed.methods.mpm import MpmSettings
@@ -93,6 +94,7 @@ __all__ = [
     "dimension_ratio",
     "level",
     "measure_stack",
+    "pv",
     "read_events",
     "run_events",
 ]
@@ -138,6 +140,8 @@ _MODULES = {
     "read_events": "snowshed.run.results",
     "run_events": "snowshed.run.events",
 }
+#: Modules by a shorter name.
+_MODULE_NAMES = {"pv": "snowshed.analysis.photovoltaics"}
 _FORMER = {"InitialisedScene": "ResolvedScene", "Numerics": "MpmSettings"}
 
 
@@ -155,6 +159,8 @@ if not _TYPE_CHECKING:
 
             former = {name: _imported(_FORMER[name])}
             return renamed(__name__, former, stacklevel=3)(name)
+        if name in _MODULE_NAMES:
+            return _importlib.import_module(_MODULE_NAMES[name])
         if name not in _MODULES:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         return _imported(name)
