@@ -15,7 +15,7 @@ SNOWSHED_INLINE void map_pressure_on(const SlideView& s, double factor, std::uin
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
     for (int k = 0; k < count; ++k) {
       const V dx = x - s.sorted_x[first + k], dy = y - s.sorted_y[first + k];
-      const V w = mass * spiky_gradient(V(dx * dx + dy * dy), s.cell);
+      const V w = spiky_gradient(mass, V(dx * dx + dy * dy), s.cell);
       gx[k] += w * dx;
       gy[k] += w * dy;
     }

@@ -74,7 +74,7 @@ SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, double factor, std:
     for (int k = 0; k < count; ++k) {
       const Way<V> way(s, first + k, there);
       const V pressing = theirs + mass * s.sorted_pressing[first + k];
-      const V w = pressing * spiky_gradient(way.square(), s.cell);
+      const V w = spiky_gradient(pressing, way.square(), s.cell);
       sx[k] += w * way.x;
       sy[k] += w * way.y;
       sz[k] += w * way.z;
