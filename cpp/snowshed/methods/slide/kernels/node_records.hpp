@@ -24,6 +24,22 @@ SNOWSHED_INLINE bool any_lane(const PackMask& mask) {
 #endif
 }
 
+// The compiler would take eight lanes apart into halves for these.
+SNOWSHED_INLINE Pack as_doubles(const PackIndex& v) {
+#ifdef __AVX512F__
+  return (Pack)_mm512_cvtepi32_pd((__m256i)v);
+#else
+  return __builtin_convertvector(v, Pack);
+#endif
+}
+SNOWSHED_INLINE PackMask as_mask(const PackIndex& v) {
+#ifdef __AVX512F__
+  return (PackMask)_mm512_cvtepi32_epi64((__m256i)v);
+#else
+  return __builtin_convertvector(v, PackMask);
+#endif
+}
+
 SNOWSHED_INLINE double sum_of_lanes(const Pack& v) {
   double sum = 0;
   for (int i = 0; i < pack_lanes; ++i) sum += v[i];

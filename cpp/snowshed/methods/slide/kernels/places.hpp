@@ -116,8 +116,8 @@ SNOWSHED_INLINE PackPlace place_of(const SlideView& s, const Pack& x, const Pack
   j = select(p.inside, j, Pack{});
   p.column = __builtin_convertvector(i, PackIndex);
   p.row = __builtin_convertvector(j, PackIndex);
-  p.east = i - __builtin_convertvector(p.column, Pack);
-  p.north = j - __builtin_convertvector(p.row, Pack);
+  p.east = i - as_doubles(p.column);
+  p.north = j - as_doubles(p.row);
   return p;
 }
 
@@ -176,7 +176,7 @@ SNOWSHED_INLINE PackReprojection reproject(const SlideView& s, Pack x, Pack y, P
     z = select(moving, Pack(z + distance * ground.normal.z), z);
     place = place_of(s, x, y);  // unchanged where x and y are
     const PackIndex same = (place.column == column) & (place.row == row);
-    moving &= place.inside & ~__builtin_convertvector(same, PackMask);
+    moving &= place.inside & ~as_mask(same);
   }
   return {x, y, place};
 }
