@@ -12,7 +12,7 @@ import pytest
 
 from snowshed import InputError
 from snowshed.io.raster import Raster, read_raster, write_ascii_grid
-from snowshed.run import slides
+from snowshed.plot import slide_page
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.slides import particles_at, run_slide
 from snowshed.scene import Area, Events, Scene, Terrain
@@ -156,11 +156,11 @@ run_slide(sys.argv[1], sys.argv[2])
 """
 
 
-def test_the_film_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkeypatch):
+def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkeypatch):
     scene = example_slide(tmp_path).set("output.checkpoint_interval", 0.05)
     (tmp_path / "scene.json").write_text(scene.resolve().json)
-    films = []
-    monkeypatch.setattr(slides, "_draw", lambda *args: films.append(args[-1].frames))
+    drawn = []
+    monkeypatch.setattr(slide_page, "_film", lambda *args: drawn.append(args[-1]))
     run_slide(tmp_path / "scene.json", tmp_path / "straight")
 
     out = tmp_path / "killed"
@@ -172,7 +172,14 @@ def test_the_film_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkey
         process.kill()
     run_slide(tmp_path / "scene.json", out, resume=True)
 
-    straight, resumed = films
+    straight, resumed = drawn
     assert [frame.time for frame in resumed] == [frame.time for frame in straight]
+    assert len(straight) > 20 and straight[0].time == 0.0
     for one, other in zip(resumed, straight):
         np.testing.assert_array_equal(one.thickness, other.thickness)
+
+
+def test_a_slide_without_film_has_a_page_without_it(slope, tmp_path):
+    run_slide(slope.set("output.film", False), tmp_path / "out")
+    page = (tmp_path / "out/slide.html").read_text()
+    assert "Peak values" in page and "Over time" not in page

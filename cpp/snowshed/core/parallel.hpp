@@ -147,4 +147,39 @@ void parallel_pieces(std::ptrdiff_t n, int threads, std::ptrdiff_t piece, F f) {
 #endif
 }
 
+/// A loop in pieces, see `parallel_pieces`.
+template <class F>
+struct PieceLoop {
+  std::ptrdiff_t n, piece;
+  F f;
+
+  std::ptrdiff_t pieces() const { return (n + piece - 1) / piece; }
+  void run(std::ptrdiff_t p) { f(p * piece, std::min(n, (p + 1) * piece)); }
+};
+template <class F>
+PieceLoop(std::ptrdiff_t, std::ptrdiff_t, F) -> PieceLoop<F>;
+
+/// The pieces of two loops that do not depend on each other: no thread waits between them.
+template <class F, class G>
+void parallel_pieces(int threads, PieceLoop<F> first, PieceLoop<G> second) {
+  const std::ptrdiff_t m = first.pieces(), n = second.pieces();
+#ifdef SNOWSHED_STD_THREADS
+  const auto run = [&](std::ptrdiff_t p) { p < m ? first.run(p) : second.run(p - m); };
+  run_in_turn(m + n, threads, run);
+#else
+  if (threads == 1 || m + n <= 1) {
+    for (std::ptrdiff_t p = 0; p < m; ++p) first.run(p);
+    for (std::ptrdiff_t p = 0; p < n; ++p) second.run(p);
+    return;
+  }
+#pragma omp parallel num_threads(threads)
+  {
+#pragma omp for schedule(static) nowait
+    for (std::ptrdiff_t p = 0; p < m; ++p) first.run(p);
+#pragma omp for schedule(static)
+    for (std::ptrdiff_t p = 0; p < n; ++p) second.run(p);
+  }
+#endif
+}
+
 }  // namespace snowshed

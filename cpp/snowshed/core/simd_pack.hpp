@@ -64,6 +64,9 @@ using Scalar = typename ScalarOf<V>::type;
 template <class V>
 inline constexpr bool is_simd_pack = !std::is_floating_point_v<V>;
 
+template <class V>
+inline constexpr int lane_count = int(sizeof(V) / sizeof(Scalar<V>));
+
 /// A value as a pack: all lanes equal to it, or the pack itself where it is one already.
 template <class V, class C>
 SNOWSHED_INLINE V broadcast(const C& value) {
@@ -177,20 +180,21 @@ SNOWSHED_INLINE void interleave(V& a, V& b, std::integer_sequence<int, lane...>)
 template <int step, class V, int n>
 SNOWSHED_INLINE void exchange_rows(V (&rows)[n]) {
   if constexpr (step < n) {
+    constexpr auto lanes = std::make_integer_sequence<int, lane_count<V>>();
     SNOWSHED_UNROLL
     for (int i = 0; i < n; ++i)
-      if ((i & step) == 0)
-        exchange<step>(rows[i], rows[i + step], std::make_integer_sequence<int, n>());
+      if ((i & step) == 0) exchange<step>(rows[i], rows[i + step], lanes);
     exchange_rows<2 * step>(rows);
   }
 }
 
 /// Transposes a square of as many packs as they have lanes: lane j of row i becomes lane i of row
-/// j.
+/// j. Of fewer packs, each block of as many lanes is transposed.
 template <class V, int n>
 SNOWSHED_INLINE void transpose(V (&rows)[n]) {
+  static_assert(lane_count<V> % n == 0);
   if constexpr (sizeof(rows[0][0]) == 4) {
-    constexpr auto lanes = std::make_integer_sequence<int, n>();
+    constexpr auto lanes = std::make_integer_sequence<int, lane_count<V>>();
     SNOWSHED_UNROLL
     for (int i = 0; i < n; i += 4) {
       V* r = rows + i;
@@ -207,73 +211,86 @@ SNOWSHED_INLINE void transpose(V (&rows)[n]) {
 }
 
 /// In each lane whether it is one of the first n.
-template <class T, int... lane>
-SNOWSHED_INLINE SimdMask<T> first_lanes(int n, std::integer_sequence<int, lane...>) {
-  using Index = std::remove_reference_t<decltype(SimdMask<T>{}[0])>;
-  return SimdMask<T>{Index(lane)...} < Index(n) - SimdMask<T>{};
+template <class V, int... lane>
+SNOWSHED_INLINE auto first_lanes(int n, std::integer_sequence<int, lane...>) {
+  using Mask = decltype(V{} < V{});
+  using Index = std::remove_reference_t<decltype(Mask{}[0])>;
+  return Mask{Index(lane)...} < Index(n) - Mask{};
 }
-template <class T>
-SNOWSHED_INLINE SimdMask<T> first_lanes(int n) {
-  return first_lanes<T>(n, std::make_integer_sequence<int, simd_width<T>>());
+template <class V>
+SNOWSHED_INLINE auto first_lanes(int n) {
+  return first_lanes<V>(n, std::make_integer_sequence<int, lane_count<V>>());
 }
 
 /// The first n lanes from memory, the others from `rest`, without touching the memory behind them.
-template <class T>
-SNOWSHED_INLINE SimdPack<T> load_first(const T* p, int n, const SimdPack<T>& rest) {
+template <class V>
+SNOWSHED_INLINE V load_first(const Scalar<V>* p, int n, const V& rest) {
+  [[maybe_unused]] constexpr bool single = sizeof(Scalar<V>) == 4;
 #if defined(__AVX512F__)
-  if constexpr (sizeof(T) == 4)
-    return (SimdPack<T>)_mm512_mask_loadu_ps((__m512)rest, __mmask16((1u << n) - 1), p);
-  else
-    return (SimdPack<T>)_mm512_mask_loadu_pd((__m512d)rest, __mmask8((1u << n) - 1), p);
-#elif defined(__AVX2__)
-  const SimdMask<T> lanes = first_lanes<T>(n);
-  if constexpr (sizeof(T) == 4)
-    return select(lanes, (SimdPack<T>)_mm256_maskload_ps(p, (__m256i)lanes), rest);
-  else
-    return select(lanes, (SimdPack<T>)_mm256_maskload_pd(p, (__m256i)lanes), rest);
-#else
-  SimdPack<T> v = rest;
+  if constexpr (sizeof(V) == 64 && single)
+    return (V)_mm512_mask_loadu_ps((__m512)rest, __mmask16((1u << n) - 1), p);
+  if constexpr (sizeof(V) == 64 && !single)
+    return (V)_mm512_mask_loadu_pd((__m512d)rest, __mmask8((1u << n) - 1), p);
+#endif
+#if defined(__AVX2__)
+  const auto lanes = first_lanes<V>(n);
+  if constexpr (sizeof(V) == 32 && single)
+    return select(lanes, (V)_mm256_maskload_ps((const float*)p, (__m256i)lanes), rest);
+  if constexpr (sizeof(V) == 32 && !single)
+    return select(lanes, (V)_mm256_maskload_pd(p, (__m256i)lanes), rest);
+  if constexpr (sizeof(V) == 16 && single)
+    return select(lanes, (V)_mm_maskload_ps((const float*)p, (__m128i)lanes), rest);
+#endif
+  V v = rest;
   for (int i = 0; i < n; ++i) v[i] = p[i];
   return v;
-#endif
 }
 
-template <class T>
-SNOWSHED_INLINE void store_first(T* p, const SimdPack<T>& v, int n) {
+template <class V>
+SNOWSHED_INLINE void store_first(Scalar<V>* p, const V& v, int n) {
+  [[maybe_unused]] constexpr bool single = sizeof(Scalar<V>) == 4;
 #if defined(__AVX512F__)
-  if constexpr (sizeof(T) == 4)
-    _mm512_mask_storeu_ps(p, __mmask16((1u << n) - 1), (__m512)v);
-  else
-    _mm512_mask_storeu_pd(p, __mmask8((1u << n) - 1), (__m512d)v);
-#elif defined(__AVX2__)
-  const SimdMask<T> lanes = first_lanes<T>(n);
-  if constexpr (sizeof(T) == 4)
-    _mm256_maskstore_ps(p, (__m256i)lanes, (__m256)v);
-  else
-    _mm256_maskstore_pd(p, (__m256i)lanes, (__m256d)v);
-#else
-  for (int i = 0; i < n; ++i) p[i] = v[i];
+  if constexpr (sizeof(V) == 64 && single)
+    return _mm512_mask_storeu_ps(p, __mmask16((1u << n) - 1), (__m512)v);
+  if constexpr (sizeof(V) == 64 && !single)
+    return _mm512_mask_storeu_pd(p, __mmask8((1u << n) - 1), (__m512d)v);
 #endif
+#if defined(__AVX2__)
+  const auto lanes = first_lanes<V>(n);
+  if constexpr (sizeof(V) == 32 && single)
+    return _mm256_maskstore_ps((float*)p, (__m256i)lanes, (__m256)v);
+  if constexpr (sizeof(V) == 32 && !single)
+    return _mm256_maskstore_pd(p, (__m256i)lanes, (__m256d)v);
+  if constexpr (sizeof(V) == 16 && single)
+    return _mm_maskstore_ps((float*)p, (__m128i)lanes, (__m128)v);
+#endif
+  for (int i = 0; i < n; ++i) p[i] = v[i];
 }
 
 /// Read the first n values at p; the lanes beyond repeat the first one, so that they hold
 /// harmless numbers without touching memory that belongs to somebody else.
-template <class T>
-SNOWSHED_INLINE SimdPack<T> load(const T* p, int n) {
-  SimdPack<T> v;
-  if (n == simd_width<T>)
-    std::memcpy(&v, p, sizeof v);
-  else
-    v = load_first(p, n, broadcast<SimdPack<T>>(p[0]));
+template <class V>
+SNOWSHED_INLINE V load_pack(const Scalar<V>* p, int n) {
+  if (n < lane_count<V>) return load_first(p, n, broadcast<V>(p[0]));
+  V v;
+  std::memcpy(&v, p, sizeof v);
   return v;
 }
+template <class T>
+SNOWSHED_INLINE SimdPack<T> load(const T* p, int n) {
+  return load_pack<SimdPack<T>>(p, n);
+}
 
+template <class V>
+SNOWSHED_INLINE void store_pack(Scalar<V>* p, const V& v, int n) {
+  if (n < lane_count<V>)
+    store_first(p, v, n);
+  else
+    std::memcpy(p, &v, sizeof v);
+}
 template <class T>
 SNOWSHED_INLINE void store(T* p, const SimdPack<T>& v, int n) {
-  if (n == simd_width<T>)
-    std::memcpy(p, &v, sizeof v);
-  else
-    store_first(p, v, n);
+  store_pack<SimdPack<T>>(p, v, n);
 }
 
 SNOWSHED_VARIANT_END

@@ -1,21 +1,20 @@
-"""A slide over time: the thickness of the snow at some times, for pictures that move."""
+"""A slide over time: maps of the thickness of the snow, from the film of a run."""
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from snowshed.io.atomic import replacing
-from snowshed.io.damage import DAMAGED
+from snowshed._core import InputError
+from snowshed.io.arrays import Floats
+from snowshed.io.film import Film, FilmFrame
+from snowshed.io.raster import Raster
 
 Singles = NDArray[np.float32]
-FIRST_INTERVAL = 0.25  # s between frames, to begin with
-LARGEST = 64  # frames; of more, every second one goes
+MOST_FRAMES = 64
+LEAST_PARTICLES = 1.5  # on average, in a square that holds any
 
 
 @dataclass(frozen=True)
@@ -49,64 +48,93 @@ class Frame:
         return found
 
 
-class FrameSeries:
-    """Frames at even intervals; the longer a slide lasts, the longer these are.
+def slide_frames(film: Film, ground: Raster, most: int = MOST_FRAMES) -> list[Frame]:
+    """Return maps of the thickness of the snow over time, at the nodes of a slide's grid.
+
+    A node has the mean thickness of the particles in the four cells around it, with bilinear
+    weights. Of a film that holds only some of the particles, the mean is taken over larger squares,
+    so that the snow has no holes.
+
+    Parameters
+    ----------
+    film
+        Of a run of a slide.
+    ground
+        The grid.
+    most
+        How many maps, at most; the first and the last frame are among them.
+
+    Raises
+    ------
+    InputError
+        If the film holds no thickness.
 
     Examples
     --------
-    >>> series = FrameSeries()
-    >>> snow = np.ones((2, 2))
-    >>> for step in range(400):
-    ...     if series.due(0.1 * step):
-    ...         series.add(0.1 * step, snow)
-    >>> len(series.frames) <= 64, series.interval
-    (True, 1.0)
+    >>> from tempfile import TemporaryDirectory
+    >>> from snowshed.run.slides import run_slide, slide_terrain
+    >>> from snowshed.scene.builders import example_slide
+    >>> with TemporaryDirectory() as folder:
+    ...     scene = example_slide(folder).set("events.max_time", 0.5)
+    ...     _ = run_slide(scene, folder + "/out", pictures=False)
+    ...     frames = slide_frames(Film(folder + "/out/film.bin"), slide_terrain(scene))
+    >>> frames[0].time, round(float(np.median(frames[0].thickness)), 1)
+    (0.0, 0.9)
     """
+    names = [one.name for one in film.quantities]
+    if "thickness" not in names:
+        raise InputError(f"{film.path}: holds no thickness; it is not the film of a slide")
+    column = names.index("thickness")
+    count = len(film.frames)
+    chosen = set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist())
+    frames: list[Frame] = []
+    edge = 0
+    for number, one in enumerate(film):
+        if number not in chosen or not len(one.ids):
+            continue
+        edge = edge or _edge(film, one, ground)
+        thickness = film.quantities[column].values(one.codes[:, column])
+        frames.append(_map(one, thickness, ground, edge))
+    return frames
 
-    def __init__(self) -> None:
-        self.frames: list[Frame] = []
-        self.interval = FIRST_INTERVAL
 
-    def due(self, time: float) -> bool:
-        """Return whether the next frame's time has come."""
-        return not self.frames or time >= self.frames[-1].time + self.interval - 1e-9
+def _edge(film: Film, frame: FilmFrame, ground: Raster) -> int:
+    """Return the edge of the squares that a film has enough particles for, in cells."""
+    edge = 1
+    places = np.floor(frame.positions[:, :2] / ground.cell).astype(int)
+    while film.share < 1.0 and edge < max(ground.heights.shape):
+        squares = len(np.unique(places // edge, axis=0))
+        if len(places) >= LEAST_PARTICLES * squares:
+            break
+        edge *= 2
+    return edge
 
-    def add(self, time: float, thickness: Any) -> None:
-        """Add the snow at a time: a whole map (rows, columns), m."""
-        whole = np.asarray(thickness)
-        snow = whole > 0.0
-        rows, columns = (np.flatnonzero(snow.any(axis=axis)) for axis in (1, 0))
-        if not rows.size:
-            rows = columns = np.array([0])
-        cut = whole[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].astype(np.float32)
-        self.frames.append(Frame(time, cut, int(rows[0]), int(columns[0])))
-        if len(self.frames) > LARGEST:
-            self.frames = self.frames[::2]
-            self.interval *= 2.0
 
-    def save(self, file: Path) -> None:
-        """Write the frames to a file, whole or not at all."""
-        stream = io.BytesIO()
-        arrays: dict[str, Any] = {f"frame{n}": one.thickness for n, one in enumerate(self.frames)}
-        places = [[one.time, one.first_row, one.first_column] for one in self.frames]
-        np.savez_compressed(stream, places=np.array(places).reshape(-1, 3), **arrays)
-        with replacing(file) as beside:
-            beside.write_bytes(stream.getvalue())
+def _map(frame: FilmFrame, thickness: Singles, ground: Raster, edge: int) -> Frame:
+    rows, columns = (-(-size // edge) + 1 for size in ground.heights.shape)
+    weight, sums = np.zeros((rows, columns)), np.zeros((rows, columns))
+    # The middle of a square of several cells stands for it.
+    x, y = frame.positions[:, :2].T / (ground.cell * edge) - 0.5 * (1.0 - 1.0 / edge)
+    west, south = (np.clip(np.floor(one).astype(int), 0, None) for one in (x, y))
+    for row, column, share in _corners(x - west, y - south):
+        at = (np.minimum(south + row, rows - 1), np.minimum(west + column, columns - 1))
+        np.add.at(weight, at, share)
+        np.add.at(sums, at, share * thickness)
+    whole = np.divide(sums, weight, out=np.zeros_like(sums), where=weight > 0.0)
+    whole = np.kron(whole, np.ones((edge, edge)))[tuple(map(slice, ground.heights.shape))]
+    snow = whole > 0.0
+    down, across = (np.flatnonzero(snow.any(axis=axis)) for axis in (1, 0))
+    if not down.size:
+        down = across = np.array([0])
+    cut = whole[down[0] : down[-1] + 1, across[0] : across[-1] + 1].astype(np.float32)
+    return Frame(frame.time, cut, int(down[0]), int(across[0]))
 
-    @classmethod
-    def load(cls, file: Path, until: float) -> FrameSeries:
-        """Return the frames of a file before a time, s; none if there is no such file."""
-        series = cls()
-        try:
-            with np.load(file, allow_pickle=False) as archive:
-                for number, (time, row, column) in enumerate(archive["places"].tolist()):
-                    if time < until:
-                        cut = archive[f"frame{number}"]
-                        series.frames.append(Frame(time, cut, int(row), int(column)))
-        except (OSError, *DAMAGED):
-            return cls()  # the page begins later; nothing else depends on it
-        times = [frame.time for frame in series.frames]
-        if len(times) > 1:
-            steps = np.log2(np.median(np.diff(times)) / FIRST_INTERVAL)
-            series.interval = FIRST_INTERVAL * 2.0 ** max(0.0, float(np.floor(steps + 0.5)))
-        return series
+
+def _corners(east: Floats, north: Floats) -> list[tuple[int, int, Floats]]:
+    """Return the bilinear weights of the four nodes around places within cells, by row, column."""
+    east, north = np.clip(east, 0.0, 1.0), np.clip(north, 0.0, 1.0)
+    return [
+        (row, column, (north if row else 1.0 - north) * (east if column else 1.0 - east))
+        for row in (0, 1)
+        for column in (0, 1)
+    ]

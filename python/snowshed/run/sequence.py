@@ -28,12 +28,10 @@ def run_sequence(
     sequence: _core.EventSequence,
     observer: _core.EventObserver,
     folder: PathLike,
-    *,
-    every_step: bool = False,
 ) -> None:
     """Run the events that are left; a failure is written down in the folder.
 
-    The observer is told of the progress after every step, or about twice a second.
+    The observer is told of the progress about twice a second.
 
     Raises
     ------
@@ -43,7 +41,7 @@ def run_sequence(
         If the observer asked for a stop; a checkpoint holds the state to resume from.
     """
     try:
-        finished = sequence.run(observer, 0.0 if every_step else REPORT_INTERVAL)
+        finished = sequence.run(observer, REPORT_INTERVAL)
     except (_core.SimulationError, _core.InputError) as error:
         sequence.record_failure(str(error))
         raise

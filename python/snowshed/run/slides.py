@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import json
 import math
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -28,10 +27,11 @@ import numpy as np
 import snowshed._core as _core
 from snowshed.io.atomic import replacing, write_text
 from snowshed.io.csv_table import Table
+from snowshed.io.film import FILM, Film
 from snowshed.io.raster import Raster
 from snowshed.io.raster_output import write_raster
 from snowshed.methods.peak_maps import PeakMaps
-from snowshed.methods.slide_frames import FrameSeries
+from snowshed.methods.slide_frames import Frame, slide_frames
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.methods.slide_validity import (
     ReleaseArea,
@@ -42,7 +42,7 @@ from snowshed.methods.slide_validity import (
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.sequence import REPORT_INTERVAL, open_sequence, run_sequence
+from snowshed.run.sequence import open_sequence, run_sequence
 from snowshed.scene.components import Outline
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PACKED = "peaks.npz"  # the peak maps, where no rasters are wanted
-FRAMES = "frames.npz"  # the slide over time, as far as the checkpoint
 
 
 @dataclass(frozen=True)
@@ -181,9 +180,8 @@ def run_slide(
     sequence = open_sequence(ready, out_dir, resume=resume)
     with sequence, deferred_interrupts() as interrupt:
         sequence.describe_machine(machine_facts())
-        frames = _frames(sequence.simulation, Path(out_dir)) if pictures else None
-        recorder = _Recorder(sequence.simulation, Path(out_dir), interrupt, progress, frames)
-        run_sequence(sequence, recorder, out_dir, every_step=frames is not None)
+        recorder = _Recorder(sequence.simulation, interrupt, progress)
+        run_sequence(sequence, recorder, out_dir)
         (facts,) = sequence.finished_events
         maps = slide_maps(sequence.simulation)
         terrain = json.loads(sequence.simulation.scene)["terrain"]
@@ -198,8 +196,8 @@ def run_slide(
             energies = Table(Path(out_dir) / "energy.csv")
             energies.keep_through(0)  # a finished slide may be resumed, too
             energies.add([{"event": 1, **facts["energy"]}])
-        if frames is not None:
-            _draw(Path(out_dir), sequence.simulation, maps, areas, summary, frames)
+        if pictures:
+            _draw(Path(out_dir), sequence.simulation, maps, areas, summary)
     return summary
 
 
@@ -261,51 +259,34 @@ class _Recorder:
     def __init__(
         self,
         simulation: _core.Simulation,
-        folder: Path,
         interrupt: InterruptRequest,
         report: Optional[Reporter],
-        frames: Optional[FrameSeries],
     ) -> None:
         self.simulation = simulation
-        self.folder = folder
         self.interrupt = interrupt
         self.report = report
-        self.frames = frames
-        self.told = -math.inf
 
     def between_events(self) -> None:
         """Do nothing: a slide has one event."""
 
     def event_begun(self, reseeding: Optional[dict[str, Any]]) -> None:
         """Report the beginning."""
-        self._look(self.simulation.time_s)
         self._tell(0.0, 0.0, 0.0)
 
     def progress(self, report: dict[str, Any]) -> None:
-        """Pass on how far the slide has come, and look at the snow."""
-        self._look(report["time_s"])
-        if time.monotonic() >= self.told + REPORT_INTERVAL:
-            self.told = time.monotonic()
-            self._tell(report["time_s"], report["progress"], report["updates_per_s"])
+        """Pass on how far the slide has come."""
+        self._tell(report["time_s"], report["progress"], report["updates_per_s"])
 
     def event_ended(self, facts: dict[str, Any]) -> None:
         """Report the end."""
-        if self.frames is not None:
-            self.frames.add(facts["sim_time_s"], self.simulation.slide_maps()["thickness"])
         self._tell(facts["sim_time_s"], 1.0, 0.0)
 
     def before_checkpoint(self) -> None:
-        """Keep the frames, so that the film is whole if the run goes on from there."""
-        if self.frames is not None:
-            self.frames.save(self.folder / FRAMES)
+        """Do nothing: all that goes on is in the checkpoint."""
 
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
         return self.interrupt.requested
-
-    def _look(self, time_s: float) -> None:
-        if self.frames is not None and self.frames.due(time_s):
-            self.frames.add(time_s, self.simulation.slide_maps()["thickness"])
 
     def _tell(self, time_s: float, fraction: float, updates_per_s: float) -> None:
         if self.report is not None:
@@ -332,9 +313,12 @@ def _release_outlines(simulation: _core.Simulation) -> list[Outline]:
     return release_outlines(json.loads(simulation.scene))
 
 
-def _frames(simulation: _core.Simulation, folder: Path) -> FrameSeries:
-    """Return the frames of the part of a slide that is done; a finished one has all."""
-    return FrameSeries.load(folder / FRAMES, simulation.time_s)
+def _frames(folder: Path, maps: SlideMaps) -> list[Frame]:
+    """Return the snow over time, as far as the run has recorded it."""
+    try:
+        return slide_frames(Film(folder / FILM), maps.raster(maps.terrain))
+    except (_core.InputError, OSError):
+        return []  # not wanted, lost or damaged; the page does without
 
 
 def _draw(
@@ -343,7 +327,6 @@ def _draw(
     maps: SlideMaps,
     areas: Sequence[ReleaseArea],
     summary: SlideSummary,
-    frames: FrameSeries,
 ) -> None:
     from snowshed.plot.figure_style import save
     from snowshed.plot.slide_figure import slide_figure
@@ -351,8 +334,8 @@ def _draw(
 
     save(slide_figure(maps, _release_outlines(simulation)), folder / "slide.png")
     scene = json.loads(simulation.scene)
-    write_slide_page(folder / "slide.html", maps, scene, areas, asdict(summary), frames.frames)
-    (folder / FRAMES).unlink(missing_ok=True)
+    frames = _frames(folder, maps)
+    write_slide_page(folder / "slide.html", maps, scene, areas, asdict(summary), frames)
 
 
 def _summary(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <type_traits>
 
@@ -36,19 +37,20 @@ void keep(const std::vector<std::uint32_t>& new_place, Array& array) {
 
 /// Puts the entries of an array into an order; the scratch has room for all of them.
 template <class Array>
-void reorder(const std::vector<std::uint32_t>& order, AlignedVector<double>& scratch,
+void reorder(const std::vector<std::uint32_t>& order, AlignedVector<double>& scratch, int threads,
              Array& array) {
   using Entry = typename Array::value_type;
   static_assert(sizeof(Entry) <= sizeof(double) && std::is_trivially_copyable_v<Entry>);
   auto* sorted = reinterpret_cast<Entry*>(scratch.data());
-  for (std::size_t e = 0; e < order.size(); ++e) sorted[e] = array[order[e]];
-  std::copy_n(sorted, order.size(), array.data());
+  const auto n = std::ptrdiff_t(order.size());
+  parallel_for_each(n, threads, [&](std::ptrdiff_t e) { sorted[e] = array[order[e]]; });
+  parallel_for_each(n, threads, [&](std::ptrdiff_t e) { array[e] = sorted[e]; });
 }
 
 }  // namespace
 
 void remove_marked(SlideState& state, SlideWork& work) {
-  if (std::find(work.removed.begin(), work.removed.end(), 1) == work.removed.end()) return;
+  if (!std::memchr(work.removed.data(), 1, work.removed.size())) return;
   SlideParticles& p = state.particles;
   std::vector<std::uint32_t>& new_place = work.new_places;
   new_place.resize(p.size());
@@ -84,7 +86,7 @@ void number_new(SlideState& state, SlideWork& work, std::size_t begin) {
 
 void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
   SlideParticles& p = state.particles;
-  if (state.erodible.empty() && !model.compatible()) return;  // nothing makes them heavier
+  if (work.none_splits || (state.erodible.empty() && !model.compatible())) return;
   const std::size_t before = p.size();
   for (std::size_t i = 0; i < before; ++i) {
     if (!(p.mass[i] > p.fresh_mass[i] * model.settings.split_ratio)) continue;
@@ -113,6 +115,7 @@ void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
     put(i, x - along, behind);
     put(p.size() - 1, x + along, ahead);
   }
+  work.none_splits = p.size() == before && state.erodible.empty();
   if (p.size() == before) return;
   number_new(state, work, before);
   work.bond_lists.update(state.bonds, p.size());
@@ -123,9 +126,13 @@ void sort_by_cell(SlideState& state, SlideWork& work) {
   AlignedVector<double> scratch(order.size());
   work.new_places.resize(order.size());
   // Nothing from here on allocates.
-  state.particles.for_each_array([&](const char*, auto& array) { reorder(order, scratch, array); });
+  state.particles.for_each_array(
+      [&](const char*, auto& array) { reorder(order, scratch, work.threads, array); });
   for (std::size_t e = 0; e < order.size(); ++e) work.new_places[order[e]] = std::uint32_t(e);
-  renumber(state.bonds, work.new_places);
+  for (auto* ends : {&state.bonds.first, &state.bonds.second})
+    parallel_for_each(std::ptrdiff_t(ends->size()), work.threads, [&](std::ptrdiff_t b) {
+      (*ends)[b] = work.new_places[(*ends)[b]];
+    });
 }
 
 }  // namespace snowshed

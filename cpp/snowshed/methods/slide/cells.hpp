@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "snowshed/core/aligned_vector.hpp"
-#include "snowshed/methods/slide/particles.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
 namespace snowshed {
@@ -15,8 +14,7 @@ namespace snowshed {
 class CellLists {
  public:
   /// `column` and `row` are those of the particles' cells.
-  void update(const SlideParticles& particles, const AlignedVector<std::int32_t>& column,
-              const AlignedVector<std::int32_t>& row, int threads);
+  void update(const AlignedVector<std::int32_t>& column, const AlignedVector<std::int32_t>& row);
 
   /// Makes room for so many particles anywhere on the terrain.
   void reserve(std::size_t particles, const Terrain& terrain);
@@ -39,14 +37,20 @@ class CellLists {
   const std::vector<std::uint32_t>& order() const { return order_; }
   const std::uint32_t* begins() const { return begin_.data(); }
 
-  // Copies in the order of the entries, for loops over neighbours.
-  const double* x() const { return x_.data(); }
-  const double* y() const { return y_.data(); }
-  const double* mass() const { return mass_.data(); }
+  // What loops over neighbours read, in the order of the entries; filled in by `sum_on_nodes`
+  // (kernel_api.hpp). Entries beyond the last one are zero.
+  double* x() { return x_.data(); }
+  double* y() { return y_.data(); }
+  double* z() { return z_.data(); }
+  double* mass() { return mass_.data(); }
+  /// Takes over masses that have changed.
+  void copy_masses(const AlignedVector<double>& masses) {
+    for (std::size_t e = 0; e < order_.size(); ++e) mass_[e] = masses[order_[e]];
+  }
 
   std::size_t bytes() const {
     return (begin_.capacity() + order_.capacity()) * sizeof(std::uint32_t) +
-           (x_.capacity() + y_.capacity() + mass_.capacity()) * sizeof(double);
+           (x_.capacity() + y_.capacity() + z_.capacity() + mass_.capacity()) * sizeof(double);
   }
 
  private:
@@ -55,7 +59,7 @@ class CellLists {
 
   int first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
   std::vector<std::uint32_t> begin_, order_;
-  AlignedVector<double> x_, y_, mass_;
+  AlignedVector<double> x_, y_, z_, mass_;
 };
 
 }  // namespace snowshed

@@ -103,7 +103,6 @@ void store_energy(const SlideModel& model, const SlideState& state, const SlideW
 void EnergyAudit::begin_step(const SlideState& state) {
   const std::size_t n = state.particles.size();
   before_.resize(n);
-  pushed_.resize(n);
   for (std::size_t i = 0; i < n; ++i) before_[i] = velocity_at(state, i);
   masses_.assign(state.particles.mass.begin(), state.particles.mass.end());
   heights_.assign(state.particles.z.begin(), state.particles.z.end());
@@ -122,8 +121,9 @@ void EnergyAudit::after_ground(const SlideModel& model, const SlideState& state,
   }
 }
 
-void EnergyAudit::before_bonds(const SlideModel& model, const SlideState& state,
-                               const SlideWork& work, SlideEnergy& e) const {
+/// The energy of the bonds that break.
+void EnergyAudit::add_broken(const SlideModel& model, const SlideState& state,
+                             const SlideWork& work, SlideEnergy& e) const {
   const Bonds& bonds = state.bonds;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
@@ -137,25 +137,21 @@ void EnergyAudit::before_bonds(const SlideModel& model, const SlideState& state,
   }
 }
 
-void EnergyAudit::before_motion(const SlideState& state, const SlideWork& work) {
-  for (std::size_t i = 0; i < pushed_.size(); ++i) {
-    const SlideLoads& l = work.loads;
-    pushed_[i] = before_[i] + state.step * Vec3(l.ax[i], l.ay[i], l.az[i]);
-  }
-}
-
 void EnergyAudit::after_motion(const SlideModel& model, const SlideState& state,
                                const SlideWork& work, SlideEnergy& e) const {
-  for (std::size_t i = 0; i < pushed_.size(); ++i) {
+  add_broken(model, state, work, e);
+  const SlideLoads& l = work.loads;
+  for (std::size_t i = 0; i < before_.size(); ++i) {
     const double mass = state.particles.mass[i];
     if (work.removed[i]) {
       e.left += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
       continue;
     }
     // Friction shortens the velocity; afterwards the ground turns it.
-    const double after = velocity_at(state, i).norm(), pushed = pushed_[i].norm();
-    const Vec3 slowed = pushed > 0 ? Vec3(pushed_[i] * (after / pushed)) : pushed_[i];
-    const double work_of_friction = 0.5 * mass * (pushed_[i] - slowed).dot(before_[i] + slowed);
+    const Vec3 pushed = before_[i] + state.step * Vec3(l.ax[i], l.ay[i], l.az[i]);
+    const double after = velocity_at(state, i).norm(), before = pushed.norm();
+    const Vec3 slowed = before > 0 ? Vec3(pushed * (after / before)) : pushed;
+    const double work_of_friction = 0.5 * mass * (pushed - slowed).dot(before_[i] + slowed);
     const Drag drag = drag_parts(model, work, i);
     const double turbulent = drag.turbulent * after * after;
     const double resistance = drag.resistance * after * after;

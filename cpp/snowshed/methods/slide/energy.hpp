@@ -55,7 +55,6 @@ class EnergyAudit {
  public:
   void reserve(std::size_t particles) {
     before_.reserve(particles);
-    pushed_.reserve(particles);
     masses_.reserve(particles);
     heights_.reserve(particles);
   }
@@ -63,14 +62,13 @@ class EnergyAudit {
   void begin_step(const SlideState&);
   /// After friction, viscosity and entrainment are known.
   void after_ground(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&);
-  /// Before bonds are removed.
-  void before_bonds(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
-  void before_motion(const SlideState&, const SlideWork&);
-  /// Before particles that left the terrain are removed.
+  /// Before bonds that break and particles that left the terrain are removed.
   void after_motion(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
 
  private:
-  std::vector<Vec3> before_, pushed_;  // m/s
+  void add_broken(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
+
+  std::vector<Vec3> before_;  // m/s
   std::vector<double> masses_, heights_;
 };
 

@@ -109,6 +109,8 @@ std::size_t SlideSolver::bytes() const {
   count(state_.erodible);
   count(work_.thickness);
   count(work_.predicted);
+  count(work_.pushed);
+  count(work_.sorted_pressing);
   count(work_.bond_force);
   const SlideLoads& l = work_.loads;
   for (const auto* array : {&l.ax, &l.ay, &l.az, &l.yield, &l.drag, &l.speed}) count(*array);

@@ -89,42 +89,29 @@ void apply_ground(const SlideModel& model, SlideState& state, SlideWork& work) {
   if (!state.erodible.empty() || !model.resistance.empty()) sweep(model, state, work);
 }
 
-void add_pressure(const SlideModel& model, SlideState& state, SlideWork& work) {
-  const std::size_t n = state.particles.size();
-  if (!work.entrained.empty())  // new masses
-    work.cells.update(state.particles, work.places.column, work.places.row, work.threads);
+void apply_neighbours(const SlideModel& model, SlideState& state, SlideWork& work) {
+  if (!work.entrained.empty()) work.cells.copy_masses(state.particles.mass);
   const SlideView view = view_of(model, state, work);
   const SlideKernels& kernels = slide_kernels();
-  const auto for_rows = [&](auto kernel) {
-    parallel_pieces(work.cells.rows() - 2, work.threads, 1,
-                    [&](std::ptrdiff_t j, std::ptrdiff_t) { kernel(view, int(j) + 1); });
-  };
-  const auto for_entries = [&](auto kernel) {
-    for_each_piece(work, n,
-                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) { kernel(view, begin, end); });
-  };
-  if (model.compatible()) {
-    for_rows(kernels.map_pressure);
-    return;
-  }
-  for_entries(kernels.show_heights);
-  for_rows(kernels.count_neighbours);
-  for_entries(kernels.weigh_pressure);
-  for_rows(kernels.surface_pressure);
+  const std::ptrdiff_t rows = work.cells.rows() - 2;  // the margin holds no particles
+  if (!model.compatible())
+    parallel_pieces(rows, work.threads, 1, [&](std::ptrdiff_t j, std::ptrdiff_t) {
+      kernels.weigh_pressure(view, int(j) + 1);
+    });
+  const auto pressure = model.compatible() ? kernels.map_pressure : kernels.surface_pressure;
+  std::atomic<bool> breaks{false};
+  parallel_pieces(
+      work.threads,
+      PieceLoop{rows, 1, [&](std::ptrdiff_t j, std::ptrdiff_t) { pressure(view, int(j) + 1); }},
+      PieceLoop{std::ptrdiff_t(state.bonds.size()), particles_in_piece,
+                [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                  if (kernels.stretch_bonds(view, begin, end)) breaks = true;
+                }});
+  work.bonds_break = breaks;
 }
 
-void add_bonds(const SlideModel& model, SlideState& state, SlideWork& work) {
-  if (state.bonds.size() == 0) return;
-  const std::size_t n = state.particles.size();
-  const SlideView view = view_of(model, state, work);
-  std::atomic<bool> breaks{false};
-  for_each_piece(work, state.bonds.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    if (slide_kernels().stretch_bonds(view, begin, end)) breaks = true;
-  });
-  for_each_piece(work, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    slide_kernels().pull(view, begin, end);
-  });
-  if (!breaks) return;
+void remove_broken(SlideState& state, SlideWork& work) {
+  if (!work.bonds_break) return;
   remove_bonds(state.bonds, work.broken);
   work.bond_lists.update(state.bonds, state.particles.size());
 }

@@ -9,12 +9,13 @@ namespace snowshed {
 /// Changes velocities, and masses where snow is entrained.
 void apply_ground(const SlideModel&, SlideState&, SlideWork&);
 
-/// The gradient of the snow's own pressure, by smoothed particle hydrodynamics: along the ground,
-/// or, in compatible mode, along the map. See kernels/surface_pressure.hpp and
-/// kernels/map_pressure.hpp.
-void add_pressure(const SlideModel&, SlideState&, SlideWork&);
+/// What particles do to each other: the gradient of the snow's own pressure by smoothed particle
+/// hydrodynamics, along the ground or, in compatible mode, along the map (see
+/// kernels/surface_pressure.hpp and kernels/map_pressure.hpp), and the forces of the bonds. Marks
+/// those that are strained too much.
+void apply_neighbours(const SlideModel&, SlideState&, SlideWork&);
 
-/// The forces of the bonds. Breaks those that are strained too much.
-void add_bonds(const SlideModel&, SlideState&, SlideWork&);
+/// Removes the bonds that are marked.
+void remove_broken(SlideState&, SlideWork&);
 
 }  // namespace snowshed

@@ -63,17 +63,17 @@ struct SlideView {
   double* drag;          // 1/m, deceleration over the square of the speed
   double* speed;         // m/s, at the beginning of the step
   double* predicted;     // records of x, y, z at the end of the step without forces, and thickness
+  double* pushed;        // records of force by the snow's pressure (N) and 0
   char* removed;         // set for those that left the terrain
 
-  // Particles in the order of their cells.
-  const double *sorted_x, *sorted_y, *sorted_mass;
-  double *sorted_z, *sorted_pressing;  // default mode: m; see weigh_pressure
+  // Particles in the order of their cells; default mode: z, and what pressure is multiplied by.
+  double *sorted_x, *sorted_y, *sorted_z, *sorted_mass, *sorted_pressing;
   const std::uint32_t* sorted_particle;
   const std::uint32_t* cell_begin;  // of the cells of a rectangle with a margin, row by row
   int cell_columns, cell_rows;
 
   // Bonds, and for each particle its bonds: twice the bond's place, and one more where it is
-  // second.
+  // second. Null without bonds.
   const std::uint32_t *bond_first, *bond_second;
   const double* rest_length;
   char* broken;
@@ -94,30 +94,27 @@ struct SlideKernels {
   void (*locate)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Mixes velocities with those of the snow around and finds how the ground acts.
   void (*ground)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Fills in the heights of the particles in the order of their cells; then, for the particles of
-  /// a row of cells, how many neighbours they see; then what their pressure is multiplied by.
-  void (*show_heights)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  void (*count_neighbours)(const SlideView&, int row);
-  void (*weigh_pressure)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Adds the acceleration by the snow's pressure to the particles of a row of cells: along the
-  /// ground, or along the map as AvaFrame does it.
+  /// Default mode: finds for the particles of a row of cells what pressure is multiplied by.
+  void (*weigh_pressure)(const SlideView&, int row);
+  /// Finds the force by the snow's pressure on the particles of a row of cells: along the ground,
+  /// or along the map as AvaFrame does it.
   void (*surface_pressure)(const SlideView&, int row);
   void (*map_pressure)(const SlideView&, int row);
   /// Finds the forces of bonds; returns whether one breaks.
   bool (*stretch_bonds)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Adds them to the particles.
-  void (*pull)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Moves the particles; returns their kinetic energy, J.
+  /// Moves the particles by all that acts on them; returns their kinetic energy, J.
   double (*advance)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Sums mass and momentum of the particles of a row of cells on the nodes. The odd rows follow
-  /// when all even ones are done; they turn the sums into thickness and velocity, and raise the
-  /// peaks.
+  /// Sums mass and momentum of the particles of a row of cells on the nodes, and copies what their
+  /// neighbours will read of them. The odd rows follow when all even ones are done; they turn the
+  /// sums into thickness and velocity, and raise the peaks.
   void (*sum_on_nodes)(const SlideView&, int row);
-  /// Default mode: raises the peak speed along a row of nodes, from two rows before the rectangle
-  /// to two rows after it, when all sums are done.
+  /// Default mode: raises the peak speed along a row of nodes, when all sums are done.
   void (*raise_mean_speed)(const SlideView&, int row);
   /// Finds the thickness of the snow at the particles.
   void (*thickness)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Finds the smallest and the largest of at least one number.
+  void (*bounds)(const std::int32_t* values, std::ptrdiff_t count, std::int32_t& low,
+                 std::int32_t& high);
 };
 
 /// Returns those of the instruction set in use.

@@ -236,12 +236,10 @@ void SlideSolver::step() {
   if (audited) audit.begin_step(state_);
   apply_ground(model_, state_, work_);
   if (audited) audit.after_ground(model_, state_, work_, state_.energy);
-  add_pressure(model_, state_, work_);
-  if (audited) audit.before_bonds(model_, state_, work_, state_.energy);
-  add_bonds(model_, state_, work_);
-  if (audited) audit.before_motion(state_, work_);
+  apply_neighbours(model_, state_, work_);
   advance(model_, state_, work_);
   if (audited) audit.after_motion(model_, state_, work_, state_.energy);
+  remove_broken(state_, work_);
   remove_marked(state_, work_);
   split_heavy(model_, state_, work_);
   refresh_fields(model_, state_, work_, &state_.peaks);

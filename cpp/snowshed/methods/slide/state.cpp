@@ -57,6 +57,7 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   thickness.reserve(most);
   loads.resize(now);
   predicted.resize(4 * now);
+  pushed.resize(4 * now);
   entrained.resize(state.erodible.empty() ? 0 : now);
   removed.resize(now);
   new_places.reserve(most);
@@ -67,10 +68,8 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
   cells.reserve(most, model.terrain);
   if (!model.compatible()) {
     // Lanes beyond the last particle have the weight 0, which must not meet infinity.
-    for (AlignedVector<double>* values : {&sorted_z, &sorted_pressing}) {
-      values->resize(now + sorted_padding);
-      std::fill(values->end() - std::ptrdiff_t(sorted_padding), values->end(), 0.0);
-    }
+    sorted_pressing.resize(now + sorted_padding);
+    std::fill(sorted_pressing.end() - std::ptrdiff_t(sorted_padding), sorted_pressing.end(), 0.0);
   }
   fields.reserve(model.terrain, !model.compatible());
   if (model.keeps_energy) audit.reserve(now);
@@ -105,7 +104,7 @@ void view_model(const SlideModel& model, SlideView& v) {
   v.added_speed = model.compatible() ? 1e-6 : 0.0;
 }
 
-void view_places(SlideWork& work, SlideView& v) {
+void view_places(const SlideModel& model, SlideWork& work, SlideView& v) {
   Places& p = work.places;
   v.column = p.column.data();
   v.row = p.row.data();
@@ -123,6 +122,7 @@ void view_places(SlideWork& work, SlideView& v) {
   v.flow_columns = work.fields.columns();
   v.sorted_x = work.cells.x();
   v.sorted_y = work.cells.y();
+  v.sorted_z = model.compatible() ? nullptr : work.cells.z();
   v.sorted_mass = work.cells.mass();
   v.sorted_particle = work.cells.order().data();
   v.cell_begin = work.cells.begins();
@@ -151,17 +151,12 @@ void view_loads(SlideWork& work, SlideView& v) {
   v.drag = l.drag.data();
   v.speed = l.speed.data();
   v.predicted = work.predicted.data();
+  v.pushed = work.pushed.data();
   v.removed = work.removed.data();
 }
 
-}  // namespace
-
-SlideView view_of(const SlideModel& model, SlideState& state, SlideWork& work) {
-  SlideView v{};
-  view_model(model, v);
-  view_places(work, v);
-  view_loads(work, v);
-  view_particles(state, v);
+void view_bonds(const SlideState& state, SlideWork& work, SlideView& v) {
+  if (state.bonds.size() == 0) return;
   v.bond_first = state.bonds.first.data();
   v.bond_second = state.bonds.second.data();
   v.rest_length = state.bonds.rest_length.data();
@@ -169,7 +164,17 @@ SlideView view_of(const SlideModel& model, SlideState& state, SlideWork& work) {
   v.bond_force = work.bond_force.data();
   v.bond_begin = work.bond_lists.begins();
   v.bond_entry = work.bond_lists.entries();
-  v.sorted_z = work.sorted_z.data();
+}
+
+}  // namespace
+
+SlideView view_of(const SlideModel& model, SlideState& state, SlideWork& work) {
+  SlideView v{};
+  view_model(model, v);
+  view_places(model, work, v);
+  view_loads(work, v);
+  view_particles(state, v);
+  view_bonds(state, work, v);
   v.sorted_pressing = work.sorted_pressing.data();
   v.time_step = state.step;
   return v;
@@ -179,7 +184,7 @@ void refresh_places(const SlideModel& model, const SlideState& state, SlideWork&
                     std::size_t begin, std::size_t end) {
   SlideView view{};
   view_model(model, view);
-  view_places(work, view);
+  view_places(model, work, view);
   view_particles(state, view);
   for_each_piece(work, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
     const auto from = std::ptrdiff_t(begin);
@@ -191,6 +196,7 @@ void refresh(const SlideModel& model, const SlideState& state, SlideWork& work,
              PeakFields* raised) {
   const std::size_t n = state.particles.size();
   work.threads = model.threads_for(n);
+  work.none_splits = false;
   work.places.resize(n);
   refresh_places(model, state, work, 0, n);
   work.bond_lists.update(state.bonds, n);
@@ -212,12 +218,12 @@ double lightest(const SlideParticles& p) {
 void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork& work,
                     PeakFields* raised) {
   const SlideParticles& p = state.particles;
-  work.cells.update(p, work.places.column, work.places.row, work.threads);
+  work.cells.update(work.places.column, work.places.row);
   work.fields.take_shape(work.cells);
   work.thickness.resize(p.size());
   SlideView view{};
   view_model(model, view);
-  view_places(work, view);
+  view_places(model, work, view);
   view_particles(state, view);
   if (raised) {
     view.peak_thickness = raised->thickness.data();
@@ -233,10 +239,9 @@ void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork&
                     });
   if (view.sums) {
     view.fading_mass = share_of_fading * lightest(p);
-    parallel_pieces(work.cells.rows() + 4, work.threads, 1,
-                    [&](std::ptrdiff_t row, std::ptrdiff_t) {
-                      slide_kernels().raise_mean_speed(view, int(row) - 2);
-                    });
+    parallel_pieces(work.cells.rows(), work.threads, 1, [&](std::ptrdiff_t row, std::ptrdiff_t) {
+      slide_kernels().raise_mean_speed(view, int(row));
+    });
   }
   for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     slide_kernels().thickness(view, begin, end);

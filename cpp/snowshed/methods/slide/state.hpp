@@ -110,17 +110,20 @@ struct SlideWork {
   Places places;
   AlignedVector<double> thickness;  // m, of the snow at the particles
   CellLists cells;
-  AlignedVector<double> sorted_z, sorted_pressing;  // in the order of the cells, see SlideView
+  AlignedVector<double> sorted_pressing;  // in the order of the cells, see SlideView
   GridFields fields;
   BondLists bond_lists;
   SlideLoads loads;
   AlignedVector<double> predicted;   // records of four for each particle, see SlideView
+  AlignedVector<double> pushed;      // records of four for each particle
   AlignedVector<double> bond_force;  // records of four for each bond
   std::vector<double> entrained;     // kg, by each particle in this step; empty where there is none
   std::vector<char> removed;         // particles that left the terrain
   std::vector<char> broken;          // bonds
+  bool bonds_break = false;          // whether any of them does in this step
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
+  bool none_splits = false;  // no particle is too heavy, and none becomes heavier
   EnergyAudit audit;
   int threads = 1;  // that share the loops
   ThreadChoice thread_choice;

@@ -24,17 +24,16 @@ SNOWSHED_INLINE PackMask stretch_lanes(const SlideView& s, const Lanes& l) {
   return breaks;
 }
 
-SNOWSHED_INLINE void pull_particle(const SlideView& s, std::ptrdiff_t i) {
+/// The force by all bonds of a particle, N.
+SNOWSHED_INLINE Quad pull_on(const SlideView& s, std::ptrdiff_t i) {
   static constexpr double signs[2] = {1, -1};
   Quad sum{};
+  if (!s.bond_begin) return sum;
   for (std::uint32_t e = s.bond_begin[i]; e < s.bond_begin[i + 1]; ++e) {
     const std::uint32_t entry = s.bond_entry[e];
     sum += signs[entry & 1] * load_row(s.bond_force + 4 * std::ptrdiff_t(entry >> 1));
   }
-  const double per_mass = 1 / s.mass[i];
-  s.ax[i] += per_mass * sum[0];
-  s.ay[i] += per_mass * sum[1];
-  s.az[i] += per_mass * sum[2];
+  return sum;
 }
 
 SNOWSHED_VARIANT_END

@@ -23,15 +23,7 @@ void ground(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   });
 }
 
-void show_heights(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  for (std::ptrdiff_t e = begin; e < end; ++e) s.sorted_z[e] = s.z[s.sorted_particle[e]];
-}
-
-void count_neighbours(const SlideView& s, int row) { count_row(s, row); }
-
-void weigh_pressure(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  weigh_entries(s, begin, end);
-}
+void weigh_pressure(const SlideView& s, int row) { weigh_row(s, row); }
 
 void surface_pressure(const SlideView& s, int row) { surface_pressure_row(s, row); }
 
@@ -41,10 +33,6 @@ bool stretch_bonds(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end)
   PackMask broken{};
   for_each_lanes(begin, end, [&](const Lanes& l) { broken |= stretch_lanes(s, l); });
   return any_lane(broken);
-}
-
-void pull(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  for (std::ptrdiff_t i = begin; i < end; ++i) pull_particle(s, i);
 }
 
 double advance(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -64,13 +52,23 @@ void thickness(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
                  [&](const Lanes& l) { l.store(s.thickness, flow_at(s, stored_place(s, l)).a); });
 }
 
+void bounds(const std::int32_t* values, std::ptrdiff_t count, std::int32_t& low,
+            std::int32_t& high) {
+  std::int32_t least = values[0], most = values[0];
+  for (std::ptrdiff_t i = 1; i < count; ++i) {
+    least = values[i] < least ? values[i] : least;
+    most = values[i] > most ? values[i] : most;
+  }
+  low = least;
+  high = most;
+}
+
 }  // namespace
 
 extern const SlideKernels slide_kernel_table;
 const SlideKernels slide_kernel_table{
-    &locate,         &ground,           &show_heights,     &count_neighbours,
-    &weigh_pressure, &surface_pressure, &map_pressure,     &stretch_bonds,
-    &pull,           &advance,          &sum_row_on_nodes, &raise_mean_speed_of_row,
-    &thickness};
+    &locate,        &ground,  &weigh_pressure,   &surface_pressure,        &map_pressure,
+    &stretch_bonds, &advance, &sum_row_on_nodes, &raise_mean_speed_of_row, &thickness,
+    &bounds};
 
 SNOWSHED_VARIANT_END

@@ -15,16 +15,16 @@ SNOWSHED_INLINE void map_pressure_on(const SlideView& s, double factor, std::uin
     const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
     for (int k = 0; k < count; ++k) {
       const V dx = x - s.sorted_x[first + k], dy = y - s.sorted_y[first + k];
-      const V w = mass * spiky_gradient(V(dx * dx + dy * dy), s.cell);
+      const V w = spiky_gradient(mass, V(dx * dx + dy * dy), s.cell);
       gx[k] += w * dx;
       gy[k] += w * dy;
     }
   });
   const Quad sums = factor * sums_of(gx[0], gy[0], gx[1], gy[1]);
   for (int k = 0; k < count; ++k) {
-    const std::uint32_t i = s.sorted_particle[first + k];
-    s.ax[i] += sums[2 * k];
-    s.ay[i] += sums[2 * k + 1];
+    const double mass = s.sorted_mass[first + k];
+    store_row(s.pushed + 4 * std::ptrdiff_t(s.sorted_particle[first + k]),
+              Quad{mass * sums[2 * k], mass * sums[2 * k + 1], 0, 0});
   }
 }
 

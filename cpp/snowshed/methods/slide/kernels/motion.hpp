@@ -1,7 +1,7 @@
 // The end of a step: velocities after all that acts, and particles on their way over the ground.
 #pragma once
 
-#include "snowshed/methods/slide/kernels/places.hpp"
+#include "snowshed/methods/slide/kernels/bond_forces.hpp"
 
 SNOWSHED_VARIANT_BEGIN
 
@@ -68,10 +68,22 @@ struct PackMotion {
   PackReprojection on_ground;
 };
 
+/// The acceleration by all but friction, which is kept.
+SNOWSHED_INLINE PackVec acceleration(const SlideView& s, const Lanes& l) {
+  const PackRecord force = taken_apart([&](int k) SNOWSHED_INLINE_LAMBDA {
+    const std::ptrdiff_t i = l.first + (k < l.count ? k : 0);
+    return Quad(load_row(s.pushed + 4 * i) + pull_on(s, i));
+  });
+  const PackVec a =
+      l.load(s.ax, s.ay, s.az) + Pack(1.0 / l.load(s.mass)) * PackVec{force.a, force.b, force.c};
+  l.store(s.ax, s.ay, s.az, a);
+  return a;
+}
+
 SNOWSHED_INLINE void accelerate(const SlideView& s, const Lanes& l, PackMotion& motion) {
   const Pack dt = broadcast<Pack>(s.time_step);
   const PackVec before = l.load(s.ux, s.uy, s.uz);
-  const PackSlowed slow = slowed_by(s, l, before + dt * l.load(s.ax, s.ay, s.az));
+  const PackSlowed slow = slowed_by(s, l, before + dt * acceleration(s, l));
   const PackVec twice = before + slow.velocity;
   motion.velocity = slow.velocity;
   motion.moves = dot(twice, twice) > 0.0;

@@ -50,14 +50,14 @@ SNOWSHED_INLINE V within(const V& values, std::uint32_t e, std::uint32_t end) {
   return select(lane_numbers<V>() < double(end - e), values, V{});
 }
 
-/// (R - r)^2 / r from the square of the distance r: the gradient of the kernel with the radius R,
-/// over the distance and but for its constant.
+/// weight (R - r)^2 / r from the square of the distance r, and 0 from the radius R on: the gradient
+/// of the kernel, over the distance and but for its constant.
 template <class V>
-SNOWSHED_INLINE V spiky_gradient(const V& square, double radius) {
-  const double least = 1e-3 * radius;
-  const V s = max(square, broadcast<V>(least * least)), per_length = inverse_sqrt(s);
-  const V inside = max(V{}, V(radius - s * per_length));
-  return inside * inside * per_length;
+SNOWSHED_INLINE V spiky_gradient(const V& weight, const V& square, double radius) {
+  const double least = 1e-3 * radius, most = radius * radius;
+  const V s = max(square, broadcast<V>(least * least));
+  const V gradient = (most + s) * inverse_sqrt(s) - 2 * radius;
+  return select(s < most, V(weight * gradient), V{});
 }
 SNOWSHED_INLINE double spiky_constant(double radius) {
   const double pi = 3.14159265358979323846;
@@ -75,7 +75,7 @@ SNOWSHED_INLINE Quad sums_of(const V& a, const V& b, const V& c, const V& d) {
     return sums_of<Quad>(folded(a), folded(b), folded(c), folded(d));
   } else if constexpr (sizeof(V) == 32) {
     Quad rows[4] = {a, b, c, d};
-    transpose(rows[0], rows[1], rows[2], rows[3]);
+    transpose(rows);
     return (rows[0] + rows[1]) + (rows[2] + rows[3]);
   } else {
     return Quad{a[0] + a[1], b[0] + b[1], c[0] + c[1], d[0] + d[1]};

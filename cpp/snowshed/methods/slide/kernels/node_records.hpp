@@ -24,6 +24,22 @@ SNOWSHED_INLINE bool any_lane(const PackMask& mask) {
 #endif
 }
 
+// The compiler would take eight lanes apart into halves for these.
+SNOWSHED_INLINE Pack as_doubles(const PackIndex& v) {
+#ifdef __AVX512F__
+  return (Pack)_mm512_cvtepi32_pd((__m256i)v);
+#else
+  return __builtin_convertvector(v, Pack);
+#endif
+}
+SNOWSHED_INLINE PackMask as_mask(const PackIndex& v) {
+#ifdef __AVX512F__
+  return (PackMask)_mm512_cvtepi32_epi64((__m256i)v);
+#else
+  return __builtin_convertvector(v, PackMask);
+#endif
+}
+
 SNOWSHED_INLINE double sum_of_lanes(const Pack& v) {
   double sum = 0;
   for (int i = 0; i < pack_lanes; ++i) sum += v[i];
@@ -36,20 +52,9 @@ struct PackRecord {
 
 /// Exchanges rows and columns of four packs, within each half of a pack where it has eight lanes.
 SNOWSHED_INLINE PackRecord transposed(const PackRecord& r) {
-#ifdef __AVX512F__
-  const Pack even_ab = __builtin_shufflevector(r.a, r.b, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Pack odd_ab = __builtin_shufflevector(r.a, r.b, 1, 9, 3, 11, 5, 13, 7, 15);
-  const Pack even_cd = __builtin_shufflevector(r.c, r.d, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Pack odd_cd = __builtin_shufflevector(r.c, r.d, 1, 9, 3, 11, 5, 13, 7, 15);
-  return {__builtin_shufflevector(even_ab, even_cd, 0, 1, 8, 9, 4, 5, 12, 13),
-          __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 8, 9, 4, 5, 12, 13),
-          __builtin_shufflevector(even_ab, even_cd, 2, 3, 10, 11, 6, 7, 14, 15),
-          __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 10, 11, 6, 7, 14, 15)};
-#else
-  PackRecord t = r;
-  transpose(t.a, t.b, t.c, t.d);
-  return t;
-#endif
+  Pack rows[4] = {r.a, r.b, r.c, r.d};
+  transpose(rows);
+  return {rows[0], rows[1], rows[2], rows[3]};
 }
 
 /// A record of each lane, taken apart into its four values; record(i) is that of lane i.
@@ -80,12 +85,7 @@ SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
 #endif
 }
 
-SNOWSHED_INLINE Pack load_pack(const double* p) {
-  Pack v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-SNOWSHED_INLINE void store_pack(double* p, const Pack& v) { std::memcpy(p, &v, sizeof v); }
+SNOWSHED_INLINE Pack load_pack(const double* p) { return load_pack<Pack>(p, pack_lanes); }
 
 /// What is read of the records of the four nodes around a place.
 enum class NodeRecord {
@@ -150,7 +150,7 @@ template <NodeRecord record>
 SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const PackIndex& first,
                                       const NodeWeights& weights) {
   alignas(pack_bytes) double w[4][pack_lanes];
-  for (int k = 0; k < 4; ++k) store_pack(w[k], weights.of[k]);
+  for (int k = 0; k < 4; ++k) store_pack(w[k], weights.of[k], pack_lanes);
   return taken_apart([&](int i) SNOWSHED_INLINE_LAMBDA {
     const double* a = nodes + 4 * std::ptrdiff_t(first[i]);
     const double* b = a + 4 * std::ptrdiff_t(columns);

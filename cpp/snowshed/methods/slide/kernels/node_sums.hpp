@@ -11,12 +11,17 @@ struct NodePair {
   Quad south, north;
 };
 
-/// What the particles of a cell hand on to the nodes to the west and to the east; adds to them.
+/// What the particles of a cell hand on to the nodes to the west and to the east; adds to them, and
+/// copies what their neighbours will read.
 SNOWSHED_INLINE void hand_on(const SlideView& s, std::uint32_t begin, std::uint32_t end,
                              NodePair& west, NodePair& east) {
   for (std::uint32_t e = begin; e < end; ++e) {
     const std::uint32_t i = s.sorted_particle[e];
     const double mass = s.mass[i];
+    s.sorted_x[e] = s.x[i];
+    s.sorted_y[e] = s.y[i];
+    if (s.sorted_z) s.sorted_z[e] = s.z[i];
+    s.sorted_mass[e] = mass;
     const Quad carried{mass, mass * s.ux[i], mass * s.uy[i], mass * s.uz[i]};
     const Quad to_east = s.east[i] * carried, to_west = carried - to_east;
     const Quad north_east = s.north[i] * to_east, north_west = s.north[i] * to_west;

@@ -37,45 +37,18 @@ struct Lanes {
   std::ptrdiff_t first;
   int count;
 
-  SNOWSHED_INLINE Pack load(const double* p) const {
-    p += first;
-    if (count == pack_lanes) return load_pack(p);
-    Pack v = broadcast<Pack>(p[0]);
-    for (int i = 1; i < count; ++i) v[i] = p[i];
-    return v;
-  }
+  SNOWSHED_INLINE Pack load(const double* p) const { return load_pack<Pack>(p + first, count); }
   /// Those that hold an entry of their own.
-  SNOWSHED_INLINE PackMask filled() const {
-    PackMask lane{};
-    for (int i = 0; i < pack_lanes; ++i) lane[i] = i;
-    return lane < count;
-  }
+  SNOWSHED_INLINE PackMask filled() const { return first_lanes<Pack>(count); }
   SNOWSHED_INLINE PackIndex load(const std::int32_t* p) const {
-    p += first;
-    PackIndex v;
-    if (count == pack_lanes) {
-      std::memcpy(&v, p, sizeof v);
-      return v;
-    }
-    for (int i = 0; i < pack_lanes; ++i) v[i] = p[i < count ? i : 0];
-    return v;
+    return load_pack<PackIndex>(p + first, count);
   }
   SNOWSHED_INLINE PackVec load(const double* x, const double* y, const double* z) const {
     return {load(x), load(y), load(z)};
   }
-  SNOWSHED_INLINE void store(double* p, const Pack& v) const {
-    p += first;
-    if (count == pack_lanes)
-      store_pack(p, v);
-    else
-      for (int i = 0; i < count; ++i) p[i] = v[i];
-  }
+  SNOWSHED_INLINE void store(double* p, const Pack& v) const { store_pack(p + first, v, count); }
   SNOWSHED_INLINE void store(std::int32_t* p, const PackIndex& v) const {
-    p += first;
-    if (count == pack_lanes)
-      std::memcpy(p, &v, sizeof v);
-    else
-      for (int i = 0; i < count; ++i) p[i] = v[i];
+    store_pack(p + first, v, count);
   }
   SNOWSHED_INLINE void store_flags(char* p, const PackMask& set) const {
     if (!any_lane(set))
@@ -143,8 +116,8 @@ SNOWSHED_INLINE PackPlace place_of(const SlideView& s, const Pack& x, const Pack
   j = select(p.inside, j, Pack{});
   p.column = __builtin_convertvector(i, PackIndex);
   p.row = __builtin_convertvector(j, PackIndex);
-  p.east = i - __builtin_convertvector(p.column, Pack);
-  p.north = j - __builtin_convertvector(p.row, Pack);
+  p.east = i - as_doubles(p.column);
+  p.north = j - as_doubles(p.row);
   return p;
 }
 
@@ -203,7 +176,7 @@ SNOWSHED_INLINE PackReprojection reproject(const SlideView& s, Pack x, Pack y, P
     z = select(moving, Pack(z + distance * ground.normal.z), z);
     place = place_of(s, x, y);  // unchanged where x and y are
     const PackIndex same = (place.column == column) & (place.row == row);
-    moving &= place.inside & ~__builtin_convertvector(same, PackMask);
+    moving &= place.inside & ~as_mask(same);
   }
   return {x, y, place};
 }

@@ -42,14 +42,13 @@ SNOWSHED_INLINE void count_neighbours_of(const SlideView& s, std::uint32_t first
   for (int k = 0; k < count; ++k) s.sorted_pressing[first + k] = sums[k] / s.sorted_mass[first + k];
 }
 
-SNOWSHED_INLINE void count_row(const SlideView& s, int row) {
+/// Finds what the pressure of the particles of a row is multiplied by.
+SNOWSHED_INLINE void weigh_row(const SlideView& s, int row) {
   for_each_neighbourhood(s, row,
                          [&](std::uint32_t e, auto count, const Neighbourhood& around)
                              SNOWSHED_INLINE_LAMBDA { count_neighbours_of<count>(s, e, around); });
-}
-
-/// Turns these numbers into what pressure is multiplied by.
-SNOWSHED_INLINE void weigh_entries(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const std::uint32_t* cells = s.cell_begin + std::ptrdiff_t(row) * s.cell_columns;
+  const std::ptrdiff_t begin = cells[0], end = cells[s.cell_columns];
   using V = SimdPack<double>;
   constexpr int width = simd_width<double>;
   for (std::ptrdiff_t e = begin; e < end; e += width) {
@@ -74,7 +73,7 @@ SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, double factor, std:
     for (int k = 0; k < count; ++k) {
       const Way<V> way(s, first + k, there);
       const V pressing = theirs + mass * s.sorted_pressing[first + k];
-      const V w = pressing * spiky_gradient(way.square(), s.cell);
+      const V w = spiky_gradient(pressing, way.square(), s.cell);
       sx[k] += w * way.x;
       sy[k] += w * way.y;
       sz[k] += w * way.z;
@@ -82,11 +81,11 @@ SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, double factor, std:
   });
   for (int k = 0; k < count; ++k) {
     const std::uint32_t i = s.sorted_particle[first + k];
-    const Quad p = factor * sums_of(sx[k], sy[k], sz[k], V{});
-    const double lift = p[0] * s.nx[i] + p[1] * s.ny[i] + p[2] * s.nz[i];
-    s.ax[i] += p[0] - lift * s.nx[i];
-    s.ay[i] += p[1] - lift * s.ny[i];
-    s.az[i] += p[2] - lift * s.nz[i];
+    const double mass = s.sorted_mass[first + k];
+    const Quad p = (factor * mass) * sums_of(sx[k], sy[k], sz[k], V{});
+    const Quad normal{s.nx[i], s.ny[i], s.nz[i], 0};
+    const double lift = p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2];
+    store_row(s.pushed + 4 * std::ptrdiff_t(i), p - lift * normal);
   }
 }
 
