@@ -10,8 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from snowshed._core import InputError
+from snowshed.io.array_archive import open_archive
 from snowshed.io.atomic import replacing
 from snowshed.io.damage import DAMAGED
+from snowshed.io.input_file import read_regular
 
 Singles = NDArray[np.float32]
 FIRST_INTERVAL = 0.25  # s between frames, to begin with
@@ -98,12 +101,12 @@ class FrameSeries:
         """Return the frames of a file before a time, s; none if there is no such file."""
         series = cls()
         try:
-            with np.load(file, allow_pickle=False) as archive:
+            with open_archive(read_regular(file)) as archive:
                 for number, (time, row, column) in enumerate(archive["places"].tolist()):
                     if time < until:
                         cut = archive[f"frame{number}"]
                         series.frames.append(Frame(time, cut, int(row), int(column)))
-        except (OSError, *DAMAGED):
+        except (InputError, OSError, *DAMAGED):
             return cls()  # the page begins later; nothing else depends on it
         times = [frame.time for frame in series.frames]
         if len(times) > 1:
