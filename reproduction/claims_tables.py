@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from reproduction.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, Judged
+from snowshed.io.csv_table import csv_text
 from snowshed.plot.html_page import Grid
 
 VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
@@ -32,5 +33,4 @@ def claims_csv(claims: Sequence[Judged]) -> str:
         for one in claims
     ]
     columns = ["source", "claim", "confirmed_if", "verdict", "finding"]
-    text: str = pd.DataFrame(rows, columns=columns).to_csv(index=False)
-    return text
+    return csv_text(pd.DataFrame(rows, columns=columns))

@@ -1,5 +1,6 @@
 """The house as docs/architecture.md draws it: arrows point down, and nothing grows too large."""
 
+import ast
 import re
 import subprocess
 import sys
@@ -131,3 +132,62 @@ def test_no_source_file_is_long():
     patterns = [f"*.{ending}" for ending in ("py", "hpp", "cpp", "lua", "sh", "cmake")]
     lengths = {path: len(path.read_text().splitlines()) for path in tracked(*patterns)}
     assert {str(path): n for path, n in lengths.items() if n > MOST_LINES} == {}
+
+
+#: What writes a file that is there under its own name before it is whole.
+WRITERS = {"write_text", "write_bytes", "savefig", "savez", "savez_compressed", "savetxt", "to_csv"}
+WRITERS |= {"to_parquet", "to_netcdf", "copyfile", "copytree"}
+#: Who may do so elsewhere, and why.
+WRITE_BY_NAME = {
+    "io/csv_table.py": "makes texts only",
+    "run/avaframe_outputs.py": "copies files that it does not know",
+    "scene/builders/terrain.py": "has a temporary folder",
+    "study/formats.py": "is given the file beside",
+}
+
+
+def own_names(tree):
+    """Return the names that a module has from `replacing`, and those of files in memory."""
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.With) and "replacing" in ast.dump(node.items[0].context_expr):
+            names |= {item.optional_vars.id for item in node.items}
+        if isinstance(node, ast.Assign) and "BytesIO" in ast.dump(node.value):
+            names |= {target.id for target in node.targets}
+    return names
+
+
+def writes_by_name(tree):
+    """Yield the calls that write files, but for those to what `replacing` gave or to memory."""
+    own = own_names(tree)
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+            continue
+        words = {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
+        texts = [one.value for one in ast.walk(node) if isinstance(one, ast.Constant)]
+        name = node.func.attr
+        opens = name == "open" and any(re.fullmatch("[wax]b?", str(text)) for text in texts)
+        saves = name == "save" and "np" in words
+        if (name in WRITERS or opens or saves) and not words & own:
+            yield f"line {node.lineno}: {name}"
+
+
+def test_files_are_written_by_the_one_writer():
+    package = ROOT / "python" / "snowshed"
+    wrong = []
+    for source in tracked("python/snowshed/**/*.py"):
+        name = source.relative_to(package).as_posix()
+        if name not in WRITE_BY_NAME:
+            found = writes_by_name(ast.parse(source.read_text(encoding="utf-8")))
+            wrong += [f"{name}, {one}" for one in found]
+    assert wrong == []
+
+
+def test_tables_pass_the_one_sanitizer():
+    folders = ("python", "validation", "reproduction", "thesis", "hagenmuller")
+    wrong = [
+        str(source.relative_to(ROOT))
+        for source in tracked(*(f"{folder}/**/*.py" for folder in folders))
+        if ".to_csv(" in source.read_text(encoding="utf-8") and source.name != "csv_table.py"
+    ]
+    assert wrong == []

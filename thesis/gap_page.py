@@ -25,6 +25,7 @@ from snowshed.analysis.regression.summary import (
     thesis_relative_error,
 )
 from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import write_csv
 from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
@@ -255,8 +256,7 @@ def keep(
         read_variants_file(deviations)
         shutil.copyfile(deviations, data / DEVIATIONS_FILE)
     if seeds is not None:
-        text = read_scatter(seeds).to_csv(index=False, float_format="%.5g")
-        write_text(data / SCATTER_FILE, text)
+        write_csv(read_scatter(seeds), data / SCATTER_FILE, float_format="%.5g")
     if regressions is not None:
         for name in regressed_rows():
             for file in KEPT:

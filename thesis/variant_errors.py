@@ -17,8 +17,7 @@ from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.pipeline import regress
 from snowshed.analysis.regression.rows import rows_of
 from snowshed.analysis.regression.summary import QUARTILES
-from snowshed.io.atomic import write_text
-from snowshed.io.csv_table import read_csv
+from snowshed.io.csv_table import read_csv, write_csv
 from snowshed.snow.stack.trimming import TRIMMINGS
 from thesis.regression_stage import KINDS, TARGET
 from thesis.sections.regression import ERRORS, read_regressed
@@ -90,7 +89,7 @@ def read_variant_errors(file: Path = FILE) -> pd.DataFrame:
 def main(stacks: Path, output: Path) -> None:
     """Regress the rows of a deviations/stacks.csv, and write the table of all regressions."""
     table = variant_errors(read_variants_file(stacks))
-    write_text(output, table.to_csv(index=False, float_format="%.6g"))
+    write_csv(table, output, float_format="%.6g")
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ from snowshed.analysis.verification.measurements import Measurement, to_table
 from snowshed.analysis.verification.solutions import rows_of, solutions
 from snowshed.io import formatting
 from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import write_csv
 from snowshed.plot.html_page import template, write_pictures
 from validation import sections
 from validation.bars import Bar, compare
@@ -95,11 +96,10 @@ def write_report(suite: Suite, folder: Path) -> list[Bar]:
     ]
     pictures = [picture for about in about_cases for picture in about.pictures]
     write_pictures(pictures, folder / "figures")
-    write_text(folder / "results.csv", table.to_csv(index=False, float_format="%.9g"))
+    write_csv(table, folder / "results.csv", float_format="%.9g")
     write_text(folder / "results.json", json_text(suite, table, bars, answers))
     if suite.stress is not None:
-        runs = suite.stress.runs.to_csv(index=False, float_format="%.9g")
-        write_text(folder / "stress.csv", runs)
+        write_csv(suite.stress.runs, folder / "stress.csv", float_format="%.9g")
     page = render(suite, bars, answers, about_cases)
     write_text(folder / "verification.html", page)
     return bars

@@ -12,9 +12,10 @@ from plot.browser import open_page
 
 from snowshed import InputError, Results
 from snowshed.io.film import Film
+from snowshed.io.printable import HARMFUL
 from snowshed.plot.film_page import VIEWER, MeasureLine, ViewContent, write_view_page
 from snowshed.plot.film_summary import summarise_film
-from snowshed.plot.solids import scene_solids
+from snowshed.plot.solids import Box, scene_solids
 from snowshed.run.video import write_video
 from snowshed.run.view import view_content, write_view
 
@@ -30,6 +31,22 @@ SCENE = {
         {"shape": BLOCK, "motion": {"velocity": [1, 0, 0]}},
     ],
 }  # fmt: skip
+
+
+def test_texts_of_scene_and_film_do_no_harm(tmp_path):
+    hostile = "\x1b[2J\u202e$\\frac$<b>\x9b"
+    quantity = {"name": hostile, "unit": hostile, "meaning": "," + hostile, "step": 0.01}
+    frames = film_files.falling_film(40, 3)
+    (tmp_path / "film.bin").write_bytes(film_files.film_bytes(frames, quantities=[quantity]))
+    content = ViewContent(
+        hostile, hostile, [(hostile, hostile)], [], Box(np.zeros(3), np.ones(3)), [hostile],
+        [MeasureLine(1, (0, 0, 0), (1, 0, 0), hostile)],
+    )  # fmt: skip
+    write_view_page(tmp_path / "view.html", Film(tmp_path / "film.bin"), content)
+    text = (tmp_path / "view.html").read_text(encoding="utf-8")
+    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
+    shown = [data["measures"][0]["label"], *(one["title"] for one in data["colourings"])]
+    assert not HARMFUL.search(text + "".join(shown)) and "<b>" not in text
 
 
 @pytest.fixture(scope="module")

@@ -61,6 +61,7 @@ def test_rows_from_before_the_readings_had_names_are_of_the_one_there_was(mixed)
     named = [name for name in MEASURED_TYPES if "trimm" in name or name.startswith("equal_pace")]
     with sqlite3.connect(mixed / FILE) as database:
         database.execute("DROP TABLE checksum")
+        database.execute("PRAGMA user_version = 1")
         database.execute(f"UPDATE event SET {', '.join(f'{name} = NULL' for name in named)}")
     table = read_table(mixed)
     measured = table["height_m"].notna()
@@ -78,6 +79,7 @@ def test_a_store_of_the_last_version_is_read_by_the_names_of_today(tmp_path):
     with sqlite3.connect(folder / FILE) as store:
         ((scene,),) = store.execute("SELECT scene FROM run").fetchall()
         store.execute("DROP TABLE checksum")
+        store.execute("PRAGMA user_version = 1")
         store.execute("UPDATE run SET scene = ?", (scene.replace("courant", "step"),))
     store.close()
     table = read_table(folder)

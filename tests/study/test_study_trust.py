@@ -2,6 +2,7 @@
 
 import random
 import sqlite3
+from pathlib import Path
 
 import pytest
 from study_helpers import outcome, tiny_study
@@ -9,6 +10,7 @@ from study_helpers import outcome, tiny_study
 from snowshed import InputError
 from snowshed.study import StudyError, session
 from snowshed.study.database import FILE
+from snowshed.study.locks import holding
 from snowshed.study.owner import release_dead
 from snowshed.study.store import Store
 from snowshed.study.table import read_table
@@ -104,3 +106,31 @@ def test_flipped_bits_are_found_or_change_nothing(folder):
         except (InputError, StudyError):
             continue
         assert found.equals(whole), at
+
+
+def as_before_checksums(folder):
+    change(folder, "DROP TABLE checksum", "PRAGMA user_version = 1")
+
+
+def test_a_store_that_lost_its_checksums_is_damaged(folder):
+    change(folder, "DROP TABLE checksum")
+    with pytest.raises(InputError, match="damaged: the table of checksums is not there"):
+        read_table(folder)
+
+
+def test_an_earlier_version_that_computes_is_told_from_damage(folder):
+    """It would add results without checksums; one that begins later refuses the store itself."""
+    as_before_checksums(folder)
+    owner = "node-1-0123abcd"
+    change(folder, f"UPDATE run SET owner = '{owner}' WHERE rowid = 1")
+    there = pytest.raises(InputError, match="an earlier version of snowshed computes in it")
+    with holding(folder / "running" / f"{owner}.lock", Path.touch), there:
+        read_table(folder)
+    assert len(read_table(folder)) > 0
+    assert sqlite3.connect(folder / FILE).execute("PRAGMA user_version").fetchone() == (2,)
+
+
+def test_results_without_a_checksum_are_told_from_changed_ones(folder):
+    change(folder, "DELETE FROM checksum WHERE name LIKE 'results%'")
+    with pytest.raises(InputError, match="without its checksum: damaged, or added by an earlier"):
+        read_table(folder)

@@ -12,7 +12,7 @@ from reproduction.section import Section
 from snowshed.analysis.deviations import DEVIATIONS, FRAME_RATE
 from snowshed.analysis.regression.geometry import DAMPING_RATE
 from snowshed.analysis.regression.summary import QUARTILES, THESIS_QUARTILES, THESIS_ROWS
-from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import write_csv
 from snowshed.io.formatting import NOTHING, percent
 from snowshed.plot.html_page import Grid
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
@@ -47,7 +47,7 @@ def build(found: Reproduction) -> Section:
     stacks = read_variants(found.folder.runs)
     folder = found.folder.of_stage("deviations")
     folder.mkdir(exist_ok=True)
-    write_text(folder / STACKS, stacks.to_csv(index=False, float_format="%.6g"))
+    write_csv(stacks, folder / STACKS, float_format="%.6g")
     tables = [
         ("What the deviations are", deviations_grid()),
         ("What each changes when it is undone", changes_grid(stacks)),

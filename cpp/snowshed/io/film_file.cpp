@@ -1,9 +1,7 @@
 #include "snowshed/io/film_file.hpp"
 
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/appended_file.hpp"
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/file_bytes.hpp"
 
 namespace snowshed {
 namespace {
@@ -20,7 +19,8 @@ constexpr std::size_t film_text_start = 24;  // of the JSON text
 constexpr std::size_t most_header_bytes = 1u << 20;
 constexpr std::uint32_t frame_tag = 0x4d415246;  // "FRAM"
 constexpr std::size_t record_head = 40;
-constexpr std::size_t most_raw_bytes = 1u << 31;
+// Of a frame; the particles that runs record, with all their quantities, take a twentieth of it.
+constexpr std::size_t most_raw_bytes = std::size_t{1} << 27;
 constexpr std::uint32_t lists_flag = 1;
 
 template <class T>
@@ -71,20 +71,10 @@ FilmHeader parsed_header(const std::string& text, const std::string& where) {
   return h;
 }
 
-std::vector<std::uint8_t> film_content(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) throw FileError(path.string(), "cannot read the file", errno);
-  std::vector<std::uint8_t> bytes(std::size_t(file.tellg()));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-  if (!file) throw FileError(path.string(), "cannot read the file", errno);
-  return bytes;
-}
-
 }  // namespace
 
 FilmReader::FilmReader(std::filesystem::path path)
-    : path_(std::move(path)), bytes_(film_content(path_)) {
+    : path_(std::move(path)), bytes_(read_bytes(path_)) {
   read_header();
   std::size_t at = end_of_header_;
   while (read_record(at)) {
@@ -116,7 +106,7 @@ void FilmReader::read_header() {
   const std::size_t length = read<std::uint32_t>(12);
   if (length > most_header_bytes || length > bytes_.size() - film_text_start)
     throw InputError(at_byte(12), "damaged: its header does not fit into the file");
-  const char* text = reinterpret_cast<const char*>(bytes_.data()) + film_text_start;
+  const char* text = bytes_.data() + film_text_start;
   if (crc32_of(text, length) != read<std::uint32_t>(16))
     throw InputError(at_byte(16), "damaged: its header has another checksum");
   header_ = parsed_header(std::string(text, length), path_.string());
@@ -150,7 +140,8 @@ FilmFrame FilmReader::next() {
   FilmFrame frame;
   frame.time = facts_[next_].time;
   frame.event = facts_[next_].event;
-  const auto raw = inflated(bytes_.data() + record.payload, record.packed, record.raw, where);
+  const auto* payload = reinterpret_cast<const std::uint8_t*>(bytes_.data()) + record.payload;
+  const auto raw = inflated(payload, record.packed, record.raw, where);
   codec_.decode(raw, record.lists, facts_[next_].particles, where, frame);
   ++next_;
   return frame;

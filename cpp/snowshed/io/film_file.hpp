@@ -28,7 +28,7 @@ struct FilmFrameFacts {
 class FilmReader {
  public:
   /// Reads the header and where the frames are. A last frame that is not whole is left out: the run
-  /// still writes it, or was killed. Throws FileError where the file cannot be read.
+  /// still writes it, or was killed.
   explicit FilmReader(std::filesystem::path path);
 
   const FilmHeader& header() const { return header_; }
@@ -57,7 +57,7 @@ class FilmReader {
   std::string at_byte(std::size_t at) const;
 
   std::filesystem::path path_;
-  std::vector<std::uint8_t> bytes_;
+  std::string bytes_;
   FilmHeader header_;
   std::size_t end_of_header_ = 0, next_ = 0;
   std::vector<Record> records_;

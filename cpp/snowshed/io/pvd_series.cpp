@@ -1,7 +1,6 @@
 #include "snowshed/io/pvd_series.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <locale>
 #include <optional>
 #include <sstream>
@@ -10,6 +9,7 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/io/xml_text.hpp"
 
 namespace snowshed {
@@ -67,9 +67,7 @@ std::optional<PvdSeries::Entry> parse_line(const std::string& line, const std::s
 PvdSeries PvdSeries::reopen(std::filesystem::path path, double before) {
   PvdSeries series(std::move(path));
   if (!std::filesystem::exists(series.path_)) return series;
-  std::ifstream lines(series.path_);
-  if (!lines) throw FileError(series.path_.string(), "cannot read the file", errno);
-
+  std::istringstream lines(read_bytes(series.path_));
   bool closed = false;
   int number = 0;
   for (std::string line; std::getline(lines, line);) {

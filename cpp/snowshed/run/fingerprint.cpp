@@ -1,6 +1,6 @@
 #include "snowshed/run/fingerprint.hpp"
 
-#include "snowshed/geometry/readers/file_bytes.hpp"
+#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include "snowshed/core/compensated_sum.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/methods/grains/energy.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/slide/energy.hpp"
@@ -76,11 +76,6 @@ EventFacts event_facts(const json& j, const std::string& path) {
   return facts;
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// What was released and taken up, and where it is: the sums differ by rounding alone.
 ordered_json balance_of(const SlideMethod& slide) {
   const MassBalance& m = slide.mass_balance();
@@ -123,7 +118,7 @@ std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_li
 RunRecord RunRecord::read(const std::filesystem::path& file) try {
   RunRecord record;
   if (!std::filesystem::is_regular_file(file)) return record;
-  const json j = parse_json(text_of(file), "text");
+  const json j = parse_json(read_bytes(file), "text");
   record.wall = to_number(require(j, "wall_s", "/"), "/wall_s", "a number");
   if (j.contains("tables")) record.tables = table_checksums(j["tables"]);
   if (!j.contains("finished_events")) return record;  // of the version before

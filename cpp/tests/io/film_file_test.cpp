@@ -87,6 +87,14 @@ TEST_F(FilmFileTest, AFrameThatCannotBeWrittenChangesNothing) {
   for (int k = 0; k < 2; ++k) expect_same(reader.next(), some_frame(k));
 }
 
+TEST_F(FilmFileTest, RefusesWhatIsNoFileOrTooLargeBeforeReadingIt) {
+  EXPECT_THROW(FilmReader("/dev/zero"), InputError);
+  EXPECT_THROW(FilmReader(path("nothing.bin")), InputError);
+  FilmWriter(path("film.bin"), small_header());
+  std::filesystem::resize_file(path("film.bin"), std::uintmax_t{10} << 30);  // mostly a hole
+  EXPECT_THROW(FilmReader(path("film.bin")), InputError);
+}
+
 TEST(FilmCodec, RefusesOrReadsAnyBytes) {
   std::mt19937 random(3);
   for (int k = 0; k < 20000; ++k) {

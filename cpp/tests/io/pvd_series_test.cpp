@@ -53,6 +53,11 @@ TEST_F(PvdSeriesTest, AnAbsentFileIsAnEmptySeries) {
   EXPECT_TRUE(PvdSeries::reopen(path("absent.pvd"), 1.0).entries().empty());
 }
 
+TEST_F(PvdSeriesTest, AFileWithoutEndIsRefused) {
+  std::filesystem::create_symlink("/dev/zero", path("snow.pvd"));
+  EXPECT_THROW(PvdSeries::reopen(path("snow.pvd")), InputError);
+}
+
 TEST_F(PvdSeriesTest, RefusesTimesOutOfOrder) {
   PvdSeries series(path("snow.pvd"));
   series.append(1.0, "a.vtp");

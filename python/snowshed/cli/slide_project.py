@@ -59,10 +59,9 @@ def run_project(
 
 def write_particles(ready: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:
     """Write the particles after some steps to tables in a results folder."""
-    from snowshed.io.atomic import replacing
+    from snowshed.io.csv_table import write_csv
     from snowshed.run.slides import particles_at
 
     for step, table in particles_at(ready, steps).items():
         name = "particles_initial" if step == 0 else f"particles_step{step:05d}"
-        with replacing(folder / f"{name}.csv") as beside:
-            table.to_csv(beside, index=False, float_format="%.10g")
+        write_csv(table, folder / f"{name}.csv", float_format="%.10g")

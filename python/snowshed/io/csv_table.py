@@ -20,6 +20,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.input_file import LARGEST, LARGEST_TABLE, read_input
 from snowshed.io.messages import quoted
 from snowshed.io.number_text import number_in
+from snowshed.io.paths import PathLike
 from snowshed.io.printable import csv_cell
 
 if TYPE_CHECKING:
@@ -218,6 +219,21 @@ def csv_text(table: pd.DataFrame, **options: Any) -> str:
     for i in words:
         safe = safe.assign(**{str(safe.columns[i]): table.iloc[:, i].map(csv_cell)})
     return str(safe.to_csv(index=False, lineterminator="\n", **options))
+
+
+def write_csv(table: pd.DataFrame, path: PathLike, **options: Any) -> None:
+    """Write a table as a CSV file, as `csv_text` has it, whole or not at all.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     write_csv(pd.DataFrame({"name": ["@b"], "x": [0.25]}), Path(folder) / "a.csv")
+    ...     (Path(folder) / "a.csv").read_text().split()
+    ['name,x', "'@b,0.25"]
+    """
+    write_text(path, csv_text(table, **options))
 
 
 def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:

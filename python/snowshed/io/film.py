@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 import snowshed._core as _core
 from snowshed.io.arrays import Floats, Integers
+from snowshed.io.messages import shortened
 from snowshed.io.paths import PathLike
+from snowshed.io.printable import printable
 
 #: Name of the film in a results folder.
 FILM = "film.bin"
@@ -39,6 +41,11 @@ class FilmQuantity(NamedTuple):
         scale = LINEAR_STEPS * self.step
         decoded: NDArray[np.float32] = (scale * np.sinh(codes / LINEAR_STEPS)).astype(np.float32)
         return decoded
+
+
+def _shown(text: str) -> str:
+    """Return a text of the file as a page or a picture may show it."""
+    return shortened(printable(text).replace("$", "?")) or "?"  # $ begins a formula in a picture
 
 
 class FrameFacts(NamedTuple):
@@ -92,9 +99,7 @@ class Film:
     Raises
     ------
     InputError
-        If it is no film, or damaged; a last frame that is not whole is left out.
-    FileError
-        If it cannot be read.
+        If it cannot be read, is no film, or damaged; a last frame that is not whole is left out.
 
     Examples
     --------
@@ -117,7 +122,9 @@ class Film:
         self.interval = reader.interval_s
         self.share = reader.share
         self.whole = reader.whole
-        self.quantities = tuple(FilmQuantity(*one) for one in reader.quantities)
+        self.quantities = tuple(
+            FilmQuantity(*map(_shown, texts), step) for *texts, step in reader.quantities
+        )
         self.frames = tuple(FrameFacts(*one) for one in reader.frames)
 
     def __iter__(self) -> Iterator[FilmFrame]:

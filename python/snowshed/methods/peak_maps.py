@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.io.array_archive import open_archive
 from snowshed.io.damage import DAMAGED
 
 Singles = NDArray[np.float32]
@@ -92,7 +93,7 @@ class PeakMaps:
             If it did not, or the bytes are damaged.
         """
         try:
-            with np.load(io.BytesIO(data), allow_pickle=False) as archive:
+            with open_archive(data) as archive:
                 row, column, rows, columns = archive["place"].tolist()
                 h, v, p = (archive[name] for name in ("thickness", "speed", "pressure"))
                 return cls(h, v, p, row, column, (rows, columns))

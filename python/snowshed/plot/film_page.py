@@ -13,6 +13,7 @@ import numpy as np
 
 from snowshed.io.atomic import write_text
 from snowshed.io.film import Film
+from snowshed.io.printable import printable
 from snowshed.plot.film_picture import still_picture, view_lift
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
 from snowshed.plot.html_page import Grid, template
@@ -111,7 +112,12 @@ def _data(film: Film, summary: FilmSummary, content: ViewContent) -> dict[str, A
         "meshes": [solid.data for solid in content.solids],
         "colourings": [_colouring(one) for one in summary.colourings],
         "measures": [
-            {"event": one.event, "from": list(one.start), "to": list(one.end), "label": one.label}
+            {
+                "event": one.event,
+                "from": list(one.start),
+                "to": list(one.end),
+                "label": printable(one.label),
+            }
             for one in content.measures
         ],
     }

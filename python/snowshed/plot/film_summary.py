@@ -169,4 +169,4 @@ def _colourings(
 
 
 def _short(meaning: str) -> str:
-    return meaning.partition(",")[0].partition(";")[0]
+    return meaning.partition(",")[0].partition(";")[0].strip() or "Value"

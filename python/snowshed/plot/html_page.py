@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
 from snowshed.io.atomic import replacing
+from snowshed.io.printable import printable
 
 if TYPE_CHECKING:
     import jinja2
@@ -113,10 +114,16 @@ def write_pictures(pictures: Iterable[Picture], folder: Path) -> None:
             beside.write_bytes(picture.png)
 
 
+def _shown(value: object) -> object:
+    """Return what a page shows of a value; what is markup already is ours."""
+    return printable(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
+
+
 def template(package: str, name: str) -> jinja2.Template:
     """Return a page's template out of a package's folder ``templates``.
 
-    It may extend ``page.html.j2`` and import the macros of ``parts.html.j2``.
+    What it shows passes `printable`. It may extend ``page.html.j2`` and import the macros of
+    ``parts.html.j2``.
     """
     import jinja2
 
@@ -124,6 +131,7 @@ def template(package: str, name: str) -> jinja2.Template:
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader(loaders),
         autoescape=True,
+        finalize=_shown,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,

@@ -30,6 +30,7 @@ from typing import Any
 import snowshed._core as _core
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import write_text
+from snowshed.io.printable import csv_cell
 from snowshed.io.raster import GEOTIFF, Raster, read_raster
 from snowshed.io.raster_output import write_raster
 from snowshed.methods.slide_maps import SlideMaps
@@ -290,7 +291,7 @@ def _add_row(file: Path, row: Mapping[str, str]) -> None:
     target = io.StringIO()
     writer = csv.DictWriter(target, columns, restval="", lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows)
+    writer.writerows({key: csv_cell(cell) for key, cell in each.items()} for each in rows)
     write_text(file, target.getvalue())
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.io.array_archive import open_archive
 from snowshed.io.damage import DAMAGED
 from snowshed.io.vtp import read_particles
 from snowshed.run.results import RunFolder
@@ -107,7 +108,7 @@ class EventParticles:
             If it did not, or the bytes are damaged.
         """
         try:
-            with np.load(io.BytesIO(data), allow_pickle=False) as archive:
+            with open_archive(data) as archive:
                 return cls._of(archive)
         except (OSError, *DAMAGED) as error:
             raise InputError(f"not particles that snowshed kept: {error}") from None

@@ -26,11 +26,11 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.arrays import AnyIntegers
 from snowshed.io.atomic import replacing, write_text
+from snowshed.io.csv_table import write_csv
 from snowshed.io.paths import PathLike
 from snowshed.methods.grains.image.grain_table import (
     GrainStatistics,
     contact_table,
-    csv_text,
     grain_statistics,
     grain_table,
 )
@@ -144,8 +144,8 @@ def write_grains(
     path.mkdir(parents=True, exist_ok=True)
     _write_array(path / SNOW, image.ice.view(np.uint8))
     _write_array(path / LABELS, found.labels)
-    write_text(path / "grains.csv", csv_text(grains))
-    write_text(path / "contacts.csv", csv_text(contacts))
+    write_csv(grains, path / "grains.csv", float_format="%.7g")
+    write_csv(contacts, path / "contacts.csv", float_format="%.7g")
     settings = {} if found.settings is None else asdict(found.settings)
     settings.pop("threads", None)  # the grains do not depend on it
     _write_numbers(path, numbers, {**facts, **settings})

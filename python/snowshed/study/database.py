@@ -26,11 +26,13 @@ from snowshed._core import InputError
 from snowshed.run.method_runs import column_types, runs_of
 from snowshed.study import checksums
 from snowshed.study.errors import StudyError
+from snowshed.study.locks import owner_lives
 
 FILE = "store.sqlite"
 RUNNING = "running"
 APPLICATION = 0x534E4F57  # "SNOW": tells our databases from others
-VERSION = 1
+#: 1 was written before there were checksums, or while a process that knows only 1 went on.
+VERSIONS = (1, 2)
 BUSY_S = 60.0  # s to wait for another process that is writing
 
 #: What is measured after an event, by any method, with the type it has in the store.
@@ -125,20 +127,39 @@ def _provide_tables(connection: sqlite3.Connection, folder: Path) -> None:
         for table in TABLES:
             connection.execute(table)
         connection.execute(f"PRAGMA application_id = {APPLICATION}")
-        connection.execute(f"PRAGMA user_version = {VERSION}")
+        connection.execute(f"PRAGMA user_version = {VERSIONS[-1]}")
     _check_format(connection, folder)
-    _add_what_is_new(connection)
+    _add_what_is_new(connection, folder)
 
 
 def _check_format(connection: sqlite3.Connection, folder: Path) -> None:
     if _pragma(connection, "application_id") != APPLICATION:
         raise InputError(f"{folder / FILE}: not a store of studies")
-    if _pragma(connection, "user_version") != VERSION:
+    if _pragma(connection, "user_version") not in VERSIONS:
         raise InputError(f"{folder / FILE}: made by another version of snowshed")
+    if _pragma(connection, "user_version") == VERSIONS[-1] and not _has_checksums(connection):
+        raise InputError(f"{folder / FILE}: damaged: the table of checksums is not there")
 
 
-def _add_what_is_new(connection: sqlite3.Connection) -> None:
-    """Give a store of earlier days the columns that events.csv has gained since, and particles."""
+def _has_checksums(connection: sqlite3.Connection) -> bool:
+    return bool(connection.execute("PRAGMA table_info(checksum)").fetchone())
+
+
+def _add_what_is_new(connection: sqlite3.Connection, folder: Path) -> None:
+    """Give a store of earlier days what it lacks; from then on earlier versions refuse it.
+
+    One of them that computes in it now would add results without checksums.
+    """
+    has_checksums = _has_checksums(connection)
+    if _pragma(connection, "user_version") < VERSIONS[-1]:
+        owners = connection.execute("SELECT DISTINCT owner FROM run WHERE owner IS NOT NULL")
+        if not any(owner_lives(folder / RUNNING, str(owner)) for (owner,) in owners.fetchall()):
+            connection.execute(f"PRAGMA user_version = {VERSIONS[-1]}")
+        elif not has_checksums:
+            raise InputError(
+                f"{folder}: an earlier version of snowshed computes in it; wait until it has "
+                "ended, or stop it"
+            )
     present = {row[1] for row in connection.execute("PRAGMA table_info(event)")}
     for name in STORED_TYPES.keys() - present:
         connection.execute(f"ALTER TABLE event ADD COLUMN {name} {STORED_TYPES[name]}")
@@ -146,7 +167,7 @@ def _add_what_is_new(connection: sqlite3.Connection) -> None:
     if "keep_particles" not in {row[1] for row in connection.execute("PRAGMA table_info(run)")}:
         kept = "keep_particles INTEGER NOT NULL DEFAULT 0"
         connection.execute(f"ALTER TABLE run ADD COLUMN {kept}")
-    if not connection.execute("PRAGMA table_info(checksum)").fetchone():
+    if not has_checksums:
         connection.execute(checksums.TABLE)
         checksums.note_all(connection)
 

@@ -9,9 +9,12 @@ from __future__ import annotations
 
 import fcntl
 import os
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+OWNER = re.compile(r"[A-Za-z0-9._-]{0,64}-[0-9]+-[0-9a-f]{8}")
 
 
 @contextmanager
@@ -68,6 +71,22 @@ def is_held(path: Path) -> bool:
     finally:
         os.close(handle)
     return False
+
+
+def is_owner(name: str) -> bool:
+    """Return whether a name is one that `ownership` gives, and no way out of the store's folder.
+
+    Examples
+    --------
+    >>> is_owner("node1.local-4711-0a1b2c3d"), is_owner("../../victim")
+    (True, False)
+    """
+    return OWNER.fullmatch(name) is not None
+
+
+def owner_lives(folder: Path, owner: str) -> bool:
+    """Return whether the process of an owner still runs, whose lock would be in the folder."""
+    return is_owner(owner) and is_held(folder / f"{owner}.lock")
 
 
 def _lock(handle: int, path: Path, kind: int) -> None:

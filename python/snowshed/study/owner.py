@@ -11,10 +11,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from snowshed.study.errors import StudyError
-from snowshed.study.locks import holding, is_held
+from snowshed.study.locks import holding, is_owner, owner_lives
 from snowshed.study.store import Store
-
-OWNER = re.compile(r"[A-Za-z0-9._-]{0,64}-[0-9]+-[0-9a-f]{8}")
 
 
 @contextmanager
@@ -36,18 +34,7 @@ def ownership(store: Store) -> Iterator[str]:
 
 def is_alive(store: Store, owner: str) -> bool:
     """Return whether the process of an owner still runs."""
-    return is_owner(owner) and is_held(_lock(store, owner))
-
-
-def is_owner(name: str) -> bool:
-    """Return whether a name is one that `ownership` gives, and no way out of the store's folder.
-
-    Examples
-    --------
-    >>> is_owner("node1.local-4711-0a1b2c3d"), is_owner("../../victim")
-    (True, False)
-    """
-    return OWNER.fullmatch(name) is not None
+    return owner_lives(store.running, owner)
 
 
 def release_dead(store: Store) -> None:

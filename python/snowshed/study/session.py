@@ -22,9 +22,9 @@ from snowshed.scene.scene import PathLike
 from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.local import LocalWorkers
-from snowshed.study.locks import is_held
+from snowshed.study.locks import is_held, is_owner
 from snowshed.study.outcome import Outcome, Task
-from snowshed.study.owner import is_owner, ownership, release_dead
+from snowshed.study.owner import ownership, release_dead
 from snowshed.study.scene_hash import Run, is_hash
 from snowshed.study.store import Store, StoredRun
 from snowshed.study.workers import Workers

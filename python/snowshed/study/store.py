@@ -35,6 +35,10 @@ from snowshed.study.outcome import Outcome
 from snowshed.study.scene_hash import Run, is_hash
 
 STATUSES = ("pending", "done", "failed")
+WITHOUT_CHECKSUM = (
+    "without its checksum: damaged, or added by an earlier version of snowshed after this one had "
+    "opened the store"
+)
 NO_STUDY = "holds no study; start one with `snowshed study run`"
 
 
@@ -234,7 +238,8 @@ class Store:
         check_values(parse_object(run.scene, where), WHOLE_SCENE, where)
         self._check(f"run {run.hash}", lambda: [run.hash, run.version, run.scene])
         if self._digests and (run.status != "pending") != (f"results {run.hash}" in self._digests):
-            raise self.damaged(f"run {run.hash}: {run.status}, but for its results")
+            lacks = WITHOUT_CHECKSUM if run.status != "pending" else "pending, but has results"
+            raise self.damaged(f"run {run.hash}: {lacks}")
         return run
 
     def check_results(self, hash_: str) -> None:
@@ -244,7 +249,11 @@ class Store:
 
     def _check(self, name: str, content: Callable[[], object]) -> None:
         """Raise InputError if the checksum of the content is another; an old store has none."""
-        if self._digests and self._digests.get(name) != checksums.digest(content()):
+        if not self._digests:
+            return
+        if name not in self._digests:
+            raise self.damaged(f"{name}: {WITHOUT_CHECKSUM}")
+        if self._digests[name] != checksums.digest(content()):
             raise self.damaged(f"{name}: its checksum is wrong")
 
     @property

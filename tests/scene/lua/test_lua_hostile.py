@@ -148,6 +148,10 @@ SCRIPTS = {
     "growing arguments": ("local function f(...)\nlocal x = f(1, ...) end\nf()", 2, MEMORY),
     "error function": ("error(print)", 1, "error with a function instead of a message"),
     "run elsewhere": ("run('../elsewhere')", 1, "not '../elsewhere'"),
+    "address of a text": ("print(string.format('%-9p', 'x'))", 1, "cannot show addresses (%p)"),
+    "order of addresses": ("for k in next, {[{}] = 1} do end", 1, "needs keys that are numbers or"),
+    "unknown key": ("next({}, 'x')", 1, "next needs a key of the table"),
+    "format of a table": ("string.format('%d', {})", 1, "number expected, got table"),
     "run with a long name": ("run(('x'):rep(1e5))", 1, "xxx..."),
 }
 
@@ -186,6 +190,23 @@ def test_damage_to_the_libraries_hurts_only_the_script(tmp_path):
     assert run.scene.data["gravity"] == 1.62
     assert run.scene.data["title"] == 'quoted: "\n"'
     assert printed == ["still here"]
+
+
+def test_no_text_or_order_depends_on_addresses(tmp_path):
+    script = """
+        preset "lab-50"
+        print({}, print, tostring({}), string.format("%%%s %5d %-9s|%q", {}, 7, tostring, "a"))
+        print(("%s"):format(panel), next({}), #tostring(nil))
+        local names = {z = 1, a = 2, [3] = 3}
+        for key, value in next, names do
+          names[key] = nil
+          print(key, value)
+        end
+    """
+    printed = []
+    load(tmp_path, script, echo=printed.append)
+    assert printed[0].split(" ", 3) == ["table", "function", "table", '%table     7 function |"a"']
+    assert printed[1:] == ["function nil 3", "3 3", "a 2", "z 1"]
 
 
 def test_instructions_are_counted(tmp_path):

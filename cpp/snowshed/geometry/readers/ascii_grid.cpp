@@ -7,7 +7,7 @@
 #include <string>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/geometry/readers/file_bytes.hpp"
+#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/geometry/readers/text_scanner.hpp"
 
 namespace snowshed {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/geometry/readers/file_bytes.hpp"
+#include "snowshed/io/file_bytes.hpp"
 
 namespace snowshed {
 

@@ -5,7 +5,7 @@
 
 #include "snowshed/core/child_process.hpp"
 #include "snowshed/core/errors.hpp"
-#include "snowshed/geometry/readers/file_bytes.hpp"
+#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/geometry/readers/vdb_message.hpp"
 #include "snowshed/geometry/rebuild_distance.hpp"
 

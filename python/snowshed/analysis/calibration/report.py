@@ -13,8 +13,8 @@ from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import Surrogate
-from snowshed.io.atomic import replacing, write_text
-from snowshed.io.csv_table import csv_text
+from snowshed.io.atomic import replacing
+from snowshed.io.csv_table import write_csv
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 
@@ -164,7 +164,7 @@ def write(found: Calibration, folder: Path) -> None:
     }
     folder.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():
-        write_text(folder / f"{name}.csv", csv_text(table))
+        write_csv(table, folder / f"{name}.csv")
     with replacing(folder / "posterior.nc") as beside:
         posterior.draws.to_netcdf(beside, engine="scipy")
     for name, figure in drawings.items():

@@ -12,7 +12,7 @@ from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import Ranges
 from snowshed.analysis.clearance.statistics import burial_interval
 from snowshed.io.atomic import write_text
-from snowshed.io.csv_table import csv_text
+from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
 from snowshed.plot.html_page import Grid, Picture, template
 
@@ -36,7 +36,7 @@ def write_report(
     import pandas as pd
 
     table = pd.concat([answer.table() for answer in answers], ignore_index=True)
-    write_text(folder / "clearance.csv", csv_text(table, float_format="%.6g"))
+    write_csv(table, folder / "clearance.csv", float_format="%.6g")
     write_text(folder / "clearance.json", json.dumps(summary(answers, ranges), indent=2) + "\n")
     page = template("snowshed.plot", "clearance.html.j2").render(
         title="How high must the lower edge be?",

@@ -11,6 +11,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.array_arguments import positive
 from snowshed.io.arrays import AnyIntegers
+from snowshed.io.atomic import replacing
 from snowshed.io.paths import PathLike
 from snowshed.methods.grains.image.downscaling import downscaled
 from snowshed.methods.grains.image.ice_image import IceImage
@@ -163,9 +164,8 @@ class LabelledSample:
         folder.mkdir(parents=True, exist_ok=True)
         file = folder / f"{self.name}.npy"
         if not file.is_file():
-            beside = file.with_name(f".{self.name}.part.npy")
-            np.save(beside, self.labels)
-            beside.replace(file)
+            with replacing(file) as beside:
+                np.save(beside, self.labels)
         elif not np.array_equal(np.load(file, mmap_mode="r"), self.labels):
             raise InputError(f"{file}: holds another sample; take a new folder")
         return file.resolve()

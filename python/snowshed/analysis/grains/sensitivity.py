@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from snowshed.analysis.grains.ratios import compare_variants
 from snowshed.analysis.grains.variants import Comparison
-from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import write_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,7 +43,7 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
     tests = comparison.table(runs)
     found = compare_variants(tests)
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(folder / TESTS, tests.to_csv(index=False))
-    write_text(folder / TABLE, found.to_csv(index=False))
+    write_csv(tests, folder / TESTS)
+    write_csv(found, folder / TABLE)
     save(sensitivity_figure(found), folder / FIGURE)
     return found

@@ -10,10 +10,13 @@ from typing import Any, Optional
 
 import numpy as np
 
+from snowshed._core import InputError
 from snowshed.analysis.regression.kernels import Expansion
+from snowshed.io.array_archive import open_archive
 from snowshed.io.arrays import Floats, Integers
 from snowshed.io.atomic import replacing
 from snowshed.io.damage import DAMAGED
+from snowshed.io.input_file import read_regular
 
 NUMBERS = ("inner_score", "development_score", "validation_score", "fits", "elapsed_s")
 ARRAYS = ("validation", "held_out", "predictions")
@@ -76,7 +79,7 @@ class FoldResult:
             The standardised inputs of all rows.
         """
         try:
-            with np.load(path, allow_pickle=False) as data:
+            with open_archive(read_regular(path)) as data:
                 facts = json.loads(str(data["facts"]))
                 expansion = None
                 if "coefficients" in data:
@@ -87,5 +90,5 @@ class FoldResult:
                     **{name: data[name] for name in ARRAYS},
                     expansion=expansion,
                 )
-        except (OSError, *DAMAGED):
+        except (InputError, OSError, *DAMAGED):
             return None  # it is computed again

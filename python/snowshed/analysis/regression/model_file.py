@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import json
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -20,6 +18,7 @@ from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.rows import INPUTS, TARGETS
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
+from snowshed.io.array_archive import open_archive
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.io.damage import DAMAGED
@@ -141,8 +140,7 @@ def load_model(file: PathLike) -> StackModel:
     path = Path(file)
     try:
         content = read_regular(path)
-        _check_size(content)
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+        with open_archive(content, LARGEST) as archive:
             return _Reader(archive).model()
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
@@ -150,15 +148,6 @@ def load_model(file: PathLike) -> StackModel:
         raise InputError(f"{path}: {error.strerror or error}") from None
     except DAMAGED as error:
         raise InputError(f"{path}: damaged, or not a model ({error})") from None
-
-
-def _check_size(content: bytes) -> None:
-    if len(content) > LARGEST:
-        raise InputError(f"{len(content)} bytes; at most {LARGEST} are allowed")
-    with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        size = sum(entry.file_size for entry in archive.infolist())
-    if size > LARGEST:
-        raise InputError(f"unpacks to {size} bytes; at most {LARGEST} are allowed")
 
 
 class _Reader:

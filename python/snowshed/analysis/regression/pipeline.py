@@ -19,7 +19,8 @@ from snowshed.analysis.regression.rows import TARGETS, StackRows
 from snowshed.analysis.regression.spread import stack_spread, unseen_panels
 from snowshed.analysis.regression.threads import one_thread
 from snowshed.io.arrays import Floats
-from snowshed.io.atomic import replacing, write_text
+from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import write_csv
 from snowshed.run.pool import available_cores
 from snowshed.run.progress import Reporter
 from snowshed.scene.scene import PathLike
@@ -129,7 +130,9 @@ class _Output:
         self._titles = {name: kind.title for name, kind in kinds.items()}
 
     def write(self, targets: Sequence[str], title: str, measure: str) -> list[TargetReport]:
-        _write_table(summary.score_table(self._results), self._folder / "scores.csv")
+        write_csv(
+            summary.score_table(self._results), self._folder / "scores.csv", float_format="%.6g"
+        )
         members: dict[tuple[str, str], Member] = {}
         reports = []
         for target in targets:
@@ -183,8 +186,8 @@ class _Output:
             summary.linear_expression(linear, self._rows, target) if linear else "",
             tuple(summary.thesis_checks(quartiles, errors)) if comparable else (),
         )
-        _write_table(report.quartiles.reset_index(), folder / "quartiles.csv")
-        _write_table(report.errors.reset_index(), folder / "errors.csv")
+        write_csv(report.quartiles.reset_index(), folder / "quartiles.csv", float_format="%.6g")
+        write_csv(report.errors.reset_index(), folder / "errors.csv", float_format="%.6g")
         if report.checks:
             write_text(folder / "thesis.txt", "\n".join(report.checks) + "\n")
         if report.expression:
@@ -214,8 +217,3 @@ class _Output:
         for name, figure in drawings.items():
             if figure is not None:
                 save(figure, self._folder / target / name)
-
-
-def _write_table(table: pd.DataFrame, path: Path) -> None:
-    with replacing(path) as beside:
-        table.to_csv(beside, index=False, float_format="%.6g")

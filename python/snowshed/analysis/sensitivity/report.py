@@ -12,8 +12,7 @@ from snowshed.analysis.sensitivity.global_indices import morris_effects, sobol_i
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.single_parameter import local_index
 from snowshed.analysis.sensitivity.stored import StoredRuns, read_stored
-from snowshed.io.atomic import write_text
-from snowshed.io.csv_table import csv_text
+from snowshed.io.csv_table import write_csv
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
@@ -82,8 +81,8 @@ def evaluate(
         raise InputError(f"{stored}: {runs.name}: {error}") from None
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(folder / f"{method}.csv", csv_text(table))
-    write_text(folder / f"{NOISE}.csv", csv_text(seeding_noise(runs).reset_index()))
+    write_csv(table, folder / f"{method}.csv")
+    write_csv(seeding_noise(runs).reset_index(), folder / f"{NOISE}.csv")
     for name, figure in figures(method, table).items():
         save(figure, folder / f"{name}.png")
     return table

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
 from snowshed.io.atomic import remove_leftovers, write_text
-from snowshed.io.csv_table import Table, csv_text, read_csv
+from snowshed.io.csv_table import Table, read_csv, write_csv
 from snowshed.methods.registry import resolution_of
 from snowshed.run.events import run_events
 from snowshed.run.progress import Reporter
@@ -189,7 +189,7 @@ def _write(
     summary = {name: value for name, value in vars(result).items() if name != "table"}
     summary["contact"] = None if result.contact is None else asdict(result.contact)
     text = json.dumps({"settings": asdict(settings), **summary}, indent=2, default=list)
-    write_text(folder.table, csv_text(result.table, float_format="%.6g"))
+    write_csv(result.table, folder.table, float_format="%.6g")
     write_text(folder.summary, text + "\n")
     if pictures:
         from snowshed.plot.figure_style import save

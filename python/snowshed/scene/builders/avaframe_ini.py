@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.io.input_file import read_input
 from snowshed.io.messages import suggestion
 
 MAX_TIME = 400.0  # s
@@ -274,7 +275,7 @@ def _keys_of(file: Optional[Path]) -> dict[str, str]:
         return {}
     parser = configparser.ConfigParser(interpolation=None)
     try:
-        parser.read_string(file.read_text(encoding="utf-8"), str(file))
+        parser.read_string(read_input(file).decode("utf-8"), str(file))
     except (configparser.Error, UnicodeDecodeError) as error:
         raise InputError(f"{file}: not an ini file: {error}") from None
     found: dict[str, str] = {}

@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.io.atomic import replacing
 from snowshed.io.paths import PathLike
 from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
 from snowshed.methods.grains.image.segmentation import known_grains
@@ -110,7 +111,8 @@ def example_grains(folder: PathLike) -> Scene:
     snow = sphere_snow(
         EXAMPLE_SHAPE, EXAMPLE_VOXEL, diameter=6e-4, spread=0.2, density=300, neck_ratio=0.5, seed=7
     )
-    np.save(file, known_grains(snow).labels)
+    with replacing(file) as beside:
+        np.save(beside, known_grains(snow).labels)
     return grains_scene(
         file,
         EXAMPLE_VOXEL,

@@ -14,8 +14,10 @@ local encode_list, words, shapes, limits = ...
 local clock, concat, create, error = os.clock, table.concat, coroutine.create, error
 local format, getinfo, load, next = string.format, debug.getinfo, load, next
 local rep, resume, select, sethook = string.rep, coroutine.resume, select, debug.sethook
-local sort, tostring, type, number_type = table.sort, tostring, type, math.type
-local match, randomseed, sub, tonumber = string.match, math.randomseed, string.sub, tonumber
+local gmatch, match, randomseed, sub = string.gmatch, string.match, math.randomseed, string.sub
+local sort, tonumber, type, number_type = table.sort, tonumber, type, math.type
+local setmetatable, unpack = setmetatable, table.unpack
+local library_tostring = tostring
 
 local INTERVAL = 200 -- instructions between two looks at the limits
 
@@ -51,23 +53,82 @@ local function ordered(one, other)
 end
 
 -- Lua visits keys in an order that differs from run to run; a scene must not.
-local function sorted_pairs(values)
+local function sorted_keys(caller, values)
   if type(values) ~= "table" then
-    error("pairs needs a table, not a " .. type(values), 0)
+    error(format("%s needs a table, not a %s", caller, type(values)), 0)
   end
   local keys = {}
   for key in next, values do
     if type(key) ~= "string" and type(key) ~= "number" then
-      error("pairs needs keys that are numbers or texts, not a " .. type(key), 0)
+      error(format("%s needs keys that are numbers or texts, not a %s", caller, type(key)), 0)
     end
     keys[#keys + 1] = key
   end
   sort(keys, ordered)
+  return keys
+end
+
+local function sorted_pairs(values)
+  local keys = sorted_keys("pairs", values)
   local i = 0
   return function()
     i = i + 1
     return keys[i], values[keys[i]]
   end
+end
+
+local chains = setmetatable({}, { __mode = "k" }) -- of tables: the key that follows each key
+
+local function begin_chain(values)
+  local keys, chain = sorted_keys("next", values), {}
+  for i = 1, #keys do
+    chain[keys[i]] = keys[i + 1] or false
+  end
+  chains[values] = chain
+  return keys[1]
+end
+
+local function sorted_next(values, key)
+  if key == nil then
+    key = begin_chain(values)
+    return key, values[key]
+  end
+  if not chains[values] then
+    begin_chain(values)
+  end
+  repeat -- keys that were removed meanwhile are left out
+    key = chains[values][key]
+    if key == nil then
+      error("next needs a key of the table", 0)
+    end
+  until not key or values[key] ~= nil
+  return key or nil, values[key]
+end
+
+-- Of what has an address, the library shows it; it differs from run to run, and a scene must not.
+local function without_address(value)
+  local kind = type(value)
+  return (kind == "table" or kind == "function") and kind or value
+end
+
+local function tostring(value)
+  return library_tostring(without_address(value))
+end
+
+local function format_without_addresses(form, ...)
+  local values, count = { ... }, select("#", ...)
+  local i = 0
+  for kind in gmatch(library_tostring(form), "%%[-+ #0-9.]*(.)") do
+    if kind == "p" then
+      error("string.format cannot show addresses (%p)", 0)
+    elseif kind ~= "%" then
+      i = i + 1
+      if kind == "s" then
+        values[i] = without_address(values[i])
+      end
+    end
+  end
+  return format(form, unpack(values, 1, count))
 end
 
 -- The library's own repeats nothing for ever when asked to.
@@ -165,9 +226,9 @@ local FORBIDDEN_FUNCTIONS = {
 }
 
 local ALLOWED_FUNCTIONS = {
-  "_VERSION", "assert", "error", "ipairs", "next", "select", "tonumber", "tostring", "type",
+  "_VERSION", "assert", "error", "ipairs", "select", "tonumber", "type",
 }
-local ALLOWED_OF_STRING = { "byte", "char", "format", "len", "lower", "reverse", "sub", "upper" }
+local ALLOWED_OF_STRING = { "byte", "char", "len", "lower", "reverse", "sub", "upper" }
 
 local function forbid()
   for _, name in next, FORBIDDEN_TABLES do
@@ -184,9 +245,10 @@ local function furnish()
   for _, name in next, ALLOWED_FUNCTIONS do
     env[name] = _G[name]
   end
-  env._G, env.pairs, env.print, env.unpack = env, sorted_pairs, print_later, table.unpack
+  env._G, env.pairs, env.print, env.unpack = env, sorted_pairs, print_later, unpack
+  env.next, env.tostring = sorted_next, tostring
   env.string = restricted("string", string, ALLOWED_OF_STRING)
-  env.string.rep = bounded_rep
+  env.string.rep, env.string.format = bounded_rep, format_without_addresses
   env.table = restricted("table", table, { "pack", "unpack" })
   for _, name in next, { "concat", "insert", "remove", "sort" } do
     env.table[name] = bounded_list(name, table[name])

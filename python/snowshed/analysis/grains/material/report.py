@@ -12,6 +12,7 @@ from typing import Any
 from snowshed import _core
 from snowshed.analysis.grains.material.fit import FittedSnow
 from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import write_csv
 from snowshed.scene.components import PROVENANCE
 
 TABLE = "material.csv"
@@ -60,7 +61,7 @@ def write_table(folder: Path, fits: Sequence[FittedSnow]) -> None:
         for one in fits
         for name, found in one.ranges.items()
     ]
-    write_text(folder / TABLE, pd.DataFrame(rows).to_csv(index=False))
+    write_csv(pd.DataFrame(rows), folder / TABLE)
 
 
 def _rounded(value: Any) -> Any:

@@ -113,11 +113,6 @@ def grain_statistics(grains: pd.DataFrame, contacts: pd.DataFrame) -> GrainStati
     )
 
 
-def csv_text(table: pd.DataFrame) -> str:
-    """Return a table as CSV, its numbers with seven significant digits."""
-    return str(table.to_csv(index=False, float_format="%.7g", lineterminator="\n"))
-
-
 def _centres(labels: Labels) -> tuple[Integers, Floats]:
     """Return how many voxels each label has, and the mean of their centres (x, y, z), in voxels."""
     count = int(labels.max(initial=0)) + 1

@@ -1,4 +1,4 @@
-#include "snowshed/geometry/readers/file_bytes.hpp"
+#include "snowshed/io/file_bytes.hpp"
 
 #include <fstream>
 #include <system_error>

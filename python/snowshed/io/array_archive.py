@@ -1,0 +1,51 @@
+"""Archives of arrays (.npz) that somebody else may have written."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+LARGEST = 1 << 30  # bytes
+
+
+@contextmanager
+def open_archive(content: bytes, largest: int = LARGEST) -> Iterator[Any]:
+    """Yield the arrays of an archive.
+
+    A small archive can hold arrays that fill the memory, so what they take is looked up before.
+
+    Parameters
+    ----------
+    content
+        Of the file.
+    largest
+        Bytes that the file may have, and that its arrays may take.
+
+    Raises
+    ------
+    snowshed.io.damage.DAMAGED
+        If it is no archive, is larger, or, while arrays are read, if they are damaged.
+
+    Examples
+    --------
+    >>> stream = io.BytesIO()
+    >>> np.savez_compressed(stream, a=np.zeros(2_000_000))
+    >>> with open_archive(stream.getvalue(), 1_000_000) as arrays:
+    ...     arrays["a"]
+    Traceback (most recent call last):
+    ...
+    ValueError: unpacks to 16000244 bytes; at most 1000000 are allowed
+    """
+    if len(content) > largest:
+        raise ValueError(f"{len(content)} bytes; at most {largest} are allowed")
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        size = sum(entry.file_size for entry in archive.infolist())
+    if size > largest:
+        raise ValueError(f"unpacks to {size} bytes; at most {largest} are allowed")
+    with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+        yield arrays
