@@ -23,7 +23,7 @@ PATH = click.Path(path_type=Path)
 @click.option("--full", "size", flag_value="full", help="1000 grains and more: about a day.")
 @click.option(
     "--stage", "names", multiple=True, metavar="NAME",
-    help="Compute only this: elastic, snows, sensitivity or spheres; may be repeated.",
+    help="Compute only this: elastic, brittle or dense; may be repeated.",
 )  # fmt: skip
 @click.option("--report-only", is_flag=True, help="Compute nothing, write the report.")
 @click.option("--jobs", type=int, help="Tests at once.  [default: the number of cores]")
