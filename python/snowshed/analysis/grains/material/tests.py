@@ -30,12 +30,12 @@ LOADINGS: Mapping[str, Mapping[str, Any]] = {
     TENSION: {"loading.0.kind": "stretch", **SLOW},
 }
 SHEARING: Mapping[str, Any] = {
-    "loading.0.kind": "shear", "loading.0.strain": 0.25,
+    "loading.0.kind": "shear", "loading.0.speed": 2e-3, "loading.0.strain": 0.02,
     "numerics.sides": "periodic", **FROZEN,
 }  # fmt: skip
 #: Normal stresses of the shear tests, of the yield stress in isotropic compression.
 NORMAL_STRESSES = (0.1, 0.3)
-SPEED = 0.02  # m/s, of the others
+SPEED = 0.02  # m/s, of the compaction
 #: Ice over volume to which snow is compacted: grains whose bonds are broken carry hardly anything
 #: before they are about so dense. Loose snow must be compacted further to get there.
 COMPACTED = 0.51
