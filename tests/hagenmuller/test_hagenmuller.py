@@ -99,10 +99,18 @@ def test_the_opposite_contradicts():
 
 def test_broken_bonds_are_not_elastic():
     tests = made_up()
-    tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [0, 3, 2]
+    tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [
+        0,
+        3,
+        2,
+    ]
     (found,) = [one for one in judge(PAPER, tests) if one.source == "elastic phase"]
     assert found.finding.verdict == UNDECIDED
-    tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [1, 3, 2]
+    tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [
+        1,
+        3,
+        2,
+    ]
     (found,) = [one for one in judge(PAPER, tests) if one.source == "elastic phase"]
     assert found.finding.verdict == CONTRADICTED
 
