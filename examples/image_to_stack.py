@@ -1,4 +1,4 @@
-"""From an image of snow to the stack below a panel: what the grains do decides the snow of the scene.
+"""From an image of snow to the stack below a panel, by way of loading tests of its grains.
 
     python examples/image_to_stack.py [FOLDER [VOXELS [COARSER [DX]]]]
 

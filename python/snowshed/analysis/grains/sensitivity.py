@@ -45,5 +45,5 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
     folder.mkdir(parents=True, exist_ok=True)
     write_text(folder / TESTS, tests.to_csv(index=False))
     write_text(folder / TABLE, found.to_csv(index=False))
-    save(sensitivity_figure(found), folder / FIGURE)
+    save(sensitivity_figure(found, comparison.scene.title or ""), folder / FIGURE)
     return found

@@ -212,8 +212,8 @@ def _read_strengths(
     ranges["yield_residual"] = Range.of([found.residual])
     if found.residual > MISSED:
         notes.append(
-            f"the law's yield surface misses the strengths by {100 * found.residual:.0f} % of their "
-            "size"
+            f"the law's yield surface misses the strengths by {100 * found.residual:.0f} % of "
+            "their size"
         )
     if found.cohesion in (0.0, 1.0):
         notes.append(
