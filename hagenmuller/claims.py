@@ -30,7 +30,17 @@ from reproduction.hypothesis_tests import (
 )
 
 from hagenmuller.printed import YADE
-from hagenmuller.studies import ELASTIC, FEWER, HEAVY_SNOW, LIGHT_SNOW, THIN_NECKS, TRAP, WIDE_NECKS
+from hagenmuller.studies import (
+    ELASTIC,
+    FEWER,
+    HEAVY_SNOW,
+    LIGHT_SNOW,
+    ROUGH,
+    SOFT,
+    THIN_NECKS,
+    TRAP,
+    WIDE_NECKS,
+)
 from snowshed.analysis.grains.ratios import STRESSES, LogMean, paired_ratios
 from snowshed.analysis.grains.variants import BASE
 
@@ -38,7 +48,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PEAK, EARLY, MIDDLE, DENSE = STRESSES
-SOFT, STRONG, ROUGH = "elastic modulus 1e+08 Pa", "strength of bonds 2e+06 Pa", "friction 0.5"
 SCALED = "density of ice x 100"
 HALF_EDGE = "volume / 8"
 #: Factor up to which a stress hardly differs; that from which it differs much.
@@ -55,18 +64,17 @@ class Tests:
 
     Attributes
     ----------
-    rows
-        One per variant and sample, from all comparisons.
+    tables
+        One per comparison, with one row per variant and sample. Those that load further stand
+        before others.
     """
 
-    rows: pd.DataFrame
+    tables: Sequence[pd.DataFrame]
 
     def of(self, variant: str) -> pd.DataFrame:
         """Return the tests of a variant; raises LookupError if there is none."""
-        found = self.rows[self.rows["variant"] == variant]
-        if found.empty:
-            raise LookupError(variant)
-        return found
+        table = self._with(variant)
+        return table[table["variant"] == variant]
 
     def log(self, variant: str, stress: str) -> Estimate:
         """Return the logarithm of a stress in Pa, as the mean over the samples."""
@@ -74,8 +82,15 @@ class Tests:
 
     def change(self, variant: str, stress: str, base: str = BASE) -> Estimate:
         """Return the logarithm of a stress over that of another variant, sample by sample."""
-        self.of(variant), self.of(base)  # for their errors
-        return _estimate(LogMean.of(paired_ratios(self.rows, variant, stress, base).tolist()))
+        table = self._with(variant, base)
+        return _estimate(LogMean.of(paired_ratios(table, variant, stress, base).tolist()))
+
+    def _with(self, *variants: str) -> pd.DataFrame:
+        """Return the first comparison with some variants; raises LookupError if there is none."""
+        for table in self.tables:
+            if set(variants) <= set(table["variant"]):
+                return table
+        raise LookupError(" beside ".join(variants))
 
 
 def _estimate(found: LogMean) -> Estimate:

@@ -18,12 +18,14 @@ PATH = click.Path(path_type=Path)
 )
 @click.option(
     "--quick", "size", flag_value="quick", default=True,
-    help="Some 90 grains a sample: half an hour to an hour (default).",
+    help="Some 90 grains a sample: half an hour on two cores (default).",
 )  # fmt: skip
-@click.option("--full", "size", flag_value="full", help="1000 grains and more: about a day.")
+@click.option(
+    "--full", "size", flag_value="full", help="1000 grains and more: some five hours on two cores."
+)
 @click.option(
     "--stage", "names", multiple=True, metavar="NAME",
-    help="Compute only this: elastic, snows, sensitivity or spheres; may be repeated.",
+    help="Compute only this: elastic, brittle or dense; may be repeated.",
 )  # fmt: skip
 @click.option("--report-only", is_flag=True, help="Compute nothing, write the report.")
 @click.option("--jobs", type=int, help="Tests at once.  [default: the number of cores]")

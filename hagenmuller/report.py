@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,9 +14,11 @@ from reproduction.section import Section
 from hagenmuller.claims import ENGINE, PAPER, Tests
 from hagenmuller.printed import YADE
 from hagenmuller.reproduction import Reproduction
+from hagenmuller.studies import MAKERS
 from snowshed._core import InputError
 from snowshed.analysis.grains.ratios import STRESSES, compare_variants
 from snowshed.analysis.grains.sensitivity import FIGURE, evaluate_sensitivity
+from snowshed.analysis.grains.variants import BASE
 from snowshed.io.formatting import NOTHING
 from snowshed.plot.html_page import Grid, Picture
 
@@ -50,8 +53,12 @@ def write_report(found: Reproduction) -> list[Judged]:
     try:
         tests = Tests(found.tests())
         claims = judge(PAPER, tests), judge(ENGINE, tests)
-        tables = [("Loading tests", stress_grid(compare_variants(tests.rows)))]
-        samples = [("Samples", sample_grid(tests.rows))]
+        tables = [
+            (f"Stage {name}", stress_grid(compare_variants(table)))
+            for name, table in zip(reversed(MAKERS), tests.tables)
+            if BASE in set(table["variant"])
+        ]
+        samples = [("Samples", sample_grid(tests.tables))]
     except InputError as error:
         claims, tables, samples = ([], []), [], []
         missing = [str(error)]
@@ -79,17 +86,20 @@ def write_report(found: Reproduction) -> list[Judged]:
 def _pictures(found: Reproduction) -> list[Picture]:
     folder = found.folder / "sensitivity"
     try:
-        evaluate_sensitivity(found.comparisons["sensitivity"], found.runs, folder)
+        evaluate_sensitivity(found.comparisons["brittle"], found.runs, folder)
     except InputError:
         return []
     caption = "As of `snowshed grains sensitivity`; the numbers are in sensitivity/sensitivity.csv."
     return [Picture.read(folder / FIGURE, "Sensitivity", caption, dpi=160)]
 
 
-def sample_grid(tests: pd.DataFrame) -> Grid:
-    """Return what the samples of each variant are, where they differ from the base's."""
+def sample_grid(tables: Sequence[pd.DataFrame]) -> Grid:
+    """Return what the samples of each variant are."""
+    import pandas as pd
+
+    found = pd.concat([one for one in tables if len(one)])
     rows = []
-    for variant, own in tests.groupby("variant", sort=False):
+    for variant, own in found.drop_duplicates(["variant", "sample"]).groupby("variant", sort=False):
         numbers = [_span(own[name]) for name in ("final_particles", "spheres", "density_kg_m3")]
         rows.append([str(variant), str(len(own)), *numbers])
     return Grid(["variant", "samples", "grains", "spheres", "kg/m3"], rows, "lrrrr")
@@ -102,13 +112,15 @@ def _span(values: pd.Series) -> str:
 
 def stress_grid(comparison: pd.DataFrame) -> Grid:
     """Return the stresses of each variant beside those of Yade."""
+    known = set(comparison["stress"][np.isfinite(comparison["value_pa"])])
+    stresses = [name for name in STRESSES if name in known]  # that the tests reach
     rows = []
     for variant in dict.fromkeys(comparison["variant"]):
         own = comparison[comparison["variant"] == variant].set_index("stress")
         printed = dict(zip(STRESSES, YADE.get(str(variant), (None,) * len(STRESSES))))
-        cells = [_stress(own.loc[name], printed[name]) for name in STRESSES if name in own.index]
-        rows.append([str(variant), *cells])
-    return Grid(["variant", *STRESSES.values()], rows, "l" + "r" * len(STRESSES))
+        rows.append([str(variant), *(_stress(own.loc[name], printed[name]) for name in stresses)])
+    titles = [STRESSES[name] for name in stresses]
+    return Grid(["variant", *titles], rows, "l" + "r" * len(stresses))
 
 
 def _stress(row: pd.Series, printed: object) -> str:

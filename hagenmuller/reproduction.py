@@ -5,7 +5,7 @@ hagenmuller.html     the report
 claims.csv           one row per claim: source, claim, rule, verdict, finding
 samples/             the labels of the synthetic snow
 runs/                the store of all loading tests
-sensitivity/         tests, table and figure of what matters
+sensitivity/         tests, table and figure of what matters in the brittle phase
 ==================== ========================================================================
 """
 
@@ -20,6 +20,7 @@ from reproduction.stage import StudyStage
 from hagenmuller.size import Size
 from hagenmuller.studies import MAKERS, Comparisons
 from snowshed._core import InputError
+from snowshed.analysis.grains.variants import BASE
 from snowshed.study.definition import Study
 
 if TYPE_CHECKING:
@@ -49,23 +50,20 @@ class Reproduction:
         """The store."""
         return self.folder / "runs"
 
-    def tests(self) -> pd.DataFrame:
-        """Return all computed tests; those of the base once.
+    def tests(self) -> list[pd.DataFrame]:
+        """Return the computed tests of each stage, those that load further first.
 
         Raises
         ------
         InputError
-            If none of the base is computed.
+            If none of a base is computed.
         """
-        import pandas as pd
-
         for stage in self.stages.values():
             stage.state()  # enters its study, also if another stage was asked for
-        tables = [self.comparisons[name].table(self.runs) for name in MAKERS]
-        rows = pd.concat([one for one in tables if len(one)] or tables[:1])
-        if "base" not in set(rows["variant"]):
+        tables = [self.comparisons[name].table(self.runs) for name in reversed(MAKERS)]
+        if not any(BASE in set(table["variant"]) for table in tables):
             raise InputError("no test of the base is computed yet")
-        return rows.drop_duplicates(["variant", "sample", "hash"], ignore_index=True)
+        return tables
 
     def _maker(self, name: str) -> Callable[[], list[Study]]:
         return lambda: [self.comparisons[name].study()]

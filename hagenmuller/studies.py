@@ -22,7 +22,6 @@ from snowshed.analysis.grains.variants import (
     BASE,
     Comparison,
     Variant,
-    other_spheres,
     sensitivity_variants,
 )
 from snowshed.methods.grains.settings import GrainsSettings
@@ -32,6 +31,8 @@ from snowshed.scene.scene import Scene
 
 #: 20 mm/s up to 30 %, with ice ten times as dense: inertia up to which stresses were seen to stay.
 STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.3)
+#: What is said of the brittle phase alone needs a sixth of it.
+BRITTLE_STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.05)
 SETTINGS = GrainsSettings(density_scaling=10.0)
 #: Loading within the elastic phase, and back: slow, so that waves are small.
 ELASTIC_STRAIN, ELASTIC_SPEED = 1e-4, 5e-4
@@ -40,6 +41,13 @@ TOO_DENSE = 1e4
 LIGHT_SNOW, HEAVY_SNOW = f"{LIGHT:.0f} kg/m3", f"{HEAVY:.0f} kg/m3"
 THIN_NECKS, WIDE_NECKS = "thin necks", "wide necks"
 FEWER, TRAP, ELASTIC = "fewer grains", "density of ice x 10000", "elastic"
+#: Settings that differ up to 30 %, by the names that `sensitivity_variants` gives them.
+SOFT, STRONG, ROUGH = "elastic modulus 1e+08 Pa", "strength of bonds 2e+06 Pa", "friction 0.5"
+DENSE_SETTINGS: Mapping[str, tuple[str, Mapping[str, float]]] = {
+    SOFT: ("elastic modulus", {"elastic_modulus": 1e8}),
+    STRONG: ("strength of bonds", {"tensile_strength": 2e6, "shear_strength": 2e6}),
+    ROUGH: ("friction", {"friction": 0.5}),
+}
 
 Snow = Callable[[int], LabelledSample]
 
@@ -80,33 +88,44 @@ class Comparisons:
         return Variant(name, varied, files, coarse[0].voxel_size)
 
 
-def sensitivity(made: Comparisons) -> Comparison:
-    """Return what `snowshed grains sensitivity` varies."""
-    return sensitivity_variants(made.base_snow(), made.folder, STAGE, SETTINGS, coarser=COARSER)
-
-
-def snows(made: Comparisons) -> Comparison:
-    """Return other densities, necks and numbers of grains, and the trap of too much inertia."""
+def dense(made: Comparisons) -> Comparison:
+    """Return what is compressed to 30 %: other settings, densities and necks."""
     edge = made.size.edge
     base = made.variant(BASE, BASE, lambda seed: field_snow(edge, seed, DENSITY))
-    variants = [
-        base,
+    settings = [
+        Variant(
+            name,
+            varied,
+            base.samples,
+            base.voxel_size,
+            {f"numerics.{key}": value for key, value in changes.items()},
+        )
+        for name, (varied, changes) in DENSE_SETTINGS.items()
+    ]
+    snows = [
         made.variant(LIGHT_SNOW, "density", lambda seed: field_snow(edge, seed, LIGHT)),
         made.variant(HEAVY_SNOW, "density", lambda seed: field_snow(edge, seed, HEAVY)),
         made.variant(THIN_NECKS, "necks", lambda seed: pack_snow(edge, seed, THIN)),
         made.variant(WIDE_NECKS, "necks", lambda seed: pack_snow(edge, seed, WIDE)),
-        made.variant(
-            FEWER, "segmentation", lambda seed: field_snow(edge, seed, DENSITY, FEWER_GRAINS)
-        ),
-        Variant(
-            TRAP,
-            "density of ice",
-            base.samples,
-            base.voxel_size,
-            {"numerics.density_scaling": TOO_DENSE},
-        ),
     ]
-    return Comparison(_scene(base, [STAGE]), variants, "hagenmuller-snows")
+    return Comparison(_scene(base, [STAGE]), [base, *settings, *snows], "hagenmuller-dense")
+
+
+def brittle(made: Comparisons) -> Comparison:
+    """Return what `snowshed grains sensitivity` varies, fewer grains, and the trap of inertia.
+
+    With spheres half as large, which take ten times as long.
+    """
+    found = sensitivity_variants(
+        made.base_snow(), made.folder, BRITTLE_STAGE, SETTINGS, coarser=COARSER, finer=True
+    )
+    edge, base = made.size.edge, found.variants[0]
+    fewer = made.variant(
+        FEWER, "segmentation", lambda seed: field_snow(edge, seed, DENSITY, FEWER_GRAINS)
+    )
+    scaling = {"numerics.density_scaling": TOO_DENSE}
+    trap = Variant(TRAP, "density of ice", base.samples, base.voxel_size, scaling)
+    return Comparison(found.scene, [*found.variants, fewer, trap], "hagenmuller-brittle")
 
 
 def elastic(made: Comparisons) -> Comparison:
@@ -122,18 +141,8 @@ def _scene(base: Variant, stages: Sequence[LoadingStage]) -> Scene:
     return grains_scene(base.samples[0], base.voxel_size, stages, settings=SETTINGS)
 
 
-def spheres(made: Comparisons) -> Comparison:
-    """Return spheres half as large, which take ten times as long."""
-    samples = made.base_snow()
-    base = [one.coarser(COARSER) for one in samples]
-    same = Variant(BASE, BASE, [one.write(made.folder) for one in base], base[0].voxel_size)
-    finer = other_spheres(samples, made.folder, COARSER - 1)
-    return Comparison(_scene(same, [STAGE]), [same, finer], "hagenmuller-spheres")
-
-
 MAKERS: Mapping[str, Callable[[Comparisons], Comparison]] = {
     "elastic": elastic,
-    "snows": snows,
-    "sensitivity": sensitivity,
-    "spheres": spheres,
+    "brittle": brittle,
+    "dense": dense,
 }

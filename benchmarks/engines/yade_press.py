@@ -139,7 +139,8 @@ def main() -> None:
         y.O.run(steps, wait=True)
     while not timed and y.O.iter < steps:
         y.O.run(press.every, wait=True)
-        rows.append((y.O.time, pressed.top_force(), pressed.count_bonds()))
+        # The forces are those of the places before the last step's motion.
+        rows.append((y.O.time - y.O.dt, pressed.top_force(), pressed.count_bonds()))
     wall = time.perf_counter() - begin
     times, forces, bonds = np.array(rows).T
     np.savez(

@@ -61,7 +61,7 @@ def made_up(noise=0.02, **changed):
     elastic = {"broken_in_tension": 0, "broken_in_shear": 0, "elastic_limit_strain": 1e-4,
                "axial_strain": 1e-7, "linearity": 0.99}  # fmt: skip
     rows += [{"variant": studies.ELASTIC, "sample": sample, **elastic} for sample in range(3)]
-    return Tests(pd.DataFrame(rows))
+    return Tests([pd.DataFrame(rows)])
 
 
 def verdicts(tests):
@@ -76,20 +76,20 @@ def test_what_is_as_claimed_is_confirmed():
 def test_noise_leaves_claims_open():
     found = verdicts(made_up(noise=3.0))
     assert found.count(UNDECIDED) > len(found) / 2
-    assert set(verdicts(Tests(made_up().rows.query("sample == 0")))[1:]) == {UNDECIDED}
+    assert set(verdicts(Tests([made_up().tables[0].query("sample == 0")]))[1:]) == {UNDECIDED}
 
 
 def test_the_opposite_contradicts():
     """Each of these turns a claim of the paper round."""
     for changed, text in (
-        ({claims.SOFT: (20.0, 54.0, 57.0, 439.0)}, "insensitive to Young"),
-        ({claims.SOFT: (63.0, 54.0, 57.0, 2500.0)}, "very sensitive to Young"),
+        ({studies.SOFT: (20.0, 54.0, 57.0, 439.0)}, "insensitive to Young"),
+        ({studies.SOFT: (63.0, 54.0, 57.0, 2500.0)}, "very sensitive to Young"),
         ({studies.THIN_NECKS: (100.0, 20.0, 40.0, 2000.0)}, "Faceted"),
         ({studies.THIN_NECKS: (40.0, 20.0, 40.0, 500.0)}, "do not differ"),
         ({studies.HEAVY_SNOW: (60.0, 20.0, 40.0, 2000.0)}, "Density controls the stress."),
         ({"spheres 50 um": (490.0, 25.0, 47.0, 2500.0)}, "size of the spheres"),
         ({claims.SCALED: (200.0, 25.0, 47.0, 2500.0)}, "Denser ice"),
-        ({claims.ROUGH: (60.0, 46.0, 38.0, 2000.0)}, "Friction"),
+        ({studies.ROUGH: (60.0, 46.0, 38.0, 2000.0)}, "Friction"),
         ({BASE: (30.0, 60.0, 70.0, 80.0)}, "At last the stress"),
     ):
         judged = {one.text: one.finding.verdict for one in judge(PAPER, made_up(**changed))}
@@ -99,17 +99,25 @@ def test_the_opposite_contradicts():
 
 def test_broken_bonds_are_not_elastic():
     tests = made_up()
-    tests.rows.loc[tests.rows["variant"] == studies.ELASTIC, "broken_in_shear"] = [0, 3, 2]
+    tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [
+        0,
+        3,
+        2,
+    ]
     (found,) = [one for one in judge(PAPER, tests) if one.source == "elastic phase"]
     assert found.finding.verdict == UNDECIDED
-    tests.rows.loc[tests.rows["variant"] == studies.ELASTIC, "broken_in_shear"] = [1, 3, 2]
+    tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [
+        1,
+        3,
+        2,
+    ]
     (found,) = [one for one in judge(PAPER, tests) if one.source == "elastic phase"]
     assert found.finding.verdict == CONTRADICTED
 
 
 def test_the_table_has_yade_beside_us():
-    grid = stress_grid(compare_variants(made_up().rows.query("variant != 'elastic'")))
-    (row,) = [row for row in grid.rows if row[0] == claims.ROUGH]
+    grid = stress_grid(compare_variants(made_up().tables[0].query("variant != 'elastic'")))
+    (row,) = [row for row in grid.rows if row[0] == studies.ROUGH]
     assert row[1].endswith("[106]")
 
 

@@ -26,6 +26,20 @@ def scene(tmp_path):
     ).update({"gravity": 0})
 
 
+def test_what_is_synthetic_is_called_so(scene, tmp_path):
+    """By the folder of the sample or by the title; an image of one's own is not called so."""
+    short = scene.set("loading.0.strain", 1e-5)
+    assert run_grains(short, tmp_path / "own", pictures=False).synthetic is None
+    facts = {"voxel_size_m": VOXEL, "synthetic": True, "source": "synthetic: by hand"}
+    (tmp_path / "microstructure.json").write_text(json.dumps(facts))
+    run_grains(short, tmp_path / "made", pictures=False)
+    stored = json.loads((tmp_path / "made/grains.json").read_text())
+    assert stored["synthetic"] == "synthetic: by hand"
+    (tmp_path / "microstructure.json").unlink()
+    titled = short.set("title", "synthetic: elsewhere")
+    assert run_grains(titled, tmp_path / "titled", pictures=False).synthetic is not None
+
+
 def test_figures_and_curve_tell_the_same(scene, tmp_path):
     summary = run_grains(scene, tmp_path / "out", pictures=False)
     curve = LoadingCurve.read(tmp_path / "out/curve.csv")

@@ -113,7 +113,7 @@ def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) 
     title = "Beginning"
     waves = phases.linearity is not None and phases.linearity < LINEAR
     if waves:
-        title += f": not linear (R² {phases.linearity:.2f}), as waves run through the sample"
+        title += f": not linear (R² {phases.linearity:.2f}), waves"
     elif phases.tangent_modulus is not None:
         x = np.array([0.0, limit])
         fitted = np.polyfit(strain[strain <= limit], stress[strain <= limit], 1)

@@ -28,6 +28,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table
 from snowshed.methods.grains.contacts import GrainContacts
 from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.image.sample_folder import LABELS, SYNTHETIC, find_sample
 from snowshed.methods.grains.summary import GrainsSummary, summarise
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
@@ -121,7 +122,7 @@ def run_grains(
         data = json.loads(simulation.scene)
         summary = summarise(
             curve, data, ended=facts["ended"], grains=simulation.particle_count,
-            spheres=len(contacts.spheres),
+            spheres=len(contacts.spheres), synthetic=_synthetic(data),
         )  # fmt: skip
         write_text(folder / "grains.json", json.dumps(asdict(summary), indent=2) + "\n")
         write_text(folder / "contacts.csv", contacts.text())
@@ -212,6 +213,13 @@ def _reading(kind: str, row: dict[str, float]) -> str:
     if kind == "shear":
         return f"{row['shear_strain']:.1%}, {row['shear_stress_pa'] / 1e3:.3g} kPa"
     return f"{abs(row['axial_strain']):.1%}, {row['top_stress_pa'] / 1e3:.3g} kPa"
+
+
+def _synthetic(scene: dict[str, Any]) -> str:
+    """Return how the sample was made, if its folder or the scene's title says it is synthetic."""
+    title = str(scene.get("title", ""))
+    known = find_sample(scene["sample"]["file"], LABELS).source
+    return known or (title if title.startswith(SYNTHETIC) else "")
 
 
 def _draw(

@@ -13,6 +13,7 @@ from snowshed.analysis.grains.material.fit import Range, fit_material
 from snowshed.analysis.grains.material.law import CamClay, Elasticity
 from snowshed.analysis.grains.material.report import write_snow
 from snowshed.analysis.grains.material.tests import NORMAL_STRESSES
+from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
 from snowshed.methods.grains.curve import COLUMNS, LoadingCurve
 
 E, NU, M, BETA, XI, P0 = 4e6, 0.25, 0.8, 0.15, 0.3, 2e4
@@ -42,15 +43,17 @@ def path(rate, end, count=400, broken=lambda times: 0.0 * times):
 
 
 def sheared(normal):
-    """A test at the law's critical state, under a normal stress; its sides have the same stress."""
+    """Shear up to the yield surface under equal pressure on all sides, and less afterwards."""
+    peak = M * np.sqrt((normal + BETA * P0) * (P0 - normal) / (1 + 2 * BETA) / 3)
+    strain = np.linspace(0, 0.02, 50)
+    rising = strain <= strain[10]
     columns = {name: np.zeros(50) for name in COLUMNS}
-    ratio = M * (1 + BETA) / ((1 - BETA) * np.sqrt(1 + 2 * BETA))
     columns.update(
-        shear_strain=np.linspace(0, 0.3, 50),
+        shear_strain=strain,
         top_stress_pa=np.full(50, normal),
         bottom_stress_pa=np.full(50, normal),
         side_stress_pa=np.full(50, normal),
-        shear_stress_pa=np.full(50, ratio * normal / np.sqrt(3)),
+        shear_stress_pa=peak * np.where(rising, strain / strain[10], 0.3),
     )
     return LoadingCurve(columns)
 
@@ -98,9 +101,10 @@ def test_each_reading_finds_what_the_law_was_made_with():
     found = readings.hardening(path((-1.0, -1.0, -1.0), 0.127), Elasticity(E, NU), P0)
     assert found.factor == pytest.approx(XI, rel=1e-3)
     assert found.residual < 0.01 and 1.0 <= found.excess < 1.1  # of the elastic rows at first
-    ratio = readings.critical_ratio(sheared(5e3))
-    slope, beta = readings.slope_and_cohesion(ratio, *readings.tension(stretched()), P0)
-    assert (slope, beta) == pytest.approx((M, BETA), rel=1e-6)
+    points = [readings.shear_strength(sheared(5e3)), readings.tension(stretched())]
+    surface = fit_yield_surface(*np.array(points).T / P0)
+    assert (surface.slope, surface.cohesion) == pytest.approx((M, BETA), rel=1e-5)
+    assert surface.residual < 1e-6
 
 
 def test_confined_compression_yields_where_the_rate_equations_do():
@@ -153,6 +157,17 @@ def test_what_means_nothing_is_refused(curves):
     loose["tension", 0] = LoadingCurve({**columns, "bottom_stress_pa": np.ones(2001)})
     with pytest.raises(InputError, match="tension, sample 1: no tension"):
         fit_material(loose, 300.0)
+
+
+def test_a_yield_surface_is_near_what_it_cannot_have():
+    """Strengths that no surface has leave a residual, and never a surface without shear."""
+    p, q = np.array([-0.3, 0.1, 0.3, 0.8]), np.array([0.9, 0.3, 0.35, 1.7])
+    found = fit_yield_surface(p, q)
+    assert found.slope > 0.1 and 0.1 < found.residual < 1.0
+    with pytest.raises(InputError, match="no shear"):
+        fit_yield_surface(p, 0 * q)
+    with pytest.raises(InputError, match="no yield surface"):
+        fit_yield_surface(np.array([1.5]), np.array([0.2]))
 
 
 def test_ranges_tell_the_scatter():

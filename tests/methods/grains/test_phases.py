@@ -47,6 +47,12 @@ def test_a_plateau_does_not_harden():
     assert phases.hardening_onset is None and phases.hardening_rate is None
 
 
+def test_a_stress_that_goes_up_and_down_does_not_harden():
+    wobble = np.exp(1.5 * np.sin(2 * np.pi * STRAIN / 0.11) + 3.0 * STRAIN)
+    phases = find_phases(curve_of(top_stress_pa=1e4 * wobble))
+    assert phases.hardening_onset is None and phases.hardening_rate is None
+
+
 def test_the_strength_of_a_pulled_sample_is_its_largest_tension():
     strain = np.linspace(0.0, 0.02, 50)
     stress = -np.where(strain < 0.01, 1e6 * strain, 0.0)

@@ -19,13 +19,15 @@ if TYPE_CHECKING:
 LARGEST = 1e4  # ratio that is still drawn
 
 
-def sensitivity_figure(comparison: pd.DataFrame) -> Figure:
+def sensitivity_figure(comparison: pd.DataFrame, title: str = "") -> Figure:
     """Draw the stresses of each variant over those of the base, with their 95 % intervals.
 
     Parameters
     ----------
     comparison
         From `compare_variants`.
+    title
+        What the snow is; stands before the rest.
     """
     names = [name for name in dict.fromkeys(comparison["variant"]) if name != BASE]
     varied = list(dict.fromkeys(comparison["varied"]))
@@ -36,7 +38,8 @@ def sensitivity_figure(comparison: pd.DataFrame) -> Figure:
         figure = blank(11.0, 1.6 + 0.3 * max(len(names), 4))
         headline(
             figure,
-            "Stress over that of the base; bars: 95 % by the scatter between samples, "
+            (f"{title}: " if title else "")
+            + "stress over that of the base; bars: 95 % by the scatter between samples, "
             "hollow where it may be none",
         )
         grid = figure.subplots(1, len(stresses), sharey=True, squeeze=False)[0]

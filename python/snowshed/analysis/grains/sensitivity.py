@@ -45,5 +45,5 @@ def evaluate_sensitivity(comparison: Comparison, runs: Path, folder: Path) -> pd
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(tests, folder / TESTS)
     write_csv(found, folder / TABLE)
-    save(sensitivity_figure(found), folder / FIGURE)
+    save(sensitivity_figure(found, comparison.scene.title or ""), folder / FIGURE)
     return found

@@ -176,7 +176,8 @@ def sensitivity_variants(
     base = [one.coarser(coarser) for one in samples]
     files = [one.write(folder) for one in base]
     voxel = base[0].voxel_size
-    scene = grains_scene(files[0], voxel, [stage], settings=settings)
+    title = "synthetic snow" if any(one.source for one in samples) else ""
+    scene = grains_scene(files[0], voxel, [stage], settings=settings, title=title)
     full: Any = scene.resolve().data
 
     variants = [Variant(BASE, BASE, files, voxel)]

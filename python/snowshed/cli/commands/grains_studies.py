@@ -128,7 +128,7 @@ def material(
     \b
     Example:
       snowshed grains material a b c --coarser 2 -o material
-      snowshed panel --preset lab-50 --dim 2 --snow material/snow-210.json -o stack
+      snowshed panel --preset lab-50 --dim 2 --snow material/snow-318.json -o stack
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.grains.material.run import MaterialFolder, by_density
     from snowshed.cli.commands.study import compute_study, print_plan

@@ -19,7 +19,7 @@ def print_grains(summary: GrainsSummary, folder: Path) -> None:
     for name, value in {
         "ended": f"{summary.ended} after {summary.duration_s:.4g} s",
         "sample": f"{summary.grains:,} grains of {summary.spheres:,} spheres, "
-        f"{summary.density_kg_m3:.0f} kg/m3",
+        f"{summary.density_kg_m3:.0f} kg/m3" + (", synthetic" if summary.synthetic else ""),
         "bonds broken": f"{broken:,} of {summary.bonds:,}, "
         f"{summary.broken_in_tension:,} in tension and {summary.broken_in_shear:,} in shear",
         "elastic up to": _percent(summary.elastic_limit_strain),

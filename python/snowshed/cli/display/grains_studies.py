@@ -59,8 +59,8 @@ PARAMETERS = {
     "critical_state_slope": ("M", "", 1.0),
     "cohesion": ("beta", "", 1.0),
     "hardening_factor": ("xi", "", 1.0),
-    "critical_ratio": ("q/p at the critical state", "", 1.0),
     "tension_pa": ("tensile strength", "kPa", 1e3),
+    "yield_residual": ("residual of the yield surface", "", 1.0),
     "hardening_residual": ("residual of the hardening", "", 1.0),
     "confined_yield_over_law": ("confined peak over law", "", 1.0),
 }

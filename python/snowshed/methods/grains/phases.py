@@ -19,6 +19,7 @@ from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stre
 
 BIN = 0.01  # of strain, over which stresses are averaged before hardening is looked for
 DOUBLED = math.log(2.0)  # the rise by which hardening counts as such
+EXPLAINED = 0.5  # part of the scatter of the stress that hardening explains at least
 #: Rows of the elastic phase without which no modulus is told.
 LEAST_ROWS = 4
 #: R2 of the line through the elastic phase below which it is none.
@@ -134,7 +135,7 @@ def _hardening(
 
     The logarithm of the stress, averaged over bins of `BIN`, is fitted by a constant and a rising
     line that meet; the onset is where they meet with the least squares. A rise to less than twice
-    the constant is none.
+    the constant is none, nor is one that explains less than half of the logarithm's scatter.
     """
     edges = np.arange(limit, strain[-1] + 1e-9, BIN)
     if len(edges) < 6:
@@ -145,8 +146,9 @@ def _hardening(
         return None, None
     x, y = np.array(pairs).T
     best = min((_hinge(x, y, float(onset)) for onset in edges[:-2]), key=lambda fit: fit[0])
-    _, onset, rate = best
-    if rate * (x[-1] - onset) < DOUBLED:
+    misfit, onset, rate = best
+    scatter = float(np.sum((y - y.mean()) ** 2))
+    if rate * (x[-1] - onset) < DOUBLED or misfit > (1 - EXPLAINED) * scatter:
         return None, None
     return onset, rate
 

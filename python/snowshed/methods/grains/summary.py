@@ -50,6 +50,8 @@ class GrainsSummary:
         Where its stress begins to grow like exp(rate * strain), and this rate.
     largest_cone_force_n
         Largest force on the cone.
+    synthetic
+        How the sample was made, if it is known to be synthetic; else None.
     notes
         What should be known of these figures.
     """
@@ -77,11 +79,18 @@ class GrainsSummary:
     hardening_onset_strain: Optional[float]
     hardening_rate: Optional[float]
     largest_cone_force_n: float
+    synthetic: Optional[str] = None
     notes: tuple[str, ...] = ()
 
 
 def summarise(
-    curve: LoadingCurve, scene: dict[str, Any], *, ended: str, grains: int, spheres: int
+    curve: LoadingCurve,
+    scene: dict[str, Any],
+    *,
+    ended: str,
+    grains: int,
+    spheres: int,
+    synthetic: str = "",
 ) -> GrainsSummary:
     """Return the figures of a loading test.
 
@@ -95,6 +104,8 @@ def summarise(
         How it ended.
     grains, spheres
         How many there are.
+    synthetic
+        How the sample was made, if it is known to be synthetic.
     """
     kind = str(scene["loading"][0]["kind"])
     first = curve.of_stage(1)
@@ -126,6 +137,7 @@ def summarise(
         hardening_onset_strain=phases.hardening_onset,
         hardening_rate=phases.hardening_rate,
         largest_cone_force_n=float(np.abs(curve["cone_force_n"]).max()),
+        synthetic=synthetic or None,
         notes=tuple(_notes(curve, first, kind, scene, grains)),
     )
 

@@ -9,11 +9,11 @@ import numpy as np
 
 from snowshed.analysis.grains.material.fit import FittedSnow
 from snowshed.analysis.grains.material.readings import (
-    CRITICAL_FROM,
     PEAK_FROM,
     axial_stress,
-    critical_ratio,
     invariants,
+    shear_strength,
+    tension,
 )
 from snowshed.analysis.grains.material.tests import (
     COMPACTION,
@@ -87,14 +87,11 @@ def _draw_plane(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
     p = np.linspace(-fitted.law.cohesion * p0, p0, 300)
     q = fitted.law.yield_stress(p)
     axes.plot(p / p0, q / p0, color=BODY, lw=2, label="law: yield surface")
-    line = np.array([0.0, 0.9])
-    axes.plot(line, fitted.ranges["critical_ratio"].value * line, ":", color=BODY,
-              label="law: critical state")  # fmt: skip
     for test, colour, marker, words in (
         (ISOTROPIC, COLOURS[0], "o", "isotropic, peak below 5 %"),
         (CONFINED, COLOURS[2], "s", "confined, peak (not fitted)"),
         (TENSION, COLOURS[3], "v", "tension, peak"),
-        (SHEAR, COLOURS[4], "^", "shear, mean of the critical state"),
+        (SHEAR, COLOURS[4], "^", "shear, peak"),
     ):
         for (name, _), curve in curves.items():
             if name.partition(" ")[0] == test:
@@ -110,12 +107,9 @@ def _draw_plane(axes: Axes, fitted: FittedSnow, curves: Curves) -> None:
 
 def _point(test: str, curve: LoadingCurve) -> tuple[float, float]:
     """Return p and q where a test's strength is read."""
+    if test in (SHEAR, TENSION):
+        return shear_strength(curve) if test == SHEAR else tension(curve)
     p, q = invariants(curve, isotropic=test == ISOTROPIC)
-    along = axial_stress(curve)
-    if test == SHEAR:
-        normal = float(along[curve["shear_strain"] >= CRITICAL_FROM].mean())
-        return normal, critical_ratio(curve) * normal
-    counted = np.abs(curve["axial_strain"]) >= PEAK_FROM
-    along = np.where(counted, -along if test == TENSION else along, -np.inf)
-    row = int(np.argmax(along))
+    counted = curve["axial_strain"] >= PEAK_FROM
+    row = int(np.argmax(np.where(counted, axial_stress(curve), -np.inf)))
     return float(p[row]), float(q[row])

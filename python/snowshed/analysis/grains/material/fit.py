@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Optional, TypeVar
 
 import numpy as np
@@ -20,6 +20,7 @@ from snowshed.analysis.grains.material.tests import (
     TENSION,
     Curves,
 )
+from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
 from snowshed.analysis.grains.ratios import LogMean
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.phases import LINEAR
@@ -28,6 +29,8 @@ from snowshed.scene.components import Snow
 Reading = TypeVar("Reading")
 #: Ratio of the law to the grains from which it is said.
 POOR = 2.0
+#: Part of the strengths from which it is said that the yield surface misses them.
+MISSED = 0.25
 #: p0 over K above which the law's elastic strains are no longer small.
 SOFT = 0.1
 
@@ -81,8 +84,8 @@ class FittedSnow:
     law
         The parameters.
     ranges
-        Each parameter's range, by its name in `Snow`; and ``critical_ratio`` (q/p),
-        ``tension_pa`` (axial), ``hardening_residual``, ``confined_yield_over_law``.
+        Each parameter's range, by its name in `Snow`; and ``tension_pa`` (axial),
+        ``yield_residual``, ``hardening_residual``, ``confined_yield_over_law``.
     notes
         What should be known before it is used.
     """
@@ -102,7 +105,7 @@ class FittedSnow:
 
 def isotropic_strength(curves: Curves) -> float:
     """Return the geometric mean of p0 over the samples, Pa, for the shear tests."""
-    return Range.of(_read(curves, ISOTROPIC, readings.isotropic_yield, [])).value
+    return Range.of(list(_read(curves, ISOTROPIC, readings.isotropic_yield, []).values())).value
 
 
 def fit_material(
@@ -111,8 +114,8 @@ def fit_material(
     """Return the snow whose law agrees with the tests.
 
     E and nu come from the elastic phase of confined compression, p0 from the peak of isotropic
-    compression, M from the ratio q/p that shear ends with, beta from the tensile strength, and xi
-    from the hardening in isotropic compression.
+    compression, M and beta from the strengths in shear and tension, and xi from the hardening in
+    isotropic compression.
 
     Parameters
     ----------
@@ -132,7 +135,7 @@ def fit_material(
         If a parameter cannot be read from any sample, or the law would mean nothing.
     """
     notes: list[str] = []
-    found = _read(curves, CONFINED, readings.elasticity, notes)
+    found = list(_read(curves, CONFINED, readings.elasticity, notes).values())
     ranges = {
         "youngs_modulus": Range.of([one.youngs_modulus for one, _ in found]),
         "poissons_ratio": Range.of([one.poissons_ratio for one, _ in found], logarithmic=False),
@@ -143,7 +146,7 @@ def fit_material(
     if linearity < LINEAR:
         notes.append(f"the elastic phase is not linear (R2 {linearity:.2f}): E is doubtful")
     strengths = _read(curves, ISOTROPIC, readings.isotropic_yield, notes)
-    ranges["preconsolidation_pressure"] = Range.of(strengths)
+    ranges["preconsolidation_pressure"] = Range.of(list(strengths.values()))
     p0 = ranges["preconsolidation_pressure"].value
     if p0 > SOFT * elastic.bulk_modulus:
         raise InputError(
@@ -151,7 +154,8 @@ def fit_material(
             f"{elastic.bulk_modulus:.3g} Pa: the law would yield at large elastic strains only; "
             f"up to {SOFT:g} are allowed"
         )
-    _read_strengths(curves, ranges, p0, notes)
+    own_p0 = {sample: value for (_, sample), value in strengths.items()}
+    _read_strengths(curves, ranges, own_p0, notes)
     _read_hardening(curves, ranges, elastic, p0, notes)
     law = CamClay(
         density,
@@ -169,13 +173,13 @@ def fit_material(
 
 def _read(
     curves: Curves, test: str, read: Callable[[LoadingCurve], Reading], notes: list[str]
-) -> list[Reading]:
-    """Return a reading of each sample; those that have none are noted."""
-    values, failures = [], []
+) -> dict[tuple[str, int], Reading]:
+    """Return a reading of each sample, by test and sample; those that have none are noted."""
+    values, failures = {}, []
     for (name, sample), curve in sorted(curves.items(), key=lambda item: item[0]):
         if name.partition(" ")[0] == test:
             try:
-                values.append(read(curve))
+                values[name, sample] = read(curve)
             except InputError as error:
                 failures.append(f"{name}, sample {sample + 1}: {error}")
     if not values:
@@ -184,23 +188,37 @@ def _read(
     return values
 
 
-def _read_strengths(curves: Curves, ranges: dict[str, Range], p0: float, notes: list[str]) -> None:
-    """Read M and beta, which depend on each other."""
-    ratios = _read(curves, SHEAR, readings.critical_ratio, notes)
-    ranges["critical_ratio"] = ratio = Range.of(ratios)
+def _read_strengths(
+    curves: Curves, ranges: dict[str, Range], own_p0: dict[int, float], notes: list[str]
+) -> None:
+    """Read M and beta: the yield surface through the strengths in tension and shear.
+
+    Each sample's strengths are taken over its own p0.
+    """
     tensions = _read(curves, TENSION, readings.tension, notes)
-    ranges["tension_pa"] = Range.of([_axial(*one) for one in tensions])
-    mean_p, mean_q = (float(np.mean([one[axis] for one in tensions])) for axis in (0, 1))
-    slope, beta = readings.slope_and_cohesion(ratio.value, mean_p, mean_q, p0)
-    scale = slope / ratio.value
-    each = [readings.cohesion(*one, p0, slope) for one in tensions]
-    of_ratio, of_beta = Range.of([scale * one for one in ratios]), Range.of(each, logarithmic=False)
-    ranges["critical_state_slope"] = of_ratio
-    ranges["cohesion"] = Range(beta, of_beta.low, of_beta.high, of_beta.deviation, len(each))
-    if beta in (0.0, 1.0):
+    strengths = {**_read(curves, SHEAR, readings.shear_strength, notes), **tensions}
+    ranges["tension_pa"] = Range.of([_axial(*one) for one in tensions.values()])
+    p0 = ranges["preconsolidation_pressure"].value
+    points: dict[int, list[tuple[float, float]]] = {}
+    for (_, sample), (p, q) in strengths.items():
+        own = own_p0.get(sample, p0)
+        points.setdefault(sample, []).append((p / own, q / own))
+    found = fit_yield_surface(*np.array([one for some in points.values() for one in some]).T)
+    each = [fit_yield_surface(*np.array(some).T) for some in points.values() if len(some) > 1]
+    slopes = Range.of([one.slope for one in each])
+    betas = Range.of([one.cohesion for one in each], logarithmic=False)
+    ranges["critical_state_slope"] = replace(slopes, value=found.slope)
+    ranges["cohesion"] = replace(betas, value=found.cohesion)
+    ranges["yield_residual"] = Range.of([found.residual])
+    if found.residual > MISSED:
         notes.append(
-            f"beta {beta:g} is the end of what the law takes: its tensile strength is not the "
-            f"grains' of {ranges['tension_pa'].value:.3g} Pa"
+            f"the law's yield surface misses the strengths by {100 * found.residual:.0f} % of "
+            "their size"
+        )
+    if found.cohesion in (0.0, 1.0):
+        notes.append(
+            f"beta {found.cohesion:g} is the end of what the law takes: its tensile strength is "
+            f"not the grains' of {ranges['tension_pa'].value:.3g} Pa"
         )
 
 
@@ -212,7 +230,8 @@ def _axial(p: float, q: float) -> float:
 def _read_hardening(
     curves: Curves, ranges: dict[str, Range], elastic: Elasticity, p0: float, notes: list[str]
 ) -> None:
-    found = _read(curves, COMPACTION, lambda curve: readings.hardening(curve, elastic, p0), notes)
+    read = _read(curves, COMPACTION, lambda curve: readings.hardening(curve, elastic, p0), notes)
+    found = list(read.values())
     ranges["hardening_factor"] = Range.of([one.factor for one in found])
     ranges["hardening_residual"] = Range.of([one.residual for one in found])
     excess = max(one.excess for one in found)
@@ -229,7 +248,7 @@ def _check_confined(
     """Compare the peak of confined compression, to which nothing is fitted."""
     stress = law.confined_yield()
     peaks = _read(curves, CONFINED, readings.confined_peak, notes)
-    ranges["confined_yield_over_law"] = found = Range.of([peak / stress for peak in peaks])
+    ranges["confined_yield_over_law"] = found = Range.of([one / stress for one in peaks.values()])
     if not 1 / POOR <= found.value <= POOR:
         notes.append(
             f"in confined compression the grains' peak is {found.value:.2g} times the law's yield "

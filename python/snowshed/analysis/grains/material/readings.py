@@ -1,8 +1,8 @@
 """What loading tests tell of the cohesive Cam-Clay law, parameter by parameter.
 
-Stresses are positive in compression. p is the mean stress and q the Mises stress. The law's yield
-surface is (1 + 2 beta) q^2 + M^2 (p + beta p0)(p - p0) = 0 (thesis 1.2.6), and it hardens with
-p0 = K sinh(xi e), where K = E/(3 - 6 nu) and e is the plastic volumetric compaction (1.2.7).
+Stresses are positive in compression. p is the mean stress and q the Mises stress. The law hardens
+with p0 = K sinh(xi e), where K = E/(3 - 6 nu) and e is the plastic volumetric compaction (thesis
+1.2.7). Its yield surface is fitted in `snowshed.analysis.grains.material.yield_surface`.
 """
 
 from __future__ import annotations
@@ -18,8 +18,6 @@ from snowshed.io.arrays import Floats
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.phases import LEAST_ROWS, PEAK_BELOW
 
-#: Shear strain from which on the strength is that of the critical state.
-CRITICAL_FROM = 0.15
 #: Strain from which on a peak counts: before, it is that of the plate's impact.
 PEAK_FROM = 5e-4
 #: Plastic compactions, over which stresses are averaged before hardening is fitted.
@@ -137,28 +135,23 @@ def confined_peak(curve: LoadingCurve) -> float:
     return float(axial_stress(curve)[counted].max(initial=0.0))
 
 
-def critical_ratio(curve: LoadingCurve) -> float:
-    """Return q/p at the critical state: means over shear strains above `CRITICAL_FROM`.
+def shear_strength(curve: LoadingCurve) -> tuple[float, float]:
+    """Return p and q, Pa, at the largest shear stress under a normal stress.
 
-    There the law strains at constant volume in pure shear, and as its flow is associated, the
-    stress is shear alone beside an equal pressure on all sides: p is the normal stress, and q is
-    the shear stress times the root of 3. Stresses on the sides are not used.
+    There bonds hold the snow together, as in the other strengths. Afterwards a sheared layer is
+    loose, and what it bears is no property of the snow around it.
 
     Raises
     ------
     InputError
-        If the test ends before, or there is no pressure.
+        If there is no shear stress.
     """
-    rows = curve["shear_strain"] >= CRITICAL_FROM
-    if not rows.any():
-        raise InputError(f"sheared by less than {CRITICAL_FROM:.0%}: no critical state")
-    pressure = float(axial_stress(curve)[rows].mean())
-    shear = float(curve["shear_stress_pa"][rows].mean())
-    if not (pressure > 0 and shear > 0):
-        raise InputError(
-            "no shear under pressure at the critical state: the plate came off the snow"
-        )
-    return math.sqrt(3.0) * shear / pressure
+    shear = np.where(curve["shear_strain"] >= PEAK_FROM, curve["shear_stress_pa"], -np.inf)
+    row = int(np.argmax(shear))
+    if not shear[row] > 0:
+        raise InputError("no shear stress: is the snow frozen to the plates (bonded_plates)?")
+    pressure, deviator = invariants(curve)
+    return float(pressure[row]), float(deviator[row])
 
 
 def tension(curve: LoadingCurve) -> tuple[float, float]:
@@ -175,63 +168,6 @@ def tension(curve: LoadingCurve) -> tuple[float, float]:
         raise InputError("no tension: is the snow frozen to the plates (bonded_plates)?")
     pressure, deviator = invariants(curve)
     return float(pressure[row]), float(deviator[row])
-
-
-def cohesion(p: float, q: float, p0: float, slope: float) -> float:
-    """Return beta of the yield surface through a stress, 0 to 1; the surface is linear in it.
-
-    Parameters
-    ----------
-    p, q
-        Of the stress, Pa; p is negative in tension.
-    p0, slope
-        Preconsolidation pressure, Pa, and M.
-
-    Examples
-    --------
-    >>> beta, m, p0, p = 0.2, 0.5, 7e3, -1e3
-    >>> q = m * np.sqrt((p + beta * p0) * (p0 - p) / (1 + 2 * beta))
-    >>> round(float(cohesion(p, q, p0, m)), 6)
-    0.2
-    """
-    outside = q**2 + slope**2 * p * (p - p0)
-    per_beta = 2 * q**2 + slope**2 * p0 * (p - p0)
-    if per_beta >= 0:
-        return 1.0 if outside > 0 else 0.0
-    return min(max(-outside / per_beta, 0.0), 1.0)
-
-
-def slope_of(ratio: float, beta: float) -> float:
-    """Return M of the law whose critical state has a ratio q/p.
-
-    There p = (1 - beta) p0 / 2 and q = M (1 + beta) p0 / 2 / sqrt(1 + 2 beta), the ellipse's top.
-
-    Examples
-    --------
-    >>> slope_of(0.8, 0.0)
-    0.8
-    """
-    return ratio * (1 - beta) * math.sqrt(1 + 2 * beta) / (1 + beta)
-
-
-def slope_and_cohesion(ratio: float, p: float, q: float, p0: float) -> tuple[float, float]:
-    """Return M and beta that have both a ratio q/p at the critical state and a tensile strength.
-
-    Parameters
-    ----------
-    ratio
-        q/p at the critical state.
-    p, q, p0
-        As of `cohesion`.
-    """
-    slope = ratio
-    beta = 0.0
-    for _ in range(100):
-        beta, last = cohesion(p, q, p0, slope), beta
-        slope = slope_of(ratio, min(beta, 0.99))
-        if abs(beta - last) < 1e-12:
-            break
-    return slope, beta
 
 
 def hardening(curve: LoadingCurve, elastic: Elasticity, p0: float) -> Hardening:

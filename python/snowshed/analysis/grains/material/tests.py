@@ -26,16 +26,20 @@ SLOW: Mapping[str, Any] = {"loading.0.speed": 1e-3, "loading.0.strain": 0.01, **
 LOADINGS: Mapping[str, Mapping[str, Any]] = {
     CONFINED: {"loading.0.kind": "compress", **SLOW},
     ISOTROPIC: {"loading.0.kind": "isotropic", **SLOW},
-    COMPACTION: {"loading.0.kind": "isotropic", "loading.0.strain": 0.12, **FROZEN},
+    COMPACTION: {"loading.0.kind": "isotropic", **FROZEN},
     TENSION: {"loading.0.kind": "stretch", **SLOW},
 }
 SHEARING: Mapping[str, Any] = {
-    "loading.0.kind": "shear", "loading.0.strain": 0.25,
+    "loading.0.kind": "shear", "loading.0.speed": 2e-3, "loading.0.strain": 0.02,
     "numerics.sides": "periodic", **FROZEN,
 }  # fmt: skip
 #: Normal stresses of the shear tests, of the yield stress in isotropic compression.
 NORMAL_STRESSES = (0.1, 0.3)
-SPEED = 0.02  # m/s, of the others
+SPEED = 0.02  # m/s, of the compaction
+#: Ice over volume to which snow is compacted: grains whose bonds are broken carry hardly anything
+#: before they are about so dense. Loose snow must be compacted further to get there.
+COMPACTED = 0.51
+LEAST_COMPACTION = 0.12  # strain along each axis
 
 Curves = Mapping[tuple[str, int], LoadingCurve]
 
@@ -60,7 +64,8 @@ class MaterialTests:
         self.files = [one.write(folder) for one in samples]
         self.voxel_size = samples[0].voxel_size
         density = settings.density or 917.0
-        self.density = density * sum(one.ice_fraction for one in samples) / len(samples)
+        self.ice_fraction = sum(one.ice_fraction for one in samples) / len(samples)
+        self.density = density * self.ice_fraction
         self.scene = grains_scene(
             self.files[0], self.voxel_size, [LoadingStage(speed=SPEED)], settings=settings
         )
@@ -73,7 +78,9 @@ class MaterialTests:
 
     def without_shear(self) -> Comparison:
         """Return the tests that need no other test before."""
-        return self._comparison("", {name: dict(loading) for name, loading in LOADINGS.items()})
+        tests = {name: dict(loading) for name, loading in LOADINGS.items()}
+        tests[COMPACTION]["loading.0.strain"] = compaction_strain(self.ice_fraction)
+        return self._comparison("", tests)
 
     def shear(self, pressure: float) -> Comparison:
         """Return the shear tests, whose normal stresses are parts of a pressure in Pa."""
@@ -92,6 +99,17 @@ class MaterialTests:
             for name, changes in tests.items()
         ]
         return Comparison(self.scene, variants, f"material-{self.density:.0f}{ending}")
+
+
+def compaction_strain(ice_fraction: float) -> float:
+    """Return the strain along each axis to which snow of an ice fraction is compacted.
+
+    Examples
+    --------
+    >>> compaction_strain(0.35), compaction_strain(0.23)
+    (0.12, 0.233)
+    """
+    return max(round(1 - (ice_fraction / COMPACTED) ** (1 / 3), 3), LEAST_COMPACTION)
 
 
 def read_curves(comparison: Comparison, runs: Path) -> Curves:

@@ -61,7 +61,7 @@ def gaussian_snow(
         Whether only the largest connected part of the ice is kept. The ice fraction is that of
         this part.
     seed
-        Of the random field; the same seed gives the same snow.
+        Of what is random; the same seed gives the same snow.
 
     Raises
     ------

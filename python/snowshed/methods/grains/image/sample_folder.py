@@ -13,6 +13,7 @@ from snowshed.io.paths import PathLike
 SNOW = "snow.npy"
 LABELS = "labels.npy"
 NUMBERS = "microstructure.json"
+SYNTHETIC = "synthetic"  # begins the source of what no image shows
 
 
 @dataclass(frozen=True)
@@ -63,5 +64,5 @@ def find_sample(path: PathLike, name: str) -> SampleFile:
     facts = read_object(numbers)
     size = positive(f"{numbers}: voxel_size_m", facts.get("voxel_size_m", float("nan")))
     return SampleFile(
-        file, size, str(facts.get("source", "synthetic")) if facts.get("synthetic") is True else ""
+        file, size, str(facts.get("source", SYNTHETIC)) if facts.get("synthetic") is True else ""
     )

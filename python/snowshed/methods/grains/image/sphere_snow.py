@@ -38,21 +38,15 @@ def sphere_snow(
 
     Parameters
     ----------
-    shape
-        Voxels (nz, ny, nx).
-    voxel_size
-        Edge of a voxel, m.
+    shape, voxel_size, ice_fraction, density, seed
+        As of `snowshed.methods.grains.image.gaussian_snow.gaussian_snow`. No sphere is added after
+        the ice fraction is reached. Up to some 0.35 are possible, more with wider necks.
     diameter
         Mean diameter of the spheres, m.
-    ice_fraction, density
-        How much ice; give one of the two. 0 < fraction < 1, or kg/m3. No sphere is added after it
-        is reached. Up to some 0.35 are possible, more with wider necks.
     neck_ratio
         Radius of a neck over that of the smaller of its spheres. 0.1 <= ratio <= 0.9.
     spread
         Half-width of the uniform distribution of diameters over its mean. 0 <= spread <= 0.5.
-    seed
-        Of the places and diameters; the same seed gives the same snow.
 
     Raises
     ------

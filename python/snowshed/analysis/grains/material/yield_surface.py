@@ -1,0 +1,77 @@
+"""The law's yield surface through the strengths of grains, in the plane of p and q.
+
+The surface is (1 + 2 beta) q^2 + M^2 (p + beta p0)(p - p0) = 0 (thesis 1.2.6).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.arrays import Floats
+
+COHESIONS = np.linspace(0.0, 1.0, 201)  # that a scene takes (`snowshed.Snow`)
+
+
+@dataclass(frozen=True)
+class YieldSurface:
+    """A yield surface whose p0 is known.
+
+    Attributes
+    ----------
+    slope, cohesion
+        M and beta.
+    residual
+        Root mean square of what it misses of q, over that of q.
+    """
+
+    slope: float
+    cohesion: float
+    residual: float
+
+
+def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
+    """Return the surface that is nearest to strengths: the least squares of q.
+
+    For a given beta q is proportional to M, so that only beta is searched for.
+
+    Parameters
+    ----------
+    p, q : (n,)
+        Of the strengths, over p0; p is negative in tension.
+
+    Raises
+    ------
+    InputError
+        If no surface has strength where the grains do.
+
+    Examples
+    --------
+    >>> p = np.array([-0.05, 0.1, 0.3])
+    >>> found = fit_yield_surface(p, 0.8 * np.sqrt((p + 0.2) * (1 - p) / 1.4))
+    >>> round(found.slope, 6), round(found.cohesion, 6)
+    (0.8, 0.2)
+    """
+    from scipy.optimize import minimize_scalar
+
+    def surface(beta: float) -> YieldSurface:
+        shape = np.sqrt(np.maximum((p + beta) * (1 - p), 0.0) / (1 + 2 * beta))
+        whole = float(shape @ shape)
+        slope = float(shape @ q) / whole if whole > 0 else 0.0
+        missed = float(np.linalg.norm(q - slope * shape) / np.linalg.norm(q))
+        return YieldSurface(slope, beta, missed)
+
+    if not np.linalg.norm(q) > 0:
+        raise InputError("the grains bear no shear: no yield surface can be fitted")
+    coarse = [surface(beta).residual for beta in COHESIONS]
+    best = int(np.argmin(coarse))
+    around = COHESIONS[[max(best - 1, 0), min(best + 1, len(COHESIONS) - 1)]]
+    fine = minimize_scalar(
+        lambda beta: surface(beta).residual, bounds=tuple(around), options={"xatol": 1e-10}
+    )
+    found = min(surface(float(COHESIONS[best])), surface(float(fine.x)), key=lambda s: s.residual)
+    if not found.slope > 0:
+        raise InputError("no yield surface of the law has strength where the grains do")
+    return found
