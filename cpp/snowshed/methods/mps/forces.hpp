@@ -1,6 +1,8 @@
 // What acts on the particles during a step, in the order in which it does.
 #pragma once
 
+#include <cmath>
+
 #include "snowshed/methods/mps/state.hpp"
 
 namespace snowshed {
@@ -14,11 +16,17 @@ void find_neighbours(const MpsModel<D>&, MpsParticles<D>&, double time, MpsWork<
 template <int D>
 void smooth_pressures(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
 
-/// The shear rates of the present velocities.
+/// sqrt(2 D:D) of a velocity gradient, 1/s.
 template <int D>
-void find_rates(const MpsModel<D>&, MpsParticles<D>&, const MpsWork<D>&);
+double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
+  return (gradient + gradient.transpose()).norm() / std::sqrt(2.0);
+}
 
-/// The apparent viscosities, from the shear rates and the smoothed pressures.
+/// The velocity gradients and shear rates of the present velocities.
+template <int D>
+void find_rates(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);
+
+/// The apparent viscosities of particles, from the shear rates and the smoothed pressures.
 template <int D>
 void find_viscosities(const MpsModel<D>&, MpsParticles<D>&, const MpsWork<D>&);
 

@@ -87,22 +87,30 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
 /// for linear fields however the neighbours lie (Randles and Libersky 1996,
 /// doi:10.1016/S0045-7825(96)01090-0; in MPS Khayyer and Gotoh 2011, doi:10.1016/j.jcp.2011.01.009).
 /// On a lattice it is the identity, and so it is where too few neighbours are left.
+/// `spread` is a first-order correction (ours) of weights by e.B e, e the direction of a pair, that
+/// makes the sum of w r r^T, and with it Laplacians of quadratic fields, that of a lattice.
 template <int D>
 void find_corrections(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int threads) {
   using Matrix = Eigen::Matrix<double, D, D>;
   near.correction.resize(near.lists.size());
   near.asymmetry.resize(near.lists.size());
+  near.spread.resize(near.lists.size());
   for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
-    Matrix moment = Matrix::Zero();
+    Matrix moment = Matrix::Zero(), second = Matrix::Zero();
     VecD<D> side = VecD<D>::Zero();
     const auto add = [&](const VecD<D>& r, double weight, double slope) {
       moment += slope * r * r.transpose();
+      second += weight * r * r.transpose();
       side += weight * r;
     };
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
       add(near.way(e), double(near.weight[e]), double(near.slope[e]));
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
       add(m->way, double(m->weight), double(m->slope));
+    const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
+    near.spread[i] = Matrix::Identity();
+    if (!near.below_surface[i])
+      near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
     near.asymmetry[i] = near.below_surface[i] ? VecD<D>(VecD<D>::Zero()) : side;
     moment *= model.gradient();
     near.correction[i] = moment.determinant() > least_determinant ? Matrix(moment.inverse())

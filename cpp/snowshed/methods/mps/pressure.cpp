@@ -190,11 +190,13 @@ template <int D>
 SolveReport correct_pressure(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles,
                              MpsWork<D>& work) {
   const std::size_t n = particles.size();
-  const double factor = -model.settings().density / (dt * model.laplacian());
+  const double relaxation = compensation_time(model, dt, particles);
   for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
     work.pressure[i] = 0;
+    work.source[i] = 0;
+    if (work.fixed[i]) return;
     work.source[i] =
-        work.fixed[i] ? 0 : factor * divergence(model, particles, work.near, i);
+        -source(model, dt, relaxation, particles, work.near, i) / model.laplacian();
     if (SC && work.near.surface[i]) work.source[i] = std::max(work.source[i], 0.0);
   });
   if (work.enclosed) balance_sources(work, n);

@@ -80,11 +80,11 @@ void smooth_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles
 }
 
 template <int D>
-void find_rates(const MpsModel<D>& model, MpsParticles<D>& particles, const MpsWork<D>& work) {
+void find_rates(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
+  work.velocity_gradient.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    const Eigen::Matrix<double, D, D> gradient = velocity_gradient(model, particles, work.near, i);
-    const Eigen::Matrix<double, D, D> strain = 0.5 * (gradient + gradient.transpose());
-    particles.rate[i] = std::sqrt(2 * strain.squaredNorm());
+    work.velocity_gradient[i] = velocity_gradient(model, particles, work.near, i);
+    particles.rate[i] = shear_rate<D>(work.velocity_gradient[i]);
   });
 }
 
@@ -101,8 +101,8 @@ void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles,
 
 template void smooth_pressures(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
 template void smooth_pressures(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
-template void find_rates(const MpsModel<2>&, MpsParticles<2>&, const MpsWork<2>&);
-template void find_rates(const MpsModel<3>&, MpsParticles<3>&, const MpsWork<3>&);
+template void find_rates(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
+template void find_rates(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
 template void find_viscosities(const MpsModel<2>&, MpsParticles<2>&, const MpsWork<2>&);
 template void find_viscosities(const MpsModel<3>&, MpsParticles<3>&, const MpsWork<3>&);
 

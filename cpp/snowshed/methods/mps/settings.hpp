@@ -38,10 +38,10 @@ struct MpsSettings {
   double viscosity = 0.012;    // Pa s, plastic
   double cohesion = 0;         // Pa, "adhesive force"
   double friction_angle = 24;  // degrees
-  double stress_growth = 100;  // s, m of Papanastasiou
+  double stress_growth = 1e4;  // s, m of Papanastasiou
   double dilatant_rate = 100;  // 1/s, above which the dilatant branch holds
   double dilatant_exponent = 1.5;
-  int yield_iterations = 20;  // at most, of the apparent viscosity in a step
+  int yield_iterations = 50;  // at most, of the apparent viscosity in a step
 
   bool erosion = false;             // whether snow erodes and is deposited
   double erodible_thickness = 0;    // m, of the snow on obstacles that is at rest at first
@@ -60,7 +60,7 @@ struct MpsSettings {
   MpsSpacing spacing_law = MpsSpacing::shifting;
   MpsPreconditioner preconditioner = MpsPreconditioner::multigrid;
   double pressure_tolerance = 1e-3;
-  double viscosity_tolerance = 1e-3;
+  double viscosity_tolerance = 1e-4;
   int max_iterations = 1000;
   int threads = 0;  // 0: all
 

@@ -170,6 +170,7 @@ void MpsSolver<D>::step() {
   find_neighbours(model_, next.particles, state_.time, work_);
   double dt = choose_step(next.particles);
   const MpsState<D> start = next;
+  work_.before = start.particles.velocity;
   const MpsSettings& s = model_.settings();
   for (int halvings = 0;; ++halvings) {
     attempt(dt, next);
@@ -184,7 +185,6 @@ void MpsSolver<D>::step() {
   }
   if (model_.options.energy) {
     const std::size_t n = size();
-    work_.before = start.particles.velocity;
     work_.moved.resize(n);
     for (std::size_t i = 0; i < n; ++i) work_.moved[i] = start.particles.moves(i);
   }

@@ -91,6 +91,7 @@ struct MpsNeighbourhood {
   AlignedVector<std::uint8_t> below_surface;  // or has such a neighbour
   AlignedVector<Eigen::Matrix<double, D, D>> correction;  // of gradients, see find_corrections
   AlignedVector<VecD<D>> asymmetry;                       // sum of w r, 0 at the surface, m
+  AlignedVector<Eigen::Matrix<double, D, D>> spread;      // of Laplacians, see find_corrections
 
   VecD<D> way(std::size_t entry) const { return lists.way(entry); }
   const WallContact<D>& wall(const WallImage<D>& image, int k) const {
@@ -109,6 +110,7 @@ struct MpsWork {
   AlignedVector<double> drag;                         // of each contact with a wall, 1/s
   AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
+  AlignedVector<Eigen::Matrix<double, D, D>> velocity_gradient;  // 1/s
   AlignedVector<float> coupling;          // of velocities, of each pair
   AlignedVector<double> smooth_pressure;  // Pa
   AlignedVector<double> diagonal, source, pressure;

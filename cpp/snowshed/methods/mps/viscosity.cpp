@@ -7,6 +7,8 @@
 
 namespace snowshed {
 namespace {
+static const double YTT=getenv("YT")?atof(getenv("YT")):1e-3;
+#define YT 3
 
 /// Nearer to a wall than this, in l0, its friction grows no further.
 constexpr double nearest_friction = 0.25;
@@ -20,15 +22,30 @@ double wall_share(double distance, double second) {
   return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
 }
 
-/// The viscosity between two particles: their harmonic mean, so that the stress is that of both.
-inline double between(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0.0; }
+/// The viscosity between two particles, Pa s: that of the velocity gradient midway, which is the
+/// mean of both but for its part along the way, which is the difference of both velocities.
+template <int D>
+double viscosity_between(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                         const MpsWork<D>& work, std::size_t i, std::uint32_t entry) {
+  const std::size_t j = work.near.lists.neighbour(entry);
+  const VecD<D> way = work.near.way(entry);
+  Eigen::Matrix<double, D, D> gradient =
+      0.5 * (work.velocity_gradient[i] + work.velocity_gradient[j]);
+  const VecD<D> change = particles.velocity[j] - particles.velocity[i];
+  gradient += (change - gradient * way) * way.transpose() / way.squaredNorm();
+  const Rheology& law = model.rheology;
+  const double pressure =
+      law.friction > 0 ? 0.5 * (work.smooth_pressure[i] + work.smooth_pressure[j]) : 0.0;
+  return law.apparent_viscosity(law.yield_stress(pressure), shear_rate<D>(gradient));
+}
 
 template <int D>
 using Velocities = AlignedVector<VecD<D>>;
 
 /// The apparent viscosity of a step is found when the velocities change by less than this, over
 /// what the equation is solved to.
-constexpr double yield_tolerance = 10;
+constexpr double yield_tolerance = YT;
+const double first_guess = getenv("FG")?atof(getenv("FG")):0.01;
 
 }  // namespace
 
@@ -56,6 +73,16 @@ double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, con
 
 namespace {
 
+/// The factor of a pair's weight in Laplacians, see find_corrections.
+template <int D>
+double spread_factor(const MpsNeighbourhood<D>& near, std::size_t i, std::uint32_t entry) {
+  const VecD<D> way = near.way(entry);
+  const double factor =
+      0.5 * way.dot((near.spread[i] + near.spread[near.lists.neighbour(entry)]) * way) /
+      way.squaredNorm();
+  return std::clamp(factor, 0.5, 2.0);
+}
+
 /// The equation of the present apparent viscosities; `start` are the velocities before viscosity
 /// acts, particles.velocity a guess that becomes the solution.
 template <int D>
@@ -66,6 +93,8 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
   const int threads = model.threads_for(n);
   const MpsNeighbourhood<D>& near = work.near;
   const double factor = dt / model.settings().density * model.laplacian();
+  const bool newtonian = model.rheology.is_newtonian();
+  const bool corrected = model.settings().gradient == MpsGradient::corrected;
   work.velocity.resize(n);
   work.block.resize(n);
   work.inverse_block.resize(n);
@@ -75,10 +104,11 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
     const bool moves = particles.moves(i);
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-      const std::size_t j = near.lists.neighbour(e);
-      const double c =
-          factor * between(particles.viscosity[i], particles.viscosity[j]) * double(near.weight[e]);
-      work.coupling[e] = float(c);
+      const double viscosity = newtonian ? model.rheology.viscosity
+                                         : viscosity_between(model, particles, work, i, e);
+      double weight = double(near.weight[e]);
+      if (corrected) weight *= spread_factor(near, i, e);
+      work.coupling[e] = float(factor * viscosity * weight);
       sum += double(work.coupling[e]);
     }
     Matrix block = (1 + sum) * Matrix::Identity();
@@ -131,6 +161,13 @@ double velocity_scale(const MpsModel<D>& model, double dt, const MpsParticles<D>
 }
 
 template <int D>
+double norm(const Velocities<D>& a) {
+  double square = 0;
+  for (const VecD<D>& u : a) square += u.squaredNorm();
+  return std::sqrt(square);
+}
+
+template <int D>
 double distance(const Velocities<D>& a, const Velocities<D>& b) {
   double square = 0;
   for (std::size_t i = 0; i < a.size(); ++i) square += (a[i] - b[i]).squaredNorm();
@@ -151,22 +188,26 @@ template <int D>
 SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
                             MpsWork<D>& work) {
   const MpsSettings& s = model.settings();
+  // From nearly the velocities before the step, not from those that forces have driven apart: what
+  // creeps comes to rest. Nor quite from rest, which viscosity would keep for too many iterations.
   const Velocities<D> start = particles.velocity;
+  for (std::size_t i = 0; i < start.size(); ++i)
+    particles.velocity[i] = work.before[i] + first_guess * (start[i] - work.before[i]);
   const double scale = velocity_scale(model, dt, particles);
   const bool newtonian = model.rheology.is_newtonian();
   SolveReport report;
   Velocities<D> last;
   for (int k = 0; k < std::max(s.yield_iterations, 1); ++k) {
-    find_viscosities(model, particles, work);
+    if (!newtonian) find_rates(model, particles, work);
     last = particles.velocity;
     const SolveReport one = solve_viscosity(model, dt, start, scale, particles, work);
     report = {report.iterations + one.iterations, one.residual, one.converged};
     if (!one.converged || newtonian) break;
-    find_rates(model, particles, work);
     if (distance<D>(particles.velocity, last) <=
-        yield_tolerance * s.viscosity_tolerance * scale)
+        YTT * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale))
       break;
   }
+  find_viscosities(model, particles, work);
   return report;
 }
 
