@@ -29,6 +29,8 @@ void describe(V& v, MpsSettings& s) {
   v.number("dilatant_rate", s.dilatant_rate, "1/s", positive.up_to(1e9),
            "Shear rate above which the stress grows as a power of it");
   v.number("dilatant_exponent", s.dilatant_exponent, "", between(1.0, 5.0), "That power");
+  v.integer("yield_iterations", s.yield_iterations, between(1, 1000),
+            "Most iterations of a step in which the apparent viscosity is found");
   v.flag("erosion", s.erosion, "Whether snow is eroded and deposited");
   v.number("erodible_thickness", s.erodible_thickness, "m", allowed::size_or_zero,
            "Snow nearer to obstacles than this is erodible at first");
@@ -44,6 +46,7 @@ void describe(V& v, MpsSettings& s) {
   v.number("compensation", s.compensation, "", fraction,
            "Share of the density's error that a step takes away");
   v.choice("gradient", s.gradient, "Gradient of the pressure");
+  v.choice("splitting", s.splitting, "Whether viscosity acts before the pressure or after it");
   v.choice("surface", s.surface, "Where the pressure is zero at the free surface");
   v.number("surface_ratio", s.surface_ratio, "", between(0.5, 1.0),
            "Number density over that of a lattice, below which a particle is at the surface");

@@ -78,7 +78,15 @@ struct EnumNames<MpsSource> {
 template <>
 struct EnumNames<MpsGradient> {
   static constexpr Named<MpsGradient> list[] = {{MpsGradient::published, "published"},
-                                                {MpsGradient::conservative, "conservative"}};
+                                                {MpsGradient::conservative, "conservative"},
+                                               {MpsGradient::corrected, "corrected"}};
+};
+
+template <>
+struct EnumNames<MpsSplitting> {
+  static constexpr Named<MpsSplitting> list[] = {
+      {MpsSplitting::viscosity_first, "viscosity_first"},
+      {MpsSplitting::pressure_first, "pressure_first"}};
 };
 
 template <>

@@ -42,7 +42,8 @@ void MpsSolver<D>::append(MpsState<D>& state, const ParticleBatch& batch) const 
       p.position[i][0] -=
           model_.options.period * std::floor(p.position[i][0] / model_.options.period);
     p.velocity[i] = section<D>(batch.velocity);
-    p.pressure[i] = p.rate[i] = p.support[i] = 0;
+    p.pressure[i] = p.rate[i] = 0;
+    p.push[i].setZero();
     p.mass[i] = batch.mass_of(k);
     p.density[i] = 1;
     p.viscosity[i] = model_.rheology.viscosity;

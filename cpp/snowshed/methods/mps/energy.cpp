@@ -35,8 +35,8 @@ void MpsSolver<D>::book_energy(MpsState<D>& next, double dt) const {
                   (relative - relative.dot(c->normal) * c->normal).dot(mean);
     }
     e.friction += friction;
-    e.plastic -= mass * (viscous - before - dt * model_.gravity).dot(mean) + friction;
-    e.transfer -= mass * (work_.projected[i] - viscous).dot(mean);
+    e.plastic -= mass * work_.viscous_change[i].dot(mean) + friction;
+    e.transfer -= mass * (work_.projected[i] - before - dt * model_.gravity - work_.viscous_change[i]).dot(mean);
     if (!after.moves(i)) e.sticking += 0.5 * mass * work_.projected[i].squaredNorm();
   }
 }

@@ -1,6 +1,8 @@
 // What acts on the particles during a step, in the order in which it does.
 #pragma once
 
+#include <cmath>
+
 #include "snowshed/methods/mps/state.hpp"
 
 namespace snowshed {
@@ -10,14 +12,36 @@ namespace snowshed {
 template <int D>
 void find_neighbours(const MpsModel<D>&, MpsParticles<D>&, double time, MpsWork<D>&);
 
-/// The shear rates and apparent viscosities, from the present velocities and pressures.
+/// The pressures of the yield stress: those of the particles, smoothed and not negative.
 template <int D>
-void find_viscosities(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);
+void smooth_pressures(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
 
-/// Adds gravity and solves for the velocities that viscosity leaves, equation (10) with an implicit
-/// viscous term. A solve that has not converged leaves the velocities unsound.
+/// sqrt(2 D:D) of a velocity gradient, 1/s.
+template <int D>
+double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
+  return (gradient + gradient.transpose()).norm() / std::sqrt(2.0);
+}
+
+/// The velocity gradients and shear rates of the present velocities.
+template <int D>
+void find_rates(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);
+
+/// The apparent viscosities of particles, from the shear rates and the smoothed pressures.
+template <int D>
+void find_viscosities(const MpsModel<D>&, MpsParticles<D>&, const MpsWork<D>&);
+
+/// What every particle gains in a step by gravity, m/s.
+template <int D>
+void add_gravity(const MpsModel<D>&, double dt, MpsParticles<D>&);
+
+/// Replaces the velocities by those that viscosity leaves after a step, which are implicit in
+/// equation (10). A solve that has not converged leaves them unsound.
 template <int D>
 SolveReport apply_viscosity(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
+
+/// Makes the matrix of the pressure equations of a step.
+template <int D>
+void prepare_pressure(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
 
 /// Solves the pressure equation (18). A solve that has not converged leaves the pressures unsound.
 template <int D>
@@ -27,6 +51,15 @@ SolveReport solve_pressure(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsW
 /// entering walls within the step. What was added is left in `change`.
 template <int D>
 void apply_pressure(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
+
+/// Solves for the pressure that is missing to keep the present velocities from compressing the
+/// snow, into work.pressure; to the same residual as the step's pressure.
+template <int D>
+SolveReport correct_pressure(const MpsModel<D>&, double dt, const MpsParticles<D>&, MpsWork<D>&);
+
+/// Adds what it does to the velocities, and itself to the pressures.
+template <int D>
+void apply_correction(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
 
 /// Keeps particles apart as the settings say.
 template <int D>

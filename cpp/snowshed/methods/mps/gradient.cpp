@@ -11,30 +11,42 @@ namespace {
 /// by at most a part of l0 in a step.
 constexpr double nearest_place = 0.25, largest_push = 0.1;
 
+/// A pressure whose force is looked for, Pa, and the least it may be behind walls.
+struct PressureField {
+  const AlignedVector<double>& value;
+  const AlignedVector<double>* below;  // walls pull by at most this, or not at all
+
+  double at_wall(std::size_t k, double pressure) const {
+    return std::max(below ? -(*below)[k] : 0.0, pressure);
+  }
+};
+
 /// The least pressure among a particle and its neighbours, Pa.
 template <int D>
 double least_pressure(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
-                      std::size_t i) {
-  double least = particles.pressure[i];
+                      const AlignedVector<double>& pressure, std::size_t i) {
+  double least = pressure[i];
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
     if (particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall)
-      least = std::min(least, particles.pressure[near.lists.neighbour(e)]);
+      least = std::min(least, pressure[near.lists.neighbour(e)]);
   return least;
 }
 
-/// The gradient of the pressure, Pa/m: the sum of (p_j + base) w r/r^2 over the neighbours, with
-/// the particle's own pressure for `base`, so that each pair has equal and opposite forces, or less
-/// the least pressure around as in equation (4).
+/// The gradient of the pressure, Pa/m: the sum of (p_j + base) w r/r^2 over the neighbours. With
+/// the particle's own pressure for `base` each pair has equal and opposite forces; with less the
+/// least pressure around it is equation (4); with less its own pressure it is right for linear
+/// pressures, once it is corrected.
 template <int D>
 VecD<D> gradient_among_snow(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
-                            std::size_t i, double base, bool conservative) {
+                            const AlignedVector<double>& pressure, std::size_t i, double base,
+                            bool conservative) {
   VecD<D> sum = VecD<D>::Zero();
-  const double own = particles.pressure[i];
+  const double own = pressure[i];
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
     const bool dummy = particles.kind[j] == MpsKind::dummy_wall;
     if (dummy && !conservative) continue;
-    const double other = dummy ? own : particles.pressure[j];
+    const double other = dummy ? own : pressure[j];
     sum += (other + base) * double(near.slope[e]) * near.way(e);
   }
   return sum;
@@ -44,11 +56,12 @@ VecD<D> gradient_among_snow(const MpsParticles<D>& particles, const MpsNeighbour
 /// what moves into the wall; a wall never pulls.
 template <int D>
 VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                          const MpsNeighbourhood<D>& near, std::size_t i, double base, double dt) {
+                          const MpsNeighbourhood<D>& near, const PressureField& field,
+                          std::size_t i, double base, double dt) {
   VecD<D> sum = VecD<D>::Zero();
   const double per_velocity = model.settings().density / dt;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    const double level = particles.pressure[m->of];
+    const double level = field.value[m->of];
     double pressure = level;
     VecD<D> across = VecD<D>::Zero();  // the part of the way along the normals
     for (const int k : {0, 1}) {
@@ -58,9 +71,13 @@ VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& parti
           m->rise[k] * per_velocity * (particles.velocity[i] - wall.velocity).dot(wall.normal);
       across += m->way.dot(wall.normal) * wall.normal;
     }
+    if (model.settings().gradient == MpsGradient::corrected) {
+      sum += double(m->slope) * (field.at_wall(m->of, pressure) + base) * m->way;
+      continue;
+    }
     // Along the wall the forces between a particle and an image are equal and opposite.
-    sum +=
-        double(m->slope) * ((level + base) * m->way + (std::max(0.0, pressure) - level) * across);
+    sum += double(m->slope) *
+           ((level + base) * m->way + (field.at_wall(m->of, pressure) - level) * across);
   }
   return sum;
 }
@@ -74,37 +91,75 @@ void keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& veloc
   if (approach < slowest) velocity += (slowest - approach) * c.normal;
 }
 
-}  // namespace
-
+/// `base` of gradient_among_snow.
 template <int D>
-void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
-                    MpsWork<D>& work) {
+double base_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                     const MpsNeighbourhood<D>& near, const AlignedVector<double>& pressure,
+                     std::size_t i) {
+  switch (model.settings().gradient) {
+    case MpsGradient::conservative: return pressure[i];
+    case MpsGradient::corrected: return near.surface[i] ? pressure[i] : -pressure[i];
+    case MpsGradient::published: break;
+  }
+  return -least_pressure(particles, near, pressure, i);
+}
+
+/// Leaves in work.change what the field does to the velocities within dt.
+template <int D>
+void find_changes(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles,
+                  const PressureField& field, MpsWork<D>& work, AlignedVector<VecD<D>>* push) {
   const MpsSettings& s = model.settings();
   const MpsNeighbourhood<D>& near = work.near;
   const bool conservative = s.gradient == MpsGradient::conservative;
+  const bool corrected = s.gradient == MpsGradient::corrected;
   const double per_pressure = dt / s.density;
   work.change.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
-    particles.support[i] = 0;
+    if (push) (*push)[i].setZero();
     if (!particles.moves(i)) return;
-    const double base = conservative ? particles.pressure[i] : -least_pressure(particles, near, i);
-    const VecD<D> at_walls = gradient_at_walls(model, particles, near, i, base, dt);
-    const VecD<D> gradient = gradient_among_snow(particles, near, i, base, conservative) + at_walls;
-    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
-      particles.support[i] =
-          std::max(particles.support[i], -model.gradient() * at_walls.dot(c->normal) / s.density);
+    const double base = base_pressure(model, particles, near, field.value, i);
+    VecD<D> gradient =
+        gradient_among_snow(particles, near, field.value, i, base, conservative) +
+        gradient_at_walls(model, particles, near, field, i, base, dt);
+    if (corrected && !near.surface[i]) gradient = near.correction[i] * gradient;
+    if (push) (*push)[i] = model.gradient() / s.density * gradient;
     const VecD<D> before = particles.velocity[i];
     VecD<D> velocity = before - per_pressure * model.gradient() * gradient;
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
       keep_out(*c, s.spacing, dt, velocity);
     work.change[i] = velocity - before;
   });
+}
+
+template <int D>
+void add_changes(const MpsModel<D>& model, const MpsWork<D>& work, MpsParticles<D>& particles) {
   for_each_particle(particles.size(), model.threads_for(particles.size()),
                     [&](std::size_t i) { particles.velocity[i] += work.change[i]; });
 }
 
+}  // namespace
+
+template <int D>
+void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
+                    MpsWork<D>& work) {
+  find_changes<D>(model, dt, particles, {particles.pressure, nullptr}, work, &particles.push);
+
+  add_changes(model, work, particles);
+}
+
+template <int D>
+void apply_correction(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
+                      MpsWork<D>& work) {
+  find_changes<D>(model, dt, particles, {work.pressure, &particles.pressure}, work, nullptr);
+  add_changes(model, work, particles);
+  if (!work.enclosed)
+    for (std::size_t i = 0; i < particles.size(); ++i) particles.pressure[i] += work.pressure[i];
+}
+
 template void apply_pressure(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
 template void apply_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
+template void apply_correction(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
+template void apply_correction(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
 
 }  // namespace snowshed

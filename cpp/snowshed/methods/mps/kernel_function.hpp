@@ -33,4 +33,16 @@ inline KernelConstants kernel_constants(int dimension, double radius) {
   return {radius, n, moment / n};
 }
 
+/// 2 d/(lambda n0) sum of w z over what is behind a wall, for the second layer of a lattice above
+/// it, where z is the way along the normal in l0; for all layers it is one.
+inline double second_layer_share(int dimension, const KernelConstants& k) {
+  const int reach = int(std::ceil(k.radius)), across = dimension == 3 ? reach : 0;
+  double sum = 0;
+  for (int z = 2; z <= reach; ++z)
+    for (int y = -across; y <= across; ++y)
+      for (int x = -reach; x <= reach; ++x)
+        sum += kernel_weight(std::sqrt(double(x * x + y * y + z * z)), k.radius) * z;
+  return 2 * dimension / (k.lambda * k.number_density) * sum;
+}
+
 }  // namespace snowshed

@@ -1,4 +1,5 @@
 // Neighbours, number densities and the free surface.
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +14,9 @@ namespace {
 constexpr double least_asymmetry = 0.12;
 /// Below this ratio of number densities a particle is at a surface whatever is around it.
 constexpr double sparse = 0.75;
+/// Of the matrix of a particle's neighbours, below which gradients are not corrected; 1 on a
+/// lattice, 0.4 at its surface.
+constexpr double least_determinant = 0.1;
 
 template <int D>
 void sort_particles(const CellOrder<D>& cells, MpsParticles<D>& particles, MpsParticles<D>& spare,
@@ -21,20 +25,9 @@ void sort_particles(const CellOrder<D>& cells, MpsParticles<D>& particles, MpsPa
   const std::size_t n = particles.size();
   spare.resize(n);
   const std::vector<std::uint32_t>& order = cells.order();
-  const auto gather = [&](const auto& from, auto& to) {
+  MpsParticles<D>::visit_arrays(particles, spare, [&](const char*, const auto& from, auto& to) {
     for_each_particle(n, threads, [&](std::size_t k) { to[k] = from[order[k]]; });
-  };
-  gather(particles.position, spare.position);
-  gather(particles.velocity, spare.velocity);
-  gather(particles.pressure, spare.pressure);
-  gather(particles.mass, spare.mass);
-  gather(particles.density, spare.density);
-  gather(particles.rate, spare.rate);
-  gather(particles.viscosity, spare.viscosity);
-  gather(particles.support, spare.support);
-  gather(particles.kind, spare.kind);
-  gather(particles.id, spare.id);
-  gather(particles.event, spare.event);
+  });
   std::swap(particles, spare);
 }
 
@@ -81,6 +74,48 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
     }
     near.surface[i] = surface;
   });
+  near.below_surface.resize(particles.size());
+  for_each_particle(particles.size(), threads, [&](std::size_t i) {
+    bool below = near.surface[i];
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i) && !below; ++e)
+      below = near.surface[near.lists.neighbour(e)];
+    near.below_surface[i] = below;
+  });
+}
+
+/// The inverse of d/n0 sum of w r r^T/r^2 over neighbours and walls, with which gradients are right
+/// for linear fields however the neighbours lie (Randles and Libersky 1996,
+/// doi:10.1016/S0045-7825(96)01090-0; in MPS Khayyer and Gotoh 2011, doi:10.1016/j.jcp.2011.01.009).
+/// On a lattice it is the identity, and so it is where too few neighbours are left.
+/// `spread` is a first-order correction (ours) of weights by e.B e, e the direction of a pair, that
+/// makes the sum of w r r^T, and with it Laplacians of quadratic fields, that of a lattice.
+template <int D>
+void find_corrections(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int threads) {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  near.correction.resize(near.lists.size());
+  near.asymmetry.resize(near.lists.size());
+  near.spread.resize(near.lists.size());
+  for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
+    Matrix moment = Matrix::Zero(), second = Matrix::Zero();
+    VecD<D> side = VecD<D>::Zero();
+    const auto add = [&](const VecD<D>& r, double weight, double slope) {
+      moment += slope * r * r.transpose();
+      second += weight * r * r.transpose();
+      side += weight * r;
+    };
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
+      add(near.way(e), double(near.weight[e]), double(near.slope[e]));
+    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
+      add(m->way, double(m->weight), double(m->slope));
+    const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
+    near.spread[i] = Matrix::Identity();
+    if (!near.below_surface[i])
+      near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
+    near.asymmetry[i] = near.below_surface[i] ? VecD<D>(VecD<D>::Zero()) : side;
+    moment *= model.gradient();
+    near.correction[i] = moment.determinant() > least_determinant ? Matrix(moment.inverse())
+                                                                  : Matrix(Matrix::Identity());
+  });
 }
 
 }  // namespace
@@ -102,6 +137,7 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
   near.images.update(near.lists, near.contacts, reach, model.settings().spacing, threads,
                      near.weight, near.coupling);
   find_surface(model, particles, near, threads);
+  if (model.settings().gradient == MpsGradient::corrected) find_corrections(model, near, threads);
 }
 
 template void find_neighbours(const MpsModel<2>&, MpsParticles<2>&, double, MpsWork<2>&);

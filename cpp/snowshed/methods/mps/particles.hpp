@@ -23,7 +23,7 @@ struct MpsParticles {
   AlignedVector<double> density;    // number density over n0
   AlignedVector<double> rate;       // 1/s, of shear
   AlignedVector<double> viscosity;  // Pa s, apparent
-  AlignedVector<double> support;    // m/s2, by walls, along their normals, in the last step
+  AlignedVector<VecD<D>> push;      // m/s2, the gradient of the pressure over density, of the last step
   AlignedVector<MpsKind> kind;
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;
@@ -33,27 +33,28 @@ struct MpsParticles {
   bool is_wall(std::size_t i) const { return kind[i] >= MpsKind::inner_wall; }
 
   /// Calls visit(name, array) for each array.
-  template <class Self, class Visit>
-  static void visit_arrays(Self& self, const Visit& visit) {
-    visit("position", self.position);
-    visit("velocity", self.velocity);
-    visit("pressure", self.pressure);
-    visit("mass", self.mass);
-    visit("density", self.density);
-    visit("rate", self.rate);
-    visit("viscosity", self.viscosity);
-    visit("support", self.support);
-    visit("kind", self.kind);
-    visit("id", self.id);
-    visit("event", self.event);
-  }
   template <class Visit>
   void for_each_array(const Visit& visit) {
-    visit_arrays(*this, visit);
+    visit_arrays(*this, *this, [&](const char* name, auto& array, auto&) { visit(name, array); });
   }
   template <class Visit>
   void for_each_array(const Visit& visit) const {
-    visit_arrays(*this, visit);
+    visit_arrays(*this, *this, [&](const char* name, auto& array, auto&) { visit(name, array); });
+  }
+  /// Calls visit(name, array, other's array) for each array; the one list of them.
+  template <class Self, class Other, class Visit>
+  static void visit_arrays(Self& self, Other& other, const Visit& visit) {
+    visit("position", self.position, other.position);
+    visit("velocity", self.velocity, other.velocity);
+    visit("pressure", self.pressure, other.pressure);
+    visit("mass", self.mass, other.mass);
+    visit("density", self.density, other.density);
+    visit("rate", self.rate, other.rate);
+    visit("viscosity", self.viscosity, other.viscosity);
+    visit("push", self.push, other.push);
+    visit("kind", self.kind, other.kind);
+    visit("id", self.id, other.id);
+    visit("event", self.event, other.event);
   }
 
   void resize(std::size_t n) {

@@ -7,6 +7,7 @@
 
 namespace snowshed {
 namespace {
+static const bool SC=getenv("SC")?atof(getenv("SC")):1, AS=getenv("AS")?atof(getenv("AS")):1;
 
 /// The divergence of the velocity, 1/s. Behind a wall, images move along it as the particles do.
 /// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
@@ -15,10 +16,14 @@ template <int D>
 double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
                   const MpsNeighbourhood<D>& near, std::size_t i) {
   const VecD<D>& own = particles.velocity[i];
+  const bool corrected = model.settings().gradient == MpsGradient::corrected && !near.surface[i];
+  const auto part = [&](const VecD<D>& way, double slope, const VecD<D>& change) {
+    return slope * (corrected ? VecD<D>(near.correction[i] * way) : way).dot(change);
+  };
   double sum = 0, flow = 0;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-    sum +=
-        double(near.slope[e]) * near.way(e).dot(particles.velocity[near.lists.neighbour(e)] - own);
+    sum += part(near.way(e), double(near.slope[e]),
+                particles.velocity[near.lists.neighbour(e)] - own);
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     VecD<D> along = particles.velocity[m->of] - own;
     for (const int k : {0, 1}) {
@@ -27,7 +32,7 @@ double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
       along -= along.dot(wall.normal) * wall.normal;
       flow += double(m->weight) * m->rise[k] * (own - wall.velocity).dot(wall.normal);
     }
-    sum += double(m->slope) * m->way.dot(along);
+    sum += part(m->way, double(m->slope), along);
   }
   return model.gradient() * sum + model.laplacian() * flow;
 }
@@ -57,7 +62,7 @@ double source(const MpsModel<D>& model, double dt, double compensation_time,
   const MpsSettings& s = model.settings();
   double excess = near.density[i] / model.kernel.number_density - 1;
   if (s.source == MpsSource::published) return -s.density / (dt * dt) * excess;
-  if (near.surface[i]) excess = std::max(excess, 0.0);
+  if (near.below_surface[i]) excess = std::max(excess, 0.0);
   return s.density / dt * divergence(model, particles, near, i) -
          s.compensation * s.density / (dt * compensation_time) * excess;
 }
@@ -80,25 +85,19 @@ void balance_sources(MpsWork<D>& work, std::size_t n) {
 
 /// All is divided by -2 d/(lambda n0): sum of w (p_i - p_j) + diagonal of the surface.
 template <int D>
-SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
-                           MpsWork<D>& work) {
-  const MpsSettings& s = model.settings();
+void prepare_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                      MpsWork<D>& work) {
   const MpsNeighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const double n0 = model.kernel.number_density;
-  const double relaxation = compensation_time(model, dt, particles);
-  const bool mirrored = s.surface == MpsSurface::mirrored;
+  const bool mirrored = model.settings().surface == MpsSurface::mirrored;
   work.fixed.resize(n);
   work.diagonal.resize(n);
-  work.source.resize(n);
-  work.pressure.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    const bool fixed = particles.kind[i] == MpsKind::dummy_wall || (near.surface[i] && !mirrored);
-    work.fixed[i] = fixed;
-    work.pressure[i] = fixed ? 0 : particles.pressure[i];
-    work.diagonal[i] = work.source[i] = 0;
-    if (fixed) return;
+    work.fixed[i] = particles.kind[i] == MpsKind::dummy_wall || (near.surface[i] && !mirrored);
+    work.diagonal[i] = 0;
+    if (work.fixed[i]) return;
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
       if (particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall)
@@ -106,16 +105,23 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
     // What is missing at a free surface has the pressure of the particle with the opposite sign.
     if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
     work.diagonal[i] = std::max(sum, 1e-3 * n0);
-    double value = -source(model, dt, relaxation, particles, near, i) / model.laplacian();
-    if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
-    work.source[i] = value;
   });
-  const bool enclosed = std::none_of(near.surface.begin(), near.surface.begin() + std::ptrdiff_t(n),
-                                     [](std::uint8_t at_surface) { return at_surface != 0; });
-  if (enclosed) balance_sources(work, n);
+  work.enclosed = std::none_of(near.surface.begin(), near.surface.begin() + std::ptrdiff_t(n),
+                               [](std::uint8_t at_surface) { return at_surface != 0; });
+  if (model.settings().preconditioner == MpsPreconditioner::multigrid)
+    work.multigrid.update(near.lists, near.coupling, work.diagonal, near.cells,
+                          near.cells.period_cells(), threads);
+}
 
-  double square = 0;
-  for (std::size_t i = 0; i < n; ++i) square += work.source[i] * work.source[i];
+namespace {
+
+/// Solves for work.pressure from what stands there.
+template <int D>
+SolveReport solve(const MpsModel<D>& model, MpsWork<D>& work) {
+  const MpsSettings& s = model.settings();
+  const MpsNeighbourhood<D>& near = work.near;
+  const std::size_t n = near.lists.size();
+  const int threads = model.threads_for(n);
   const std::uint32_t *first = near.lists.first(), *index = near.lists.index();
   const float* weight = near.coupling.data();
   const auto apply = [&](const double* p, double* q) {
@@ -127,35 +133,87 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
       q[i] = sum;
     });
   };
-  const auto solve = [&](const auto& precondition) {
-    return conjugate_gradients(n, s.pressure_tolerance, std::sqrt(square), s.max_iterations,
+  const auto by_conjugate_gradients = [&](const auto& precondition) {
+    return conjugate_gradients(n, s.pressure_tolerance, work.pressure_scale, s.max_iterations,
                                threads, work.cg, work.pressure.data(), work.source.data(), apply,
                                precondition);
   };
-  SolveReport report;
-  if (s.preconditioner == MpsPreconditioner::multigrid) {
-    work.multigrid.update(near.lists, near.coupling, work.diagonal, near.cells,
-                          near.cells.period_cells(), threads);
-    report = solve([&](const double* r, double* z) { work.multigrid.apply(r, z); });
-  } else if (s.preconditioner == MpsPreconditioner::jacobi) {
-    report = solve([&](const double* r, double* z) {
+  if (s.preconditioner == MpsPreconditioner::multigrid)
+    return by_conjugate_gradients(
+        [&](const double* r, double* z) { work.multigrid.apply(r, z); });
+  if (s.preconditioner == MpsPreconditioner::jacobi)
+    return by_conjugate_gradients([&](const double* r, double* z) {
       for_each_particle(n, threads, [&](std::size_t i) {
         z[i] = work.diagonal[i] > 0 ? r[i] / work.diagonal[i] : 0.0;
       });
     });
-  } else {
-    report = solve_with_eigen(near.lists, near.coupling, work.diagonal, work.source,
-                              s.pressure_tolerance, s.max_iterations, work.pressure);
-  }
+  return solve_with_eigen(near.lists, near.coupling, work.diagonal, work.source,
+                          s.pressure_tolerance, s.max_iterations, work.pressure);
+}
+
+}  // namespace
+
+template <int D>
+SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
+                           MpsWork<D>& work) {
+  const MpsNeighbourhood<D>& near = work.near;
+  const std::size_t n = particles.size();
+  const double relaxation = compensation_time(model, dt, particles);
+  // What the Laplacian would make of a linear pressure, since neighbours do not lie evenly around.
+  const bool corrected = model.settings().gradient == MpsGradient::corrected;
+  work.source.resize(n);
+  work.pressure.resize(n);
+  for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
+    work.pressure[i] = work.fixed[i] ? 0 : particles.pressure[i];
+    work.source[i] = 0;
+    if (work.fixed[i]) return;
+    double value = -source(model, dt, relaxation, particles, near, i) / model.laplacian();
+    if (AS && corrected) value -= model.settings().density * near.asymmetry[i].dot(particles.push[i]);
+    if (SC && near.surface[i]) value = std::max(value, 0.0);
+    work.source[i] = value;
+  });
+  if (work.enclosed) balance_sources(work, n);
+  double square = 0;
+  for (std::size_t i = 0; i < n; ++i) square += work.source[i] * work.source[i];
+  work.pressure_scale = std::sqrt(square);
+  const SolveReport report = solve(model, work);
   const double least =
-      enclosed ? *std::min_element(work.pressure.begin(), work.pressure.begin() + std::ptrdiff_t(n))
-               : 0.0;
+      work.enclosed
+          ? *std::min_element(work.pressure.begin(), work.pressure.begin() + std::ptrdiff_t(n))
+          : 0.0;
   for (std::size_t i = 0; i < n; ++i)
     particles.pressure[i] = work.fixed[i] ? 0.0 : std::max(0.0, work.pressure[i] - least);
   return report;
 }
 
+template <int D>
+SolveReport correct_pressure(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles,
+                             MpsWork<D>& work) {
+  const std::size_t n = particles.size();
+  const double relaxation = compensation_time(model, dt, particles);
+  for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
+    work.pressure[i] = 0;
+    work.source[i] = 0;
+    if (work.fixed[i]) return;
+    work.source[i] =
+        -source(model, dt, relaxation, particles, work.near, i) / model.laplacian();
+    if (SC && work.near.surface[i]) work.source[i] = std::max(work.source[i], 0.0);
+  });
+  if (work.enclosed) balance_sources(work, n);
+  const SolveReport report = solve(model, work);
+  if (!work.enclosed)
+    for (std::size_t i = 0; i < n; ++i)
+      work.pressure[i] = std::max(work.pressure[i], -particles.pressure[i]);
+  return report;
+}
+
 template SolveReport solve_pressure(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
 template SolveReport solve_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
+template void prepare_pressure(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
+template void prepare_pressure(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
+template SolveReport correct_pressure(const MpsModel<2>&, double, const MpsParticles<2>&,
+                                      MpsWork<2>&);
+template SolveReport correct_pressure(const MpsModel<3>&, double, const MpsParticles<3>&,
+                                      MpsWork<3>&);
 
 }  // namespace snowshed

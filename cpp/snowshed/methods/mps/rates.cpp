@@ -8,7 +8,8 @@ namespace snowshed {
 namespace {
 
 /// The gradient of the velocity among the snow, corrected so that it is right for linear velocities
-/// however the neighbours lie (after Randles and Libersky 1996, doi:10.1016/S0045-7825(96)01090-0).
+/// however the neighbours lie (as find_corrections). Snow does not slide on sticky walls: images
+/// behind them have the opposite velocity.
 template <int D>
 Eigen::Matrix<double, D, D> velocity_gradient(const MpsModel<D>& model,
                                               const MpsParticles<D>& particles,
@@ -21,6 +22,15 @@ Eigen::Matrix<double, D, D> velocity_gradient(const MpsModel<D>& model,
     const VecD<D> r = near.way(e), weighted = double(near.slope[e]) * r;
     sum += (particles.velocity[j] - particles.velocity[i]) * weighted.transpose();
     moment += r * weighted.transpose();
+  }
+  for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
+    const bool two = m->rise[1] != 0;
+    const WallContact<D>& wall = near.wall(*m, 0);
+    if (two || !model.is_sticky(wall)) continue;
+    const VecD<D> weighted = double(m->slope) * m->way;
+    sum += (2 * wall.velocity - particles.velocity[m->of] - particles.velocity[i]) *
+           weighted.transpose();
+    moment += m->way * weighted.transpose();
   }
   sum *= model.gradient();
   moment *= model.gradient();
@@ -60,28 +70,40 @@ double smooth_pressure(const MpsModel<D>& model, const MpsParticles<D>& particle
 }  // namespace
 
 template <int D>
-void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
-  const Rheology& law = model.rheology;
+void smooth_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                      MpsWork<D>& work) {
   work.smooth_pressure.resize(particles.size());
-  if (law.is_newtonian()) {
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-      particles.rate[i] = 0;
-      particles.viscosity[i] = law.viscosity;
-      work.smooth_pressure[i] = std::max(0.0, particles.pressure[i]);
-    }
-    return;
-  }
+  if (model.rheology.friction == 0) return;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    const Eigen::Matrix<double, D, D> gradient = velocity_gradient(model, particles, work.near, i);
-    const Eigen::Matrix<double, D, D> strain = 0.5 * (gradient + gradient.transpose());
-    particles.rate[i] = std::sqrt(2 * strain.squaredNorm());
     work.smooth_pressure[i] = smooth_pressure(model, particles, work.near, i);
-    particles.viscosity[i] =
-        law.apparent_viscosity(law.yield_stress(work.smooth_pressure[i]), particles.rate[i]);
   });
 }
 
-template void find_viscosities(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
-template void find_viscosities(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
+template <int D>
+void find_rates(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
+  work.velocity_gradient.resize(particles.size());
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    work.velocity_gradient[i] = velocity_gradient(model, particles, work.near, i);
+    particles.rate[i] = shear_rate<D>(work.velocity_gradient[i]);
+  });
+}
+
+template <int D>
+void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles,
+                      const MpsWork<D>& work) {
+  const Rheology& law = model.rheology;
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    const double pressure = law.friction > 0 ? work.smooth_pressure[i] : 0.0;
+    particles.viscosity[i] =
+        law.apparent_viscosity(law.yield_stress(pressure), particles.rate[i]);
+  });
+}
+
+template void smooth_pressures(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
+template void smooth_pressures(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
+template void find_rates(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
+template void find_rates(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
+template void find_viscosities(const MpsModel<2>&, MpsParticles<2>&, const MpsWork<2>&);
+template void find_viscosities(const MpsModel<3>&, MpsParticles<3>&, const MpsWork<3>&);
 
 }  // namespace snowshed

@@ -9,8 +9,11 @@ enum class MpsRheology { newtonian, bingham, bingham_dilatant };
 enum class MpsYield { papanastasiou, bi_viscous };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
 enum class MpsSource { published, compensated };
-/// Pressure gradient: from the least neighbouring pressure, or with equal and opposite forces.
-enum class MpsGradient { published, conservative };
+/// Pressure gradient: from the least neighbouring pressure, with equal and opposite forces, or right
+/// for linear pressures however the neighbours lie.
+enum class MpsGradient { published, conservative, corrected };
+/// Whether viscosity acts before the pressure, or after it and then the pressure once more.
+enum class MpsSplitting { viscosity_first, pressure_first };
 /// Where the pressure is zero: at particles of low number density, or half a spacing above them.
 enum class MpsSurface { published, mirrored };
 /// When particles move: before the pressure is solved, or once at the end of the step.
@@ -35,9 +38,10 @@ struct MpsSettings {
   double viscosity = 0.012;    // Pa s, plastic
   double cohesion = 0;         // Pa, "adhesive force"
   double friction_angle = 24;  // degrees
-  double stress_growth = 100;  // s, m of Papanastasiou
+  double stress_growth = 1e4;  // s, m of Papanastasiou
   double dilatant_rate = 100;  // 1/s, above which the dilatant branch holds
   double dilatant_exponent = 1.5;
+  int yield_iterations = 50;  // at most, of the apparent viscosity in a step
 
   bool erosion = false;             // whether snow erodes and is deposited
   double erodible_thickness = 0;    // m, of the snow on obstacles that is at rest at first
@@ -48,14 +52,15 @@ struct MpsSettings {
 
   MpsSource source = MpsSource::compensated;
   double compensation = 0.02;  // share of the density's error that a step takes away
-  MpsGradient gradient = MpsGradient::conservative;
+  MpsGradient gradient = MpsGradient::corrected;
+  MpsSplitting splitting = MpsSplitting::pressure_first;
   MpsSurface surface = MpsSurface::mirrored;
   double surface_ratio = 0.97;  // beta, of number densities
   MpsOrder order = MpsOrder::single_move;
-  MpsSpacing spacing_law = MpsSpacing::none;
+  MpsSpacing spacing_law = MpsSpacing::shifting;
   MpsPreconditioner preconditioner = MpsPreconditioner::multigrid;
   double pressure_tolerance = 1e-3;
-  double viscosity_tolerance = 1e-3;
+  double viscosity_tolerance = 1e-4;
   int max_iterations = 1000;
   int threads = 0;  // 0: all
 

@@ -50,8 +50,8 @@ MpsModel<D>::MpsModel(MpsOptions o)
     : options(std::move(o)),
       gravity(section<D>(options.gravity)),
       kernel(kernel_constants(D, options.settings.radius)),
+      second_layer(second_layer_share(D, kernel)),
       rheology(Rheology::from(options.settings)),
-      wall_friction(options.settings.radius),
       threads(threads_to_use(options.settings.threads)) {}
 
 template <int D>
@@ -103,15 +103,56 @@ void MpsSolver<D>::move(double dt, MpsParticles<D>& particles) const {
 /// The velocities and pressures after a step of dt, from those in the workspace.
 template <int D>
 void MpsSolver<D>::attempt(double dt, MpsState<D>& next) {
+  add_gravity(model_, dt, next.particles);
+  if (model_.settings().splitting == MpsSplitting::pressure_first)
+    act_after_pressure(dt, next);
+  else
+    act_before_pressure(dt, next);
+}
+
+template <int D>
+void MpsSolver<D>::act_viscosity(double dt, MpsState<D>& next) {
+  MpsParticles<D>& p = next.particles;
+  const AlignedVector<VecD<D>> before = p.velocity;
+  smooth_pressures(model_, p, work_);
+  next.solves.viscosity = apply_viscosity(model_, dt, p, work_);
+  require_converged(next.solves.viscosity, "viscous", model_.settings().max_iterations);
+  if (!model_.options.energy) return;
+  work_.viscous = p.velocity;
+  work_.viscous_change.resize(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i)
+    work_.viscous_change[i] = p.velocity[i] - before[i];
+}
+
+/// The pressure balances what it can before viscosity acts, so that snow that does not yet yield
+/// stays where it is; then it takes away what viscosity compresses. Ours.
+template <int D>
+void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
+  const int most = model_.settings().max_iterations;
+  MpsParticles<D>& p = next.particles;
+  prepare_pressure(model_, p, work_);
+  next.solves.pressure = solve_pressure(model_, dt, p, work_);
+  require_converged(next.solves.pressure, "pressure", most);
+  apply_pressure(model_, dt, p, work_);
+  act_viscosity(dt, next);
+  if (model_.is_nearly_inviscid(dt)) return;
+  const SolveReport second = correct_pressure(model_, dt, p, work_);
+  require_converged(second, "second pressure", most);
+  next.solves.pressure.iterations += second.iterations;
+  apply_correction(model_, dt, p, work_);
+}
+
+/// As published.
+template <int D>
+void MpsSolver<D>::act_before_pressure(double dt, MpsState<D>& next) {
   const MpsSettings& s = model_.settings();
   MpsParticles<D>& p = next.particles;
-  next.solves.viscosity = apply_viscosity(model_, dt, p, work_);
-  require_converged(next.solves.viscosity, "viscous", s.max_iterations);
-  if (model_.options.energy) work_.viscous = p.velocity;
+  act_viscosity(dt, next);
   if (s.order == MpsOrder::published) {
     move(dt, p);
     find_neighbours(model_, p, state_.time + dt, work_);
   }
+  prepare_pressure(model_, p, work_);
   next.solves.pressure = solve_pressure(model_, dt, p, work_);
   require_converged(next.solves.pressure, "pressure", s.max_iterations);
   apply_pressure(model_, dt, p, work_);
@@ -127,9 +168,9 @@ void MpsSolver<D>::step() {
   if (size() == 0) throw SimulationError("there is no snow");
   MpsState<D> next = state_;
   find_neighbours(model_, next.particles, state_.time, work_);
-  find_viscosities(model_, next.particles, work_);
   double dt = choose_step(next.particles);
   const MpsState<D> start = next;
+  work_.before = start.particles.velocity;
   const MpsSettings& s = model_.settings();
   for (int halvings = 0;; ++halvings) {
     attempt(dt, next);
@@ -144,7 +185,6 @@ void MpsSolver<D>::step() {
   }
   if (model_.options.energy) {
     const std::size_t n = size();
-    work_.before = start.particles.velocity;
     work_.moved.resize(n);
     for (std::size_t i = 0; i < n; ++i) work_.moved[i] = start.particles.moves(i);
   }

@@ -42,6 +42,9 @@ class MpsSolver final : public MpsMethod {
   void append(MpsState<D>&, const ParticleBatch&) const;
   void accept(MpsState<D>);
   void attempt(double dt, MpsState<D>& next);
+  void act_viscosity(double dt, MpsState<D>& next);
+  void act_after_pressure(double dt, MpsState<D>& next);
+  void act_before_pressure(double dt, MpsState<D>& next);
   void move(double dt, MpsParticles<D>&) const;
   void book_energy(MpsState<D>& next, double dt) const;
   double choose_step(const MpsParticles<D>&) const;

@@ -6,6 +6,7 @@
 
 namespace snowshed {
 namespace {
+static const double SH=getenv("SH")?atof(getenv("SH")):1, CL=getenv("CL")?atof(getenv("CL")):0, CR=getenv("CR")?atof(getenv("CR")):0;
 
 /// Particles nearer to each other than this, in l0, bounce; so much of their speed is left (both as
 /// is common in MPS codes).
@@ -16,9 +17,9 @@ constexpr double collision_distance = 0.5, restitution = 0.2;
 constexpr double shift_factor = 0.05;
 
 template <int D>
-void collide(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
+void collide(const MpsModel<D>& model, double distance_limit, double restitution, MpsParticles<D>& particles, MpsWork<D>& work) {
   const MpsNeighbourhood<D>& near = work.near;
-  const double limit = collision_distance * model.settings().spacing;
+  const double limit = distance_limit * model.settings().spacing;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
     if (!particles.moves(i)) return;
@@ -43,18 +44,14 @@ void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsW
   const double l0 = model.settings().spacing;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
-    if (!particles.moves(i) || near.surface[i]) return;
+    if (!particles.moves(i) || near.below_surface[i]) return;
     VecD<D> gradient = VecD<D>::Zero();
-    bool inside = true;
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
       gradient += double(near.slope[e]) * near.way(e);
-      inside = inside && !near.surface[near.lists.neighbour(e)];
-    }
-    if (!inside) return;
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
       gradient += double(m->slope) * m->way;
     gradient *= model.gradient();
-    const double travelled = particles.velocity[i].norm() * dt / l0;
+    const double travelled = (particles.velocity[i].norm() + SH*std::sqrt(model.gravity.norm() * l0)) * dt / l0;
     VecD<D> way = -shift_factor * std::min(1.0, 10 * travelled) * l0 * l0 * gradient;
     const double most = 0.05 * l0;
     if (way.norm() > most) way *= most / way.norm();
@@ -69,7 +66,8 @@ void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsW
 template <int D>
 void keep_spacing(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
                   MpsWork<D>& work) {
-  if (model.settings().spacing_law == MpsSpacing::collision) collide(model, particles, work);
+  if (model.settings().spacing_law == MpsSpacing::collision) collide(model, collision_distance, restitution, particles, work);
+  if (model.settings().spacing_law == MpsSpacing::shifting && CL>0) collide(model, CL, CR, particles, work);
   if (model.settings().spacing_law == MpsSpacing::shifting) shift(model, dt, particles, work);
 }
 

@@ -40,9 +40,18 @@ struct MpsModel {
   MpsOptions options;
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
+  double second_layer;  // see second_layer_share
   Rheology rheology;
-  WallFriction<D> wall_friction;
   int threads;
+
+  /// Whether viscosity hardly changes the velocities within a step.
+  bool is_nearly_inviscid(double dt) const {
+    const double l0 = settings().spacing;
+    return rheology.is_newtonian() && rheology.viscosity * dt < 0.1 * settings().density * l0 * l0;
+  }
+  bool is_sticky(const WallContact<D>& c) const {
+    return options.obstacles[c.obstacle].law.condition == Condition::sticky;
+  }
 
   /// Threads for a step of so many particles.
   int threads_for(std::size_t particles) const {
@@ -79,6 +88,10 @@ struct MpsNeighbourhood {
   AlignedVector<float> slope;           // w/r^2 of each pair, 1/m2
   AlignedVector<double> density;        // number density
   AlignedVector<std::uint8_t> surface;  // whether a particle lies at the free surface
+  AlignedVector<std::uint8_t> below_surface;  // or has such a neighbour
+  AlignedVector<Eigen::Matrix<double, D, D>> correction;  // of gradients, see find_corrections
+  AlignedVector<VecD<D>> asymmetry;                       // sum of w r, 0 at the surface, m
+  AlignedVector<Eigen::Matrix<double, D, D>> spread;      // of Laplacians, see find_corrections
 
   VecD<D> way(std::size_t entry) const { return lists.way(entry); }
   const WallContact<D>& wall(const WallImage<D>& image, int k) const {
@@ -92,14 +105,18 @@ struct MpsWork {
   MpsNeighbourhood<D> near;
   AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
   AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
+  AlignedVector<VecD<D>> viscous_change;              // of velocities by viscosity, m/s
   AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
   AlignedVector<double> drag;                         // of each contact with a wall, 1/s
   AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
+  AlignedVector<Eigen::Matrix<double, D, D>> velocity_gradient;  // 1/s
   AlignedVector<float> coupling;          // of velocities, of each pair
   AlignedVector<double> smooth_pressure;  // Pa
   AlignedVector<double> diagonal, source, pressure;
   AlignedVector<std::uint8_t> fixed;  // whose pressure is no unknown
+  bool enclosed = false;              // whether there is no free surface
+  double pressure_scale = 0;          // norm of the right-hand side of the step's pressure
   CgWork cg;
   Multigrid<D> multigrid;
 };

@@ -7,47 +7,94 @@
 
 namespace snowshed {
 namespace {
+static const double YTT=getenv("YT")?atof(getenv("YT")):1e-3;
+#define YT 3
 
 /// Nearer to a wall than this, in l0, its friction grows no further.
 constexpr double nearest_friction = 0.25;
 
-/// The viscosity between two particles: their harmonic mean, so that the stress is that of both.
-inline double between(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0.0; }
+/// The share of the wall's shear stress that acts on a particle at a distance, in l0: that of the
+/// first or of the second layer of a lattice, whose sum is one.
+double wall_share(double distance, double second) {
+  const auto falls = [&](double from, double to) {
+    return std::clamp((to - distance) / (to - from), 0.0, 1.0);
+  };
+  return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
+}
+
+/// The viscosity between two particles, Pa s: that of the velocity gradient midway, which is the
+/// mean of both but for its part along the way, which is the difference of both velocities.
+template <int D>
+double viscosity_between(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                         const MpsWork<D>& work, std::size_t i, std::uint32_t entry) {
+  const std::size_t j = work.near.lists.neighbour(entry);
+  const VecD<D> way = work.near.way(entry);
+  Eigen::Matrix<double, D, D> gradient =
+      0.5 * (work.velocity_gradient[i] + work.velocity_gradient[j]);
+  const VecD<D> change = particles.velocity[j] - particles.velocity[i];
+  gradient += (change - gradient * way) * way.transpose() / way.squaredNorm();
+  const Rheology& law = model.rheology;
+  const double pressure =
+      law.friction > 0 ? 0.5 * (work.smooth_pressure[i] + work.smooth_pressure[j]) : 0.0;
+  return law.apparent_viscosity(law.yield_stress(pressure), shear_rate<D>(gradient));
+}
+
+template <int D>
+using Velocities = AlignedVector<VecD<D>>;
+
+/// The apparent viscosity of a step is found when the velocities change by less than this, over
+/// what the equation is solved to.
+constexpr double yield_tolerance = YT;
+const double first_guess = getenv("FG")?atof(getenv("FG")):0.01;
 
 }  // namespace
 
 /// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
-/// distance; the velocity continues linearly into the wall and is zero at the surface. Its
-/// frictional part follows from the force with which the wall supports the particle, so that the
-/// friction of all particles is Coulomb's of their weight, however they lie. Where the obstacle is
-/// not sticky, it is at most the obstacle's own friction.
+/// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
+/// obstacle is not sticky, it is at most the obstacle's own friction.
 template <int D>
 double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, const MpsWork<D>& work,
                  std::size_t i, const WallContact<D>& c) {
   const MpsSettings& s = model.settings();
   const double height = std::max(c.distance, nearest_friction * s.spacing);
+  const double share = wall_share(c.distance / s.spacing, model.second_layer);
+  if (share == 0) return 0;
   const VecD<D> relative = particles.velocity[i] - c.velocity;
   const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
+  const double pressure = std::max(
+      0.0, particles.pressure[i] - s.density * c.distance * particles.push[i].dot(c.normal));
   const Rheology& law = model.rheology;
-  // Each wall that a particle touches bears a part; they share by the number of contacts.
-  const double walls = double(work.near.contacts.end(i) - work.near.contacts.begin(i));
-  const double support = particles.support[i] / walls;
-  const double drag = law.apparent_viscosity(law.cohesion, rate) / s.density *
-                          model.wall_friction.at(c.distance / s.spacing) / (s.spacing * height) +
-                      law.regularised(law.friction * support, rate) / height;
+  double viscosity = law.apparent_viscosity(law.yield_stress(pressure), rate);
   const ContactLaw& contact = model.options.obstacles[c.obstacle].law;
-  if (contact.condition == Condition::sticky) return drag;
-  return std::min(drag, law.regularised(contact.friction * support, rate) / height);
+  if (contact.condition != Condition::sticky)
+    viscosity = std::min(viscosity, law.regularised(contact.friction * pressure, rate));
+  return share * viscosity / (s.density * s.spacing * height);
 }
 
+namespace {
+
+/// The factor of a pair's weight in Laplacians, see find_corrections.
 template <int D>
-SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
-                            MpsWork<D>& work) {
+double spread_factor(const MpsNeighbourhood<D>& near, std::size_t i, std::uint32_t entry) {
+  const VecD<D> way = near.way(entry);
+  const double factor =
+      0.5 * way.dot((near.spread[i] + near.spread[near.lists.neighbour(entry)]) * way) /
+      way.squaredNorm();
+  return std::clamp(factor, 0.5, 2.0);
+}
+
+/// The equation of the present apparent viscosities; `start` are the velocities before viscosity
+/// acts, particles.velocity a guess that becomes the solution.
+template <int D>
+SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocities<D>& start,
+                            double scale, MpsParticles<D>& particles, MpsWork<D>& work) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const MpsNeighbourhood<D>& near = work.near;
   const double factor = dt / model.settings().density * model.laplacian();
+  const bool newtonian = model.rheology.is_newtonian();
+  const bool corrected = model.settings().gradient == MpsGradient::corrected;
   work.velocity.resize(n);
   work.block.resize(n);
   work.inverse_block.resize(n);
@@ -57,14 +104,15 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
     const bool moves = particles.moves(i);
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-      const std::size_t j = near.lists.neighbour(e);
-      const double c =
-          factor * between(particles.viscosity[i], particles.viscosity[j]) * double(near.weight[e]);
-      work.coupling[e] = float(c);
+      const double viscosity = newtonian ? model.rheology.viscosity
+                                         : viscosity_between(model, particles, work, i, e);
+      double weight = double(near.weight[e]);
+      if (corrected) weight *= spread_factor(near, i, e);
+      work.coupling[e] = float(factor * viscosity * weight);
       sum += double(work.coupling[e]);
     }
     Matrix block = (1 + sum) * Matrix::Identity();
-    VecD<D> right = particles.velocity[i] + dt * model.gravity;
+    VecD<D> right = start[i];
     if (moves)
       for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
         double& drag = work.drag[near.contacts.place(c)];
@@ -78,9 +126,6 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
     work.inverse_block[i] = moves ? Matrix(block.inverse()) : Matrix(Matrix::Zero());
   });
 
-  double speed2 = 0;
-  for (const VecD<D>& u : particles.velocity) speed2 += u.squaredNorm();
-  const double scale = std::sqrt(double(n)) * model.gravity.norm() * dt + 1e-3 * std::sqrt(speed2);
   const std::uint32_t *first = near.lists.first(), *index = near.lists.index();
   const auto as_vectors = [](const double* values) {
     return reinterpret_cast<const VecD<D>*>(values);
@@ -106,10 +151,72 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
                              precondition);
 }
 
+/// What residuals and changes of all velocities are compared with: what gravity adds in a step, m/s.
+template <int D>
+double velocity_scale(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles) {
+  double speed2 = 0;
+  for (const VecD<D>& u : particles.velocity) speed2 += u.squaredNorm();
+  return std::sqrt(double(particles.size())) * model.gravity.norm() * dt +
+         1e-3 * std::sqrt(speed2);
+}
+
+template <int D>
+double norm(const Velocities<D>& a) {
+  double square = 0;
+  for (const VecD<D>& u : a) square += u.squaredNorm();
+  return std::sqrt(square);
+}
+
+template <int D>
+double distance(const Velocities<D>& a, const Velocities<D>& b) {
+  double square = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) square += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+template <int D>
+void add_gravity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles) {
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    if (particles.moves(i)) particles.velocity[i] += dt * model.gravity;
+}
+
+/// The apparent viscosity is that of the velocities after the step: it is found by fixed-point
+/// iteration (Kacanov's, which descends for Bingham fluids), from the rates of the last step.
+template <int D>
+SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
+                            MpsWork<D>& work) {
+  const MpsSettings& s = model.settings();
+  // From nearly the velocities before the step, not from those that forces have driven apart: what
+  // creeps comes to rest. Nor quite from rest, which viscosity would keep for too many iterations.
+  const Velocities<D> start = particles.velocity;
+  for (std::size_t i = 0; i < start.size(); ++i)
+    particles.velocity[i] = work.before[i] + first_guess * (start[i] - work.before[i]);
+  const double scale = velocity_scale(model, dt, particles);
+  const bool newtonian = model.rheology.is_newtonian();
+  SolveReport report;
+  Velocities<D> last;
+  for (int k = 0; k < std::max(s.yield_iterations, 1); ++k) {
+    if (!newtonian) find_rates(model, particles, work);
+    last = particles.velocity;
+    const SolveReport one = solve_viscosity(model, dt, start, scale, particles, work);
+    report = {report.iterations + one.iterations, one.residual, one.converged};
+    if (!one.converged || newtonian) break;
+    if (distance<D>(particles.velocity, last) <=
+        YTT * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale))
+      break;
+  }
+  find_viscosities(model, particles, work);
+  return report;
+}
+
 template double wall_drag(const MpsModel<2>&, const MpsParticles<2>&, const MpsWork<2>&,
                           std::size_t, const WallContact<2>&);
 template double wall_drag(const MpsModel<3>&, const MpsParticles<3>&, const MpsWork<3>&,
                           std::size_t, const WallContact<3>&);
+template void add_gravity(const MpsModel<2>&, double, MpsParticles<2>&);
+template void add_gravity(const MpsModel<3>&, double, MpsParticles<3>&);
 template SolveReport apply_viscosity(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
 template SolveReport apply_viscosity(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
 

@@ -87,34 +87,7 @@ void WallImages<D>::update(const NeighbourLists<D>& lists, const RowLists<WallCo
                  });
 }
 
-template <int D>
-WallFriction<D>::WallFriction(double radius) : radius_(radius) {
-  const KernelConstants kernel = kernel_constants(D, radius);
-  const int reach = int(std::ceil(radius)), across = D == 3 ? reach : 0;
-  for (std::size_t k = 0; k < table_.size(); ++k) {
-    const double distance = radius * double(k) / double(table_.size() - 1);
-    table_[k] = 0;
-    for (int layer = 0; layer <= reach; ++layer)
-      for (int a = -reach; a <= reach; ++a)
-        for (int b = -across; b <= across; ++b) {
-          const double z = distance + layer + 0.5;
-          table_[k] += kernel_weight(std::sqrt(z * z + a * a + b * b), radius) * z;
-        }
-    table_[k] *= 2 * D / (kernel.lambda * kernel.number_density);
-  }
-}
-
-template <int D>
-double WallFriction<D>::at(double distance) const {
-  const double last = double(table_.size() - 1);
-  const double place = std::min(std::max(distance, 0.0) / radius_ * last, last - 1e-9);
-  const std::size_t k = std::size_t(place);
-  return table_[k] + (place - double(k)) * (table_[k + 1] - table_[k]);
-}
-
 template class WallImages<2>;
 template class WallImages<3>;
-template class WallFriction<2>;
-template class WallFriction<3>;
 
 }  // namespace snowshed

@@ -36,19 +36,4 @@ class WallImages {
   RowLists<WallImage<D>> images_;
 };
 
-/// Sums over the layers of a lattice behind a plane wall: 2 d/(lambda n0) sum of w z, times l0, for
-/// a particle at a distance (in l0), where z is the way along the normal. Times a shear stress over
-/// density and l0 it is the deceleration by the wall: summed over the layers of the snow, it is
-/// one.
-template <int D>
-class WallFriction {
- public:
-  explicit WallFriction(double radius);
-  double at(double distance) const;
-
- private:
-  double radius_;
-  std::array<double, 513> table_;
-};
-
 }  // namespace snowshed
