@@ -7,9 +7,9 @@ AVAFRAME_PYTHON is the interpreter of an environment with AvaFrame 2.1 (``pip in
 avaframe==2.1``). Both run the same project folders in turn, in steps of 0.01 s; the best of three
 counts. The projects are a slab on an incline with run-out, of about as many particles as are asked
 for, and copies of those that are named, without their ini. AvaFrame's time is that of its loop over
-time steps, which also keeps the peaks and reports how far it is, and that of its function for a time
-step alone. Our time is that of the loop over time steps, with the peaks. Nothing else should run on
-the machine meanwhile.
+time steps, which also keeps the peaks and reports how far it is, and that of its function for a
+time step alone. Our time is that of the loop over time steps, with the peaks. Nothing else should
+run on the machine meanwhile.
 """
 
 from __future__ import annotations
@@ -149,9 +149,8 @@ def main() -> None:
     options = parser.parse_args()
     print(f"{os.cpu_count()} cores; microseconds for a particle step")
     print(f"{'':>23} {'AvaFrame':>21} {'':>10} {'ratio':>15}")
-    print(
-        f"{'':>12} {'particles':>10} {'loop':>10} {'step':>10} {'snowshed':>10} {'loop':>8} {'step':>6}"
-    )
+    units = [f"{one:>10}" for one in ("particles", "loop", "step", "snowshed")]
+    print(f"{'':>12}", *units, f"{'loop':>8} {'step':>6}")
     for wanted in options.particles:
         with tempfile.TemporaryDirectory() as name:
             make_project(Path(name), wanted, options.python)

@@ -11,7 +11,7 @@ SNOWSHED_INLINE PackMask stretch_lanes(const SlideView& s, const Lanes& l) {
     const std::ptrdiff_t b = l.first + (i < l.count ? i : 0);
     const Quad first = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_first[b]));
     const Quad second = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_second[b]));
-    return __builtin_shufflevector(Quad(second - first), Quad(second + first), 0, 1, 2, 7);
+    return Quad(second - Quad{1, 1, 1, -1} * first);  // the way, and both thicknesses
   });
   const PackVec d{r.a, r.b, r.c};
   const Pack length = length_from(dot(d, d)), strain = length / l.load(s.rest_length) - 1.0;
