@@ -4,7 +4,7 @@
 
 The image is synthetic (318 kg/m3, voxels of 50 um), since none comes with snowshed: give
 ``segment`` your own instead. COARSER is how many voxels make a sphere, DX the grid of the scene in
-m. A few minutes on two cores. Draws ``image_to_stack.png`` into the folder.
+m. A minute or two on two cores. Draws ``image_to_stack.png`` into the folder.
 """
 
 import json
@@ -25,7 +25,7 @@ PICTURES = {
 }
 
 
-def main(folder: Path, voxels: int = 40, coarser: int = 2, dx: float = 0.02) -> None:
+def main(folder: Path, voxels: int = 40, coarser: int = 2, dx: float = 0.01) -> None:
     """Run the four commands, each of which reads what the one before has written."""
     image, sample, material, stack = (folder / name for name in ("image", *stages()))
     command(f"grains synthetic --density 318 --correlation-length 5e-4 --seed 1 -o {image}",
