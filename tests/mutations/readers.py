@@ -210,7 +210,7 @@ def _as_snow(file: Path) -> None:
 
 
 def _as_events(file: Path) -> None:
-    Results(file.parent)
+    _ = Results(file.parent).events
 
 
 def _digest(value: object) -> str:
