@@ -191,3 +191,14 @@ def test_tables_pass_the_one_sanitizer():
         if ".to_csv(" in source.read_text(encoding="utf-8") and source.name != "csv_table.py"
     ]
     assert wrong == []
+
+
+def test_commands_print_by_what_makes_texts_harmless():
+    """Notes and names come from files; `say` and the consoles of cli/terminal.py show them."""
+    wrong = [
+        str(source.relative_to(ROOT))
+        for source in tracked("python/snowshed/cli/**/*.py")
+        if "click.echo(" in source.read_text(encoding="utf-8").replace("echo(context.get_help", "")
+        and source.name != "terminal.py"
+    ]
+    assert wrong == []

@@ -5,7 +5,7 @@
 set -eu
 tree=$1
 seconds=$2
-targets="scene stl obj ply npy checkpoint"
+targets="scene stl obj ply npy asc labels film checkpoint"
 # Limits on the memory of a target, on the size of an allocation, and on the time of an input.
 limits="-rss_limit_mb=1024 -malloc_limit_mb=512 -timeout=20"
 export ASAN_OPTIONS=quarantine_size_mb=16

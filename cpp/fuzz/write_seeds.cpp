@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "snowshed/io/film_file.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/presets.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -161,6 +162,15 @@ void write_dictionaries(const fs::path& folder) {
   write_dictionary(folder / "npy.dict",
                    {"'descr': ", "'<f4'", "'<f8'", "'>f4'", "'fortran_order': ", "False", "True",
                     "'shape': ", "(2, 2, 2), ", "(3, 3), "});
+  write_dictionary(folder / "labels.dict",
+                   {"'descr': ", "'|u1'", "'<i2'", "'<u8'", "'fortran_order': ", "False", "True",
+                    "'shape': ", "(2, 2, 2), "});
+  write_dictionary(folder / "asc.dict",
+                   {"ncols ", "nrows ", "xllcenter ", "yllcenter ", "xllcorner ", "yllcorner ",
+                    "cellsize ", "nodata_value ", "-9999", "NODATA_value nan"});
+  write_dictionary(folder / "film.dict",
+                   {"axes", "xz", "xyz", "quantum_m", "interval_s", "share", "radius", "true",
+                    "false", "quantities", "name", "unit", "meaning", "step", "FRAM"});
 }
 
 using Corner = std::array<float, 3>;
@@ -254,6 +264,51 @@ void write_npy(const fs::path& folder) {
   write(folder / "deep.npy", npy("\2\0"s, "<f8", "(2, 2, 2)") + raw(deep));
 }
 
+void write_labels(const fs::path& folder) {
+  using namespace std::string_literals;
+  const std::vector<std::uint8_t> small = {0, 1, 1, 2, 0, 2, 2, 3};
+  const std::vector<std::int64_t> wide(small.begin(), small.end());
+  write(folder / "small.npy", npy("\1\0"s, "|u1", "(2, 2, 2)") + raw(small));
+  write(folder / "wide.npy", npy("\2\0"s, "<i8", "(2, 2, 2)") + raw(wide));
+}
+
+void write_rasters(const fs::path& folder) {
+  const std::string size = "ncols 3\nnrows 2\n", values = "1 2.5 -9999\n4e1 5 6\n";
+  write(folder / "centre.asc", size + "xllcenter 10\nyllcenter 20\ncellsize 5\n" + values);
+  write(folder / "corner.asc",
+        size + "xllcorner 1\nyllcorner 2\ncellsize 0.5\nnodata_value nan\n1 nan 3\n4 5 6\n");
+}
+
+/// Particles that come, move and go.
+void write_films(const fs::path& folder) {
+  fs::create_directories(folder);
+  for (const int axes : {2, 3}) {
+    FilmHeader header;
+    header.axes = axes;
+    header.quantum = 1.0 / 1024;
+    header.interval = 0.1;
+    header.has_radius = axes == 3;
+    header.quantities = {{"speed", "m/s", "Speed", 0.05}};
+    FilmWriter writer(folder / (std::to_string(axes) + "d.bin"), header);
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      FilmFrame frame;
+      frame.time = 0.1 * k;
+      frame.event = 1 + k / 3;
+      frame.positions.resize(std::size_t(axes));
+      frame.values.resize(1);
+      for (std::uint32_t id = k / 3; id < 4 + k / 2; ++id) {
+        frame.ids.push_back(id);
+        frame.events.push_back(std::uint16_t(1));
+        frame.materials.push_back(std::uint8_t(id % 2));
+        if (header.has_radius) frame.radii.push_back(std::int32_t(id));
+        for (auto& axis : frame.positions) axis.push_back(std::int32_t(10 * id + k * k));
+        frame.values[0].push_back(std::int32_t(k));
+      }
+      writer.append(frame);
+    }
+  }
+}
+
 /// Returns a scene of a few particles: plain and between two events, or with many features and in
 /// the middle of an event.
 Scene scene_of_checkpoint(int dimension, bool running) {
@@ -296,6 +351,9 @@ void write_seeds(const fs::path& folder) {
   write_obj(folder / "obj");
   write_ply(folder / "ply");
   write_npy(folder / "npy");
+  write_labels(folder / "labels");
+  write_rasters(folder / "asc");
+  write_films(folder / "film");
   write_checkpoints(folder / "checkpoint");
 }
 

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+from datetime import date, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,10 @@ REGRESS = (
     *("--inner-folds", "2", "--jobs", "1", "-q"),
 )
 VERIFY = (sys.executable, "-m", "validation", "--case", "material_paths", "-q")
+CLEARANCE = (
+    *("--slope-length", "0.4", "--tilt", "60", "--heights", "0.3", "--draws", "1"),
+    *("--jobs", "1", "-q"),
+)
 #: Each command, whose files are in {inputs}, and the options with which it goes on.
 PROGRAMS = {
     "snowshed-run": ([SCRIPTS / "snowshed-run", "{inputs}/scene.json", "--quiet"], ["--resume"]),
@@ -37,24 +42,9 @@ PROGRAMS = {
     "study": ([SNOWSHED, "study", "run", "{inputs}/study.toml", "--jobs", "1", "-q"], []),
     "slide": ([SNOWSHED, "run", "{inputs}/slide.json", "-q"], ["--resume"]),
     "grains": ([SNOWSHED, "run", "{inputs}/grains.json", "-q"], ["--resume"]),
-    "regress": (
-        [
-            SNOWSHED,
-            "regress",
-            "{inputs}/rows.csv",
-            *REGRESS,
-            "--inner-folds",
-            "2",
-            "--jobs",
-            "1",
-            "-q",
-        ],
-        [],
-    ),
-    "verify": (
-        [sys.executable, "-m", "validation", "--case", "material_paths", "-q"],
-        ["--resume"],
-    ),
+    "regress": ([SNOWSHED, "regress", "{inputs}/rows.csv", *REGRESS], []),
+    "verify": ([*VERIFY], ["--resume"]),
+    "clearance": ([SNOWSHED, "clearance", "{inputs}/winter.csv", *CLEARANCE], []),
 }
 KINDS = ("kill", "full")
 #: Operations tried in the tests that run always, where they are more than two.
@@ -65,6 +55,7 @@ DIFFERENT = (
     *("measurements.jsonl", "results.csv", "results.json", "scores.csv", "errors.csv"),
 )
 SEASON = "date,snowfall_m,temperature_c,density_kg_m3\n2024-12-01,0.05,-4,120\n2024-12-02,0,2,\n"
+WINTER = "".join(f"{date(2024, 12, 3) + timedelta(day)},0,2,\n" for day in range(60))
 STUDY = """name = "tiny"
 dimension = 2
 events = 1
@@ -101,6 +92,7 @@ def inputs(tmp_path_factory):
     grains = example_grains(folder / "grains").set("loading.0.strain", 0.0005)
     grains.resolve().save(folder / "grains.json")
     (folder / "season.csv").write_text(SEASON)
+    (folder / "winter.csv").write_text(SEASON + WINTER)
     (folder / "study.toml").write_text(STUDY)
     panels = itertools.product((1, 2), (2.0, 3.0, 4.0), (0.5, 2.0, 4.0), (40.0, 60.0))
     columns = ["event", "panel.height", "panel.length", "panel.tilt"]

@@ -5,6 +5,12 @@ import sys
 
 import pytest
 
+from snowshed import InputError
+from snowshed.analysis.regression import load_model
+from snowshed.io.film import Film
+from snowshed.io.vtp import read_particles
+from snowshed.study import Study
+
 ENDLESS = "/dev/zero"
 
 
@@ -25,3 +31,11 @@ def test_files_without_end_are_refused(arguments, limit, tmp_path):
     assert done.returncode == 2, done.stderr
     assert f"{ENDLESS}: longer than {limit} MB" in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("read", [load_model, read_particles, Study.load, Film])
+def test_a_file_without_end_is_refused_by_its_name_once(tmp_path, read):
+    (tmp_path / "zero").symlink_to("/dev/zero")
+    with pytest.raises(InputError) as refused:
+        read(tmp_path / "zero")
+    assert str(refused.value).count(str(tmp_path)) == 1

@@ -23,6 +23,7 @@ from snowshed.run.grains import run_grains
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 
+FRAMES = 5  # of the film
 SEASON = "date,snowfall_m,temperature_c\n2024-12-01,0.2,-4\n2024-12-02T06:00+01:00,0.1,1.5\n"
 MEASURED = "tilt_deg,event,height_m,height_std_m\n40,1,0.05,0.005\n50,2,0.08,0.01\n"
 STUDY = """name = "a"
@@ -192,7 +193,7 @@ def study_table(folder: Path) -> Path:
 
 
 def film(folder: Path) -> Path:
-    frames = film_files.falling_film(40, 5, axes="xz")
+    frames = film_files.falling_film(40, FRAMES, axes="xz")
     (folder / "film.bin").write_bytes(film_files.film_bytes(frames, axes="xz"))
     return folder / "film.bin"
 

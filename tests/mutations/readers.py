@@ -177,8 +177,8 @@ def _as_film(file: Path) -> str:
         for one in film
     ]  # fmt: skip
     summary = summarise_film(film)
-    if not film.whole:
-        raise InputError("a part of it, which pages say")
+    if not film.whole or len(frames) < good.FRAMES:
+        raise InputError("cut off, as a killed run leaves it: a film is good as far as it goes")
     facts = (film.dimension, film.quantum, film.interval, film.share, film.quantities)
     return _digest([frames, facts, [one.title for one in summary.colourings]])
 
@@ -210,7 +210,7 @@ def _as_snow(file: Path) -> None:
 
 
 def _as_events(file: Path) -> None:
-    Results(file.parent)
+    _ = Results(file.parent).events
 
 
 def _digest(value: object) -> str:

@@ -19,6 +19,15 @@
 #endif
 
 namespace snowshed {
+
+/// How an archive begins.
+struct ArchiveHeader {
+  char magic[8];
+  std::uint32_t version;
+  std::uint32_t sections;
+  std::uint64_t length;
+};
+
 namespace {
 
 constexpr std::uint32_t format_version = 1;
@@ -28,13 +37,6 @@ constexpr char magic[8] = {'\x89', 'S', 'N', 'O', 'W', '\r', '\n', '\x1a'};
 constexpr std::size_t word = sizeof(std::uint64_t);
 constexpr std::size_t max_name_length = 255;
 
-struct Header {
-  char magic[8];
-  std::uint32_t version;
-  std::uint32_t sections;
-  std::uint64_t length;
-};
-
 struct SectionHeader {
   std::uint32_t type;
   std::uint32_t name_length;
@@ -42,7 +44,7 @@ struct SectionHeader {
   std::uint64_t bytes;
 };
 
-constexpr std::size_t smallest_file = sizeof(Header) + word;
+constexpr std::size_t smallest_file = sizeof(ArchiveHeader) + word;
 
 constexpr std::uint64_t padded(std::uint64_t bytes) { return (bytes + word - 1) / word * word; }
 
@@ -120,7 +122,8 @@ void BinaryWriter::add_section(Section section) {
 
 void BinaryWriter::save(const std::filesystem::path& path,
                         const std::function<void(const std::filesystem::path&)>& check) const {
-  Header header{{}, format_version, static_cast<std::uint32_t>(sections_.size()), smallest_file};
+  ArchiveHeader header{
+      {}, format_version, static_cast<std::uint32_t>(sections_.size()), smallest_file};
   std::copy(std::begin(magic), std::end(magic), header.magic);
   for (const Section& s : sections_)
     header.length += sizeof(SectionHeader) + padded(s.name.size()) + padded(s.bytes);
@@ -140,7 +143,6 @@ void BinaryWriter::save(const std::filesystem::path& path,
 BinaryReader BinaryReader::load(const std::filesystem::path& path) {
   BinaryReader reader(path);
   reader.read_file();
-  reader.check_header();
   reader.check_sum();
   reader.read_sections();
   return reader;
@@ -189,35 +191,34 @@ void BinaryReader::read_file() {
   if (error)
     throw FileError(path_.string(), "cannot read the file: " + error.message(), error.value());
 
-  Header header{};
+  ArchiveHeader header{};
   file.read(reinterpret_cast<char*>(&header), sizeof header);
   file.clear();
   file.seekg(0);
-  if (size_ >= sizeof header && std::memcmp(header.magic, magic, sizeof magic) != 0)
-    fail(0, "not a snowshed archive");  // before a large file is read in vain
+  check(header);  // before memory is taken for a large file
   if (size_ > available_memory_bytes())
     throw InputError(path_.string(),
                      "the archive of " + std::to_string(size_) + " bytes does not fit into memory");
   words_.reset(new std::uint64_t[padded(size_) / word]);
   file.read(reinterpret_cast<char*>(words_.get()), static_cast<std::streamsize>(size_));
-  // The file may have become shorter since its size was read; check_header finds that.
   if (!file) size_ = static_cast<std::size_t>(file.gcount());
+  check(header);  // the file may have become shorter meanwhile
 }
 
-void BinaryReader::check_header() const {
-  if (std::memcmp(bytes(), magic, std::min(size_, sizeof magic)) != 0)
+void BinaryReader::check(const ArchiveHeader& header) const {
+  if (std::memcmp(header.magic, magic, std::min(size_, sizeof magic)) != 0)
     fail(0, "not a snowshed archive");
-  if (size_ < sizeof(Header)) fail(size_, "truncated inside the header");
-  const auto header = read<Header>(0);
+  if (size_ < sizeof(ArchiveHeader)) fail(size_, "truncated inside the header");
   if (header.version != format_version)
-    fail(offsetof(Header, version), "format version " + std::to_string(header.version) +
-                                        ", this program reads version " +
-                                        std::to_string(format_version));
+    fail(offsetof(ArchiveHeader, version), "format version " + std::to_string(header.version) +
+                                               ", this program reads version " +
+                                               std::to_string(format_version));
   if (size_ < header.length)
     fail(size_, "truncated: " + std::to_string(header.length) + " bytes were written");
   if (size_ != header.length || size_ < smallest_file || size_ % word != 0)
-    fail(offsetof(Header, length), "corrupted: a length of " + std::to_string(header.length) +
-                                       " bytes is recorded, the file has " + std::to_string(size_));
+    fail(offsetof(ArchiveHeader, length),
+         "corrupted: a length of " + std::to_string(header.length) +
+             " bytes is recorded, the file has " + std::to_string(size_));
 }
 
 void BinaryReader::check_sum() const {
@@ -228,9 +229,9 @@ void BinaryReader::check_sum() const {
 }
 
 void BinaryReader::read_sections() {
-  const auto header = read<Header>(0);
+  const auto header = read<ArchiveHeader>(0);
   std::set<std::string_view> names;
-  std::size_t position = sizeof(Header);
+  std::size_t position = sizeof(ArchiveHeader);
   for (std::uint32_t i = 0; i < header.sections; ++i) {
     const std::size_t start = position;
     Section section = read_section(start, position);

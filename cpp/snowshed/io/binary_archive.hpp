@@ -120,6 +120,8 @@ struct ArrayView {
   const T& operator[](std::size_t i) const { return data[i]; }
 };
 
+struct ArchiveHeader;
+
 /// A loaded archive. The file is untrusted. Every fault gives an InputError that names the file,
 /// the byte and the fault. Counts are checked before memory is allocated for them.
 class BinaryReader {
@@ -183,7 +185,7 @@ class BinaryReader {
 
   explicit BinaryReader(std::filesystem::path path) : path_(std::move(path)) {}
   void read_file();
-  void check_header() const;
+  void check(const ArchiveHeader&) const;
   void check_sum() const;
   void read_sections();
   Section read_section(std::size_t start, std::size_t& end) const;

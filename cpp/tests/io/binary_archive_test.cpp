@@ -9,6 +9,7 @@
 #include "io/forged_archive.hpp"
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/memory.hpp"
 
 namespace snowshed {
 namespace {
@@ -260,6 +261,16 @@ TEST_F(BinaryArchiveTest, RefusesFilesLargerThanMemory) {
   std::filesystem::resize_file(path("sparse"), std::uintmax_t{1} << 43, error);
   if (error) GTEST_SKIP() << "the folder holds no sparse files";
   EXPECT_THROW(BinaryReader::load(path("sparse")), InputError);
+}
+
+TEST_F(BinaryArchiveTest, ReadsNoFurtherThanTheHeaderOfAFileOfAnotherLength) {
+  write_plainly(path("sparse"), sample());
+  std::error_code error;
+  std::filesystem::resize_file(path("sparse"), std::uintmax_t{1} << 30, error);
+  if (error) GTEST_SKIP() << "the folder holds no sparse files";
+  const std::size_t before = peak_resident_bytes();
+  EXPECT_THROW(BinaryReader::load(path("sparse")), InputError);
+  EXPECT_LT(peak_resident_bytes(), before + (std::size_t{1} << 28));
 }
 
 TEST_F(BinaryArchiveTest, SavingToAFullDiskIsAFileError) {

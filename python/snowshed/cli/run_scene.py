@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
-
 import snowshed._core as _core
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.terminal import say
 from snowshed.io.formatting import about
 from snowshed.methods.registry import NAME_KEY
 from snowshed.run.interrupt import Interrupted
@@ -36,13 +35,13 @@ def _run_events(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -
 
     if not quiet:
         for note in (*notes_before(ready.data), *_of_long_run(ready)):
-            click.echo(f"note: {note}", err=True)
+            say(f"note: {note}", err=True)
     with progress_bar(quiet=quiet) as progress:
         table = run_events(ready, folder, resume=resume, progress=progress)
     if not quiet:
         console.print_events(table, folder)
         for note in notes_after(table):
-            click.echo(f"note: {note}")
+            say(f"note: {note}")
 
 
 def _of_long_run(ready: ResolvedScene) -> list[str]:

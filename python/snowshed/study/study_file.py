@@ -122,6 +122,8 @@ def name_in_errors(file: Path) -> Iterator[None]:
     try:
         yield
     except InputError as error:
+        if str(error).startswith(f"{file}: "):  # it could not even be read
+            raise
         raise InputError(f"{file}: {error}") from None
     except RecursionError:
         raise InputError(f"{file}: nested too deep") from None

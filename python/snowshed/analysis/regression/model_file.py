@@ -140,13 +140,14 @@ def load_model(file: PathLike) -> StackModel:
     path = Path(file)
     try:
         content = read_regular(path)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}") from None
+    try:
         with open_archive(content, LARGEST) as archive:
             return _Reader(archive).model()
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror or error}") from None
-    except DAMAGED as error:
+    except (OSError, *DAMAGED) as error:
         raise InputError(f"{path}: damaged, or not a model ({error})") from None
 
 

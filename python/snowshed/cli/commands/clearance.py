@@ -9,6 +9,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.terminal import say
 from snowshed.io.formatting import about
 
 if TYPE_CHECKING:
@@ -83,14 +84,14 @@ def clearance(
     if dry_run or not quiet:
         plans = [forecast(one, winters, candidates, ranges=ranges, jobs=jobs) for one in designs]
         seconds, seasons = sum(plan[0] for plan in plans), sum(plan[1] for plan in plans)
-        click.echo(
+        say(
             f"{len(winters)} winters, {len(designs)} panels, about {seasons} seasons: "
             f"{about(seconds)}"
         )
     if dry_run:
         return
     for note in () if quiet else notes:
-        click.echo(f"note: {note}")
+        say(f"note: {note}")
     answers = _answers(designs, winters, candidates, ranges, folder, jobs, quiet=quiet)
     from snowshed.analysis.clearance.report import write_report
 

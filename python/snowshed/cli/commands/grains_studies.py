@@ -10,6 +10,7 @@ import click
 
 from snowshed.cli.commands.grain_images import VOXEL
 from snowshed.cli.settings_options import settings_options
+from snowshed.cli.terminal import say
 
 if TYPE_CHECKING:
     from snowshed.analysis.grains.samples import LabelledSample
@@ -84,7 +85,7 @@ def sensitivity(
     found = evaluate_sensitivity(comparison, folder / RUNS, folder)
     if not quiet:
         print_comparison(found)
-        click.echo(f"tests.csv, sensitivity.csv and sensitivity.png in {folder}")
+        say(f"tests.csv, sensitivity.csv and sensitivity.png in {folder}")
 
 
 def read_samples(
@@ -150,9 +151,9 @@ def material(
         compute_study(shear.study(), files.runs, quiet=quiet, jobs=jobs, keep_particles=True)
         fits.append(files.write(tests, shear))
     if plan_only:
-        click.echo("and 2 shear tests of each sample, whose stresses follow from these")
+        say("and 2 shear tests of each sample, whose stresses follow from these")
         return
     files.write_table(fits)
     if not quiet:
         print_material(fits)
-        click.echo(f"snow-*.json, material-*.png and material.csv in {folder}")
+        say(f"snow-*.json, material-*.png and material.csv in {folder}")

@@ -8,6 +8,7 @@ from typing import Optional
 import click
 
 from snowshed.cli.progress import progress_bar
+from snowshed.cli.terminal import say
 
 PATH = click.Path(path_type=Path)
 
@@ -48,4 +49,4 @@ def view(
                 results, video, seconds=seconds, width=width, colour=colour, progress=progress
             )
     if not quiet:
-        click.echo(f"{written}: {written.stat().st_size / 1e6:.1f} MB")
+        say(f"{written}: {written.stat().st_size / 1e6:.1f} MB")
