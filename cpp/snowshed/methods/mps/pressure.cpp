@@ -7,7 +7,6 @@
 
 namespace snowshed {
 namespace {
-static const bool SC=getenv("SC")?atof(getenv("SC")):1, AS=getenv("AS")?atof(getenv("AS")):1;
 
 /// The divergence of the velocity, 1/s. Behind a wall, images move along it as the particles do.
 /// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
@@ -168,8 +167,8 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
     work.source[i] = 0;
     if (work.fixed[i]) return;
     double value = -source(model, dt, relaxation, particles, near, i) / model.laplacian();
-    if (AS && corrected) value -= model.settings().density * near.asymmetry[i].dot(particles.push[i]);
-    if (SC && near.surface[i]) value = std::max(value, 0.0);
+    if (corrected) value -= model.settings().density * near.asymmetry[i].dot(particles.push[i]);
+    if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
     work.source[i] = value;
   });
   if (work.enclosed) balance_sources(work, n);
@@ -186,34 +185,9 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
   return report;
 }
 
-template <int D>
-SolveReport correct_pressure(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles,
-                             MpsWork<D>& work) {
-  const std::size_t n = particles.size();
-  const double relaxation = compensation_time(model, dt, particles);
-  for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
-    work.pressure[i] = 0;
-    work.source[i] = 0;
-    if (work.fixed[i]) return;
-    work.source[i] =
-        -source(model, dt, relaxation, particles, work.near, i) / model.laplacian();
-    if (SC && work.near.surface[i]) work.source[i] = std::max(work.source[i], 0.0);
-  });
-  if (work.enclosed) balance_sources(work, n);
-  const SolveReport report = solve(model, work);
-  if (!work.enclosed)
-    for (std::size_t i = 0; i < n; ++i)
-      work.pressure[i] = std::max(work.pressure[i], -particles.pressure[i]);
-  return report;
-}
-
 template SolveReport solve_pressure(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
 template SolveReport solve_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
 template void prepare_pressure(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
 template void prepare_pressure(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
-template SolveReport correct_pressure(const MpsModel<2>&, double, const MpsParticles<2>&,
-                                      MpsWork<2>&);
-template SolveReport correct_pressure(const MpsModel<3>&, double, const MpsParticles<3>&,
-                                      MpsWork<3>&);
 
 }  // namespace snowshed

@@ -51,7 +51,7 @@ struct MpsSettings {
   double deposition_speed = 0.05;   // m/s
 
   MpsSource source = MpsSource::compensated;
-  double compensation = 0.02;  // share of the density's error that a step takes away
+  double compensation = 0.1;  // share of the density's error that a step takes away
   MpsGradient gradient = MpsGradient::corrected;
   MpsSplitting splitting = MpsSplitting::pressure_first;
   MpsSurface surface = MpsSurface::mirrored;
@@ -59,7 +59,7 @@ struct MpsSettings {
   MpsOrder order = MpsOrder::single_move;
   MpsSpacing spacing_law = MpsSpacing::shifting;
   MpsPreconditioner preconditioner = MpsPreconditioner::multigrid;
-  double pressure_tolerance = 1e-3;
+  double pressure_tolerance = 1e-4;
   double viscosity_tolerance = 1e-4;
   int max_iterations = 1000;
   int threads = 0;  // 0: all

@@ -124,8 +124,8 @@ void MpsSolver<D>::act_viscosity(double dt, MpsState<D>& next) {
     work_.viscous_change[i] = p.velocity[i] - before[i];
 }
 
-/// The pressure balances what it can before viscosity acts, so that snow that does not yet yield
-/// stays where it is; then it takes away what viscosity compresses. Ours.
+/// The pressure balances what it can before viscosity acts, so that snow that does not yield stays
+/// where it is. What viscosity compresses, the pressure of the next step takes away. Ours.
 template <int D>
 void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
   const int most = model_.settings().max_iterations;
@@ -135,11 +135,6 @@ void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
   require_converged(next.solves.pressure, "pressure", most);
   apply_pressure(model_, dt, p, work_);
   act_viscosity(dt, next);
-  if (model_.is_nearly_inviscid(dt)) return;
-  const SolveReport second = correct_pressure(model_, dt, p, work_);
-  require_converged(second, "second pressure", most);
-  next.solves.pressure.iterations += second.iterations;
-  apply_correction(model_, dt, p, work_);
 }
 
 /// As published.

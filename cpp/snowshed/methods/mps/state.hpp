@@ -44,11 +44,6 @@ struct MpsModel {
   Rheology rheology;
   int threads;
 
-  /// Whether viscosity hardly changes the velocities within a step.
-  bool is_nearly_inviscid(double dt) const {
-    const double l0 = settings().spacing;
-    return rheology.is_newtonian() && rheology.viscosity * dt < 0.1 * settings().density * l0 * l0;
-  }
   bool is_sticky(const WallContact<D>& c) const {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
   }

@@ -7,8 +7,6 @@
 
 namespace snowshed {
 namespace {
-static const double YTT=getenv("YT")?atof(getenv("YT")):1e-3;
-#define YT 3
 
 /// Nearer to a wall than this, in l0, its friction grows no further.
 constexpr double nearest_friction = 0.25;
@@ -42,10 +40,12 @@ double viscosity_between(const MpsModel<D>& model, const MpsParticles<D>& partic
 template <int D>
 using Velocities = AlignedVector<VecD<D>>;
 
-/// The apparent viscosity of a step is found when the velocities change by less than this, over
-/// what the equation is solved to.
-constexpr double yield_tolerance = YT;
-const double first_guess = getenv("FG")?atof(getenv("FG")):0.01;
+/// The apparent viscosities of a step are found when velocities change by less than this part of
+/// them from one iteration to the next.
+constexpr double yield_tolerance = 1e-3;
+/// Where these iterations begin: so far on the way from the velocities before the step to those
+/// that all but viscosity makes.
+constexpr double first_guess = 0.01;
 
 }  // namespace
 
@@ -204,7 +204,7 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
     report = {report.iterations + one.iterations, one.residual, one.converged};
     if (!one.converged || newtonian) break;
     if (distance<D>(particles.velocity, last) <=
-        YTT * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale))
+        yield_tolerance * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale))
       break;
   }
   find_viscosities(model, particles, work);
