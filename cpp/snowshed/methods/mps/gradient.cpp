@@ -33,9 +33,12 @@ double base_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
                      const MpsNeighbourhood<D>& near, std::size_t i) {
   const double own = particles.pressure[i];
   switch (model.settings().gradient) {
-    case MpsGradient::conservative: return own;
-    case MpsGradient::corrected: return near.surface[i] ? own : -own;
-    case MpsGradient::published: break;
+    case MpsGradient::conservative:
+      return own;
+    case MpsGradient::corrected:
+      return near.surface[i] ? own : -own;
+    case MpsGradient::published:
+      break;
   }
   return -least_pressure(particles, near, i);
 }

@@ -21,8 +21,8 @@ double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
   };
   double sum = 0, flow = 0;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-    sum += part(near.way(e), double(near.slope[e]),
-                particles.velocity[near.lists.neighbour(e)] - own);
+    sum +=
+        part(near.way(e), double(near.slope[e]), particles.velocity[near.lists.neighbour(e)] - own);
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     VecD<D> along = particles.velocity[m->of] - own;
     for (const int k : {0, 1}) {
@@ -138,8 +138,7 @@ SolveReport solve(const MpsModel<D>& model, MpsWork<D>& work) {
                                precondition);
   };
   if (s.preconditioner == MpsPreconditioner::multigrid)
-    return by_conjugate_gradients(
-        [&](const double* r, double* z) { work.multigrid.apply(r, z); });
+    return by_conjugate_gradients([&](const double* r, double* z) { work.multigrid.apply(r, z); });
   if (s.preconditioner == MpsPreconditioner::jacobi)
     return by_conjugate_gradients([&](const double* r, double* z) {
       for_each_particle(n, threads, [&](std::size_t i) {
@@ -176,10 +175,9 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
   for (std::size_t i = 0; i < n; ++i) square += work.source[i] * work.source[i];
   work.pressure_scale = std::sqrt(square);
   const SolveReport report = solve(model, work);
-  const double least =
-      work.enclosed
-          ? *std::min_element(work.pressure.begin(), work.pressure.begin() + std::ptrdiff_t(n))
-          : 0.0;
+  const double least = work.enclosed ? *std::min_element(work.pressure.begin(),
+                                                         work.pressure.begin() + std::ptrdiff_t(n))
+                                     : 0.0;
   for (std::size_t i = 0; i < n; ++i)
     particles.pressure[i] = work.fixed[i] ? 0.0 : std::max(0.0, work.pressure[i] - least);
   return report;

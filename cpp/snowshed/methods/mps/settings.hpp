@@ -9,8 +9,8 @@ enum class MpsRheology { newtonian, bingham, bingham_dilatant };
 enum class MpsYield { papanastasiou, bi_viscous };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
 enum class MpsSource { published, compensated };
-/// Pressure gradient: from the least neighbouring pressure, with equal and opposite forces, or right
-/// for linear pressures however the neighbours lie.
+/// Pressure gradient: from the least neighbouring pressure, with equal and opposite forces, or
+/// right for linear pressures however the neighbours lie.
 enum class MpsGradient { published, conservative, corrected };
 /// Whether viscosity acts before the pressure, or after it and then the pressure once more.
 enum class MpsSplitting { viscosity_first, pressure_first };

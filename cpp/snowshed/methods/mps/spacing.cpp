@@ -76,8 +76,10 @@ template <int D>
 void keep_spacing(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
                   MpsWork<D>& work) {
   switch (model.settings().spacing_law) {
-    case MpsSpacing::none: return;
-    case MpsSpacing::collision: return collide(model, common, particles, work);
+    case MpsSpacing::none:
+      return;
+    case MpsSpacing::collision:
+      return collide(model, common, particles, work);
     case MpsSpacing::shifting:
       collide(model, inelastic, particles, work);
       shift(model, dt, particles, work);
