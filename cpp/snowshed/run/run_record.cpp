@@ -12,6 +12,7 @@
 #include "snowshed/io/file_bytes.hpp"
 #include "snowshed/methods/grains/energy.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/methods/mps/solver.hpp"
 #include "snowshed/methods/slide/energy.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/scene/enum_names.hpp"
@@ -88,6 +89,19 @@ ordered_json balance_of(const SlideMethod& slide) {
           {"residual_kg", m.released + m.entrained - m.left - on_terrain}};
 }
 
+/// How well the equations were solved, in the last step and on average, and how dense the snow is.
+ordered_json equations_of(const MpsMethod& mps) {
+  const MpsReport r = mps.report();
+  return {{"pressure_iterations", r.pressure_iterations},
+          {"pressure_residual", r.pressure_residual},
+          {"mean_pressure_iterations", r.mean_pressure_iterations},
+          {"viscosity_iterations", r.viscosity_iterations},
+          {"viscosity_residual", r.viscosity_residual},
+          {"mean_viscosity_iterations", r.mean_viscosity_iterations},
+          {"density_error", r.density_error},
+          {"largest_density", r.largest_density}};
+}
+
 std::map<std::string, std::map<std::string, std::string>> table_checksums(const json& j) {
   std::map<std::string, std::map<std::string, std::string>> tables;
   if (!j.is_object()) throw wrong_type("/tables", j, "an object");
@@ -153,6 +167,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   j["wall_s"] = wall;
   if (const auto* slide = dynamic_cast<const SlideMethod*>(&method))
     j["mass_balance"] = balance_of(*slide);
+  if (const auto* mps = dynamic_cast<const MpsMethod*>(&method)) j["equations"] = equations_of(*mps);
   j["finished_events"] = ordered_json::array();
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
   if (!tables.empty()) j["tables"] = tables;

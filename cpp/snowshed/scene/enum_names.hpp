@@ -79,14 +79,13 @@ template <>
 struct EnumNames<MpsGradient> {
   static constexpr Named<MpsGradient> list[] = {{MpsGradient::published, "published"},
                                                 {MpsGradient::conservative, "conservative"},
-                                               {MpsGradient::corrected, "corrected"}};
+                                                {MpsGradient::corrected, "corrected"}};
 };
 
 template <>
 struct EnumNames<MpsSplitting> {
-  static constexpr Named<MpsSplitting> list[] = {
-      {MpsSplitting::viscosity_first, "viscosity_first"},
-      {MpsSplitting::pressure_first, "pressure_first"}};
+  static constexpr Named<MpsSplitting> list[] = {{MpsSplitting::viscosity_first, "viscosity_first"},
+                                                 {MpsSplitting::pressure_first, "pressure_first"}};
 };
 
 template <>

@@ -215,6 +215,10 @@ class SceneRules {
     if (s.erosion && s.deposition_speed >= s.erosion_speed)
       fail(s.deposition_speed,
            show(s.deposition_speed) + " m/s must be less than " + path_and_value(s.erosion_speed));
+    if (s.order == MpsOrder::published && s.splitting == MpsSplitting::pressure_first)
+      fail(s.splitting, "with " + path_of(scene_, s.order) +
+                            " \"published\" particles move before the pressure is known; allowed: "
+                            "viscosity_first");
     if (scene_.output.energy && s.order == MpsOrder::published)
       fail(scene_.output.energy,
            "the balance is kept with " + path_of(scene_, s.order) + " \"single_move\" only");

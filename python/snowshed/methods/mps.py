@@ -10,7 +10,8 @@ from snowshed.methods.settings import MethodSettings
 MpsRheology = Literal["newtonian", "bingham", "bingham_dilatant"]
 MpsYield = Literal["papanastasiou", "bi_viscous"]
 MpsSource = Literal["published", "compensated"]
-MpsGradient = Literal["published", "conservative"]
+MpsGradient = Literal["published", "conservative", "corrected"]
+MpsSplitting = Literal["viscosity_first", "pressure_first"]
 MpsSurface = Literal["published", "mirrored"]
 MpsOrder = Literal["published", "single_move"]
 MpsSpacing = Literal["none", "collision", "shifting"]
@@ -46,12 +47,15 @@ class MpsSettings(MethodSettings):
         0 <= value < 90; default 24.
     stress_growth : float
         Coefficient m with which the yield stress is approached [s]. 0 < value <= 1e+06; default
-        100.
+        10000.
     dilatant_rate : float
         Shear rate above which the stress grows as a power of it [1/s]. 0 < value <= 1e+09; default
         100.
     dilatant_exponent : float
         That power. 1 <= value <= 5; default 1.5.
+    yield_iterations : int
+        Most iterations of a step in which the apparent viscosity is found. 1 <= value <= 1000;
+        default 50.
     erosion : bool
         Whether snow is eroded and deposited. Default False.
     erodible_thickness : float
@@ -68,9 +72,11 @@ class MpsSettings(MethodSettings):
     source : {"published", "compensated"}
         Right-hand side of the pressure equation. Default "compensated".
     compensation : float
-        Share of the density's error that a step takes away. 0 <= value <= 1; default 0.02.
-    gradient : {"published", "conservative"}
-        Gradient of the pressure. Default "conservative".
+        Share of the density's error that a step takes away. 0 <= value <= 1; default 0.1.
+    gradient : {"published", "conservative", "corrected"}
+        Gradient of the pressure. Default "corrected".
+    splitting : {"viscosity_first", "pressure_first"}
+        Whether viscosity acts before the pressure or after it. Default "pressure_first".
     surface : {"published", "mirrored"}
         Where the pressure is zero at the free surface. Default "mirrored".
     surface_ratio : float
@@ -79,15 +85,15 @@ class MpsSettings(MethodSettings):
     order : {"published", "single_move"}
         When particles move. Default "single_move".
     spacing_law : {"none", "collision", "shifting"}
-        What keeps particles apart besides the pressure. Default "none".
+        What keeps particles apart besides the pressure. Default "shifting".
     preconditioner : {"jacobi", "incomplete_cholesky", "multigrid"}
         Preconditioner of the pressure equation. Default "multigrid".
     pressure_tolerance : float
         Residual of the pressure equation over its right-hand side. 0 < value <= 0.1; default
-        0.001.
+        0.0001.
     viscosity_tolerance : float
         Residual of the viscous equation over what gravity adds in a step. 0 < value <= 0.1;
-        default 0.001.
+        default 0.0001.
     max_iterations : int
         Iterations after which a run ends with an error. 1 <= value <= 100000; default 1000.
     threads : int
@@ -107,6 +113,7 @@ class MpsSettings(MethodSettings):
     stress_growth: Optional[float] = None
     dilatant_rate: Optional[float] = None
     dilatant_exponent: Optional[float] = None
+    yield_iterations: Optional[int] = None
     erosion: Optional[bool] = None
     erodible_thickness: Optional[float] = None
     erosion_pressure: Optional[float] = None
@@ -116,6 +123,7 @@ class MpsSettings(MethodSettings):
     source: Optional[MpsSource] = None
     compensation: Optional[float] = None
     gradient: Optional[MpsGradient] = None
+    splitting: Optional[MpsSplitting] = None
     surface: Optional[MpsSurface] = None
     surface_ratio: Optional[float] = None
     order: Optional[MpsOrder] = None

@@ -36,7 +36,9 @@ void MpsSolver<D>::book_energy(MpsState<D>& next, double dt) const {
     }
     e.friction += friction;
     e.plastic -= mass * work_.viscous_change[i].dot(mean) + friction;
-    e.transfer -= mass * (work_.projected[i] - before - dt * model_.gravity - work_.viscous_change[i]).dot(mean);
+    e.transfer -=
+        mass *
+        (work_.projected[i] - before - dt * model_.gravity - work_.viscous_change[i]).dot(mean);
     if (!after.moves(i)) e.sticking += 0.5 * mass * work_.projected[i].squaredNorm();
   }
 }

@@ -52,15 +52,6 @@ SolveReport solve_pressure(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsW
 template <int D>
 void apply_pressure(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
 
-/// Solves for the pressure that is missing to keep the present velocities from compressing the
-/// snow, into work.pressure; to the same residual as the step's pressure.
-template <int D>
-SolveReport correct_pressure(const MpsModel<D>&, double dt, const MpsParticles<D>&, MpsWork<D>&);
-
-/// Adds what it does to the velocities, and itself to the pressures.
-template <int D>
-void apply_correction(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
-
 /// Keeps particles apart as the settings say.
 template <int D>
 void keep_spacing(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
@@ -72,7 +63,7 @@ void erode_and_deposit(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);
 /// The friction of a wall: the factor of a particle's velocity along the wall in its deceleration,
 /// 1/s.
 template <int D>
-double wall_drag(const MpsModel<D>&, const MpsParticles<D>&, const MpsWork<D>&,
-                 std::size_t particle, const WallContact<D>&);
+double wall_drag(const MpsModel<D>&, const MpsParticles<D>&, std::size_t particle,
+                 const WallContact<D>&);
 
 }  // namespace snowshed

@@ -11,42 +11,49 @@ namespace {
 /// by at most a part of l0 in a step.
 constexpr double nearest_place = 0.25, largest_push = 0.1;
 
-/// A pressure whose force is looked for, Pa, and the least it may be behind walls.
-struct PressureField {
-  const AlignedVector<double>& value;
-  const AlignedVector<double>* below;  // walls pull by at most this, or not at all
-
-  double at_wall(std::size_t k, double pressure) const {
-    return std::max(below ? -(*below)[k] : 0.0, pressure);
-  }
-};
-
 /// The least pressure among a particle and its neighbours, Pa.
 template <int D>
 double least_pressure(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
-                      const AlignedVector<double>& pressure, std::size_t i) {
-  double least = pressure[i];
+                      std::size_t i) {
+  double least = particles.pressure[i];
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
     if (particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall)
-      least = std::min(least, pressure[near.lists.neighbour(e)]);
+      least = std::min(least, particles.pressure[near.lists.neighbour(e)]);
   return least;
 }
 
-/// The gradient of the pressure, Pa/m: the sum of (p_j + base) w r/r^2 over the neighbours. With
-/// the particle's own pressure for `base` each pair has equal and opposite forces; with less the
-/// least pressure around it is equation (4); with less its own pressure it is right for linear
-/// pressures, once it is corrected.
+/// What is added to the neighbours' pressures in a gradient, Pa: the particle's own, so that each
+/// pair has equal and opposite forces; less its own, so that pressures that are linear have their
+/// gradient, once it is corrected; or less the least pressure around, as in equation (4). At the
+/// surface what is missing has the opposite pressure, as in the pressure equation: with it the
+/// second is the first. (A particle that rises above others would be pushed up the more by the
+/// second.)
+template <int D>
+double base_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                     const MpsNeighbourhood<D>& near, std::size_t i) {
+  const double own = particles.pressure[i];
+  switch (model.settings().gradient) {
+    case MpsGradient::conservative:
+      return own;
+    case MpsGradient::corrected:
+      return near.surface[i] ? own : -own;
+    case MpsGradient::published:
+      break;
+  }
+  return -least_pressure(particles, near, i);
+}
+
+/// The gradient of the pressure, Pa/m: the sum of (p_j + base) w r/r^2 over the neighbours.
 template <int D>
 VecD<D> gradient_among_snow(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
-                            const AlignedVector<double>& pressure, std::size_t i, double base,
-                            bool conservative) {
+                            std::size_t i, double base, bool conservative) {
   VecD<D> sum = VecD<D>::Zero();
-  const double own = pressure[i];
+  const double own = particles.pressure[i];
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
     const bool dummy = particles.kind[j] == MpsKind::dummy_wall;
     if (dummy && !conservative) continue;
-    const double other = dummy ? own : pressure[j];
+    const double other = dummy ? own : particles.pressure[j];
     sum += (other + base) * double(near.slope[e]) * near.way(e);
   }
   return sum;
@@ -56,12 +63,12 @@ VecD<D> gradient_among_snow(const MpsParticles<D>& particles, const MpsNeighbour
 /// what moves into the wall; a wall never pulls.
 template <int D>
 VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                          const MpsNeighbourhood<D>& near, const PressureField& field,
-                          std::size_t i, double base, double dt) {
+                          const MpsNeighbourhood<D>& near, std::size_t i, double base, double dt) {
   VecD<D> sum = VecD<D>::Zero();
   const double per_velocity = model.settings().density / dt;
+  const bool corrected = model.settings().gradient == MpsGradient::corrected;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    const double level = field.value[m->of];
+    const double level = particles.pressure[m->of];
     double pressure = level;
     VecD<D> across = VecD<D>::Zero();  // the part of the way along the normals
     for (const int k : {0, 1}) {
@@ -71,13 +78,13 @@ VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& parti
           m->rise[k] * per_velocity * (particles.velocity[i] - wall.velocity).dot(wall.normal);
       across += m->way.dot(wall.normal) * wall.normal;
     }
-    if (model.settings().gradient == MpsGradient::corrected) {
-      sum += double(m->slope) * (field.at_wall(m->of, pressure) + base) * m->way;
+    pressure = std::max(0.0, pressure);
+    if (corrected) {
+      sum += double(m->slope) * (pressure + base) * m->way;
       continue;
     }
     // Along the wall the forces between a particle and an image are equal and opposite.
-    sum += double(m->slope) *
-           ((level + base) * m->way + (field.at_wall(m->of, pressure) - level) * across);
+    sum += double(m->slope) * ((level + base) * m->way + (pressure - level) * across);
   }
   return sum;
 }
@@ -91,75 +98,36 @@ void keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& veloc
   if (approach < slowest) velocity += (slowest - approach) * c.normal;
 }
 
-/// `base` of gradient_among_snow.
-template <int D>
-double base_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                     const MpsNeighbourhood<D>& near, const AlignedVector<double>& pressure,
-                     std::size_t i) {
-  switch (model.settings().gradient) {
-    case MpsGradient::conservative: return pressure[i];
-    case MpsGradient::corrected: return near.surface[i] ? pressure[i] : -pressure[i];
-    case MpsGradient::published: break;
-  }
-  return -least_pressure(particles, near, pressure, i);
-}
-
-/// Leaves in work.change what the field does to the velocities within dt.
-template <int D>
-void find_changes(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles,
-                  const PressureField& field, MpsWork<D>& work, AlignedVector<VecD<D>>* push) {
-  const MpsSettings& s = model.settings();
-  const MpsNeighbourhood<D>& near = work.near;
-  const bool conservative = s.gradient == MpsGradient::conservative;
-  const bool corrected = s.gradient == MpsGradient::corrected;
-  const double per_pressure = dt / s.density;
-  work.change.resize(particles.size());
-  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    work.change[i].setZero();
-    if (push) (*push)[i].setZero();
-    if (!particles.moves(i)) return;
-    const double base = base_pressure(model, particles, near, field.value, i);
-    VecD<D> gradient =
-        gradient_among_snow(particles, near, field.value, i, base, conservative) +
-        gradient_at_walls(model, particles, near, field, i, base, dt);
-    if (corrected && !near.surface[i]) gradient = near.correction[i] * gradient;
-    if (push) (*push)[i] = model.gradient() / s.density * gradient;
-    const VecD<D> before = particles.velocity[i];
-    VecD<D> velocity = before - per_pressure * model.gradient() * gradient;
-    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
-      keep_out(*c, s.spacing, dt, velocity);
-    work.change[i] = velocity - before;
-  });
-}
-
-template <int D>
-void add_changes(const MpsModel<D>& model, const MpsWork<D>& work, MpsParticles<D>& particles) {
-  for_each_particle(particles.size(), model.threads_for(particles.size()),
-                    [&](std::size_t i) { particles.velocity[i] += work.change[i]; });
-}
-
 }  // namespace
 
 template <int D>
 void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
                     MpsWork<D>& work) {
-  find_changes<D>(model, dt, particles, {particles.pressure, nullptr}, work, &particles.push);
-
-  add_changes(model, work, particles);
-}
-
-template <int D>
-void apply_correction(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
-                      MpsWork<D>& work) {
-  find_changes<D>(model, dt, particles, {work.pressure, &particles.pressure}, work, nullptr);
-  add_changes(model, work, particles);
-  if (!work.enclosed)
-    for (std::size_t i = 0; i < particles.size(); ++i) particles.pressure[i] += work.pressure[i];
+  const MpsSettings& s = model.settings();
+  const MpsNeighbourhood<D>& near = work.near;
+  const bool conservative = s.gradient == MpsGradient::conservative;
+  const bool corrected = s.gradient == MpsGradient::corrected;
+  work.change.resize(particles.size());
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    work.change[i].setZero();
+    particles.push[i].setZero();
+    if (!particles.moves(i)) return;
+    const double base = base_pressure(model, particles, near, i);
+    VecD<D> gradient = gradient_among_snow(particles, near, i, base, conservative) +
+                       gradient_at_walls(model, particles, near, i, base, dt);
+    if (corrected && !near.surface[i]) gradient = near.correction[i] * gradient;
+    particles.push[i] = model.gradient() / s.density * gradient;
+    const VecD<D> before = particles.velocity[i];
+    VecD<D> velocity = before - dt * particles.push[i];
+    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
+      keep_out(*c, s.spacing, dt, velocity);
+    work.change[i] = velocity - before;
+  });
+  for_each_particle(particles.size(), model.threads_for(particles.size()),
+                    [&](std::size_t i) { particles.velocity[i] += work.change[i]; });
 }
 
 template void apply_pressure(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
 template void apply_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
-template void apply_correction(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
-template void apply_correction(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
 
 }  // namespace snowshed

@@ -88,9 +88,11 @@ void Multigrid<D>::make_next() {
   level.child_first.push_back(std::uint32_t(keys_.size()));
 }
 
+/// Makes the rows of a level: visit(c, add_diagonal, add) adds what the unknowns in aggregate c
+/// have on the diagonal, and their couplings with those in other aggregates, or in c itself.
 template <int D>
-void Multigrid<D>::fill_first() {
-  Level& level = levels_.front();
+template <class Visit>
+void Multigrid<D>::fill(Level& level, const Visit& visit) {
   level.value.resize(level.size() * stencil);
   level.column.resize(level.size() * stencil);
   level.diagonal.resize(level.size());
@@ -100,55 +102,45 @@ void Multigrid<D>::fill_first() {
     std::fill_n(value, stencil, 0.0f);
     std::fill_n(column, stencil, -1);
     float own = 0;
-    for (std::uint32_t i = level.child_first[c]; i < level.child_first[c + 1]; ++i) {
-      if (diagonal_[i] == 0) continue;
-      own += diagonal_[i];
-      for (std::uint32_t e = lists_->begin(i); e < lists_->end(i); ++e) {
-        const std::uint32_t j = lists_->neighbour(e);
-        if (diagonal_[j] == 0) continue;
-        const std::uint32_t other = parent_[j];
-        if (other == c) {
-          own -= weight_[e];
-          continue;
-        }
-        const int slot = slot_of(level.at[c], level.at[other], level.period);
-        value[slot] += weight_[e];
-        column[slot] = std::int32_t(other);
-      }
-    }
+    visit(
+        c, [&](float diagonal) { own += diagonal; },
+        [&](std::uint32_t other, float coupling) {
+          if (other == c) {
+            own -= coupling;
+            return;
+          }
+          const int slot = slot_of(level.at[c], level.at[other], level.period);
+          value[slot] += coupling;
+          column[slot] = std::int32_t(other);
+        });
     level.diagonal[c] = own;
   });
 }
 
 template <int D>
-void Multigrid<D>::fill_next(const Level& below, Level& level) {
-  level.value.resize(level.size() * stencil);
-  level.column.resize(level.size() * stencil);
-  level.diagonal.resize(level.size());
-  for_each_row(level.size(), threads_, [&](std::size_t c) {
-    float* const value = &level.value[c * stencil];
-    std::int32_t* const column = &level.column[c * stencil];
-    std::fill_n(value, stencil, 0.0f);
-    std::fill_n(column, stencil, -1);
-    float own = 0;
-    for (std::uint32_t k = level.child_first[c]; k < level.child_first[c + 1]; ++k) {
-      const std::uint32_t i = level.child[k];
-      own += below.diagonal[i];
-      for (int s = 0; s < stencil; ++s) {
-        const std::int32_t j = below.column[i * stencil + std::size_t(s)];
-        if (j < 0) continue;
-        const float v = below.value[i * stencil + std::size_t(s)];
-        const std::uint32_t other = below.parent[std::size_t(j)];
-        if (other == c) {
-          own -= v;
-          continue;
-        }
-        const int slot = slot_of(level.at[c], level.at[other], level.period);
-        value[slot] += v;
-        column[slot] = std::int32_t(other);
+void Multigrid<D>::fill_first() {
+  Level& level = levels_.front();
+  fill(level, [&](std::size_t c, const auto& add_diagonal, const auto& add) {
+    for (std::uint32_t i = level.child_first[c]; i < level.child_first[c + 1]; ++i) {
+      if (diagonal_[i] == 0) continue;
+      add_diagonal(diagonal_[i]);
+      for (std::uint32_t e = lists_->begin(i); e < lists_->end(i); ++e) {
+        const std::uint32_t j = lists_->neighbour(e);
+        if (diagonal_[j] != 0) add(parent_[j], weight_[e]);
       }
     }
-    level.diagonal[c] = own;
+  });
+}
+
+template <int D>
+void Multigrid<D>::fill_next(const Level& below, Level& level) {
+  fill(level, [&](std::size_t c, const auto& add_diagonal, const auto& add) {
+    for (std::uint32_t k = level.child_first[c]; k < level.child_first[c + 1]; ++k) {
+      const std::size_t row = std::size_t(level.child[k]);
+      add_diagonal(below.diagonal[row]);
+      for (std::size_t s = row * stencil; s < (row + 1) * stencil; ++s)
+        if (below.column[s] >= 0) add(below.parent[std::size_t(below.column[s])], below.value[s]);
+    }
   });
 }
 

@@ -51,6 +51,8 @@ class Multigrid {
 
   void make_first(const CellOrder<D>& cells, std::int32_t period_cells);
   void make_next();
+  template <class Visit>
+  void fill(Level& level, const Visit& visit);
   void fill_first();
   void fill_next(const Level& below, Level& level);
   void factor_coarsest();

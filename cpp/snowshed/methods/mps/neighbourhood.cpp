@@ -85,10 +85,11 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
 
 /// The inverse of d/n0 sum of w r r^T/r^2 over neighbours and walls, with which gradients are right
 /// for linear fields however the neighbours lie (Randles and Libersky 1996,
-/// doi:10.1016/S0045-7825(96)01090-0; in MPS Khayyer and Gotoh 2011, doi:10.1016/j.jcp.2011.01.009).
-/// On a lattice it is the identity, and so it is where too few neighbours are left.
-/// `spread` is a first-order correction (ours) of weights by e.B e, e the direction of a pair, that
-/// makes the sum of w r r^T, and with it Laplacians of quadratic fields, that of a lattice.
+/// doi:10.1016/S0045-7825(96)01090-0; in MPS Khayyer and Gotoh 2011,
+/// doi:10.1016/j.jcp.2011.01.009). On a lattice it is the identity, and so it is where too few
+/// neighbours are left. `spread` is a first-order correction (ours) of weights by e.B e, e the
+/// direction of a pair, that makes the sum of w r r^T, and with it Laplacians of quadratic fields,
+/// that of a lattice.
 template <int D>
 void find_corrections(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int threads) {
   using Matrix = Eigen::Matrix<double, D, D>;

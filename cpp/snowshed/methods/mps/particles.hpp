@@ -23,7 +23,7 @@ struct MpsParticles {
   AlignedVector<double> density;    // number density over n0
   AlignedVector<double> rate;       // 1/s, of shear
   AlignedVector<double> viscosity;  // Pa s, apparent
-  AlignedVector<VecD<D>> push;      // m/s2, the gradient of the pressure over density, of the last step
+  AlignedVector<VecD<D>> push;  // m/s2, the gradient of the pressure over density, of the last step
   AlignedVector<MpsKind> kind;
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;

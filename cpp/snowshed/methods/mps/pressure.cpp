@@ -7,7 +7,6 @@
 
 namespace snowshed {
 namespace {
-static const bool SC=getenv("SC")?atof(getenv("SC")):1, AS=getenv("AS")?atof(getenv("AS")):1;
 
 /// The divergence of the velocity, 1/s. Behind a wall, images move along it as the particles do.
 /// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
@@ -22,8 +21,8 @@ double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
   };
   double sum = 0, flow = 0;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-    sum += part(near.way(e), double(near.slope[e]),
-                particles.velocity[near.lists.neighbour(e)] - own);
+    sum +=
+        part(near.way(e), double(near.slope[e]), particles.velocity[near.lists.neighbour(e)] - own);
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     VecD<D> along = particles.velocity[m->of] - own;
     for (const int k : {0, 1}) {
@@ -139,8 +138,7 @@ SolveReport solve(const MpsModel<D>& model, MpsWork<D>& work) {
                                precondition);
   };
   if (s.preconditioner == MpsPreconditioner::multigrid)
-    return by_conjugate_gradients(
-        [&](const double* r, double* z) { work.multigrid.apply(r, z); });
+    return by_conjugate_gradients([&](const double* r, double* z) { work.multigrid.apply(r, z); });
   if (s.preconditioner == MpsPreconditioner::jacobi)
     return by_conjugate_gradients([&](const double* r, double* z) {
       for_each_particle(n, threads, [&](std::size_t i) {
@@ -168,8 +166,8 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
     work.source[i] = 0;
     if (work.fixed[i]) return;
     double value = -source(model, dt, relaxation, particles, near, i) / model.laplacian();
-    if (AS && corrected) value -= model.settings().density * near.asymmetry[i].dot(particles.push[i]);
-    if (SC && near.surface[i]) value = std::max(value, 0.0);
+    if (corrected) value -= model.settings().density * near.asymmetry[i].dot(particles.push[i]);
+    if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
     work.source[i] = value;
   });
   if (work.enclosed) balance_sources(work, n);
@@ -177,33 +175,11 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
   for (std::size_t i = 0; i < n; ++i) square += work.source[i] * work.source[i];
   work.pressure_scale = std::sqrt(square);
   const SolveReport report = solve(model, work);
-  const double least =
-      work.enclosed
-          ? *std::min_element(work.pressure.begin(), work.pressure.begin() + std::ptrdiff_t(n))
-          : 0.0;
+  const double least = work.enclosed ? *std::min_element(work.pressure.begin(),
+                                                         work.pressure.begin() + std::ptrdiff_t(n))
+                                     : 0.0;
   for (std::size_t i = 0; i < n; ++i)
     particles.pressure[i] = work.fixed[i] ? 0.0 : std::max(0.0, work.pressure[i] - least);
-  return report;
-}
-
-template <int D>
-SolveReport correct_pressure(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles,
-                             MpsWork<D>& work) {
-  const std::size_t n = particles.size();
-  const double relaxation = compensation_time(model, dt, particles);
-  for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
-    work.pressure[i] = 0;
-    work.source[i] = 0;
-    if (work.fixed[i]) return;
-    work.source[i] =
-        -source(model, dt, relaxation, particles, work.near, i) / model.laplacian();
-    if (SC && work.near.surface[i]) work.source[i] = std::max(work.source[i], 0.0);
-  });
-  if (work.enclosed) balance_sources(work, n);
-  const SolveReport report = solve(model, work);
-  if (!work.enclosed)
-    for (std::size_t i = 0; i < n; ++i)
-      work.pressure[i] = std::max(work.pressure[i], -particles.pressure[i]);
   return report;
 }
 
@@ -211,9 +187,5 @@ template SolveReport solve_pressure(const MpsModel<2>&, double, MpsParticles<2>&
 template SolveReport solve_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
 template void prepare_pressure(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
 template void prepare_pressure(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
-template SolveReport correct_pressure(const MpsModel<2>&, double, const MpsParticles<2>&,
-                                      MpsWork<2>&);
-template SolveReport correct_pressure(const MpsModel<3>&, double, const MpsParticles<3>&,
-                                      MpsWork<3>&);
 
 }  // namespace snowshed

@@ -94,8 +94,7 @@ void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles,
   const Rheology& law = model.rheology;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     const double pressure = law.friction > 0 ? work.smooth_pressure[i] : 0.0;
-    particles.viscosity[i] =
-        law.apparent_viscosity(law.yield_stress(pressure), particles.rate[i]);
+    particles.viscosity[i] = law.apparent_viscosity(law.yield_stress(pressure), particles.rate[i]);
   });
 }
 

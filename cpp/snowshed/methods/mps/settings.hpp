@@ -9,8 +9,8 @@ enum class MpsRheology { newtonian, bingham, bingham_dilatant };
 enum class MpsYield { papanastasiou, bi_viscous };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
 enum class MpsSource { published, compensated };
-/// Pressure gradient: from the least neighbouring pressure, with equal and opposite forces, or right
-/// for linear pressures however the neighbours lie.
+/// Pressure gradient: from the least neighbouring pressure, with equal and opposite forces, or
+/// right for linear pressures however the neighbours lie.
 enum class MpsGradient { published, conservative, corrected };
 /// Whether viscosity acts before the pressure, or after it and then the pressure once more.
 enum class MpsSplitting { viscosity_first, pressure_first };
@@ -51,7 +51,7 @@ struct MpsSettings {
   double deposition_speed = 0.05;   // m/s
 
   MpsSource source = MpsSource::compensated;
-  double compensation = 0.02;  // share of the density's error that a step takes away
+  double compensation = 0.1;  // share of the density's error that a step takes away
   MpsGradient gradient = MpsGradient::corrected;
   MpsSplitting splitting = MpsSplitting::pressure_first;
   MpsSurface surface = MpsSurface::mirrored;
@@ -59,7 +59,7 @@ struct MpsSettings {
   MpsOrder order = MpsOrder::single_move;
   MpsSpacing spacing_law = MpsSpacing::shifting;
   MpsPreconditioner preconditioner = MpsPreconditioner::multigrid;
-  double pressure_tolerance = 1e-3;
+  double pressure_tolerance = 1e-4;
   double viscosity_tolerance = 1e-4;
   int max_iterations = 1000;
   int threads = 0;  // 0: all

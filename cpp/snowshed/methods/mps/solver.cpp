@@ -16,9 +16,10 @@ namespace {
 constexpr double longest_way = 0.5;
 constexpr int most_halvings = 20;
 
-/// Pairs repel each other with the sum of their pressures, as springs do: a disturbance of the
-/// lattice runs through it with about twice the root of p/rho. A step is at most this times the
-/// spacing over that root (the form and the number are ours: above 1 columns of water break up).
+/// With conservative gradients pairs repel each other with the sum of their pressures, as springs
+/// do: a disturbance of the lattice runs through it with about twice the root of p/rho. A step is
+/// at most this times the spacing over that root (the form and the number are ours: above 1 columns
+/// of water break up).
 constexpr double pressure_courant = 0.5;
 
 std::string in_words(double value) {
@@ -41,6 +42,8 @@ std::unique_ptr<MpsMethod> make_mps(MpsOptions options) {
   const MpsSettings& s = options.settings;
   if (options.period > 0 && options.period < 3 * s.radius * s.spacing)
     throw InputError("period", in_words(options.period) + " m is less than three radii");
+  if (s.order == MpsOrder::published && s.splitting == MpsSplitting::pressure_first)
+    throw InputError("splitting", "particles move before the pressure is known (order)");
   if (options.dimension == 2) return std::make_unique<MpsSolver<2>>(std::move(options));
   return std::make_unique<MpsSolver<3>>(std::move(options));
 }
@@ -67,6 +70,7 @@ double MpsSolver<D>::largest_speed(const MpsParticles<D>& particles) const {
 template <int D>
 double MpsSolver<D>::pressure_step(const MpsParticles<D>& particles) const {
   const MpsSettings& s = model_.settings();
+  if (s.gradient == MpsGradient::corrected) return HUGE_VAL;
   double highest = 0;
   for (const double p : particles.pressure) highest = std::max(highest, p);
   return highest > 0 ? pressure_courant * s.spacing * std::sqrt(s.density / highest) : HUGE_VAL;
@@ -120,12 +124,11 @@ void MpsSolver<D>::act_viscosity(double dt, MpsState<D>& next) {
   if (!model_.options.energy) return;
   work_.viscous = p.velocity;
   work_.viscous_change.resize(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i)
-    work_.viscous_change[i] = p.velocity[i] - before[i];
+  for (std::size_t i = 0; i < p.size(); ++i) work_.viscous_change[i] = p.velocity[i] - before[i];
 }
 
-/// The pressure balances what it can before viscosity acts, so that snow that does not yet yield
-/// stays where it is; then it takes away what viscosity compresses. Ours.
+/// The pressure balances what it can before viscosity acts, so that snow that does not yield stays
+/// where it is. What viscosity compresses, the pressure of the next step takes away. Ours.
 template <int D>
 void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
   const int most = model_.settings().max_iterations;
@@ -135,11 +138,6 @@ void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
   require_converged(next.solves.pressure, "pressure", most);
   apply_pressure(model_, dt, p, work_);
   act_viscosity(dt, next);
-  if (model_.is_nearly_inviscid(dt)) return;
-  const SolveReport second = correct_pressure(model_, dt, p, work_);
-  require_converged(second, "second pressure", most);
-  next.solves.pressure.iterations += second.iterations;
-  apply_correction(model_, dt, p, work_);
 }
 
 /// As published.

@@ -6,20 +6,27 @@
 
 namespace snowshed {
 namespace {
-static const double SH=getenv("SH")?atof(getenv("SH")):1, CL=getenv("CL")?atof(getenv("CL")):0, CR=getenv("CR")?atof(getenv("CR")):0;
 
-/// Particles nearer to each other than this, in l0, bounce; so much of their speed is left (both as
-/// is common in MPS codes).
-constexpr double collision_distance = 0.5, restitution = 0.2;
+/// Particles nearer to each other than this, in l0, bounce; so much of their speed is left.
+struct Collision {
+  double distance, restitution;
+};
+/// As is common in MPS codes.
+constexpr Collision common{0.5, 0.2};
+/// With shifting they only stop approaching each other, but earlier (ours, after the dynamic
+/// stabilisation of Tsuruta and others 2013, doi:10.1016/j.compfluid.2013.05.010): velocities that
+/// alternate between neighbours have no divergence and would otherwise stay.
+constexpr Collision inelastic{0.8, 0.0};
 
 /// Shift over the gradient of the concentration, in l0^2 (Lind and others 2012,
 /// doi:10.1016/j.jcp.2011.10.027, where the same is half the square of the smoothing length).
 constexpr double shift_factor = 0.05;
 
 template <int D>
-void collide(const MpsModel<D>& model, double distance_limit, double restitution, MpsParticles<D>& particles, MpsWork<D>& work) {
+void collide(const MpsModel<D>& model, const Collision& law, MpsParticles<D>& particles,
+             MpsWork<D>& work) {
   const MpsNeighbourhood<D>& near = work.near;
-  const double limit = distance_limit * model.settings().spacing;
+  const double limit = law.distance * model.settings().spacing;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
     if (!particles.moves(i)) return;
@@ -30,18 +37,20 @@ void collide(const MpsModel<D>& model, double distance_limit, double restitution
       const std::size_t j = near.lists.neighbour(e);
       const double approach = (particles.velocity[i] - particles.velocity[j]).dot(r) / distance;
       const double share = particles.moves(j) ? 0.5 : 1.0;
-      if (approach > 0) work.change[i] -= share * (1 + restitution) * approach / distance * r;
+      if (approach > 0) work.change[i] -= share * (1 + law.restitution) * approach / distance * r;
     }
   });
   for_each_particle(particles.size(), model.threads_for(particles.size()),
                     [&](std::size_t i) { particles.velocity[i] += work.change[i]; });
 }
 
-/// Towards where there are fewer particles; only within the snow.
+/// Towards where there are fewer particles; only within the snow. Also snow at rest is shifted, at
+/// the speed of a fall over l0: the corrected gradient does not keep its particles apart (ours).
 template <int D>
 void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsWork<D>& work) {
   const MpsNeighbourhood<D>& near = work.near;
   const double l0 = model.settings().spacing;
+  const double fall = std::sqrt(model.gravity.norm() * l0);
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
     if (!particles.moves(i) || near.below_surface[i]) return;
@@ -51,7 +60,7 @@ void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsW
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
       gradient += double(m->slope) * m->way;
     gradient *= model.gradient();
-    const double travelled = (particles.velocity[i].norm() + SH*std::sqrt(model.gravity.norm() * l0)) * dt / l0;
+    const double travelled = (particles.velocity[i].norm() + fall) * dt / l0;
     VecD<D> way = -shift_factor * std::min(1.0, 10 * travelled) * l0 * l0 * gradient;
     const double most = 0.05 * l0;
     if (way.norm() > most) way *= most / way.norm();
@@ -66,9 +75,15 @@ void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsW
 template <int D>
 void keep_spacing(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
                   MpsWork<D>& work) {
-  if (model.settings().spacing_law == MpsSpacing::collision) collide(model, collision_distance, restitution, particles, work);
-  if (model.settings().spacing_law == MpsSpacing::shifting && CL>0) collide(model, CL, CR, particles, work);
-  if (model.settings().spacing_law == MpsSpacing::shifting) shift(model, dt, particles, work);
+  switch (model.settings().spacing_law) {
+    case MpsSpacing::none:
+      return;
+    case MpsSpacing::collision:
+      return collide(model, common, particles, work);
+    case MpsSpacing::shifting:
+      collide(model, inelastic, particles, work);
+      shift(model, dt, particles, work);
+  }
 }
 
 template void keep_spacing(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);

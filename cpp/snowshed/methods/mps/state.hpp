@@ -44,11 +44,6 @@ struct MpsModel {
   Rheology rheology;
   int threads;
 
-  /// Whether viscosity hardly changes the velocities within a step.
-  bool is_nearly_inviscid(double dt) const {
-    const double l0 = settings().spacing;
-    return rheology.is_newtonian() && rheology.viscosity * dt < 0.1 * settings().density * l0 * l0;
-  }
   bool is_sticky(const WallContact<D>& c) const {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
   }
@@ -83,11 +78,11 @@ struct MpsNeighbourhood {
   NeighbourLists<D> lists;
   RowLists<WallContact<D>> contacts;
   WallImages<D> images;
-  AlignedVector<float> weight;          // w of each pair
-  AlignedVector<float> coupling;        // w of each pair and of the neighbour's images
-  AlignedVector<float> slope;           // w/r^2 of each pair, 1/m2
-  AlignedVector<double> density;        // number density
-  AlignedVector<std::uint8_t> surface;  // whether a particle lies at the free surface
+  AlignedVector<float> weight;                // w of each pair
+  AlignedVector<float> coupling;              // w of each pair and of the neighbour's images
+  AlignedVector<float> slope;                 // w/r^2 of each pair, 1/m2
+  AlignedVector<double> density;              // number density
+  AlignedVector<std::uint8_t> surface;        // whether a particle lies at the free surface
   AlignedVector<std::uint8_t> below_surface;  // or has such a neighbour
   AlignedVector<Eigen::Matrix<double, D, D>> correction;  // of gradients, see find_corrections
   AlignedVector<VecD<D>> asymmetry;                       // sum of w r, 0 at the surface, m
@@ -111,8 +106,8 @@ struct MpsWork {
   AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
   AlignedVector<Eigen::Matrix<double, D, D>> velocity_gradient;  // 1/s
-  AlignedVector<float> coupling;          // of velocities, of each pair
-  AlignedVector<double> smooth_pressure;  // Pa
+  AlignedVector<float> coupling;                                 // of velocities, of each pair
+  AlignedVector<double> smooth_pressure;                         // Pa
   AlignedVector<double> diagonal, source, pressure;
   AlignedVector<std::uint8_t> fixed;  // whose pressure is no unknown
   bool enclosed = false;              // whether there is no free surface

@@ -7,8 +7,6 @@
 
 namespace snowshed {
 namespace {
-static const double YTT=getenv("YT")?atof(getenv("YT")):1e-3;
-#define YT 3
 
 /// Nearer to a wall than this, in l0, its friction grows no further.
 constexpr double nearest_friction = 0.25;
@@ -42,10 +40,12 @@ double viscosity_between(const MpsModel<D>& model, const MpsParticles<D>& partic
 template <int D>
 using Velocities = AlignedVector<VecD<D>>;
 
-/// The apparent viscosity of a step is found when the velocities change by less than this, over
-/// what the equation is solved to.
-constexpr double yield_tolerance = YT;
-const double first_guess = getenv("FG")?atof(getenv("FG")):0.01;
+/// The apparent viscosities of a step are found when velocities change by less than this part of
+/// them from one iteration to the next.
+constexpr double yield_tolerance = 1e-3;
+/// Where these iterations begin: so far on the way from the velocities before the step to those
+/// that all but viscosity makes.
+constexpr double first_guess = 0.01;
 
 }  // namespace
 
@@ -53,8 +53,8 @@ const double first_guess = getenv("FG")?atof(getenv("FG")):0.01;
 /// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
 /// obstacle is not sticky, it is at most the obstacle's own friction.
 template <int D>
-double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, const MpsWork<D>& work,
-                 std::size_t i, const WallContact<D>& c) {
+double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, std::size_t i,
+                 const WallContact<D>& c) {
   const MpsSettings& s = model.settings();
   const double height = std::max(c.distance, nearest_friction * s.spacing);
   const double share = wall_share(c.distance / s.spacing, model.second_layer);
@@ -77,9 +77,9 @@ namespace {
 template <int D>
 double spread_factor(const MpsNeighbourhood<D>& near, std::size_t i, std::uint32_t entry) {
   const VecD<D> way = near.way(entry);
-  const double factor =
-      0.5 * way.dot((near.spread[i] + near.spread[near.lists.neighbour(entry)]) * way) /
-      way.squaredNorm();
+  const double factor = 0.5 *
+                        way.dot((near.spread[i] + near.spread[near.lists.neighbour(entry)]) * way) /
+                        way.squaredNorm();
   return std::clamp(factor, 0.5, 2.0);
 }
 
@@ -104,8 +104,8 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
     const bool moves = particles.moves(i);
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-      const double viscosity = newtonian ? model.rheology.viscosity
-                                         : viscosity_between(model, particles, work, i, e);
+      const double viscosity =
+          newtonian ? model.rheology.viscosity : viscosity_between(model, particles, work, i, e);
       double weight = double(near.weight[e]);
       if (corrected) weight *= spread_factor(near, i, e);
       work.coupling[e] = float(factor * viscosity * weight);
@@ -116,7 +116,7 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
     if (moves)
       for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
         double& drag = work.drag[near.contacts.place(c)];
-        drag = wall_drag(model, particles, work, i, *c);
+        drag = wall_drag(model, particles, i, *c);
         const Matrix along = dt * drag * (Matrix::Identity() - c->normal * c->normal.transpose());
         block += along;
         right += along * c->velocity;
@@ -151,13 +151,13 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
                              precondition);
 }
 
-/// What residuals and changes of all velocities are compared with: what gravity adds in a step, m/s.
+/// What residuals and changes of all velocities are compared with: what gravity adds in a step,
+/// m/s.
 template <int D>
 double velocity_scale(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles) {
   double speed2 = 0;
   for (const VecD<D>& u : particles.velocity) speed2 += u.squaredNorm();
-  return std::sqrt(double(particles.size())) * model.gravity.norm() * dt +
-         1e-3 * std::sqrt(speed2);
+  return std::sqrt(double(particles.size())) * model.gravity.norm() * dt + 1e-3 * std::sqrt(speed2);
 }
 
 template <int D>
@@ -204,17 +204,17 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
     report = {report.iterations + one.iterations, one.residual, one.converged};
     if (!one.converged || newtonian) break;
     if (distance<D>(particles.velocity, last) <=
-        YTT * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale))
+        yield_tolerance * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale))
       break;
   }
   find_viscosities(model, particles, work);
   return report;
 }
 
-template double wall_drag(const MpsModel<2>&, const MpsParticles<2>&, const MpsWork<2>&,
-                          std::size_t, const WallContact<2>&);
-template double wall_drag(const MpsModel<3>&, const MpsParticles<3>&, const MpsWork<3>&,
-                          std::size_t, const WallContact<3>&);
+template double wall_drag(const MpsModel<2>&, const MpsParticles<2>&, std::size_t,
+                          const WallContact<2>&);
+template double wall_drag(const MpsModel<3>&, const MpsParticles<3>&, std::size_t,
+                          const WallContact<3>&);
 template void add_gravity(const MpsModel<2>&, double, MpsParticles<2>&);
 template void add_gravity(const MpsModel<3>&, double, MpsParticles<3>&);
 template SolveReport apply_viscosity(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
