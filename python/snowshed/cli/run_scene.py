@@ -21,7 +21,7 @@ def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> 
     run = RUNS.get(str(ready.data.get(NAME_KEY)), _run_events)
     slow = _core.slow_kernels_note()
     if slow and not quiet:
-        click.echo(f"note: {slow}", err=True)
+        say(f"note: {slow}", err=True)
     try:
         run(ready, folder, resume, quiet)
     except Interrupted as interrupted:

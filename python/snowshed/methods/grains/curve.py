@@ -134,6 +134,19 @@ def stage_stress(curve: LoadingCurve, kind: str) -> Floats:
     return -stress if kind == "stretch" else stress
 
 
+def carried_stress(curve: LoadingCurve, kind: str) -> Floats:
+    """Return the stress that a sample carries from plate to plate, Pa.
+
+    Between plates it is the smaller one of the two: a plate that sets out fast knocks on the
+    grains next to it, which the sample's strength has no part in.
+    """
+    stress = stage_stress(curve, kind)
+    if kind not in ("compress", "stretch"):
+        return stress
+    other = curve["bottom_stress_pa"]
+    return np.asarray(np.minimum(stress, -other if kind == "stretch" else other))
+
+
 def stage_strain(curve: LoadingCurve, kind: str) -> Floats:
     """Return the strain of a stage from its beginning, positive."""
     strain = curve["shear_strain" if kind == "shear" else "axial_strain"]

@@ -15,7 +15,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed.io.arrays import Floats
-from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
+from snowshed.methods.grains.curve import LoadingCurve, carried_stress, stage_strain, stage_stress
 
 BIN = 0.01  # of strain, over which stresses are averaged before hardening is looked for
 DOUBLED = math.log(2.0)  # the rise by which hardening counts as such
@@ -45,7 +45,8 @@ class Phases:
     hardening_rate
         Its growth: stress ~ exp(rate * strain).
     strength
-        Largest stress, Pa: in compression that below a strain of 5 %.
+        Largest stress that the sample carries from plate to plate, Pa: in compression that below a
+        strain of 5 %.
     """
 
     elastic_limit: Optional[float]
@@ -86,7 +87,8 @@ def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
     hardens = kind in ("compress", "isotropic")
     onset, rate = _hardening(strain, stress, limit or 0.0) if hardens else (None, None)
     below = strain <= (PEAK_BELOW if hardens else math.inf)
-    return Phases(limit, modulus, linearity, onset, rate, float(stress[below].max()))
+    strength = float(carried_stress(curve, kind)[below].max())
+    return Phases(limit, modulus, linearity, onset, rate, strength)
 
 
 def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Optional[float]:

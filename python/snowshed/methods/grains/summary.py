@@ -43,7 +43,8 @@ class GrainsSummary:
     elastic_limit_strain, tangent_modulus_pa, linearity
         Of the first stage: strain before the first broken bond, slope up to there and its R2.
     strength_pa
-        Largest stress of the first stage, in compression below a strain of 5 %.
+        Largest stress that the sample carries from plate to plate in the first stage, in
+        compression below a strain of 5 %.
     mean_stress_5_10_pa, mean_stress_10_15_pa, mean_stress_25_30_pa
         Its mean stress between two strains in percent.
     hardening_onset_strain, hardening_rate
