@@ -270,7 +270,7 @@ TEST(MpsSolver, BinghamSlumpComesToRest) {
   run_until(*mps, 2);
   const double scale = 2 * 100 / (1000 * 9.81), area = 0.3 * 0.2;
   const double front = std::pow(1.5 * area / std::sqrt(scale), 2.0 / 3);
-  const double width = 0.04, in_column = 0.02 * 0.02 / width;
+  const double width = 0.08, in_column = 0.02 * 0.02 / width;  // four particles wide
   std::vector<double> height(200);
   for (const Vec3& x : mps->state().positions) height.at(std::size_t(x.x() / width)) += in_column;
   double error = 0, square = 0;
