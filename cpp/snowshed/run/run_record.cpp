@@ -167,7 +167,8 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   j["wall_s"] = wall;
   if (const auto* slide = dynamic_cast<const SlideMethod*>(&method))
     j["mass_balance"] = balance_of(*slide);
-  if (const auto* mps = dynamic_cast<const MpsMethod*>(&method)) j["equations"] = equations_of(*mps);
+  if (const auto* mps = dynamic_cast<const MpsMethod*>(&method))
+    j["equations"] = equations_of(*mps);
   j["finished_events"] = ordered_json::array();
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
   if (!tables.empty()) j["tables"] = tables;

@@ -44,6 +44,7 @@ void MpsSolver<D>::append(MpsState<D>& state, const ParticleBatch& batch) const 
     p.velocity[i] = section<D>(batch.velocity);
     p.pressure[i] = p.rate[i] = 0;
     p.push[i].setZero();
+    p.shear[i].setZero();
     p.mass[i] = batch.mass_of(k);
     p.density[i] = 1;
     p.viscosity[i] = model_.rheology.viscosity;

@@ -106,6 +106,10 @@ std::size_t MpsSolver<D>::bytes() const {
   count(work_.coupling);
   count(work_.block);
   count(work_.inverse_block);
+  count(work_.velocity_gradient);
+  count(work_.near.correction);
+  count(work_.near.spread);
+  count(work_.near.asymmetry);
   for (const auto* vector : {&work_.diagonal, &work_.source, &work_.pressure, &work_.cg.r,
                              &work_.cg.z, &work_.cg.p, &work_.cg.q})
     count(*vector);

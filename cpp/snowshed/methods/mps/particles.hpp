@@ -24,6 +24,7 @@ struct MpsParticles {
   AlignedVector<double> rate;       // 1/s, of shear
   AlignedVector<double> viscosity;  // Pa s, apparent
   AlignedVector<VecD<D>> push;  // m/s2, the gradient of the pressure over density, of the last step
+  AlignedVector<VecD<D>> shear;  // m/s2, by viscosity, in the last step
   AlignedVector<MpsKind> kind;
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;
@@ -52,6 +53,7 @@ struct MpsParticles {
     visit("rate", self.rate, other.rate);
     visit("viscosity", self.viscosity, other.viscosity);
     visit("push", self.push, other.push);
+    visit("shear", self.shear, other.shear);
     visit("kind", self.kind, other.kind);
     visit("id", self.id, other.id);
     visit("event", self.event, other.event);

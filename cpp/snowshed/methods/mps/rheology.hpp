@@ -36,6 +36,9 @@ struct Rheology {
 
   bool is_newtonian() const { return cohesion == 0 && friction == 0 && dilatant_rate == HUGE_VAL; }
 
+  /// Whether the yield stress is reached, at a shear rate; fluids without one always flow.
+  bool flows(double rate) const { return is_newtonian() || growth * rate > 2; }
+
   /// Pa; `pressure` in Pa.
   double yield_stress(double pressure) const {
     return cohesion + std::max(pressure, 0.0) * friction;

@@ -22,6 +22,11 @@ constexpr int most_halvings = 20;
 /// of water break up).
 constexpr double pressure_courant = 0.5;
 
+/// The share of the last step's viscous force that the pressure of flowing snow expects. Without it
+/// stiff fluids are compressed more, since viscosity acts last; with 0.9 the pressure of a column
+/// of 1e4 Pa s at rest was 1.4 % too low (ours).
+constexpr double expected_shear = 0.5;
+
 std::string in_words(double value) {
   std::ostringstream text;
   text << value;
@@ -121,6 +126,7 @@ void MpsSolver<D>::act_viscosity(double dt, MpsState<D>& next) {
   smooth_pressures(model_, p, work_);
   next.solves.viscosity = apply_viscosity(model_, dt, p, work_);
   require_converged(next.solves.viscosity, "viscous", model_.settings().max_iterations);
+  for (std::size_t i = 0; i < p.size(); ++i) p.shear[i] = (p.velocity[i] - before[i]) / dt;
   if (!model_.options.energy) return;
   work_.viscous = p.velocity;
   work_.viscous_change.resize(p.size());
@@ -134,9 +140,16 @@ void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
   const int most = model_.settings().max_iterations;
   MpsParticles<D>& p = next.particles;
   prepare_pressure(model_, p, work_);
+  const auto add_shear = [&](double factor) {
+    for_each_particle(p.size(), model_.threads_for(p.size()), [&](std::size_t i) {
+      if (p.moves(i) && model_.rheology.flows(p.rate[i])) p.velocity[i] += factor * dt * p.shear[i];
+    });
+  };
+  add_shear(expected_shear);
   next.solves.pressure = solve_pressure(model_, dt, p, work_);
   require_converged(next.solves.pressure, "pressure", most);
   apply_pressure(model_, dt, p, work_);
+  add_shear(-expected_shear);
   act_viscosity(dt, next);
 }
 

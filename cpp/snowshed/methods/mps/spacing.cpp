@@ -14,7 +14,7 @@ struct Collision {
 /// As is common in MPS codes.
 constexpr Collision common{0.5, 0.2};
 /// With shifting they only stop approaching each other, but earlier (ours, after the dynamic
-/// stabilisation of Tsuruta and others 2013, doi:10.1016/j.compfluid.2013.05.010): velocities that
+/// stabilisation of Tsuruta and others 2013, Computers & Fluids 82): velocities that
 /// alternate between neighbours have no divergence and would otherwise stay.
 constexpr Collision inelastic{0.8, 0.0};
 

@@ -37,7 +37,7 @@ TEST(MpsRheology, IsContinuousWhereItBecomesDilatant) {
               law.apparent_viscosity(yield, rate * (1 + 1e-9)), 1e-6);
   EXPECT_NEAR(law.apparent_viscosity(yield, 4 * rate) * 4,
               law.apparent_viscosity(yield, rate) * std::pow(4, s.dilatant_exponent), 1e-6);
-  EXPECT_NEAR(law.apparent_viscosity(yield, 1e-12), s.viscosity + s.stress_growth * yield, 1e-6);
+  EXPECT_NEAR(law.apparent_viscosity(yield, 1e-18), s.viscosity + s.stress_growth * yield, 1e-6);
 }
 
 /// The slope of the pressure over height, between two spacings from the bottom and the top, over
@@ -149,6 +149,7 @@ TEST_F(MpsCheckpoint, SameBitsOnAnyThreadsAndAfterResuming) {
     MpsOptions o = tank(2, 1.0, 0.01);
     o.settings.threads = threads;
     o.settings.rheology = MpsRheology::bingham_dilatant;
+    o.settings.yield_iterations = 2;  // enough for the same bits
     auto mps = make_mps(o);
     mps->add(block_of(o, Vec3::Zero(), {0.5, 0, 0.5}));
     for (int k = 0; k < 6; ++k) {
@@ -253,7 +254,7 @@ FlowErrors bingham_poiseuille(int across, double length) {
 
 TEST(MpsSolver, BinghamPoiseuilleFlowConverges) {
   const FlowErrors coarse = bingham_poiseuille(10, 0.2), fine = bingham_poiseuille(20, 0.1);
-  EXPECT_LT(std::abs(fine.plug), 0.035);
+  EXPECT_LT(std::abs(fine.plug), 0.03);
   EXPECT_LT(std::abs(fine.discharge), 0.03);
   EXPECT_GT(std::log2(std::abs(coarse.plug / fine.plug)), 1.5);  // the order
 }
@@ -270,7 +271,7 @@ TEST(MpsSolver, BinghamSlumpComesToRest) {
   run_until(*mps, 2);
   const double scale = 2 * 100 / (1000 * 9.81), area = 0.3 * 0.2;
   const double front = std::pow(1.5 * area / std::sqrt(scale), 2.0 / 3);
-  const double width = 0.04, in_column = 0.02 * 0.02 / width;
+  const double width = 0.08, in_column = 0.02 * 0.02 / width;  // four particles wide
   std::vector<double> height(200);
   for (const Vec3& x : mps->state().positions) height.at(std::size_t(x.x() / width)) += in_column;
   double error = 0, square = 0;
