@@ -91,13 +91,13 @@ def make_project(folder: Path, particles: int, python: str) -> None:
     raster = Raster(heights, east=0.0, north=0.0, cell=CELL)
     write_ascii_grid(folder / "Inputs" / "dem.asc", raster)
     place = [str(20.0), str(20.0 + side), str(THICKNESS)]
-    subprocess.run([python, "-c", AVAFRAME, str(folder), "0", *place], check=True)
+    subprocess.run([python, "-I", "-c", AVAFRAME, str(folder), "0", *place], check=True)
 
 
 def avaframe_seconds(folder: Path, steps: int, python: str) -> tuple[float, float]:
     """Return AvaFrame's time for a particle step, s: of its loop, and of the steps alone."""
     subprocess.run(
-        [python, "-c", AVAFRAME, str(folder), str(steps)],
+        [python, "-I", "-c", AVAFRAME, str(folder), str(steps)],
         check=True,
         capture_output=True,
         cwd=folder,

@@ -16,7 +16,16 @@ TEST(Parallel, EveryIterationRunsOnce) {
       std::vector<int> runs(std::size_t(n), 0);
       parallel_for(n, threads, 16, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
       parallel_for_each(n, threads, [&](std::ptrdiff_t i) { ++runs[std::size_t(i)]; });
-      EXPECT_EQ(runs, std::vector<int>(std::size_t(n), 2)) << n << " on " << threads;
+      const auto run = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        for (std::ptrdiff_t i = begin; i < end; ++i) ++runs[std::size_t(i)];
+      };
+      parallel_pieces(n, threads, 16, run);
+      const std::ptrdiff_t first = n / 3;
+      parallel_pieces(threads, PieceLoop{first, 5, run},
+                      PieceLoop{n - first, 16, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                                  run(first + begin, first + end);
+                                }});
+      EXPECT_EQ(runs, std::vector<int>(std::size_t(n), 4)) << n << " on " << threads;
     }
 }
 

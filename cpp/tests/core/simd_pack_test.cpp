@@ -38,6 +38,16 @@ TYPED_TEST(LanesOf, StoresOfTailsLeaveTheRestAlone) {
   }
 }
 
+TEST(Lanes, TransposesEachBlockOfFewerPacksThanLanes) {
+  typedef double Wide __attribute__((vector_size(8 * sizeof(double))));
+  Wide rows[4];
+  for (int i = 0; i < 4; ++i)
+    for (int l = 0; l < 8; ++l) rows[i][l] = 10 * i + l;
+  transpose(rows);
+  for (int i = 0; i < 4; ++i)
+    for (int l = 0; l < 8; ++l) EXPECT_EQ(rows[i][l], 10 * (l % 4) + l / 4 * 4 + i);
+}
+
 TYPED_TEST(LanesOf, SelectsMinimaMaximaAndRoots) {
   using T = TypeParam;
   using V = SimdPack<T>;

@@ -130,9 +130,8 @@ void sort_by_cell(SlideState& state, SlideWork& work) {
       [&](const char*, auto& array) { reorder(order, scratch, work.threads, array); });
   for (std::size_t e = 0; e < order.size(); ++e) work.new_places[order[e]] = std::uint32_t(e);
   for (auto* ends : {&state.bonds.first, &state.bonds.second})
-    parallel_for_each(std::ptrdiff_t(ends->size()), work.threads, [&](std::ptrdiff_t b) {
-      (*ends)[b] = work.new_places[(*ends)[b]];
-    });
+    parallel_for_each(std::ptrdiff_t(ends->size()), work.threads,
+                      [&](std::ptrdiff_t b) { (*ends)[b] = work.new_places[(*ends)[b]]; });
 }
 
 }  // namespace snowshed

@@ -108,7 +108,8 @@ struct SlideKernels {
   /// neighbours will read of them. The odd rows follow when all even ones are done; they turn the
   /// sums into thickness and velocity, and raise the peaks.
   void (*sum_on_nodes)(const SlideView&, int row);
-  /// Default mode: raises the peak speed along a row of nodes, when all sums are done.
+  /// Default mode: raises the peak speed along a row of nodes, from two rows before the rectangle
+  /// to two rows after it, when all sums are done.
   void (*raise_mean_speed)(const SlideView&, int row);
   /// Finds the thickness of the snow at the particles.
   void (*thickness)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);

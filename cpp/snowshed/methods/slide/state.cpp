@@ -239,9 +239,10 @@ void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork&
                     });
   if (view.sums) {
     view.fading_mass = share_of_fading * lightest(p);
-    parallel_pieces(work.cells.rows(), work.threads, 1, [&](std::ptrdiff_t row, std::ptrdiff_t) {
-      slide_kernels().raise_mean_speed(view, int(row));
-    });
+    parallel_pieces(work.cells.rows() + 4, work.threads, 1,
+                    [&](std::ptrdiff_t row, std::ptrdiff_t) {
+                      slide_kernels().raise_mean_speed(view, int(row) - 2);
+                    });
   }
   for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     slide_kernels().thickness(view, begin, end);

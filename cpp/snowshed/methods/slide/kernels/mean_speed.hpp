@@ -5,8 +5,10 @@
 // On another grid they lie elsewhere. The speed that is kept is therefore a mean over the nodes
 // around, with binomial weights (1 4 6 4 1)/16 along both axes: nearly a Gaussian as wide as a
 // cell, which has no direction. It fades where the mean mass m around falls below a share of a
-// particle's, m_0: with the mean momentum q it is |q| m / (m^2 + m_0^2). A node without snow has no
-// speed.
+// particle's, m_0: with the mean momentum q it is |q| m / (m^2 + m_0^2). A node beside the snow has
+// such a fading speed, too. Where only nodes with snow of their own had one, which of them are at
+// the rim depended on the direction of the grid: a turned slide changed its peak speeds by up to
+// 1.2 (L1) and 1.8 (L2) times the error of interpolation, more than the case allows.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/node_sums.hpp"
@@ -19,8 +21,10 @@ SNOWSHED_INLINE Quad binomial_mean(const Quad& a, const Quad& b, const Quad& c, 
   return 0.0625 * (a + e) + 0.25 * (b + d) + 0.375 * c;
 }
 
-/// Raises the peak speed along a row of nodes.
+/// Raises the peak speed along a row of nodes, which may lie up to two rows beyond the rectangle.
 SNOWSHED_INLINE void raise_mean_speed(const SlideView& s, int row) {
+  const int terrain_row = s.flow_row + row;
+  if (terrain_row < 0 || terrain_row >= s.rows) return;
   const auto sums_at = [&](int column, int j) SNOWSHED_INLINE_LAMBDA {
     if (j < 1 || j >= s.cell_rows) return Quad{};  // the first row holds no snow
     return load_row(s.sums + 4 * (std::ptrdiff_t(j) * s.flow_columns + column));
@@ -31,20 +35,21 @@ SNOWSHED_INLINE void raise_mean_speed(const SlideView& s, int row) {
                          sums_at(column, row + 1), sums_at(column, row + 2));
   };
   const double least_square_mass = s.fading_mass * s.fading_mass;
-  const std::ptrdiff_t first = std::ptrdiff_t(s.flow_row + row) * s.columns + s.flow_column;
-  Quad a{}, b{}, c = mean_along_column(0), d = mean_along_column(1);
-  for (int column = 0; column < s.flow_columns; ++column) {
+  Quad a{}, b{}, c{}, d = mean_along_column(0);
+  for (int column = -1; column < s.flow_columns + 2; ++column) {
     const Quad e = mean_along_column(column + 2);
     const Quad mean = binomial_mean(a, b, c, d, e);
     a = b;
     b = c;
     c = d;
     d = e;
-    if (!(sums_at(column, row)[0] > 0)) continue;  // no snow, no speed
+    const int terrain_column = s.flow_column + column;
     const double mass = mean[0];
+    if (!(mass > 0) || terrain_column < 0 || terrain_column >= s.columns) continue;
     const double per_mass = mass / (mass * mass + least_square_mass);
     const double square = mean[1] * mean[1] + mean[2] * mean[2] + mean[3] * mean[3];
-    raise_speed(s, first + column, square * per_mass * per_mass);
+    raise_speed(s, std::ptrdiff_t(terrain_row) * s.columns + terrain_column,
+                square * per_mass * per_mass);
   }
 }
 
