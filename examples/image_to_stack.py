@@ -4,7 +4,7 @@
 
 The image is synthetic (318 kg/m3, voxels of 50 um), since none comes with snowshed: give
 ``segment`` your own instead. COARSER is how many voxels make a sphere, DX the grid of the scene in
-m. A minute or two on two cores. Draws ``image_to_stack.png`` into the folder.
+m. Half a minute on two free cores. Draws ``image_to_stack.png`` into the folder.
 """
 
 import json

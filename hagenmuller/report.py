@@ -55,7 +55,7 @@ def write_report(found: Reproduction) -> list[Judged]:
         claims = judge(PAPER, tests), judge(ENGINE, tests)
         tables = [
             (f"Stage {name}", stress_grid(compare_variants(table)))
-            for name, table in zip(reversed(MAKERS), tests.tables)
+            for name, table in zip(reversed(list(MAKERS)), tests.tables)
             if BASE in set(table["variant"])
         ]
         samples = [("Samples", sample_grid(tests.tables))]

@@ -60,7 +60,7 @@ class Reproduction:
         """
         for stage in self.stages.values():
             stage.state()  # enters its study, also if another stage was asked for
-        tables = [self.comparisons[name].table(self.runs) for name in reversed(MAKERS)]
+        tables = [self.comparisons[name].table(self.runs) for name in reversed(list(MAKERS))]
         if not any(BASE in set(table["variant"]) for table in tables):
             raise InputError("no test of the base is computed yet")
         return tables

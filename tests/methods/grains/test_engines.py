@@ -100,7 +100,7 @@ def check_agreement(labels, press, folder, press_with):
     )
     assert apart < AGREE
     theirs_broke = other.time[np.argmax(other.bonds <= other.bonds[0] - TENTH)]
-    assert theirs_broke == pytest.approx(one.time[tenth], rel=AGREE)
+    assert theirs_broke == pytest.approx(one.time[tenth], rel=0.05)
     scatter = np.hypot(peaks.std(ddof=1), their_peaks.std(ddof=1))
     assert abs(their_peaks.mean() - peaks.mean()) < 3 * scatter
     assert other.bonds[-1] == pytest.approx(one.bonds[-1], abs=0.03 * one.bonds[0])

@@ -109,7 +109,8 @@ def compaction_strain(ice_fraction: float) -> float:
     >>> compaction_strain(0.35), compaction_strain(0.23)
     (0.12, 0.233)
     """
-    return max(round(1 - (ice_fraction / COMPACTED) ** (1 / 3), 3), LEAST_COMPACTION)
+    strain = 1 - (ice_fraction / COMPACTED) ** (1 / 3)
+    return max(round(float(strain), 3), LEAST_COMPACTION)
 
 
 def read_curves(comparison: Comparison, runs: Path) -> Curves:
