@@ -7,8 +7,8 @@
 #include <string>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/geometry/readers/text_scanner.hpp"
+#include "snowshed/io/file_bytes.hpp"
 
 namespace snowshed {
 namespace {

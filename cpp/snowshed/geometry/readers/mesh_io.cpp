@@ -5,8 +5,8 @@
 #include <string>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/geometry/readers/mesh_formats.hpp"
+#include "snowshed/io/file_bytes.hpp"
 
 namespace snowshed {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "snowshed/core/child_process.hpp"
 #include "snowshed/core/errors.hpp"
-#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/geometry/readers/vdb_message.hpp"
 #include "snowshed/geometry/rebuild_distance.hpp"
+#include "snowshed/io/file_bytes.hpp"
 
 namespace snowshed {
 namespace {
