@@ -123,7 +123,8 @@ class Film:
         self.share = reader.share
         self.whole = reader.whole
         self.quantities = tuple(
-            FilmQuantity(*map(_shown, texts), step) for *texts, step in reader.quantities
+            FilmQuantity(_shown(name), _shown(unit), _shown(meaning), step)
+            for name, unit, meaning, step in reader.quantities
         )
         self.frames = tuple(FrameFacts(*one) for one in reader.frames)
 
