@@ -58,7 +58,7 @@ double pressure_slope(const Method& method, const MpsOptions& o, double height) 
   return -(n * zp - z * p) / (n * zz - z * z) / (o.settings.density * 9.81);
 }
 
-void run_until(Method& method, double time) {
+void flow_until(Method& method, double time) {
   while (method.time() < time) method.step();
 }
 
@@ -81,7 +81,7 @@ TEST(MpsSolver, ColumnsOfWaterStayAtRest) {
     o.settings.viscosity = 1e-3;
     const auto mps = make_mps(o);
     mps->add(block_of(o, Vec3::Zero(), {width, width, 0.2}));
-    run_until(*mps, 1);
+    flow_until(*mps, 1);
     EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01) << dimension;
     EXPECT_LT(mps->motion(0).rms_speed, 0.02 * std::sqrt(9.81 * 0.2)) << dimension;
     EXPECT_LT(mps->report().density_error, 0.02) << dimension;
@@ -95,7 +95,7 @@ TEST(MpsSolver, StiffSnowPressesOnTheFloor) {
   o.settings.cohesion = 100;
   const auto mps = make_mps(o);
   mps->add(block_of(o, Vec3::Zero(), {0.1, 0.1, 0.2}));
-  run_until(*mps, 0.1);
+  flow_until(*mps, 0.1);
   EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01);
   EXPECT_LT(mps->motion(0).rms_speed, 1e-6);
 }
@@ -199,7 +199,7 @@ TEST(MpsSolver, SlabOnAnInclineAcceleratesByCoulombsFriction) {
     MpsOptions o = incline(degrees, 0, 0.01);
     const auto mps = make_mps(o);
     mps->add(block_of(o, Vec3::Zero(), {o.period, 0, 0.1}));
-    run_until(*mps, 0.3);
+    flow_until(*mps, 0.3);
     const double expected = frictional_acceleration(o) * mps->time();
     EXPECT_NEAR(mean_speed(*mps), expected, 0.02 * expected) << degrees;
   }
@@ -214,7 +214,7 @@ TEST(MpsSolver, CohesiveSlabStopsOrSlides) {
     const double acceleration = frictional_acceleration(o) - 100 / (200 * thickness);
     if (acceleration < 0) slab.velocity = {0.1, 0, 0};
     mps->add({slab});
-    run_until(*mps, 0.4);
+    flow_until(*mps, 0.4);
     if (acceleration < 0)
       EXPECT_LT(std::abs(mean_speed(*mps)), 1e-3);
     else
@@ -234,7 +234,7 @@ FlowErrors bingham_poiseuille(int across, double length) {
   o.gravity = {force / o.settings.density, 0, 0};
   const auto mps = make_mps(o);
   mps->add(block_of(o, Vec3::Zero(), {length, 0, 2 * half_gap}));
-  run_until(*mps, 1.5);
+  flow_until(*mps, 1.5);
   const double plug = yield / force;
   const double expected = force * (half_gap - plug) * (half_gap - plug) / 2;
   const double ratio = plug / half_gap;
@@ -268,7 +268,7 @@ TEST(MpsSolver, BinghamSlumpComesToRest) {
   o.settings.viscosity = 5;
   const auto mps = make_mps(o);
   mps->add(block_of(o, Vec3::Zero(), {0.3, 0, 0.2}));
-  run_until(*mps, 2);
+  flow_until(*mps, 2);
   const double scale = 2 * 100 / (1000 * 9.81), area = 0.3 * 0.2;
   const double front = std::pow(1.5 * area / std::sqrt(scale), 2.0 / 3);
   const double width = 0.08, in_column = 0.02 * 0.02 / width;  // four particles wide
@@ -298,7 +298,7 @@ TEST(MpsSolver, DamBreakKeepsItsEnergy) {
     return sum;
   };
   const double before = energy();
-  run_until(*mps, 3 * std::sqrt(width / (2 * 9.81)));
+  flow_until(*mps, 3 * std::sqrt(width / (2 * 9.81)));
   EXPECT_NEAR(energy(), before, 0.04 * before);
 }
 
