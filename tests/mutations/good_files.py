@@ -18,7 +18,6 @@ from voxel_files import VOXELS, save_slices
 from snowshed import Scene, _core, run_events
 from snowshed.io.raster import write_ascii_grid
 from snowshed.methods.peak_maps import PeakMaps
-from snowshed.methods.slide_frames import FrameSeries
 from snowshed.run.grains import run_grains
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
@@ -218,14 +217,6 @@ def sample(folder: Path) -> Path:
     facts = {"voxel_size_m": 1e-4, "synthetic": True, "source": "spheres"}
     (folder / "microstructure.json").write_text(json.dumps(facts))
     return folder / "microstructure.json"
-
-
-def frames(folder: Path) -> Path:
-    series = FrameSeries()
-    for second in range(3):
-        series.add(float(second), np.eye(6) * second)
-    series.save(folder / "frames.npz")
-    return folder / "frames.npz"
 
 
 def curve(folder: Path) -> Path:

@@ -38,7 +38,6 @@ from snowshed.io.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.image.sample_folder import find_sample
 from snowshed.methods.peak_maps import PeakMaps
-from snowshed.methods.slide_frames import FrameSeries
 
 REFUSED = (InputError, SimulationError, OSError)
 
@@ -200,10 +199,6 @@ def _as_peaks(file: Path) -> str:
     return _digest([repr(vars(PeakMaps.unpacked(file.read_bytes())))])
 
 
-def _as_frames(file: Path) -> None:
-    FrameSeries.load(file, 1e9)
-
-
 def _as_snow(file: Path) -> None:
     with contextlib.suppress(click.ClickException):
         Snow.from_data(json_object(str(file)))
@@ -246,7 +241,6 @@ READERS = {
     "sample": Reader(good.sample, _as_sample, share=0.5),
     "loading curve": Reader(good.curve, LoadingCurve.read),
     "peak maps": Reader(good.peaks, _as_peaks, exact=True),
-    "film of a slide": Reader(good.frames, _as_frames),
     "snow": Reader(good.snow, _as_snow),
     "events.csv": Reader(good.result("events.csv"), _as_events, share=0.5),
     "measurements": Reader(good.text("measured.csv", good.MEASURED), _as_measurements),

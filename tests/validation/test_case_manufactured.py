@@ -123,7 +123,8 @@ def test_matrices(case):
 @pytest.mark.parametrize("start", [WAVES, VORTEX], ids=["waves", "vortex"])
 @pytest.mark.parametrize("transfer", [FLIP, APIC], ids=["flip", "apic"])
 def test_finer_cells_follow_better(start, transfer):
-    settings = {**SCHEME, **start, **transfer, "particles_per_voxel": 9}
+    # Short steps: APIC's longest ones are coarse enough to hide some of the error of the cells.
+    settings = {**SCHEME, **start, **transfer, "particles_per_voxel": 9, "courant_factor": 0.6}
     errors = [manufactured.measure({**settings, "dx": 1 / n}).measured[0].error for n in (12, 18)]
     assert errors[1] < errors[0] / 1.5**1.6
 

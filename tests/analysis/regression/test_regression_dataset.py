@@ -39,6 +39,14 @@ def test_short_panels_have_more_seeds():
         assert count == (16 if length <= 1 else 6 if length <= 2 else 3 if length <= 4 else 1)
 
 
+def test_the_rows_of_the_model_have_both_readings():
+    """By the thesis's trimming at equal pace a stack is longer, with the same snow."""
+    first, second = (geometry_rows(measure=name) for name in ("outermost_first", "equal_pace"))
+    assert geometry_rows().settings["trimming"] == "outermost_first"
+    longer = second.targets["length"] / first.targets["length"]
+    assert 1.1 < np.median(longer) < 1.5 and np.quantile(longer, 0.05) > 0.95
+
+
 def test_all_stacks_of_the_model_came_to_rest():
     assert set(pd.read_csv(geometry_table(MODEL_BETWEEN))["ended"]) == {"rest"}
 
@@ -54,14 +62,12 @@ def test_snow_is_neither_lost_nor_left_on_the_panel(between):
 def test_a_row_is_what_its_scene_gives(tmp_path):
     """The first event below a panel whose stacks hardly scatter, computed anew.
 
-    The rows were computed with a share of damping in each step.
-
     Other vector instructions round differently, and the stack then is one more of its kind.
     """
     panel = (2.0, 2.0, 70.0)
     table = pd.read_csv(geometry_table())
     row = table[(table[PANEL] == panel).all(axis=1) & (table["event"] == 1)].iloc[0]
-    scene = Scene.from_data(scenes_of(dx=row["dx"], deviations=["damping"])[panel])
+    scene = Scene.from_data(scenes_of(dx=row["dx"])[panel])
     scene.update({"events.count": 1, "seeding.seed": int(row["seed"])})
     found = run_events(scene, tmp_path / "out").iloc[0]
     assert found["height_m"] == pytest.approx(row["height_m"], rel=0.05)
