@@ -124,9 +124,10 @@ def test_what_the_data_have_in_common_is_kept(model, tmp_path):
     assert (found.settings, found.measure) == (told.settings, "body")
 
 
-def test_a_model_of_before_is_of_the_reading_there_was(capsys):
-    """That which comes with snowshed, too; any measure there is can be told."""
-    found = predict(height=2, length=2, tilt=40, events=1)
+def test_a_model_of_before_is_of_the_reading_there_was(model, tmp_path, capsys):
+    """Any measure there is can be told."""
+    save_model(replace(model, settings={"dx": "0.025"}), tmp_path / "before.npz")
+    found = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "before.npz")
     assert found.settings["trimming"] == "equal_pace"
     for measure in MEASURES:
         print_prediction(replace(found, measure=measure), "Stack")
