@@ -203,16 +203,13 @@ def _regression_part(data: Path) -> list[str]:
     one = next(iter(found.values()))
     rounds, folds = one.scores["round"].nunique(), one.scores["fold"].nunique()
     times = f"{rounds} round{'s' if rounds > 1 else ''} of {folds} outer folds"
-    gaps = [
-        f"by `{rows.settings['trimming']}` {_gaps(_predicted_quartiles(regression))}"
+    of_one_seed = {
+        str(rows.settings["trimming"]): regression
         for rows, regression in zip(parts.values(), found.values())
         if rows.most_seeds == 1
-    ]
-    shares = [
-        f"{percent(_share(regression), 2)} by `{rows.settings['trimming']}`"
-        for rows, regression in zip(parts.values(), found.values())
-        if rows.most_seeds == 1
-    ]
+    }
+    gaps = [f"by `{name}` {_gaps(_predicted_quartiles(one))}" for name, one in of_one_seed.items()]
+    shares = [f"{percent(_share(one), 2)} by `{name}`" for name, one in of_one_seed.items()]
     return [
         "## Tables 5.3.1 and 5.3.2",
         "The rows that come with snowshed ([their settings](regression.md#the-rows-that-come-with-"

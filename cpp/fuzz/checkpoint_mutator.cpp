@@ -2,14 +2,12 @@
 // lengths and checksum, so the reader would refuse them before it looks at the content.
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "mutation.hpp"
 #include "snowshed/io/checksum.hpp"
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace snowshed {
 namespace {
@@ -24,18 +22,6 @@ struct ArchiveSection {
 constexpr std::size_t archive_header = 24, section_header = 24, archive_trailer = 8;
 
 std::size_t padded(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
-
-template <class T>
-T number_at(const std::string& bytes, std::size_t offset) {
-  T value;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
-}
-
-template <class T>
-std::string bytes_of(T value) {
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
 
 /// Returns the sections, from the first on, as long as they lie within the bytes.
 std::vector<ArchiveSection> sections_of(const std::string& bytes) {
@@ -85,16 +71,8 @@ std::string with_valid_frame(std::string bytes) {
   return bytes.replace(bytes.size() - archive_trailer, archive_trailer, bytes_of(sum.value()));
 }
 
-std::string mutate(std::string bytes, std::size_t max_size) {
-  const std::size_t size = bytes.size();
-  bytes.resize(std::max(size, max_size));
-  bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), size, max_size));
-  return bytes;
-}
-
 /// Changes the content, name or type of one section, or removes or repeats it.
 void mutate_section(std::vector<ArchiveSection>& sections, std::mt19937& random) {
-  constexpr std::size_t growth = 64;
   const std::size_t i = random() % sections.size();
   ArchiveSection& section = sections[i];
   switch (random() % 20) {
@@ -111,7 +89,7 @@ void mutate_section(std::vector<ArchiveSection>& sections, std::mt19937& random)
       sections.push_back(section);
       break;
     default:
-      section.data = mutate(section.data, section.data.size() + growth);
+      section.data = mutate(section.data, section.data.size() + part_growth);
   }
 }
 
@@ -121,18 +99,14 @@ void mutate_section(std::vector<ArchiveSection>& sections, std::mt19937& random)
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned seed) {
   using namespace snowshed;
-  std::mt19937 random(seed);
-  const std::string bytes(reinterpret_cast<const char*>(data), size);
-  std::vector<ArchiveSection> sections = sections_of(bytes);
-  std::string mutated;
-  if (sections.empty() || random() % 8 == 0) {
-    mutated = mutate(bytes, max_size);
-    if (random() % 4 != 0) mutated = with_valid_frame(std::move(mutated));
-  } else {
+  const auto mutated = [max_size](const std::string& bytes, std::mt19937& random) {
+    std::vector<ArchiveSection> sections = sections_of(bytes);
+    if (sections.empty() || random() % 8 == 0) {
+      const std::string changed = mutate(bytes, max_size);
+      return random() % 4 != 0 ? with_valid_frame(changed) : changed;
+    }
     mutate_section(sections, random);
-    mutated = archive_of(sections);
-  }
-  if (mutated.size() > max_size) return size;
-  std::copy(mutated.begin(), mutated.end(), data);
-  return mutated.size();
+    return archive_of(sections);
+  };
+  return replace_data(data, size, max_size, seed, mutated);
 }

@@ -1,16 +1,13 @@
 // Mutations that keep the checksums of a film valid and its frames deflated. Random bytes hardly
 // ever do, so the reader would refuse them before it looks at the content.
-#include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "mutation.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/film_codec.hpp"
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace snowshed {
 namespace {
@@ -28,26 +25,16 @@ struct FilmParts {
   std::vector<Record> records;
 };
 
-std::uint32_t number_at(const std::string& bytes, std::size_t offset) {
-  std::uint32_t value;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
-}
-
-std::string bytes_of(std::uint32_t value) {
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
 /// Returns the parts, from the first on, as long as they lie within the bytes.
 FilmParts parts_of(const std::string& bytes) {
   FilmParts parts;
   if (bytes.size() < text_at) return parts;
-  const std::size_t length = number_at(bytes, text_length_at);
+  const std::size_t length = number_at<std::uint32_t>(bytes, text_length_at);
   if (length > bytes.size() - text_at) return parts;
   parts.text = bytes.substr(text_at, length);
   for (std::size_t at = text_at + length; bytes.size() - at >= record_head;) {
-    const std::size_t raw = number_at(bytes, at + raw_at),
-                      packed = number_at(bytes, at + packed_at);
+    const std::size_t raw = number_at<std::uint32_t>(bytes, at + raw_at),
+                      packed = number_at<std::uint32_t>(bytes, at + packed_at);
     if (packed > bytes.size() - at - record_head || !could_be_deflated(packed, raw)) break;
     const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data()) + at + record_head;
     try {
@@ -77,18 +64,10 @@ std::string film_of(const FilmParts& parts) {
   return bytes;
 }
 
-std::string mutate(std::string bytes, std::size_t max_size) {
-  const std::size_t size = bytes.size();
-  bytes.resize(std::max(size, max_size));
-  bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), size, max_size));
-  return bytes;
-}
-
 /// Changes the header or a frame, or removes or repeats one.
 void mutate_part(FilmParts& parts, std::mt19937& random) {
-  constexpr std::size_t growth = 64;
   if (parts.records.empty() || random() % 8 == 0) {
-    parts.text = mutate(parts.text, parts.text.size() + growth);
+    parts.text = mutate(parts.text, parts.text.size() + part_growth);
     return;
   }
   const std::size_t i = random() % parts.records.size();
@@ -106,7 +85,7 @@ void mutate_part(FilmParts& parts, std::mt19937& random) {
       record.facts.resize(raw_at - facts_at);
       break;
     default:
-      record.raw = mutate(record.raw, record.raw.size() + growth);
+      record.raw = mutate(record.raw, record.raw.size() + part_growth);
   }
 }
 
@@ -116,17 +95,11 @@ void mutate_part(FilmParts& parts, std::mt19937& random) {
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned seed) {
   using namespace snowshed;
-  std::mt19937 random(seed);
-  const std::string bytes(reinterpret_cast<const char*>(data), size);
-  FilmParts parts = parts_of(bytes);
-  std::string mutated;
-  if (parts.text.empty() || random() % 8 == 0) {
-    mutated = mutate(bytes, max_size);
-  } else {
+  const auto mutated = [max_size](const std::string& bytes, std::mt19937& random) {
+    FilmParts parts = parts_of(bytes);
+    if (parts.text.empty() || random() % 8 == 0) return mutate(bytes, max_size);
     mutate_part(parts, random);
-    mutated = film_of(parts);
-  }
-  if (mutated.size() > max_size) return size;
-  std::copy(mutated.begin(), mutated.end(), data);
-  return mutated.size();
+    return film_of(parts);
+  };
+  return replace_data(data, size, max_size, seed, mutated);
 }
