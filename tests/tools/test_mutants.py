@@ -65,6 +65,7 @@ def test_a_sound_file_is_read(tmp_path):
         ('tests = ["tests/test_sum.py"]', 'tests = "all"', "a list of texts is needed"),
         ('new = "a - b"', 'new = "a - b"\nswitch = true', "only faults in C"),
         ('new = "a - b"', 'new = "a - b"\nswitch = 1', "switch is 1"),
+        ('file = "sum.py"\nold = "a + b"', 'file = "a.cpp"\nswitch = true\nold = "? b"', "no expr"),
         ("[[fault]]", "[fault]", r"lists no \[\[fault\]\]"),
     ],
 )

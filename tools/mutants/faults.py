@@ -137,6 +137,9 @@ def _fault(entry: Mapping[str, object], area: str, common: tuple[str, ...], wher
     fault = Fault(area=area, tests=tests, switch=switch, survives=survives, **texts)
     if switch and not fault.is_cpp:
         raise FaultError(f"{where}: only faults in C++ have a switch")
+    for text in (fault.old, fault.new) if switch else ():
+        if text[0] in "?:":  # it becomes an operand of another choice
+            raise FaultError(f"{where}: {text!r} is no expression; a switch needs one")
     return fault
 
 

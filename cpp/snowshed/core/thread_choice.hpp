@@ -16,7 +16,11 @@ class ThreadChoice {
   /// Returns the number of threads for the step that begins, 1 or `most`.
   int begin(int most) {
     if (most == 1) return 1;
-    step_ = steps_++ % period;
+    step_ = steps_++;
+    if (steps_ == period_) {
+      steps_ = 0;
+      period_ = std::min(4 * period_, longest_period);
+    }
     if (step_ == 0) many_ = gave_up_ = false;
     trial_ = step_ < 2 * trials && !gave_up_;
     if (!trial_) return many_ ? most : 1;
@@ -38,7 +42,8 @@ class ThreadChoice {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::size_t period = 1024, trials = 9;  // steps
+  // Steps. The first trials are soon repeated: a program that has just begun is slower.
+  static constexpr std::size_t first_period = 64, longest_period = 1024, trials = 9;
   static constexpr double worthwhile = 0.9;                // of the time with one thread
   using Times = std::array<double, trials>;
 
@@ -47,7 +52,8 @@ class ThreadChoice {
     return times[trials / 2];
   }
 
-  std::size_t steps_ = 0, step_ = 0;
+  std::size_t period_ = first_period;  // steps from a trial to the next
+  std::size_t steps_ = 0, step_ = 0;   // since this trial began: steps begun, and the present one
   bool trial_ = false, many_ = false, gave_up_ = false;
   double with_one_ = 0;  // s
   Clock::time_point begin_;
