@@ -110,7 +110,7 @@ MIDDLE = replace(
     grid_seeds=1,
     simulates_panels=False,
     deviation_panels=7,
-    deviation_longest=4.0,
+    deviation_longest=2.0,
     deviation_seeds=1,
     folds=CrossValidation(rounds=3),
     one_seed_rounds=3,

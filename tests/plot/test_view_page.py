@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+import shutil
 
 import film_files
 import numpy as np
@@ -169,6 +170,14 @@ def test_a_run_is_shown_with_its_measures(finished, tmp_path):
     file = write_view(finished, tmp_path / "page.html")
     content = view_content(Results(finished), Results(finished).film)
     assert {one.label.split(" ")[0] for one in content.measures} == {"height", "length", "free"}
+    assert "2 slide-offs" in file.read_text(encoding="utf-8")
+
+
+def test_a_season_shows_its_slide_offs(finished, tmp_path):
+    shutil.copytree(finished, tmp_path / "run")
+    (tmp_path / "season.json").write_text("{}", encoding="utf-8")
+    file = write_view(tmp_path)
+    assert file == tmp_path / "view.html"
     assert "2 slide-offs" in file.read_text(encoding="utf-8")
 
 

@@ -12,9 +12,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Optional, Protocol, Union
 
+from snowshed._core import InputError
 from snowshed.io.json_file import JsonValue, read_object
 from snowshed.methods.grains.summary import GrainsSummary
 from snowshed.methods.registry import DEFAULT, NAME_KEY
+from snowshed.run.ageing import Ageing
 from snowshed.run.event_particles import read_event_particles
 from snowshed.run.events import run_events
 from snowshed.run.grains import CURVE, run_grains
@@ -32,6 +34,11 @@ COUNTS = (
 ROW_KEYS = ("event", "wall_s")
 
 
+def _require_no_ageing(ageing: Optional[Ageing]) -> None:
+    if ageing is not None:
+        raise InputError("ageing: only a stack ages, and this method makes none")
+
+
 class MethodRuns(Protocol):
     """Runs scenes of a method."""
 
@@ -40,9 +47,18 @@ class MethodRuns(Protocol):
         """Names of what is measured after an event, in the order of a table."""
 
     def run(
-        self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
+        self,
+        scene: ResolvedScene,
+        folder: Path,
+        *,
+        resume: bool,
+        ageing: Optional[Ageing],
+        progress: Optional[Reporter],
     ) -> None:
-        """Run a scene into a folder, without pictures, or go on with it."""
+        """Run a scene into a folder, without pictures, or go on with it.
+
+        Raises InputError if there is ageing, and the method makes no stack that could age.
+        """
 
     def rows(self, folder: Path) -> list[dict[str, Cell]]:
         """Return a row for each event that is done: ``event``, ``wall_s`` and `columns`."""
@@ -57,9 +73,15 @@ class _StackRuns:
     columns: Sequence[str] = tuple(name for name in EVENT_COLUMNS if name not in ROW_KEYS)
 
     def run(
-        self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
+        self,
+        scene: ResolvedScene,
+        folder: Path,
+        *,
+        resume: bool,
+        ageing: Optional[Ageing],
+        progress: Optional[Reporter],
     ) -> None:
-        run_events(scene, folder, resume=resume, progress=progress, pictures=False)
+        run_events(scene, folder, resume=resume, ageing=ageing, progress=progress, pictures=False)
 
     def rows(self, folder: Path) -> list[dict[str, Cell]]:
         table = RunFolder(folder).events.rows
@@ -103,8 +125,15 @@ class _SlideRuns:
     columns: Sequence[str] = ("steps", *_SLIDE_FIGURES.values())
 
     def run(
-        self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
+        self,
+        scene: ResolvedScene,
+        folder: Path,
+        *,
+        resume: bool,
+        ageing: Optional[Ageing],
+        progress: Optional[Reporter],
     ) -> None:
+        _require_no_ageing(ageing)
         options = {"pictures": False, "rasters": False}
         run_slide(scene, folder, resume=resume, progress=progress, **options)
 
@@ -122,8 +151,15 @@ class _GrainsRuns:
     columns: Sequence[str] = ("steps", *_LOADING_FIGURES.values())
 
     def run(
-        self, scene: ResolvedScene, folder: Path, *, resume: bool, progress: Optional[Reporter]
+        self,
+        scene: ResolvedScene,
+        folder: Path,
+        *,
+        resume: bool,
+        ageing: Optional[Ageing],
+        progress: Optional[Reporter],
     ) -> None:
+        _require_no_ageing(ageing)
         run_grains(scene, folder, resume=resume, progress=progress, pictures=False)
 
     def rows(self, folder: Path) -> list[dict[str, Cell]]:

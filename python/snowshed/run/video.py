@@ -18,8 +18,7 @@ from snowshed.io.messages import suggestion
 from snowshed.plot.film_picture import FilmPainter
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.results_reader import Results
-from snowshed.run.view import view_content
+from snowshed.run.view import shown_results, view_content
 from snowshed.scene.scene import PathLike
 
 
@@ -49,7 +48,7 @@ def write_video(
     Parameters
     ----------
     results
-        The folder of a run of any method.
+        The folder of a run of any method, or of a season.
     video
         The file: .mp4 (needs the extra ``video``) or .gif.
     seconds
@@ -76,7 +75,7 @@ def write_video(
     if seconds is not None and not 0.1 <= seconds <= 600:
         raise InputError(f"seconds: {seconds:g}; 0.1 to 600 are allowed")
     encoder = require("imageio_ffmpeg", "video", "an MP4 video") if kind == ".mp4" else None
-    found = Results(results)
+    found = shown_results(results)
     film = found.film
     summary = summarise_film(film)
     colouring = _colouring(summary, colour)

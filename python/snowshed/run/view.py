@@ -18,6 +18,7 @@ from snowshed.plot.html_page import Grid
 from snowshed.plot.solids import scene_solids
 from snowshed.run.results import read_events
 from snowshed.run.results_reader import Results
+from snowshed.run.season.results import SeasonFolder
 from snowshed.run.slides import slide_terrain
 from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.snow.stack.measure import level
@@ -26,7 +27,12 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PAGE = "view.html"
-TITLES = {"mpm": "Snow in motion", "slide": "Snow slide", "grains": "Grains of snow under load"}
+TITLES = {
+    "mpm": "Snow in motion",
+    "slide": "Snow slide",
+    "grains": "Grains of snow under load",
+    "mps": "Flowing snow",
+}
 
 
 def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
@@ -35,7 +41,7 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     Parameters
     ----------
     results
-        The folder of a run of any method, finished or not.
+        The folder of a run of any method, finished or not, or of a season.
     page
         The HTML file. [default: ``view.html`` in the folder]
 
@@ -55,11 +61,23 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     ...     write_view(folder).name
     'view.html'
     """
-    found = Results(results)
-    file = Path(page) if page is not None else found.folder / PAGE
+    found = shown_results(results)
+    file = Path(page) if page is not None else Path(results) / PAGE
     film = found.film
     write_view_page(file, film, view_content(found, film))
     return file
+
+
+def shown_results(folder: PathLike) -> Results:
+    """Return the results of a run, or those of a season's slide-offs.
+
+    Raises
+    ------
+    InputError
+        If the folder holds neither.
+    """
+    season = SeasonFolder(folder)
+    return Results(season.run.folder if season.summary.is_file() else season.folder)
 
 
 def view_content(results: Results, film: Film) -> ViewContent:
@@ -205,4 +223,4 @@ def _table(table: Optional[pd.DataFrame]) -> Optional[Grid]:
     return Grid(tuple(known), rows, "r" * (len(known) - 1) + "l")
 
 
-__all__ = ["FILM", "PAGE", "InputError", "view_content", "write_view"]
+__all__ = ["FILM", "PAGE", "InputError", "shown_results", "view_content", "write_view"]

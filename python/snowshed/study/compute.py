@@ -19,6 +19,7 @@ from snowshed.run.method_runs import runs_of
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder
 from snowshed.scene.scene import ResolvedScene
+from snowshed.study.aged_scene import taken_apart
 from snowshed.study.locks import holding
 from snowshed.study.outcome import Outcome, Task
 from snowshed.study.scene_hash import content_hash
@@ -76,18 +77,18 @@ def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Ou
 
 def _run_or_resume(task: Task, folder: Path, report: Optional[Reporter]) -> None:
     """Run the events; an earlier attempt without a checkpoint is removed."""
+    data, ageing = taken_apart(task.scene)
     if (folder / "scene.json").is_file():
         try:
             scene = ResolvedScene.load(folder / "scene.json")  # with the threads it had
-            runs_of(scene.data).run(scene, folder, resume=True, progress=report)
+            runs_of(data).run(scene, folder, resume=True, ageing=ageing, progress=report)
             return
         except InputError:
             pass
     shutil.rmtree(folder, ignore_errors=True)
-    data = json.loads(task.scene)
     data["numerics"]["threads"] = task.threads
     scene = ResolvedScene.parse(json.dumps(data))
-    runs_of(data).run(scene, folder, resume=False, progress=report)
+    runs_of(data).run(scene, folder, resume=False, ageing=ageing, progress=report)
 
 
 def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 
 import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
+from snowshed.study.aged_scene import taken_apart, without_ageing
 
 THIRDS = (1 / 6, 3 / 6, 5 / 6)  # the middle of each third
 ROUNDS = 9  # of measuring speeds
@@ -24,7 +25,7 @@ def work(scene: str) -> float:
     Parameters
     ----------
     scene
-        The complete scene as JSON. The work of a scene that cannot be run is 0.
+        The complete scene of a run as JSON. The work of a scene that cannot be run is 0.
 
     Examples
     --------
@@ -36,14 +37,14 @@ def work(scene: str) -> float:
     True
     """
     try:
-        return _core.expected_work(scene)
+        return _core.expected_work(without_ageing(scene))
     except (InputError, SimulationError):
         return 0.0
 
 
 def speed(scene: str, threads: int) -> float:
     """Return the particle updates per second that a scene reaches here and now."""
-    data = json.loads(scene)
+    data = taken_apart(scene)[0]
     data["numerics"]["threads"] = threads
     try:
         return max(float(_core.plan(json.dumps(data))["updates_per_s"]), 1.0)

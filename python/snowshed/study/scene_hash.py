@@ -16,10 +16,12 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
 import snowshed._core as _core
+from snowshed.run.ageing import Ageing
 from snowshed.scene.scene import ResolvedScene
+from snowshed.study.aged_scene import with_ageing
 
 HASH_DIGITS = 32  # hexadecimal: 128 bits
 HASH = re.compile(f"[0-9a-f]{{{HASH_DIGITS}}}")
@@ -42,15 +44,23 @@ class Run:
     hash
         Content hash, 32 hexadecimal digits.
     scene
-        The complete scene as JSON, with absolute paths of the files that it names.
+        The complete scene as JSON, with absolute paths of the files that it names, and the ageing
+        of its stack (`snowshed.study.aged_scene`).
     """
 
     hash: str
     scene: str
 
     @classmethod
-    def of(cls, scene: ResolvedScene) -> Run:
+    def of(cls, scene: ResolvedScene, ageing: Optional[Ageing] = None) -> Run:
         """Return the run of a scene, without the outputs that a study does not keep.
+
+        Parameters
+        ----------
+        scene
+            The scene.
+        ageing
+            Of its stack between events; None: it does not age.
 
         Examples
         --------
@@ -62,7 +72,7 @@ class Run:
         >>> one.hash == Run.of(lab.set("panel.tilt", 51).resolve()).hash
         False
         """
-        data: dict[str, Any] = scene.data
+        data = with_ageing(scene.data, ageing)
         data["numerics"]["threads"] = 0
         data["output"].update(snapshot_interval=0.0, film=False, energy=False)
         return cls(content_hash(data), json.dumps(data))

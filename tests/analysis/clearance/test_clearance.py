@@ -3,19 +3,23 @@
 import json
 import os
 import signal
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from snowshed import InputError
 from snowshed.analysis.clearance import Design, Ranges, clearance_of, winters_of
-from snowshed.analysis.clearance.answer import forecast
+from snowshed.analysis.clearance.answer import STUDY, forecast
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.statistics import burial_interval, levels_of, shares_of
 from snowshed.cli.main import main
+from snowshed.run.results import read_events
 from snowshed.run.season import SeasonSettings, run_season
 from snowshed.run.season.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
+from snowshed.run.season.results import SeasonFolder
 from snowshed.study.errors import StudyInterrupted
+from snowshed.study.table import read_table
 
 #: A short winter, so that a season takes a second.
 SHORT = Climate(
@@ -27,12 +31,11 @@ SHORT = Climate(
 )
 DESIGN = Design(0.6, 60.0)
 KNOWN = Ranges({"friction": (0.4, 0.4), "adhesion": (10.0, 10.0), "sliding": (0.2, 0.2)}, draws=1)
-STILL = SeasonSettings(settling=None)
 HEIGHT = 0.45
 
 
 def answer_of(winters, folder, heights=(HEIGHT,), **options):
-    return clearance_of(DESIGN, winters, heights, folder, ranges=KNOWN, settings=STILL, **options)
+    return clearance_of(DESIGN, winters, heights, folder, ranges=KNOWN, **options)
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +47,24 @@ def winters():
 def answer(winters, tmp_path_factory):
     folder = tmp_path_factory.mktemp("clearance") / "runs"
     return answer_of(winters, folder, (0.25, HEIGHT, 0.9)), folder
+
+
+def test_stacks_age_between_slide_offs_as_in_a_season(answer, tmp_path):
+    found, folder = answer
+    case = max(found.cases, key=lambda one: sum(day.released for day in one.days))
+    run = case.run(HEIGHT)
+    table = read_table(folder, STUDY)
+    rows = table[table["hash"] == run.hash]
+    assert len(rows) > 1
+    season = run_season(
+        case.winter.days, case.panel(HEIGHT), tmp_path, settings=case.season, pictures=False
+    )
+    assert read_events(SeasonFolder(tmp_path).run.folder)["height_m"].tolist() == pytest.approx(
+        rows["height_m"].tolist(), rel=1e-12
+    )
+    assert season.simulated >= len(rows)
+    still = replace(case, settings=SeasonSettings(settling=None))
+    assert still.run(HEIGHT).hash != run.hash
 
 
 def test_it_counts_the_burials_that_seasons_have(answer, winters, tmp_path):
@@ -91,10 +112,12 @@ def test_the_page_and_the_summary(answer, tmp_path):
     assert "http" not in page.replace("http://www.w3.org", "")
     summary = json.loads((tmp_path / "clearance.json").read_text())
     assert [level["probability"] for level in summary["panels"][0]["levels"]] == [0.5, 0.9, 0.98]
+    view = (tmp_path / "worst-winter-0.6-60.html").read_text()
+    assert 'href="worst-winter-0.6-60.html"' in page and "slide-offs" in view
 
 
 def test_a_forecast_counts_the_seasons(winters):
-    seconds, seasons = forecast(DESIGN, winters, [HEIGHT], ranges=KNOWN, settings=STILL)
+    seconds, seasons = forecast(DESIGN, winters, [HEIGHT], ranges=KNOWN)
     assert seconds > 0.0 and seasons == 4
 
 
@@ -124,7 +147,7 @@ def test_its_probability_is_that_of_counting(tmp_path):
 def answer_cases(winters):
     from snowshed.analysis.clearance.seasons import cases_of
 
-    return cases_of(DESIGN, winters, KNOWN.drawn(len(winters)), STILL, {})
+    return cases_of(DESIGN, winters, KNOWN.drawn(len(winters)), SeasonSettings(), {})
 
 
 # --- statistics ----------------------------------------------------------------------------

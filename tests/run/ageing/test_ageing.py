@@ -173,3 +173,26 @@ def test_snow_ages_between_events_only():
     count = simulation.particle_count
     with pytest.raises(InputError, match="an event is running"):
         simulation.settle(np.zeros(count), np.zeros(count))
+
+
+# --- as JSON ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"pauses": []}, "pauses: not an object"),
+        ({"pauses": {"two": []}}, "two is no number of an event"),
+        ({"pauses": {"2": [[1.0]]}}, "not pairs of seconds"),
+        ({"pauses": {"2": [[-1.0, 0.0]]}}, "not pairs of seconds"),
+        ({"pauses": {"2": [["1", 0.0]]}}, "not pairs of seconds"),
+        ({"settling": "no-such-law"}, "no-such-law"),
+        ({"sintering": 3}, "sintering: neither a name nor null"),
+        ({"strength_age": True}, "strength_age: not a number"),
+        ({"more": 1}, "needed: an object with pauses, settling, sintering, strength_age"),
+    ],
+)
+def test_damaged_data_are_named(change, message):
+    data = {**Ageing({2: [Interval(60.0, -3.0)]}).data, **change}
+    with pytest.raises(InputError, match=message):
+        Ageing.from_data(data, "here")

@@ -22,6 +22,8 @@ def write_report(
 ) -> None:
     """Write clearance.html, clearance.csv and clearance.json into a folder.
 
+    Beside them stands a page for each panel on which the slide-offs of its worst winter move.
+
     Parameters
     ----------
     answers
@@ -73,6 +75,7 @@ def summary(answers: Sequence[Answer], ranges: Ranges) -> dict[str, Any]:
 
 
 def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
+    """Return what the page says of a panel; its worst winter's moving view goes into the folder."""
     levels = [(one.probability, one.height, one.low, one.high) for one in answer.levels]
     shares = {words.cause_in_words(share.cause): share.part for share in answer.shares}
     name = f"{answer.design.slope_length:g}-{answer.design.tilt:g}"
@@ -80,6 +83,8 @@ def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
     if shares:
         caption = "Parts of the variance over all seasons; linear effects."
         causes = Picture.drawn(causes_figure(shares), f"causes-{name}", "Causes", caption)
+    view = folder / f"worst-winter-{name}.html"
+    picture = _worst_picture(answer, view)
     return {
         "title": f"Slope length {answer.design.slope_length:g} m, tilt {answer.design.tilt:g}°",
         "levels": _level_grid(answer),
@@ -93,7 +98,8 @@ def _panel(answer: Answer, folder: Path) -> dict[str, Any]:
         "causes": causes,
         "advice": words.advice(answer),
         "worst": _worst(answer),
-        "picture": _worst_picture(answer),
+        "picture": picture,
+        "view": view.name if picture else None,
     }
 
 
@@ -138,11 +144,15 @@ def _worst(answer: Answer) -> str:
     )
 
 
-def _worst_picture(answer: Answer) -> Optional[Picture]:
-    """Return the picture of the worst winter, simulated once more at its last height."""
+def _worst_picture(answer: Answer, view: Path) -> Optional[Picture]:
+    """Return the picture of the worst winter, simulated once more at its last height.
+
+    Its moving view is written to a page.
+    """
     from tempfile import TemporaryDirectory
 
     from snowshed.run.season.driver import run_season
+    from snowshed.run.view import write_view
 
     case, found = answer.cases[answer.worst], answer.outcomes[answer.worst]
     if not case.slides:
@@ -151,10 +161,11 @@ def _worst_picture(answer: Answer) -> Optional[Picture]:
     with TemporaryDirectory() as folder:
         out = Path(folder) / "season"
         run_season(case.winter.days, case.panel(reached[-1]), out, settings=case.season)
+        write_view(out, view)
         return Picture.read(
             out / "season.png",
             f"The worst winter, {case.winter.name}",
-            f"Lower edge at {reached[-1]:g} m; here the stack settles between slide-offs.",
+            f"Lower edge at {reached[-1]:g} m.",
             dpi=160,
         )
 

@@ -1,8 +1,7 @@
 """Seasons of a panel as runs of a study, and how near their snow comes to the lower edge.
 
 The slide-offs of a season are a scene, and are computed and kept by the engine of studies. Between
-them the simulated stack does not age, which makes it too high rather than too low; the natural
-snow cover is added to it.
+them the simulated stack ages as in a season. The natural snow cover is added to it.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import numpy as np
 
 from snowshed.analysis.clearance.design import Design, scene_of, season_settings
 from snowshed.analysis.clearance.winters import Winter
-from snowshed.run.season.accumulation import Day, accumulate
+from snowshed.run.season.accumulation import Day, accumulate, pauses
 from snowshed.run.season.clearance import Contact, first_contact
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
@@ -93,7 +92,8 @@ class Case:
 
     def run(self, height: float) -> Run:
         """Return the slide-offs of the season as a run of a study."""
-        return Run.of(season_scene(self.panel(height), self.days, self.season))
+        ageing = self.season.ageing(pauses(self.days)) if self.season.ages else None
+        return Run.of(season_scene(self.panel(height), self.days, self.season), ageing)
 
     def outcome(self, height: float, events: pd.DataFrame) -> Outcome:
         """Return how near the snow comes.

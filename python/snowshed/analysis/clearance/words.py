@@ -77,8 +77,8 @@ def assumptions(answer: Answer) -> list[str]:
         f"Cells of {100 * answer.design.dx:.3g} cm. Releases thinner than "
         f"{1000 * season.pool_below:.0f} mm slide with those that follow.",
         f"The stack lies on the natural snow cover (its depth: {cover}), and nobody clears it.",
-        f"Snow settles ({season.settling or 'not at all'}) on the panel and on the ground; the "
-        "stack settles only after its last slide-off, which makes it too high rather than too low.",
+        f"Snow settles ({season.settling or 'not at all'}) on the panel, in the stack and on the "
+        "ground.",
         f"Strength and stiffness of a slab follow from its density ({season.strength or 'no'}).",
         "Melt of the stack, rain, wind drift and snow that falls on the stack beside the cover are "
         "left out.",

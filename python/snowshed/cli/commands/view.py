@@ -30,7 +30,7 @@ def view(
     colour: Optional[str],
     quiet: bool,
 ) -> None:
-    """Write the moving view of a run, one page that opens in any browser.
+    """Write the moving view of a run or a season, one page that opens in any browser.
 
     \b
     Example:

@@ -40,6 +40,8 @@ def print_season(result: SeasonResult, folder: Path) -> None:
     for line in (verdict(result), *(f"note: {note}" for note in result.notes)):
         console.print(line)
     console.print(f"season.csv and season.png in {folder}")
+    if result.simulated:
+        console.print(f"the snow in motion: snowshed view {folder}")
 
 
 def _cell(value: Any, form: str) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
@@ -19,6 +19,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.json_file import JsonObject
+from snowshed.io.messages import shortened
 from snowshed.methods.registry import resolution_of
 from snowshed.run.ageing.columns import SnowColumns
 from snowshed.snow.relations.relation import choose
@@ -87,6 +88,43 @@ class Ageing:
         if not 0.0 < self.strength_age < np.inf:
             raise InputError(f"strength age: {self.strength_age} hours; must be positive")
 
+    @classmethod
+    def from_data(cls, data: object, where: str) -> Ageing:
+        """Return the ageing that `data` gave.
+
+        Parameters
+        ----------
+        data
+            JSON data; it may come from anywhere.
+        where
+            What errors say of its place.
+
+        Raises
+        ------
+        InputError
+            If it is not sound.
+
+        Examples
+        --------
+        >>> one = Ageing({2: [Interval(86400.0, -5.0)]}, settling="vionnet-2012")
+        >>> Ageing.from_data(one.data, "ageing") == one
+        True
+        """
+        names = {one.name for one in fields(cls)}
+        if not isinstance(data, dict) or set(data) != names:
+            raise InputError(f"{where}: needed: an object with {', '.join(sorted(names))}")
+        pauses = data["pauses"]
+        if not isinstance(pauses, dict):
+            raise InputError(f"{where}/pauses: not an object")
+        read = {_event(key, where): _intervals(pauses[key], where) for key in pauses}
+        for name in ("settling", "sintering"):
+            if not isinstance(data[name], (str, type(None))):
+                raise InputError(f"{where}/{name}: neither a name nor null")
+        age = data["strength_age"]
+        if not _is_number(age):
+            raise InputError(f"{where}/strength_age: not a number")
+        return cls(read, data["settling"], data["sintering"], float(age))
+
     @property
     def data(self) -> JsonObject:
         """The same in the form of JSON."""
@@ -150,6 +188,30 @@ class Ageing:
     def _mean_temperature(self, event: int) -> float:
         seconds, temperatures = np.array(self.pauses[event]).T
         return float(np.average(temperatures, weights=seconds))
+
+
+def _is_number(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    return abs(value) < np.inf
+
+
+def _event(key: object, where: str) -> int:
+    if not (isinstance(key, str) and key.isdecimal() and key.isascii() and len(key) < 8):
+        raise InputError(f"{where}/pauses: {shortened(str(key))} is no number of an event")
+    return int(key)
+
+
+def _intervals(found: object, where: str) -> list[Interval]:
+    pairs = found if isinstance(found, list) else []
+    sound = [
+        Interval(float(pair[0]), float(pair[1]))
+        for pair in pairs
+        if isinstance(pair, list) and len(pair) == 2 and all(map(_is_number, pair)) and pair[0] >= 0
+    ]
+    if not isinstance(found, list) or len(sound) < len(pairs):
+        raise InputError(f"{where}/pauses: not pairs of seconds and a temperature")
+    return sound
 
 
 class _Snow:

@@ -1,0 +1,62 @@
+"""The scene of a run whose stack ages between its events, as one JSON object.
+
+A study keeps one JSON object for each run: the complete scene, and beside its keys ``ageing``, if
+the stack ages between events. So the identity of the run covers both.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, Optional
+
+from snowshed.io.json_file import parse_object
+from snowshed.run.ageing import Ageing
+
+KEY = "ageing"
+
+
+def with_ageing(scene: Mapping[str, Any], ageing: Optional[Ageing]) -> dict[str, Any]:
+    """Return a scene with the ageing of its stack.
+
+    Parameters
+    ----------
+    scene
+        JSON data.
+    ageing
+        None: the stack stays between events as it is.
+
+    Examples
+    --------
+    >>> sorted(with_ageing({"dimension": 2}, Ageing(settling="vionnet-2012")))
+    ['ageing', 'dimension']
+    """
+    return dict(scene) if ageing is None else {**scene, KEY: ageing.data}
+
+
+def taken_apart(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
+    """Return the scene of a run, as JSON data, and the ageing of its stack.
+
+    Parameters
+    ----------
+    text
+        What `with_ageing` made, as JSON.
+
+    Raises
+    ------
+    InputError
+        If it is no JSON object, or its ageing is not sound.
+
+    Examples
+    --------
+    >>> taken_apart('{"dimension": 2}')
+    ({'dimension': 2}, None)
+    """
+    data: dict[str, Any] = parse_object(text, "scene")
+    ageing = data.pop(KEY, None)
+    return data, None if ageing is None else Ageing.from_data(ageing, f"scene: {KEY}")
+
+
+def without_ageing(text: str) -> str:
+    """Return the scene of a run alone, as JSON."""
+    return json.dumps(taken_apart(text)[0]) if f'"{KEY}"' in text else text
