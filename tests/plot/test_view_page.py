@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from pages import Page
 from plot.browser import open_page
+from plot.firefox import open_in_firefox
 
 from snowshed import InputError, Results
 from snowshed.io.film import Film
@@ -123,6 +124,27 @@ def test_it_moves_and_obeys(page):
         shown.keyboard.press("Space")
         assert shown.inner_text("#play") in ("Play", "Pause")
         assert [one for one in told if not one.startswith("file:")] == []
+
+
+def test_it_moves_and_obeys_in_firefox(page, tmp_path):
+    with open_in_firefox(page, tmp_path) as shown:
+        if not shown.evaluate("!!document.createElement('canvas').getContext('webgl2')"):
+            assert shown.evaluate("document.querySelector('figure.still img').offsetHeight") > 0
+            pytest.skip("this Firefox has no WebGL2, and shows the still picture")
+        shown.wait_for(READY)
+        shown.evaluate("document.getElementById('picture').focus()")
+        seen = []
+        for key in ("\ue011", ".", "\ue012", "+"):  # Home, the next frame, left, nearer
+            shown.press(key)
+            seen.append(shown.picture())
+        shown.drag((300, 300), (420, 360))
+        seen.append(shown.picture())
+        assert len({*seen}) == 5
+        before = shown.evaluate("document.getElementById('clock').textContent")
+        shown.evaluate("document.getElementById('play').click()")
+        shown.wait_for(f"document.getElementById('clock').textContent !== {json.dumps(before)}")
+        assert shown.errors == []
+        assert [one for one in shown.requests if not one.startswith(("file:", "data:"))] == []
 
 
 def test_positions_in_the_browser_are_those_of_the_film(page):
