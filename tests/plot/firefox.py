@@ -1,7 +1,7 @@
 """Firefox without a screen, where it is installed, driven by WebDriver BiDi.
 
-WebGL needs a screen, if only that of Xvfb. Playwright drives only a Firefox of its own. The one that people have listens on a socket:
-https://w3c.github.io/webdriver-bidi.
+WebGL needs a screen, if only that of Xvfb. Playwright drives only a Firefox of its own. The one
+that people have listens on a socket: https://w3c.github.io/webdriver-bidi.
 """
 
 import base64
