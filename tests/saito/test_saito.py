@@ -121,15 +121,15 @@ def test_a_case_goes_on_after_an_interruption(tmp_path):
     stage.compute(None, lambda *_: None)
     assert stage.state().finished
 
-    class Interrupted(Exception):
+    class StopError(Exception):
         pass
 
     def interrupt(fraction, _):
         if fraction > 0.75:
-            raise Interrupted
+            raise StopError
 
     other = CaseStage(case, tmp_path / "two")
-    with pytest.raises(Interrupted):
+    with pytest.raises(StopError):
         other.compute(None, interrupt)
     assert other.state().done == 2
     other.compute(None, lambda *_: None)
