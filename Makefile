@@ -30,7 +30,7 @@ SHELL := bash
 
 CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/snowshed cpp/vdb -type f)
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
-PYTHON_FOLDERS = $(wildcard python validation reproduction thesis hagenmuller tests tools examples benchmarks lua_compat)
+PYTHON_FOLDERS = $(wildcard python validation reproduction thesis hagenmuller saito tests tools examples benchmarks lua_compat)
 
 .PHONY: help build demo verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
   sanitize-thread fuzz mutants bench docs format lint tidy clean
@@ -182,7 +182,7 @@ lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools python/snowshed/_core.pyi
 	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
 	$(BIN)/ruff check $(PYTHON_FOLDERS)
 	$(BIN)/ruff format --check $(PYTHON_FOLDERS)
-	$(BIN)/mypy python/snowshed validation reproduction thesis hagenmuller
+	$(BIN)/mypy python/snowshed validation reproduction thesis hagenmuller saito
 
 tidy: $(VENV)/.build-tools $(VENV)/.cpp-tools
 	sh tools/tidy.sh

@@ -60,6 +60,7 @@ void list_features_of(const MpsSettings& mps, const Scene& s, CostReport& report
   feature(mps.rheology != MpsRheology::newtonian, "yield stress");
   feature(mps.rheology == MpsRheology::bingham_dilatant, "dilatant branch");
   feature(mps.erosion, "erosion and deposition");
+  feature(mps.walls == MpsWalls::particles, "wall particles");
   feature(mps.spacing_law == MpsSpacing::collision, "collisions");
   feature(mps.spacing_law == MpsSpacing::shifting, "particle shifting");
   feature(mps.preconditioner == MpsPreconditioner::multigrid, "multigrid");

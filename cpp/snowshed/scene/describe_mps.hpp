@@ -42,6 +42,7 @@ void describe(V& v, MpsSettings& s) {
            "Pressure below which moving snow is deposited");
   v.number("deposition_speed", s.deposition_speed, "m/s", non_negative.up_to(1e4),
            "Speed below which it is");
+  v.choice("walls", s.walls, "What walls are made of: images of the snow, or particles");
   v.choice("source", s.source, "Right-hand side of the pressure equation");
   v.number("compensation", s.compensation, "", fraction,
            "Share of the density's error that a step takes away");

@@ -70,6 +70,12 @@ struct EnumNames<MpsYield> {
 };
 
 template <>
+struct EnumNames<MpsWalls> {
+  static constexpr Named<MpsWalls> list[] = {{MpsWalls::mirrors, "mirrors"},
+                                             {MpsWalls::particles, "particles"}};
+};
+
+template <>
 struct EnumNames<MpsSource> {
   static constexpr Named<MpsSource> list[] = {{MpsSource::published, "published"},
                                               {MpsSource::compensated, "compensated"}};

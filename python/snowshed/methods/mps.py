@@ -9,6 +9,7 @@ from snowshed.methods.settings import MethodSettings
 
 MpsRheology = Literal["newtonian", "bingham", "bingham_dilatant"]
 MpsYield = Literal["papanastasiou", "bi_viscous"]
+MpsWalls = Literal["mirrors", "particles"]
 MpsSource = Literal["published", "compensated"]
 MpsGradient = Literal["published", "conservative", "corrected"]
 MpsSplitting = Literal["viscosity_first", "pressure_first"]
@@ -69,6 +70,8 @@ class MpsSettings(MethodSettings):
         Pressure below which moving snow is deposited [Pa]. 0 <= value <= 1e+09; default 25.
     deposition_speed : float
         Speed below which it is [m/s]. 0 <= value <= 10000; default 0.05.
+    walls : {"mirrors", "particles"}
+        What walls are made of: images of the snow, or particles. Default "mirrors".
     source : {"published", "compensated"}
         Right-hand side of the pressure equation. Default "compensated".
     compensation : float
@@ -120,6 +123,7 @@ class MpsSettings(MethodSettings):
     erosion_speed: Optional[float] = None
     deposition_pressure: Optional[float] = None
     deposition_speed: Optional[float] = None
+    walls: Optional[MpsWalls] = None
     source: Optional[MpsSource] = None
     compensation: Optional[float] = None
     gradient: Optional[MpsGradient] = None

@@ -48,9 +48,10 @@ std::vector<PlacedObstacle> place_obstacles(const std::vector<Obstacle>& obstacl
 
 template <int D>
 void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
-                   const AlignedVector<VecD<D>>& points, double time, int threads,
+                   const MpsParticles<D>& particles, double time, int threads,
                    RowLists<WallContact<D>>& contacts) {
   const std::vector<PlacedObstacle> placed = place_obstacles(obstacles, time);
+  const AlignedVector<VecD<D>>& points = particles.position;
   contacts.update(
       points.size(), particles_in_box, threads,
       [&](std::size_t begin, std::size_t end, std::uint32_t* first,
@@ -62,15 +63,16 @@ void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
         for (std::size_t i = begin; i < end; ++i) {
           const std::size_t before = list.size();
           const Vec3 x = embed(points[i]);
-          for (const PlacedObstacle* o : near) {
-            const double distance = o->distance(x);
-            if (distance >= reach) continue;
-            const VecD<D> normal = section<D>(o->normal(x));
-            if (!(normal.squaredNorm() > 1e-12)) continue;  // a surface along the plane (x, z)
-            VecD<D> velocity = VecD<D>::Zero();
-            if (o->obstacle->motion) velocity = section<D>(o->pose.velocity(x));
-            list.push_back({o->number, distance, o->thickness, normal.normalized(), velocity});
-          }
+          if (!particles.is_wall(i))
+            for (const PlacedObstacle* o : near) {
+              const double distance = o->distance(x);
+              if (distance >= reach) continue;
+              const VecD<D> normal = section<D>(o->normal(x));
+              if (!(normal.squaredNorm() > 1e-12)) continue;  // a surface along the plane (x, z)
+              VecD<D> velocity = VecD<D>::Zero();
+              if (o->obstacle->motion) velocity = section<D>(o->pose.velocity(x));
+              list.push_back({o->number, distance, o->thickness, normal.normalized(), velocity});
+            }
           first[i + 1] = std::uint32_t(list.size() - before);
         }
       });
@@ -84,10 +86,10 @@ double largest_wall_speed(const RowLists<WallContact<D>>& contacts) {
   return std::sqrt(fastest2);
 }
 
-template void find_contacts(const std::vector<Obstacle>&, double, const AlignedVector<VecD<2>>&,
-                            double, int, RowLists<WallContact<2>>&);
-template void find_contacts(const std::vector<Obstacle>&, double, const AlignedVector<VecD<3>>&,
-                            double, int, RowLists<WallContact<3>>&);
+template void find_contacts(const std::vector<Obstacle>&, double, const MpsParticles<2>&, double,
+                            int, RowLists<WallContact<2>>&);
+template void find_contacts(const std::vector<Obstacle>&, double, const MpsParticles<3>&, double,
+                            int, RowLists<WallContact<3>>&);
 template double largest_wall_speed(const RowLists<WallContact<2>>&);
 template double largest_wall_speed(const RowLists<WallContact<3>>&);
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/methods/mps/particles.hpp"
 #include "snowshed/methods/mps/row_lists.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
@@ -37,10 +37,10 @@ struct PlacedObstacle {
 };
 std::vector<PlacedObstacle> place_obstacles(const std::vector<Obstacle>&, double time);
 
-/// Finds the contacts of particles within `reach` of obstacles, m, ordered by obstacle.
+/// Finds the contacts of the snow within `reach` of obstacles, m, ordered by obstacle.
 template <int D>
 void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
-                   const AlignedVector<VecD<D>>& points, double time, int threads,
+                   const MpsParticles<D>& particles, double time, int threads,
                    RowLists<WallContact<D>>& contacts);
 
 /// The largest speed of an obstacle's surface at a contact, m/s.

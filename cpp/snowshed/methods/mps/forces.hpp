@@ -60,10 +60,4 @@ void keep_spacing(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
 template <int D>
 void erode_and_deposit(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);
 
-/// The friction of a wall: the factor of a particle's velocity along the wall in its deceleration,
-/// 1/s.
-template <int D>
-double wall_drag(const MpsModel<D>&, const MpsParticles<D>&, std::size_t particle,
-                 const WallContact<D>&);
-
 }  // namespace snowshed

@@ -110,6 +110,7 @@ void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& partic
   work.change.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
+    if (particles.is_wall(i)) return;
     particles.push[i].setZero();
     if (!particles.moves(i)) return;
     const double base = base_pressure(model, particles, near, i);

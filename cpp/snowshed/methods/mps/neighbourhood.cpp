@@ -12,6 +12,8 @@ namespace {
 /// w r/r over the neighbours and walls, over n0 (after Khayyer and others 2009). On a lattice it is
 /// 0.28 at a plane surface in 2D, and 0.26 in 3D.
 constexpr double least_asymmetry = 0.12;
+/// The same for inner walls, on a lattice 0.05 where the surface meets the wall.
+constexpr double least_wall_asymmetry = 0.03;
 /// Below this ratio of number densities a particle is at a surface whatever is around it.
 constexpr double sparse = 0.75;
 /// Of the matrix of a particle's neighbours, below which gradients are not corrected; 1 on a
@@ -63,14 +65,14 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
       n += double(m->weight);
     near.density[i] = n;
-    bool surface = !particles.is_wall(i) && n < ratio * n0;
+    bool surface = particles.kind[i] != MpsKind::dummy_wall && n < ratio * n0;
     if (surface && !published && n >= sparse * n0) {
       VecD<D> side = VecD<D>::Zero();
       for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
         side += double(near.weight[e]) * near.way(e).stableNormalized();
       for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
         side += double(m->weight) * m->way.stableNormalized();
-      surface = side.norm() > least_asymmetry * n0;
+      surface = side.norm() > (particles.is_wall(i) ? least_wall_asymmetry : least_asymmetry) * n0;
     }
     near.surface[i] = surface;
   });
@@ -89,9 +91,10 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
 /// doi:10.1016/j.jcp.2011.01.009). On a lattice it is the identity, and so it is where too few
 /// neighbours are left. `spread` is a first-order correction (ours) of weights by e.B e, e the
 /// direction of a pair, that makes the sum of w r r^T, and with it Laplacians of quadratic fields,
-/// that of a lattice.
+/// that of a lattice. Dummy walls have no pressure, and no part in gradients.
 template <int D>
-void find_corrections(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int threads) {
+void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                      MpsNeighbourhood<D>& near, int threads) {
   using Matrix = Eigen::Matrix<double, D, D>;
   near.correction.resize(near.lists.size());
   near.asymmetry.resize(near.lists.size());
@@ -99,23 +102,64 @@ void find_corrections(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int t
   for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
     Matrix moment = Matrix::Zero(), second = Matrix::Zero();
     VecD<D> side = VecD<D>::Zero();
-    const auto add = [&](const VecD<D>& r, double weight, double slope) {
-      moment += slope * r * r.transpose();
+    const auto add = [&](const VecD<D>& r, double weight, double slope, bool in_gradients) {
+      if (in_gradients) moment += slope * r * r.transpose();
       second += weight * r * r.transpose();
       side += weight * r;
     };
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-      add(near.way(e), double(near.weight[e]), double(near.slope[e]));
+      add(near.way(e), double(near.weight[e]), double(near.slope[e]),
+          particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall);
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
-      add(m->way, double(m->weight), double(m->slope));
+      add(m->way, double(m->weight), double(m->slope), true);
     const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
     near.spread[i] = Matrix::Identity();
-    if (!near.below_surface[i])
-      near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
-    near.asymmetry[i] = near.below_surface[i] ? VecD<D>(VecD<D>::Zero()) : side;
+    const bool whole = !near.below_surface[i] && !particles.is_wall(i);
+    if (whole) near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
+    near.asymmetry[i] = whole ? side : VecD<D>(VecD<D>::Zero());
     moment *= model.gradient();
-    near.correction[i] = moment.determinant() > least_determinant ? Matrix(moment.inverse())
-                                                                  : Matrix(Matrix::Identity());
+    near.correction[i] = !particles.is_wall(i) && moment.determinant() > least_determinant
+                             ? Matrix(moment.inverse())
+                             : Matrix(Matrix::Identity());
+  });
+}
+
+}  // namespace
+
+namespace {
+
+/// Inner walls that no snow touches are dummies: no pressure spreads along a wall beyond the snow.
+template <int D>
+void leave_dry_walls(MpsParticles<D>& particles, MpsNeighbourhood<D>& near, int threads) {
+  near.dry.resize(particles.size());
+  for_each_particle(particles.size(), threads, [&](std::size_t i) {
+    near.dry[i] = false;
+    if (particles.kind[i] != MpsKind::inner_wall) return;
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
+      if (!particles.is_wall(near.lists.neighbour(e))) return;
+    near.dry[i] = true;
+  });
+  for_each_particle(particles.size(), threads, [&](std::size_t i) {
+    if (near.dry[i]) particles.kind[i] = MpsKind::dummy_wall;
+  });
+}
+
+/// Inner walls are made anew in each step: what their pressure will be near, the hydrostatic one
+/// of the snow around.
+template <int D>
+void guess_wall_pressures(const MpsModel<D>& model, MpsParticles<D>& particles,
+                          const MpsNeighbourhood<D>& near) {
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    if (particles.kind[i] != MpsKind::inner_wall || near.surface[i]) return;
+    double sum = 0, weight = 0;
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const std::size_t j = near.lists.neighbour(e);
+      if (particles.is_wall(j)) continue;
+      sum += double(near.weight[e]) *
+             (particles.pressure[j] - model.settings().density * model.gravity.dot(near.way(e)));
+      weight += double(near.weight[e]);
+    }
+    particles.pressure[i] = weight > 0 ? std::max(0.0, sum / weight) : 0.0;
   });
 }
 
@@ -133,12 +177,20 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
     near.cells.update(particles.position, reach, period);
   }
   near.lists.update(particles.position, near.cells, reach, period, threads);
-  find_contacts(model.options.obstacles, reach, particles.position, time, threads, near.contacts);
+  find_contacts(model.options.obstacles, reach, particles, time, threads, near.contacts);
   weigh_pairs(model, near, threads);
-  near.images.update(near.lists, near.contacts, reach, model.settings().spacing, threads,
-                     near.weight, near.coupling);
+  if (model.has_wall_particles()) {
+    near.images.clear(particles.size());
+    near.coupling = near.weight;
+  } else {
+    near.images.update(near.lists, near.contacts, reach, model.settings().spacing, threads,
+                       near.weight, near.coupling);
+  }
+  if (model.has_wall_particles()) leave_dry_walls(particles, near, threads);
   find_surface(model, particles, near, threads);
-  if (model.settings().gradient == MpsGradient::corrected) find_corrections(model, near, threads);
+  if (model.has_wall_particles()) guess_wall_pressures(model, particles, near);
+  if (model.settings().gradient == MpsGradient::corrected)
+    find_corrections(model, particles, near, threads);
 }
 
 template void find_neighbours(const MpsModel<2>&, MpsParticles<2>&, double, MpsWork<2>&);

@@ -23,11 +23,13 @@ struct MpsParticles {
   AlignedVector<double> density;    // number density over n0
   AlignedVector<double> rate;       // 1/s, of shear
   AlignedVector<double> viscosity;  // Pa s, apparent
-  AlignedVector<VecD<D>> push;  // m/s2, the gradient of the pressure over density, of the last step
+  // m/s2, the gradient of the pressure over density, of the last step; of wall particles: the
+  // normal
+  AlignedVector<VecD<D>> push;
   AlignedVector<VecD<D>> shear;  // m/s2, by viscosity, in the last step
   AlignedVector<MpsKind> kind;
   AlignedVector<std::uint32_t> id;
-  AlignedVector<std::uint16_t> event;
+  AlignedVector<std::uint16_t> event;  // of wall particles: the number of the obstacle
 
   std::size_t size() const { return position.size(); }
   bool moves(std::size_t i) const { return kind[i] == MpsKind::moving; }

@@ -8,21 +8,50 @@
 namespace snowshed {
 namespace {
 
+/// Inner walls conduct pressure as snow does. In divergences they therefore move as the snow around
+/// them does; that nothing flows into the wall is what dummies behind them say (ours).
+template <int D>
+void find_slip(const MpsModel<D>& model, const MpsParticles<D>& particles,
+               MpsNeighbourhood<D>& near) {
+  near.slip.resize(particles.size());
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    near.slip[i] = particles.velocity[i];
+    if (particles.kind[i] != MpsKind::inner_wall) return;
+    VecD<D> sum = VecD<D>::Zero();
+    double weight = 0;
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const std::size_t j = near.lists.neighbour(e);
+      if (particles.is_wall(j)) continue;
+      sum += double(near.weight[e]) * particles.velocity[j];
+      weight += double(near.weight[e]);
+    }
+    if (weight > 0) near.slip[i] = sum / weight;
+  });
+}
+
 /// The divergence of the velocity, 1/s. Behind a wall, images move along it as the particles do.
 /// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
 /// cancel at rest.
 template <int D>
 double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
                   const MpsNeighbourhood<D>& near, std::size_t i) {
-  const VecD<D>& own = particles.velocity[i];
+  const VecD<D>& own = model.has_wall_particles() ? near.slip[i] : particles.velocity[i];
   const bool corrected = model.settings().gradient == MpsGradient::corrected && !near.surface[i];
   const auto part = [&](const VecD<D>& way, double slope, const VecD<D>& change) {
     return slope * (corrected ? VecD<D>(near.correction[i] * way) : way).dot(change);
   };
   double sum = 0, flow = 0;
-  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-    sum +=
-        part(near.way(e), double(near.slope[e]), particles.velocity[near.lists.neighbour(e)] - own);
+  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+    const std::size_t j = near.lists.neighbour(e);
+    if (particles.kind[j] == MpsKind::dummy_wall) {
+      const VecD<D>& normal = particles.push[j];
+      flow -= double(near.weight[e]) * near.way(e).dot(normal) *
+              (own - particles.velocity[j]).dot(normal);
+      continue;
+    }
+    const VecD<D>& other = model.has_wall_particles() ? near.slip[j] : particles.velocity[j];
+    sum += part(near.way(e), double(near.slope[e]), other - own);
+  }
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     VecD<D> along = particles.velocity[m->of] - own;
     for (const int k : {0, 1}) {
@@ -98,9 +127,13 @@ void prepare_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles
     work.diagonal[i] = 0;
     if (work.fixed[i]) return;
     double sum = 0;
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-      if (particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall)
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const std::size_t j = near.lists.neighbour(e);
+      if (particles.kind[j] != MpsKind::dummy_wall)
         sum += double(near.coupling[e]);
+      else if (mirrored && near.dry[j] && particles.is_wall(i))
+        sum += 2 * double(near.coupling[e]);
+    }
     // What is missing at a free surface has the pressure of the particle with the opposite sign.
     if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
     work.diagonal[i] = std::max(sum, 1e-3 * n0);
@@ -154,8 +187,9 @@ SolveReport solve(const MpsModel<D>& model, MpsWork<D>& work) {
 template <int D>
 SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
                            MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+  MpsNeighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
+  if (model.has_wall_particles()) find_slip(model, particles, near);
   const double relaxation = compensation_time(model, dt, particles);
   // What the Laplacian would make of a linear pressure, since neighbours do not lie evenly around.
   const bool corrected = model.settings().gradient == MpsGradient::corrected;

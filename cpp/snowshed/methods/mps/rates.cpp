@@ -7,9 +7,20 @@
 namespace snowshed {
 namespace {
 
+/// Nearer to a wall than this, in l0, the velocity behind it grows no further.
+constexpr double nearest_no_slip = 0.25;
+
+/// The difference of velocities between a particle and one behind a wall's surface over that
+/// between the particle and the surface.
+template <int D>
+double no_slip_factor(const WallContact<D>& c, const VecD<D>& way, double spacing) {
+  return std::max(1.0, -way.dot(c.normal) / std::max(c.distance, nearest_no_slip * spacing));
+}
+
 /// The gradient of the velocity among the snow, corrected so that it is right for linear velocities
 /// however the neighbours lie (as find_corrections). Snow does not slide on sticky walls: images
-/// behind them have the opposite velocity.
+/// behind them have the opposite velocity, and wall particles one that makes the velocity at the
+/// surface that of the wall (Morris and others 1997, doi:10.1006/jcph.1997.5776).
 template <int D>
 Eigen::Matrix<double, D, D> velocity_gradient(const MpsModel<D>& model,
                                               const MpsParticles<D>& particles,
@@ -18,9 +29,14 @@ Eigen::Matrix<double, D, D> velocity_gradient(const MpsModel<D>& model,
   Matrix sum = Matrix::Zero(), moment = Matrix::Zero();
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
-    if (particles.is_wall(j)) continue;
     const VecD<D> r = near.way(e), weighted = double(near.slope[e]) * r;
-    sum += (particles.velocity[j] - particles.velocity[i]) * weighted.transpose();
+    VecD<D> change = particles.velocity[j] - particles.velocity[i];
+    if (particles.is_wall(j)) {
+      const WallContact<D>* c = near.contact_with(i, particles.event[j]);
+      if (!c || !model.is_sticky(*c)) continue;
+      change *= no_slip_factor(*c, r, model.settings().spacing);
+    }
+    sum += change * weighted.transpose();
     moment += r * weighted.transpose();
   }
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
@@ -83,6 +99,11 @@ template <int D>
 void find_rates(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
   work.velocity_gradient.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    if (particles.is_wall(i)) {
+      work.velocity_gradient[i].setZero();
+      particles.rate[i] = 0;
+      return;
+    }
     work.velocity_gradient[i] = velocity_gradient(model, particles, work.near, i);
     particles.rate[i] = shear_rate<D>(work.velocity_gradient[i]);
   });

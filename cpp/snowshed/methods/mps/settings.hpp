@@ -20,6 +20,8 @@ enum class MpsSurface { published, mirrored };
 enum class MpsOrder { published, single_move };
 /// What keeps particles apart besides the pressure.
 enum class MpsSpacing { none, collision, shifting };
+/// What walls are made of: images of the particles near them, or particles of their own.
+enum class MpsWalls { mirrors, particles };
 /// Preconditioner of the pressure equation.
 enum class MpsPreconditioner { jacobi, incomplete_cholesky, multigrid };
 
@@ -50,6 +52,7 @@ struct MpsSettings {
   double deposition_pressure = 25;  // Pa
   double deposition_speed = 0.05;   // m/s
 
+  MpsWalls walls = MpsWalls::mirrors;
   MpsSource source = MpsSource::compensated;
   double compensation = 0.1;  // share of the density's error that a step takes away
   MpsGradient gradient = MpsGradient::corrected;

@@ -178,6 +178,9 @@ template <int D>
 void MpsSolver<D>::step() {
   if (size() == 0) throw SimulationError("there is no snow");
   MpsState<D> next = state_;
+  if (model_.has_wall_particles())
+    work_.walls.append_near(state_.time, model_.options.period, model_.particle_mass(),
+                            next.particles);
   find_neighbours(model_, next.particles, state_.time, work_);
   double dt = choose_step(next.particles);
   const MpsState<D> start = next;
@@ -195,7 +198,7 @@ void MpsSolver<D>::step() {
     ++next.counters.rejected;
   }
   if (model_.options.energy) {
-    const std::size_t n = size();
+    const std::size_t n = next.particles.size();
     work_.moved.resize(n);
     for (std::size_t i = 0; i < n; ++i) work_.moved[i] = start.particles.moves(i);
   }
@@ -203,9 +206,10 @@ void MpsSolver<D>::step() {
   if (model_.options.energy) work_.projected = next.particles.velocity;
   if (s.order == MpsOrder::single_move) move(dt, next.particles);
   erode_and_deposit(model_, next.particles, work_);
-  for (std::size_t i = 0; i < size(); ++i)
+  for (std::size_t i = 0; i < next.particles.size(); ++i)
     next.particles.density[i] = work_.near.density[i] / model_.kernel.number_density;
   if (model_.options.energy) book_energy(next, dt);
+  if (model_.has_wall_particles()) remove_walls(next.particles);
   next.time += dt;
   next.dt = dt;
   next.pressure_iterations += next.solves.pressure.iterations;

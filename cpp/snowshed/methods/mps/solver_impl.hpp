@@ -8,7 +8,11 @@ namespace snowshed {
 template <int D>
 class MpsSolver final : public MpsMethod {
  public:
-  explicit MpsSolver(MpsOptions options) : model_(std::move(options)) {}
+  explicit MpsSolver(MpsOptions options) : model_(std::move(options)) {
+    if (model_.has_wall_particles())
+      work_.walls =
+          WallParticles<D>(model_.options.obstacles, model_.settings().spacing, model_.reach());
+  }
 
   using Method::add;
   void add(const std::vector<ParticleBatch>&) override;

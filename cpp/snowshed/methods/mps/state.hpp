@@ -15,6 +15,7 @@
 #include "snowshed/methods/mps/rheology.hpp"
 #include "snowshed/methods/mps/solver.hpp"
 #include "snowshed/methods/mps/wall_images.hpp"
+#include "snowshed/methods/mps/wall_particles.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
 namespace snowshed {
@@ -44,6 +45,7 @@ struct MpsModel {
   Rheology rheology;
   int threads;
 
+  bool has_wall_particles() const { return settings().walls == MpsWalls::particles; }
   bool is_sticky(const WallContact<D>& c) const {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
   }
@@ -85,9 +87,17 @@ struct MpsNeighbourhood {
   AlignedVector<std::uint8_t> surface;        // whether a particle lies at the free surface
   AlignedVector<std::uint8_t> below_surface;  // or has such a neighbour
   AlignedVector<Eigen::Matrix<double, D, D>> correction;  // of gradients, see find_corrections
+  AlignedVector<std::uint8_t> dry;                        // inner walls that no snow touches
+  AlignedVector<VecD<D>> slip;                            // m/s, with wall particles, see find_slip
   AlignedVector<VecD<D>> asymmetry;                       // sum of w r, 0 at the surface, m
   AlignedVector<Eigen::Matrix<double, D, D>> spread;      // of Laplacians, see find_corrections
 
+  /// A particle's contact with an obstacle, or null.
+  const WallContact<D>* contact_with(std::size_t i, std::uint32_t obstacle) const {
+    for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c)
+      if (c->obstacle == obstacle) return c;
+    return nullptr;
+  }
   VecD<D> way(std::size_t entry) const { return lists.way(entry); }
   const WallContact<D>& wall(const WallImage<D>& image, int k) const {
     return contacts.all()[image.contact[k]];
@@ -96,6 +106,7 @@ struct MpsNeighbourhood {
 
 template <int D>
 struct MpsWork {
+  WallParticles<D> walls;  // where the settings say so
   MpsParticles<D> next, spare;
   MpsNeighbourhood<D> near;
   AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s

@@ -13,11 +13,24 @@ constexpr double nearest_friction = 0.25;
 
 /// The share of the wall's shear stress that acts on a particle at a distance, in l0: that of the
 /// first or of the second layer of a lattice, whose sum is one.
-double wall_share(double distance, double second) {
+double share_of_mirror(double distance, double second) {
   const auto falls = [&](double from, double to) {
     return std::clamp((to - distance) / (to - from), 0.0, 1.0);
   };
   return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
+}
+
+/// The same share with the wall particles that are there.
+template <int D>
+double share_of_particles(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                          const MpsNeighbourhood<D>& near, std::size_t i, const WallContact<D>& c) {
+  double sum = 0;
+  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+    const std::size_t j = near.lists.neighbour(e);
+    if (particles.is_wall(j) && particles.event[j] == c.obstacle)
+      sum += double(near.weight[e]) * std::max(0.0, -near.way(e).dot(c.normal));
+  }
+  return model.laplacian() * model.settings().spacing * sum;
 }
 
 /// The viscosity between two particles, Pa s: that of the velocity gradient midway, which is the
@@ -47,17 +60,17 @@ constexpr double yield_tolerance = 1e-3;
 /// that all but viscosity makes.
 constexpr double first_guess = 0.01;
 
-}  // namespace
-
 /// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
 /// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
 /// obstacle is not sticky, it is at most the obstacle's own friction.
 template <int D>
-double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, std::size_t i,
-                 const WallContact<D>& c) {
+double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                 const MpsNeighbourhood<D>& near, std::size_t i, const WallContact<D>& c) {
   const MpsSettings& s = model.settings();
   const double height = std::max(c.distance, nearest_friction * s.spacing);
-  const double share = wall_share(c.distance / s.spacing, model.second_layer);
+  const double share = model.has_wall_particles()
+                           ? share_of_particles(model, particles, near, i, c)
+                           : share_of_mirror(c.distance / s.spacing, model.second_layer);
   if (share == 0) return 0;
   const VecD<D> relative = particles.velocity[i] - c.velocity;
   const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
@@ -70,8 +83,6 @@ double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, std
     viscosity = std::min(viscosity, law.regularised(contact.friction * pressure, rate));
   return share * viscosity / (s.density * s.spacing * height);
 }
-
-namespace {
 
 /// The factor of a pair's weight in Laplacians, see find_corrections.
 template <int D>
@@ -104,6 +115,10 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
     const bool moves = particles.moves(i);
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      if (particles.is_wall(i) || particles.is_wall(near.lists.neighbour(e))) {
+        work.coupling[e] = 0;  // walls act by their drag
+        continue;
+      }
       const double viscosity =
           newtonian ? model.rheology.viscosity : viscosity_between(model, particles, work, i, e);
       double weight = double(near.weight[e]);
@@ -116,7 +131,7 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
     if (moves)
       for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
         double& drag = work.drag[near.contacts.place(c)];
-        drag = wall_drag(model, particles, i, *c);
+        drag = wall_drag(model, particles, near, i, *c);
         const Matrix along = dt * drag * (Matrix::Identity() - c->normal * c->normal.transpose());
         block += along;
         right += along * c->velocity;
@@ -211,10 +226,6 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
   return report;
 }
 
-template double wall_drag(const MpsModel<2>&, const MpsParticles<2>&, std::size_t,
-                          const WallContact<2>&);
-template double wall_drag(const MpsModel<3>&, const MpsParticles<3>&, std::size_t,
-                          const WallContact<3>&);
 template void add_gravity(const MpsModel<2>&, double, MpsParticles<2>&);
 template void add_gravity(const MpsModel<3>&, double, MpsParticles<3>&);
 template SolveReport apply_viscosity(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);

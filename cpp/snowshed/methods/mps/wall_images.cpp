@@ -87,6 +87,12 @@ void WallImages<D>::update(const NeighbourLists<D>& lists, const RowLists<WallCo
                  });
 }
 
+template <int D>
+void WallImages<D>::clear(std::size_t particles) {
+  images_.update(particles, particles + 1, 1,
+                 [](std::size_t, std::size_t, std::uint32_t*, std::vector<WallImage<D>>&) {});
+}
+
 template class WallImages<2>;
 template class WallImages<3>;
 

@@ -28,6 +28,9 @@ class WallImages {
               double reach, double spacing, int threads, const AlignedVector<float>& direct,
               AlignedVector<float>& weight);
 
+  /// Makes no images.
+  void clear(std::size_t particles);
+
   const WallImage<D>* begin(std::size_t i) const { return images_.begin(i); }
   const WallImage<D>* end(std::size_t i) const { return images_.end(i); }
   std::size_t bytes() const { return images_.bytes(); }

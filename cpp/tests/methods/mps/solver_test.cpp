@@ -88,6 +88,23 @@ TEST(MpsSolver, ColumnsOfWaterStayAtRest) {
   }
 }
 
+// The same with walls of particles, which conduct pressure: also in the corners.
+TEST(MpsSolver, ColumnsBetweenWallParticlesStayAtRest) {
+  for (const int dimension : {2, 3}) {
+    MpsOptions o = tank(dimension, 0.1, dimension == 2 ? 0.01 : 0.02);
+    o.settings.walls = MpsWalls::particles;
+    o.settings.viscosity = 1e-3;
+    const auto mps = make_mps(o);
+    mps->add(block_of(o, Vec3::Zero(), {0.1, 0.1, 0.2}));
+    mps->step();
+    EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01) << dimension;
+    flow_until(*mps, 0.3);
+    EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.03) << dimension;
+    EXPECT_LT(mps->motion(0).rms_speed, 0.05 * std::sqrt(9.81 * 0.2)) << dimension;
+    EXPECT_EQ(mps->size(), std::size_t(dimension == 2 ? 200 : 250));
+  }
+}
+
 // Viscosity that acted before the pressure would hang stiff snow on sticky walls.
 TEST(MpsSolver, StiffSnowPressesOnTheFloor) {
   MpsOptions o = tank(3, 0.1, 0.02);
@@ -145,13 +162,14 @@ TEST(MpsSolver, AnUnsolvedEquationLeavesTheStateAsItWas) {
 using MpsCheckpoint = TemporaryFolder;
 
 TEST_F(MpsCheckpoint, SameBitsOnAnyThreadsAndAfterResuming) {
-  const auto run = [this](int threads, bool resume) {
-    MpsOptions o = tank(2, 1.0, 0.01);
+  const auto run = [this](int threads, bool resume, MpsWalls walls) {
+    MpsOptions o = tank(2, 1.0, 0.02);
+    o.settings.walls = walls;
     o.settings.threads = threads;
     o.settings.rheology = MpsRheology::bingham_dilatant;
     o.settings.yield_iterations = 2;  // enough for the same bits
     auto mps = make_mps(o);
-    mps->add(block_of(o, Vec3::Zero(), {0.5, 0, 0.5}));
+    mps->add(block_of(o, Vec3::Zero(), {1.0, 0, 1.0}));
     for (int k = 0; k < 6; ++k) {
       if (resume && k == 3) {
         BinaryWriter out;
@@ -164,9 +182,11 @@ TEST_F(MpsCheckpoint, SameBitsOnAnyThreadsAndAfterResuming) {
     }
     return mps->state().positions;
   };
-  const std::vector<Vec3> once = run(1, false);
-  EXPECT_EQ(once, run(3, false));
-  EXPECT_EQ(once, run(1, true));
+  for (const MpsWalls walls : {MpsWalls::mirrors, MpsWalls::particles}) {
+    const std::vector<Vec3> once = run(1, false, walls);
+    EXPECT_EQ(once, run(3, false, walls));
+    EXPECT_EQ(once, run(1, true, walls));
+  }
 }
 
 /// A slab on an endless incline, with Saito's snow.

@@ -46,11 +46,13 @@ def reproduce() -> None:
     Examples:
       snowshed reproduce thesis --quick -o thesis
       snowshed reproduce hagenmuller --quick -o grains
+      snowshed reproduce saito --quick -o avalanches
     """  # noqa: D301 - click wants the control character
 
 
 for name, short_help in (
     ("thesis", "Chapters 3 to 5 of the thesis on snow that slides off panels."),
     ("hagenmuller", "What a paper on discrete elements of snow says of its compression."),
+    ("saito", "What a paper on the moving particle method says of avalanches."),
 ):
     reproduce.add_command(FromSource(name, f"{name}.command", short_help))

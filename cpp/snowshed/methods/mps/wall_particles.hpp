@@ -1,0 +1,79 @@
+// Walls as particles that keep their places relative to an obstacle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "snowshed/methods/mps/boundary.hpp"
+#include "snowshed/methods/mps/particles.hpp"
+
+namespace snowshed {
+
+/// Wall particles of obstacles, made where snow comes near.
+///
+/// They stand in layers half a spacing, one and a half, ... below the surface. Those of the first
+/// are inner walls, the others dummy walls, so many that the particles at the surface miss nothing
+/// within the radius [P]. They are the points of a lattice, moved along the normal to the middle of
+/// their layer; the lattice follows the faces of boxes and planes, which are so covered evenly.
+/// Where others lie nearer than `closest`, they push each other apart along the surface (ours).
+/// Obstacles thinner than a particle have one layer, in the middle. Those too thin for dummies
+/// between the inner walls of both sides have dummies only: no pressure goes through them (ours).
+template <int D>
+class WallParticles {
+ public:
+  WallParticles() = default;
+  /// `obstacles` must live as long as this. `reach` is the radius of the weight function, m.
+  WallParticles(const std::vector<Obstacle>& obstacles, double spacing, double reach);
+
+  /// Appends to the snow all wall particles that it, or inner walls next to it, can reach.
+  /// `period` as in CellOrder.
+  void append_near(double time, double period, double mass, MpsParticles<D>& snow);
+
+  std::size_t bytes() const;
+
+ private:
+  using Cell = std::array<std::int32_t, D>;
+  struct Hash {
+    std::size_t operator()(const Cell& c) const;
+  };
+  struct Point {
+    VecD<D> position, normal;  // m, in the frame of the group
+    std::uint32_t obstacle;
+    MpsKind kind;
+  };
+  using Points = std::vector<Point>;
+  /// The lattice from which the particles of an obstacle are made.
+  struct Lattice {
+    Mat3 axes = Mat3::Identity();
+    Vec3 origin = Vec3::Zero();
+  };
+  /// Obstacles that do not move against each other, and the particles of cells that have been
+  /// asked for.
+  struct Group {
+    std::vector<std::uint32_t> obstacles;
+    std::unordered_map<Cell, Points, Hash> made;
+    std::unordered_map<Cell, bool, Hash> near;  // whether cells around have wall particles
+  };
+
+  const Points& points_in(Group&, const Cell&);
+  bool is_near_wall(Group&, const Cell&);
+  void make(std::uint32_t obstacle, const Cell&, Points&) const;
+  void push_apart(const LevelSet&, std::vector<VecD<D>>& points,
+                  const std::vector<double>& depth) const;
+  void append_group(Group&, const RigidPose&, double period, const std::vector<Cell>& snow_cells,
+                    double mass, MpsParticles<D>& to);
+
+  const std::vector<Obstacle>* obstacles_ = nullptr;
+  double spacing_ = 0, edge_ = 0;
+  int layers_ = 0;
+  std::vector<Lattice> lattices_;  // of each obstacle
+  std::vector<Group> groups_;      // those at rest first
+};
+
+/// Removes the wall particles; the others keep their order.
+template <int D>
+void remove_walls(MpsParticles<D>&);
+
+}  // namespace snowshed

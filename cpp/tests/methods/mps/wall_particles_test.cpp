@@ -1,0 +1,98 @@
+#include "snowshed/methods/mps/wall_particles.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mps_testing.hpp"
+#include "snowshed/methods/mps/forces.hpp"
+
+namespace snowshed {
+namespace {
+
+template <int D>
+MpsParticles<D> at_rest(const std::vector<Vec3>& positions) {
+  MpsParticles<D> p;
+  p.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    p.position[i] = section<D>(positions[i]);
+    p.velocity[i].setZero();
+    p.push[i].setZero();
+    p.shear[i].setZero();
+    p.kind[i] = MpsKind::moving;
+    p.event[i] = 0;
+  }
+  return p;
+}
+
+/// The smallest and the largest number density over that of a lattice, of snow and inner walls.
+template <int D>
+std::pair<double, double> densities(const MpsOptions& o, MpsParticles<D> p) {
+  const MpsModel<D> model(o);
+  MpsWork<D> work;
+  work.walls = WallParticles<D>(model.options.obstacles, o.settings.spacing, model.reach());
+  work.walls.append_near(0, o.period, model.particle_mass(), p);
+  find_neighbours(model, p, 0.0, work);
+  double low = HUGE_VAL, high = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.kind[i] == MpsKind::dummy_wall) continue;
+    low = std::min(low, work.near.density[i] / model.kernel.number_density);
+    high = std::max(high, work.near.density[i] / model.kernel.number_density);
+  }
+  return {low, high};
+}
+
+// A lattice of snow in a corner goes on in the walls: nothing is missing and nothing twice.
+TEST(MpsWallParticles, ContinueTheLatticeOfTheSnow) {
+  for (const int dimension : {2, 3}) {
+    MpsOptions o = tank(dimension, 0.08, 0.01);
+    o.settings.walls = MpsWalls::particles;
+    o.obstacles.push_back(wall({0, 0, 0.08}, -Vec3::UnitZ()));  // full
+    const ParticleBatch batch = block_of(o, Vec3::Zero(), {0.08, 0.08, 0.08});
+    const auto [low, high] = dimension == 2 ? densities<2>(o, at_rest<2>(batch.positions))
+                                            : densities<3>(o, at_rest<3>(batch.positions));
+    EXPECT_NEAR(low, 1, 1e-5) << dimension;
+    EXPECT_NEAR(high, 1, 1e-5) << dimension;
+  }
+}
+
+// The lattice of a plane follows it.
+TEST(MpsWallParticles, CoverAnInclineEvenly) {
+  MpsOptions o = tank(2, 1, 0.01);
+  o.settings.walls = MpsWalls::particles;
+  const Vec3 normal = Vec3(0.6, 0, 0.8), along(0.8, 0, -0.6);
+  o.obstacles = {wall(Vec3::Zero(), normal)};
+  std::vector<Vec3> row;
+  for (int i = -10; i < 10; ++i) row.push_back((i + 0.5) * 0.01 * along + 0.005 * normal);
+  MpsParticles<2> p = at_rest<2>(row);
+  WallParticles<2> walls(o.obstacles, 0.01, 0.021);
+  walls.append_near(0, 0, 1, p);
+  int touched = 0;
+  for (std::size_t i = row.size(); i < p.size(); ++i) {
+    const double depth = -embed(p.position[i]).dot(normal) / 0.01;
+    EXPECT_NEAR(depth - std::floor(depth), 0.5, 1e-9);
+    EXPECT_EQ(p.kind[i] == MpsKind::inner_wall, depth < 1);
+    touched += std::abs(embed(p.position[i]).dot(along)) < 0.1 && depth < 1;
+  }
+  EXPECT_EQ(touched, 20);
+}
+
+// What is thinner than a particle has a single layer, through which no pressure goes.
+TEST(MpsWallParticles, OfAThinBoardStandInItsMiddle) {
+  MpsOptions o = tank(2, 1, 0.01);
+  o.obstacles = {{"board",
+                  make_box(Vec3(0.05, 0, 0.05), Vec3(0.002, 2, 0.1)),
+                  {Condition::sticky, 0.0},
+                  std::nullopt}};
+  MpsParticles<2> p = at_rest<2>({{0.03, 0, 0.05}, {0.07, 0, 0.05}});
+  WallParticles<2> walls(o.obstacles, 0.01, 0.021);
+  walls.append_near(0, 0, 1, p);
+  ASSERT_GT(p.size(), 6u);
+  for (std::size_t i = 2; i < p.size(); ++i) {
+    EXPECT_NEAR(p.position[i][0], 0.05, 1e-9);
+    EXPECT_EQ(p.kind[i], MpsKind::dummy_wall);
+  }
+  remove_walls(p);
+  EXPECT_EQ(p.size(), 2u);
+}
+
+}  // namespace
+}  // namespace snowshed
