@@ -54,6 +54,13 @@ def test_a_damaged_line_of_measurements(name, tmp_path):
     assert message in said and len(said) < 400 + len(str(tmp_path))
 
 
+def test_a_file_that_cannot_grow_is_named(tmp_path):
+    folder = SuiteFolder(tmp_path)
+    folder.measurements.path.symlink_to("/dev/full")
+    with pytest.raises(OSError, match=r"measurements\.jsonl"):
+        folder.measurements.append(WHOLE)
+
+
 @pytest.mark.parametrize("missing", WHOLE.to_json())
 def test_a_missing_key_of_a_measurement(missing):
     data = {key: value for key, value in WHOLE.to_json().items() if key != missing}
