@@ -10,6 +10,7 @@ import json
 from pathlib import Path
 
 from snowshed.analysis.verification.measurements import Measurement
+from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import parse_object
 
 
@@ -63,5 +64,5 @@ class MeasurementFile:
 
     def _whole(self) -> bytes:
         """Return what is in the file up to the end of its last complete line."""
-        data = self.path.read_bytes() if self.path.exists() else b""
+        data = read_regular(self.path) if self.path.exists() else b""
         return data[: data.rfind(b"\n") + 1]

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import snowshed._core as _core
+from snowshed.io.input_file import read_regular
 from snowshed.scene.scene import ResolvedScene
 
 HASH_DIGITS = 32  # hexadecimal: 128 bits
@@ -137,4 +138,4 @@ def _digest_of(path: str) -> str:
 @functools.lru_cache(maxsize=64)
 def _digest(path: str, modified: int, size: int) -> str:
     """Return the digest of a file's content; kept, since the runs of a study share their files."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    return hashlib.sha256(read_regular(Path(path))).hexdigest()
