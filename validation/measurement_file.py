@@ -10,6 +10,7 @@ import json
 from pathlib import Path
 
 from snowshed.analysis.verification.measurements import Measurement
+from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import parse_object
 
 
@@ -53,11 +54,15 @@ class MeasurementFile:
     def append(self, measurement: Measurement) -> None:
         """Add a measurement; it is on disk when this returns."""
         line = json.dumps(measurement.to_json(), allow_nan=False) + "\n"
-        with self.path.open("ab") as file:
-            file.truncate(len(self._whole()))
-            file.write(line.encode())
+        try:
+            with self.path.open("ab") as file:
+                file.truncate(len(self._whole()))
+                file.write(line.encode())
+        except OSError as error:  # writing does not say in which file
+            error.filename = error.filename or str(self.path)
+            raise
 
     def _whole(self) -> bytes:
         """Return what is in the file up to the end of its last complete line."""
-        data = self.path.read_bytes() if self.path.exists() else b""
+        data = read_regular(self.path) if self.path.exists() else b""
         return data[: data.rfind(b"\n") + 1]

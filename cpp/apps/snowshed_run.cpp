@@ -39,6 +39,8 @@ volatile std::sig_atomic_t interrupted = 0;
 
 Options parse(int argc, char** argv) {
   Options o;
+  for (int i = 1; i < argc; ++i)
+    if (!snowshed::is_utf8(argv[i])) refuse(std::string(argv[i]) + ": this name is not UTF-8");
   for (int i = 1; i < argc; ++i) {
     const std::string a = argv[i];
     if (a == "-o" || a == "--output") {

@@ -13,6 +13,7 @@ import pytest
 from conftest import tiny_scene
 
 from snowshed.cli.main import main
+from snowshed.cli.start import main as start
 from snowshed.cli.terminal import PlainConsole, plain_table
 from snowshed.io.csv_table import csv_text
 from snowshed.io.printable import HARMFUL, printable
@@ -126,3 +127,18 @@ def used_s(process, ticks):
     except OSError:
         return 0.0
     return (int(words[11]) + int(words[12])) / ticks
+
+
+def test_an_interrupt_is_known_when_python_has_wrapped_it(monkeypatch, capsys):
+    """As it does where a class is being made: ``Error calling __set_name__``."""
+
+    class Field:
+        def __set_name__(self, owner, name):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("snowshed.cli.main.main", lambda: type("Made", (), {"field": Field()}))
+    assert start() == 130
+    assert capsys.readouterr().err == "error: interrupted\n"
+    monkeypatch.setattr("snowshed.cli.main.main", lambda: [][0])
+    with pytest.raises(IndexError):
+        start()

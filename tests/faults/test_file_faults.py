@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import tiny_scene
+from faults.forks import Forks
 
 from snowshed.io.atomic import LEFTOVER
 from snowshed.scene.builders import example_grains, example_slide
@@ -28,7 +29,7 @@ REGRESS = (
     *("--kind", "linear", "--target", "ratio", "--rounds", "1", "--folds", "2"),
     *("--inner-folds", "2", "--jobs", "1", "-q"),
 )
-VERIFY = (sys.executable, "-m", "validation", "--case", "material_paths", "-q")
+VERIFY = (sys.executable, "-m", "validation", "--case", "spin", "-q")
 CLEARANCE = (
     *("--slope-length", "0.4", "--tilt", "60", "--heights", "0.3", "--draws", "1"),
     *("--jobs", "1", "-q"),
@@ -103,25 +104,26 @@ def inputs(tmp_path_factory):
     return folder
 
 
-class Program:
-    """One of `PROGRAMS` with faults in its files."""
+def in_a_process(words, environment):
+    """Run a command line as a user does."""
+    environment = {**os.environ, **environment}
+    return subprocess.run(words, env=environment, capture_output=True, text=True, timeout=300)
 
-    def __init__(self, name, inputs, library, base):
+
+class Program:
+    """One of `PROGRAMS` with faults in its files, started by a function like `in_a_process`."""
+
+    def __init__(self, name, inputs, library, base, start):
         self.command, self.going_on = PROGRAMS[name]
         self.inputs = inputs
         self.library = library
         self.base = base
+        self.start = start
 
     def run(self, folder, *options, **faults):
         words = [str(word).format(inputs=self.inputs) for word in self.command]
         environment = {"LD_PRELOAD": str(self.library), "FAULT_FOLDER": str(folder), **faults}
-        return subprocess.run(
-            [*words, "-o", folder, *options],
-            env={**os.environ, **environment},
-            capture_output=True,
-            text=True,
-            timeout=300,
-        )
+        return self.start([*words, "-o", str(folder), *options], environment)
 
     def undisturbed(self):
         """Return the results folder of a run without faults, and its number of operations."""
@@ -171,8 +173,7 @@ def contents(folder):
     return found
 
 
-def check(name, inputs, faults, base, sample=None):
-    program = Program(name, inputs, faults, base)
+def check(program, sample=None):
     folder, count = program.undisturbed()
     wanted = contents(folder)
     assert count > 10
@@ -188,10 +189,12 @@ def check(name, inputs, faults, base, sample=None):
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_command_goes_on_after_some_operations(name, inputs, faults, tmp_path):
-    check(name, inputs, faults, tmp_path, SAMPLES.get(name, 2))
+    check(Program(name, inputs, faults, tmp_path, in_a_process), SAMPLES.get(name, 2))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_command_goes_on_after_every_operation(name, inputs, faults, tmp_path):
-    check(name, inputs, faults, tmp_path)
+    with Forks(tmp_path, faults) as forks:
+        compiled = name == "snowshed-run"
+        check(Program(name, inputs, faults, tmp_path, in_a_process if compiled else forks.run))

@@ -6,7 +6,7 @@ import os
 import pytest
 
 from snowshed import InputError
-from snowshed.io.atomic import replacing, write_text
+from snowshed.io.atomic import remove_leftovers, replacing, write_text
 
 
 def test_what_is_no_file_is_refused_and_stays(tmp_path):
@@ -38,3 +38,19 @@ def test_a_failure_leaves_the_older_file_alone_and_names_it(tmp_path):
     assert raised.value.filename == str(file)
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
     assert file.read_text() == "older"
+
+
+def test_leftovers_are_removed_where_the_folder_is_ours(tmp_path):
+    ours, elsewhere = tmp_path / "ours", tmp_path / "elsewhere"
+    leftover = ".partial-0123456789abcdef-a"
+    for folder in (ours, ours / "below" / "deeper", elsewhere):
+        folder.mkdir(parents=True)
+        for name in (leftover, ".partial-of-the-user"):
+            (folder / name).touch()
+    (ours / "link").symlink_to(elsewhere)
+    remove_leftovers(ours)
+    assert {path.parent.name for path in tmp_path.rglob(leftover)} == {"elsewhere", "deeper"}
+    remove_leftovers(ours, deep=True)
+    assert [path.parent.name for path in tmp_path.rglob(leftover)] == ["elsewhere"]
+    assert len([*tmp_path.rglob(".partial-of-the-user")]) == 3
+    remove_leftovers(tmp_path / "none", deep=True)

@@ -182,6 +182,7 @@ def test_files_that_are_no_scenes_are_refused(tmp_path, capsys, content, message
         (["scene.json", "other.json", "-o", "out"], "more than one scene: other.json"),
         (["none.json", "-o", "out"], "none.json: no such file"),
         ([".", "-o", "out"], ".: is a folder"),
+        (["scene.json", "-o", os.fsdecode(b"bad\xff")], "bad?: this name is not UTF-8"),
     ],
 )
 def test_bad_arguments(tmp_path, arguments, message):

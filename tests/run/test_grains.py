@@ -12,6 +12,7 @@ from snowshed.io.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.run.grains import run_grains
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.sequence import open_sequence
 from snowshed.scene.builders import example_grains, grains_scene
 
 
@@ -90,6 +91,16 @@ def test_an_interrupted_test_goes_on_to_the_same_files(scene, tmp_path):
     for name in ("curve.csv", "grains.json", "contacts.csv"):
         whole, two = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
         assert whole == two
+
+
+def test_a_test_that_was_killed_before_it_began_makes_the_same_film(scene, tmp_path):
+    """The film's resolution is that of the grains, which are not there before the first event."""
+    run_grains(scene, tmp_path / "whole", pictures=False)
+    with open_sequence(scene.resolve(), tmp_path / "two", resume=False):
+        pass
+    run_grains(scene, tmp_path / "two", resume=True, pictures=False)
+    whole, two = ((tmp_path / folder / "film.bin").read_bytes() for folder in ("whole", "two"))
+    assert whole == two
 
 
 def test_threads_do_not_change_the_curve(scene, tmp_path):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from study_helpers import tiny_scene
 
-from snowshed import Obstacle, Scene, Shape, _core
+from snowshed import InputError, Obstacle, Scene, Shape, _core
 from snowshed.scene.schema import scene_parameters
 from snowshed.study import Run
 from snowshed.study.scene_hash import content_hash
@@ -114,6 +114,8 @@ def test_files_count_by_their_content_not_by_their_path(tmp_path):
     assert hash_with(copy) == before
     np.save(one, np.full((3, 3), 2.0))
     assert hash_with(one) != before
+    with pytest.raises(InputError, match="/dev/zero: not a regular file"):
+        hash_with("/dev/zero")
 
 
 def test_the_scene_of_a_run_can_be_run():

@@ -1,6 +1,7 @@
 """Damaged files of a verification folder are named, with the line and what is wrong."""
 
 import json
+import resource
 
 import pandas as pd
 import pytest
@@ -52,6 +53,23 @@ def test_a_damaged_line_of_measurements(name, tmp_path):
     said = str(caught.value)
     assert said.startswith(f"{tmp_path / 'measurements.jsonl'}:2: ")
     assert message in said and len(said) < 400 + len(str(tmp_path))
+
+
+def test_a_file_that_cannot_grow_is_named(tmp_path):
+    folder = SuiteFolder.create(tmp_path)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, limits[1]))
+        with pytest.raises(OSError, match=r"measurements\.jsonl"):
+            folder.measurements.append(WHOLE)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
+def test_a_device_without_end_is_no_file_of_measurements(tmp_path):
+    (tmp_path / "measurements.jsonl").symlink_to("/dev/zero")
+    with pytest.raises(InputError, match="not a regular file"):
+        SuiteFolder(tmp_path).measurements.read()
 
 
 @pytest.mark.parametrize("missing", WHOLE.to_json())

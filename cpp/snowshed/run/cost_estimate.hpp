@@ -19,9 +19,11 @@ struct CostEstimate {
   double slide_time = 0.0;        // s, until the slab's rear leaves the panel
   double fall_time = 0.0;         // s, of that rear or the last body; infinite if it never lands
   double first_landing = 0.0;     // s, when the front of the slab, or a body, reaches the ground
+  double way = 0.0;               // m, of the fastest snow, until it lands; within events.max_time
   double event_time = 0.0;        // s, sliding, falling and settling; at most events.max_time
   double steps = 0.0;             // all events
   double updates = 0.0;           // of particles that are awake, all events
+  double scattering = 1.0;        // work of an update where snow flies apart, over that at first
   double bytes = 0.0;             // peak memory, particles and grid
   std::vector<std::pair<std::string, double>> parts;  // of which particles consist, if of any
 };

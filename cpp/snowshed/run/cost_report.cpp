@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snowshed/core/errors.hpp"
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/run/simulation.hpp"
@@ -97,13 +98,7 @@ void list_features_of(const MpmSettings& mpm, const Scene& s, CostReport& report
   feature(s.output.snapshot_interval > 0, "snapshots during events");
 }
 
-/// Particle updates per second on this machine, on the scene with fewer particles.
-double measured_speed(Scene scene, const std::filesystem::path& base_dir,
-                      const CostEstimate& cost) {
-  const double n = cost.particles.empty() ? 0.0 : cost.particles.front();
-  if (n > measured_particles && scene.uses<MpmSettings>())
-    scene.mpm().dx *= std::pow(n / measured_particles, 1.0 / scene.dimension);
-  scene.seeding.pattern = SeedPattern::jittered;  // seeds fast
+double speed_of(const Scene& scene, const std::filesystem::path& base_dir) {
   Simulation sim(scene, base_dir);
   sim.begin_event();
   const Stopwatch clock;
@@ -111,10 +106,31 @@ double measured_speed(Scene scene, const std::filesystem::path& base_dir,
   return double(sim.solver().counters().particle_updates) / clock.seconds();
 }
 
+/// Particle updates per second on this machine, on the scene with fewer particles that are seeded
+/// fast; where its bodies are too small for these, on the scene as it is.
+double measured_speed(const Scene& scene, const std::filesystem::path& base_dir,
+                      const CostEstimate& cost) {
+  const double n = cost.particles.empty() ? 0.0 : cost.particles.front();
+  Scene faster = scene;
+  if (n > measured_particles && scene.uses<MpmSettings>())
+    faster.mpm().dx *= std::pow(n / measured_particles, 1.0 / scene.dimension);
+  faster.seeding.pattern = SeedPattern::jittered;
+  try {
+    return speed_of(faster, base_dir);
+  } catch (const InputError&) {
+    return speed_of(scene, base_dir);
+  }
+}
+
+/// Of updates on a slab still whole, how many take as long as those of an event.
+double work_of(const CostEstimate& cost) {
+  return std::max(broken_snow, cost.scattering) * cost.updates;
+}
+
 }  // namespace
 
 double expected_work(const Scene& scene, const std::filesystem::path& base_dir) {
-  return broken_snow * Simulation(scene, base_dir).cost().updates;
+  return work_of(Simulation(scene, base_dir).cost());
 }
 
 CostReport report_cost(const Scene& given, const std::filesystem::path& base_dir) {
@@ -126,7 +142,7 @@ CostReport report_cost(const Scene& given, const std::filesystem::path& base_dir
   report.threads = sim.threads();
   report.kernels = kernel_variant();
   report.updates_per_s = measured_speed(scene, base_dir, report.cost);
-  report.wall_time = broken_snow * report.cost.updates / std::max(report.updates_per_s, 1.0);
+  report.wall_time = work_of(report.cost) / std::max(report.updates_per_s, 1.0);
   return report;
 }
 

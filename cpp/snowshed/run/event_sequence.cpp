@@ -53,11 +53,13 @@ bool EventSequence::is_done() const {
 bool EventSequence::run(EventObserver& observer, double report_interval) {
   const double every = sim_->scene().output.snapshot_interval;
   if (every > 0) sim_->write_snapshots(folder_.snapshots(), every);
-  if (sim_->scene().output.film && !is_done()) sim_->record_film(folder_.film());
+  bool films = false;
   while (!is_done()) {
     bool stopped = observer.stop_requested();
     if (!stopped) try {
         begin_event(observer);  // seeding may take long
+        if (sim_->scene().output.film && !std::exchange(films, true))
+          sim_->record_film(folder_.film());  // whose resolution is that of the snow
         stopped = observer.stop_requested();
       } catch (const Stopped&) {  // the last checkpoint is of the same snow, before it aged
         return write_record("interrupted"), false;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from typing import Optional
 
 
 def main() -> int:
@@ -11,6 +12,18 @@ def main() -> int:
         from snowshed.cli.main import main as run
 
         return run()
-    except KeyboardInterrupt:
+    except BaseException as error:
+        if not of_an_interrupt(error):
+            raise
         print("error: interrupted", file=sys.stderr)
         return 130
+
+
+def of_an_interrupt(error: Optional[BaseException]) -> bool:
+    """Return whether an interrupt caused an error: Python makes a RuntimeError of some.
+
+    An interrupt while a class is made, as imports do all the time, ends in such an error.
+    """
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None

@@ -62,10 +62,15 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
         beside.unlink(missing_ok=True)
 
 
-def remove_leftovers(folder: Path) -> None:
-    """Remove from a folder what killed processes left half-written; nothing if there is none."""
-    if folder.is_dir():
-        for path in folder.iterdir():
+def remove_leftovers(folder: Path, *, deep: bool = False) -> None:
+    """Remove what killed processes left half-written in a folder, and if `deep` in those below it.
+
+    Folders that are links are not entered.
+    """
+    for inside, folders, names in os.walk(folder):
+        if not deep:
+            folders.clear()
+        for path in map(Path(inside).joinpath, names):
             if LEFTOVER.match(path.name) and path.is_file() and not path.is_symlink():
                 path.unlink(missing_ok=True)
 

@@ -133,8 +133,10 @@ def _begin_tables(
 def _continue_tables(
     sequence: _core.EventSequence, results: RunFolder, ageing: Optional[dict[str, Any]]
 ) -> None:
-    results.check(ageing)
     simulation = sequence.simulation
+    if simulation.event == 0 and not results.ageing.exists():  # killed before it was written
+        _begin_tables(sequence, results, ageing)
+    results.check(ageing)
     results.keep_through(simulation.event, running=simulation.event_running)
     results.check_rows(sequence.tables, simulation.event)
     events = results.events

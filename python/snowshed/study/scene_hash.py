@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 import snowshed._core as _core
+from snowshed.io.input_file import read_regular
 from snowshed.run.ageing import Ageing
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.aged_scene import with_ageing
@@ -147,4 +148,4 @@ def _digest_of(path: str) -> str:
 @functools.lru_cache(maxsize=64)
 def _digest(path: str, modified: int, size: int) -> str:
     """Return the digest of a file's content; kept, since the runs of a study share their files."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    return hashlib.sha256(read_regular(Path(path))).hexdigest()

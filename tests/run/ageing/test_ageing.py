@@ -10,6 +10,7 @@ from conftest import tiny_scene
 from snowshed import InputError, Interrupted, Scene, Shape, _core, run_events
 from snowshed.run.ageing import Ageing, Interval
 from snowshed.run.season.column import SnowColumn
+from snowshed.run.sequence import open_sequence
 from snowshed.snow.relations import SETTLING_LAWS, SINTERING_LAWS
 
 DAY = 86400.0
@@ -136,6 +137,16 @@ def test_a_run_resumes_only_as_it_aged(aged):
     for other in (None, Ageing({2: WEEK}, "essery-2013")):
         with pytest.raises(InputError, match=r"ageing\.json: between its events the stack aged"):
             run_events(tiny_scene(), folder, ageing=other, resume=True, pictures=False)
+
+
+def test_a_run_that_was_killed_before_it_began_ages_all_the_same(aged, tmp_path):
+    """Its folder holds the scene, and not yet how its stack ages."""
+    table, folder, ageing = aged
+    with open_sequence(tiny_scene().resolve(), tmp_path / "a", resume=False):
+        pass
+    again = run_events(tiny_scene(), tmp_path / "a", ageing=ageing, resume=True, pictures=False)
+    assert again["height_m"].equals(table["height_m"])
+    assert (tmp_path / "a" / "ageing.json").read_bytes() == (folder / "ageing.json").read_bytes()
 
 
 def test_without_laws_or_time_nothing_changes(tmp_path, finished):

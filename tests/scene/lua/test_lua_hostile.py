@@ -147,6 +147,11 @@ SCRIPTS = {
     ),
     "growing arguments": ("local function f(...)\nlocal x = f(1, ...) end\nf()", 2, MEMORY),
     "error function": ("error(print)", 1, "error with a function instead of a message"),
+    "NUL in a name": (
+        "set('preset', 'lab-50') levelset { mesh { file = 'a\\0b.stl' } }",
+        1,
+        "is not the name of a file",
+    ),
     "run elsewhere": ("run('../elsewhere')", 1, "not '../elsewhere'"),
     "address of a text": ("print(string.format('%-9p', 'x'))", 1, "cannot show addresses (%p)"),
     "order of addresses": ("for k in next, {[{}] = 1} do end", 1, "needs keys that are numbers or"),

@@ -89,7 +89,7 @@ def cross_validate(
     missing = [task for task, result in results.items() if result is None]
     tracker = _Tracker(missing, len(tasks), kinds, progress)
     with holding(folder, _make), deferred_interrupts() as request:
-        _tidy(folder)
+        remove_leftovers(folder, deep=True)
         for task in _computed(missing, rows, scheme, folder, jobs, request):
             results[task] = FoldResult.load(folder / task.file, points)
             tracker.advance(task)
@@ -195,13 +195,7 @@ def _outcome(ended: Ended[Task, None]) -> Task:
 def _end(pool: Pool[Task, None], folder: Path) -> None:
     """End the processes, whatever they do, and remove what they have half written."""
     pool.close()
-    _tidy(folder)
-
-
-def _tidy(folder: Path) -> None:
-    """Remove what killed processes have half written."""
-    for inside in (folder, *(one for one in folder.iterdir() if one.is_dir())):
-        remove_leftovers(inside)
+    remove_leftovers(folder, deep=True)
 
 
 def _work(
