@@ -41,8 +41,9 @@ class Forks:
         """Run a script of Python, or a module with ``-m``, as `subprocess.run` does."""
         output = self._folder / "output.txt"
         modules = self._folder / "modules.json"
-        request = {"words": words, "environment": environment, "output": str(output)}
-        print(json.dumps({**request, "modules": str(modules)}), file=self._process.stdin, flush=True)
+        request = {"words": words, "environment": environment}
+        request |= {"output": str(output), "modules": str(modules)}
+        print(json.dumps(request), file=self._process.stdin, flush=True)
         code = json.loads(self._process.stdout.readline())
         return subprocess.CompletedProcess(words, code, stderr=output.read_text())
 
@@ -66,14 +67,14 @@ def answer(request: dict, *, learn: bool) -> None:
     """Run a request and end as its program would."""
     signal.alarm(LONGEST_S)
     os.environ.update(request["environment"])
-    with open(request["output"], "w") as output, open(os.devnull) as nothing:
+    with Path(request["output"]).open("w") as output, Path(os.devnull).open() as nothing:
         os.dup2(nothing.fileno(), 0)
         os.dup2(output.fileno(), 1)
         os.dup2(output.fileno(), 2)
     sys.argv = request["words"]
     try:
         if sys.argv[1] == "-m":
-            sys.path[0] = os.getcwd()
+            sys.path[0] = str(Path.cwd())
             del sys.argv[:2]
             runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
         else:

@@ -151,12 +151,11 @@ void add_flight(const Scene& scene, double front_slides, CostEstimate& estimate)
   const double slides = std::min(estimate.slide_time, scene.events.max_time);
   const double falls = std::min(estimate.fall_time, scene.events.max_time - slides);
   const double acceleration = slide_acceleration(scene);
-  estimate.way = acceleration * slides * slides / 2.0 +
-                 falling_way(scene, acceleration * slides, falls);
+  estimate.way =
+      acceleration * slides * slides / 2.0 + falling_way(scene, acceleration * slides, falls);
   if (std::isfinite(estimate.fall_time)) return;
   const double apart = scene.gravity * std::max(0.0, slides - front_slides) * falls;
-  estimate.scattering =
-      std::min(1.0 + apart / scene.slab->length, scattered_snow(scene.dimension));
+  estimate.scattering = std::min(1.0 + apart / scene.slab->length, scattered_snow(scene.dimension));
 }
 
 /// The slab's rear slides off the lower edge and falls freely.
@@ -174,8 +173,7 @@ void add_slab(const Scene& scene, CostEstimate& estimate) {
   const double front_slides = std::sqrt(2.0 * ahead / acceleration);
   const Vec3 front_velocity = acceleration * front_slides * frame.slope;
   estimate.first_landing =
-      front_slides +
-      fall_duration(scene, scene.panel->height, approach(scene, front_velocity));
+      front_slides + fall_duration(scene, scene.panel->height, approach(scene, front_velocity));
   add_flight(scene, front_slides, estimate);
 }
 

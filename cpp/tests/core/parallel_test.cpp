@@ -65,11 +65,21 @@ void race() {
   });
 }
 
+/// Two loops that run at once, and the second writes what the first does.
+void race_of_loops() {
+  std::vector<int> written(100, 0);
+  const auto write = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i) written[std::size_t(i)] = 1;
+  };
+  parallel_pieces(2, PieceLoop{33, 11, write}, PieceLoop{33, 11, write});
+}
+
 /// ThreadSanitizer must see races between iterations, or its silence means nothing.
 TEST(ParallelDeathTest, ARaceBetweenIterationsIsReported) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   constexpr int reported = 66;  // ThreadSanitizer's exit code
   EXPECT_EXIT((race(), std::exit(0)), testing::ExitedWithCode(reported), "data race");
+  EXPECT_EXIT((race_of_loops(), std::exit(0)), testing::ExitedWithCode(reported), "data race");
 }
 #endif
 

@@ -61,6 +61,7 @@ def test_rounds_repeat_an_experiment(tmp_path):
         (f"{HEADER}\n40,1,,0.1,,\n", "line 2: height_std_m: an uncertainty, but height_m is empty"),
         (f"{HEADER}\n40,1,0.05,0,,\n", "line 2: height_std_m: 0 is not positive"),
         (f"{HEADER}\n40,1,-0.05,0.01,,\n", "line 2: height_m: -0.05 is not positive"),
+        (f"{HEADER}\n40,1,1000,0.01,,\n", "line 2: height_m: 1000 m; at most 100 m are allowed"),
         (f"{HEADER}\n40,1,5 cm,0.01,,\n", "line 2: height_m: '5 cm' is not a number"),
         (f"{HEADER}\n40,1,nan,0.01,,\n", "line 2: height_m: 'nan' is not a number"),
         (f"{HEADER}\n,1,0.05,0.01,,\n", "line 2: tilt_deg: '' is not a number"),
