@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -40,7 +40,9 @@ def _views(
     up: str,
 ) -> Figure:
     found = blank(3.4 * len(courses), 0.6 + 1.5 * len(times))
-    axes = found.subplots(len(times), len(courses), sharex="col", sharey="col", squeeze=False)
+    one_path = len({tuple(one.case.path.corners) for one in courses}) == 1
+    share: Literal["all", "col"] = "all" if one_path else "col"
+    axes = found.subplots(len(times), len(courses), sharex=share, sharey=share, squeeze=False)
     fastest = max(
         float(np.linalg.norm(one.at(t).velocities, axis=1).max()) for one in courses for t in times
     )

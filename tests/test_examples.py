@@ -43,6 +43,8 @@ def test_script(name, tmp_path):
 def test_scene(scene, tmp_path, capsys):
     assert main(["plan", str(scene)]) == 0
     assert "particles" in capsys.readouterr().out
-    coarse = Scene.load(scene).update({"numerics.dx": 0.025, "events.max_time": 0.1})
+    loaded = Scene.load(scene)
+    size = type(loaded.numerics).RESOLUTION
+    coarse = loaded.update({f"numerics.{size}": 0.025, "events.max_time": 0.1})
     table = run_events(coarse, tmp_path / "out", pictures=False)
     assert table.event.iloc[-1] == coarse.resolve().data["events"]["count"]

@@ -21,7 +21,7 @@
 namespace snowshed {
 
 /// How many particles a thread is started for: one that has little to do costs more than it saves.
-inline constexpr std::size_t mps_particles_per_thread = 1000;
+inline constexpr std::size_t mps_particles_per_thread = 500;
 
 template <int D>
 struct MpsModel {
@@ -114,6 +114,7 @@ struct MpsWork {
   AlignedVector<VecD<D>> viscous_change;              // of velocities by viscosity, m/s
   AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
   AlignedVector<double> drag;                         // of each contact with a wall, 1/s
+  AlignedVector<VecD<D>> concentration;               // its gradient, 1/m, for shifting
   AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
   AlignedVector<Eigen::Matrix<double, D, D>> velocity_gradient;  // 1/s
