@@ -148,7 +148,7 @@ SCRIPTS = {
     "growing arguments": ("local function f(...)\nlocal x = f(1, ...) end\nf()", 2, MEMORY),
     "error function": ("error(print)", 1, "error with a function instead of a message"),
     "NUL in a name": (
-        "set('preset', 'lab-50') levelset { mesh { file = 'a\\0b.stl' } }",
+        "levelset { shape = mesh { file = 'a\\0b.stl' } }",
         1,
         "is not the name of a file",
     ),

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
+from snowshed.io.messages import quoted
 from snowshed.io.paths import PathLike
 from snowshed.scene.lua.origins import Origins
 from snowshed.scene.lua.sandbox import Place
@@ -113,6 +114,8 @@ class Builder:
 
     def _check_file(self, where: str, file: Any) -> None:
         """Refuse files that are missing, or outside the folder of the scripts."""
+        if "\0" in str(file):
+            raise InputError(f"{where}: {quoted(str(file))} is not the name of a file")
         path = (self._folder / str(file)).resolve()
         if self._folder not in path.parents:
             raise InputError(f"{where}: {file!r} is not in the scripts' folder {self._folder}")
