@@ -30,7 +30,7 @@ def coulomb(tilt: float) -> float:
     Examples
     --------
     >>> round(coulomb(30.0), 3)
-    1.123
+    1.122
     """
     angle = math.radians(tilt)
     return GRAVITY * (math.sin(angle) - math.cos(angle) * math.tan(math.radians(24.0)))
