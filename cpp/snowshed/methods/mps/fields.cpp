@@ -95,7 +95,7 @@ MotionSummary MpsSolver<D>::motion(double limit) const {
 template <int D>
 std::size_t MpsSolver<D>::bytes() const {
   std::size_t total = work_.near.cells.bytes() + work_.near.lists.bytes() +
-                      work_.near.contacts.bytes() + work_.multigrid.bytes();
+                      work_.near.contacts.bytes() + work_.multigrid.bytes() + work_.walls.bytes();
   const auto count = [&total](const auto& vector) {
     total += vector.capacity() * sizeof(vector[0]);
   };
@@ -110,6 +110,8 @@ std::size_t MpsSolver<D>::bytes() const {
   count(work_.near.correction);
   count(work_.near.spread);
   count(work_.near.asymmetry);
+  count(work_.near.slip);
+  count(work_.concentration);
   for (const auto* vector : {&work_.diagonal, &work_.source, &work_.pressure, &work_.cg.r,
                              &work_.cg.z, &work_.cg.p, &work_.cg.q})
     count(*vector);

@@ -303,7 +303,8 @@ TEST(MpsSolver, BinghamSlumpComesToRest) {
   EXPECT_LT(std::sqrt(error / square), 0.1);
 }
 
-// Water falls from a column of twice its width, and contacts of particles take little of its energy.
+// Water falls from a column of twice its width, and contacts of particles take little of its
+// energy.
 TEST(MpsSolver, DamBreakKeepsItsEnergy) {
   const double width = 0.05715;
   MpsOptions o = tank(2, 6 * width, width / 20);  // half as wide particles lose half as much
