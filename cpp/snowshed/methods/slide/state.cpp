@@ -115,7 +115,8 @@ void view_places(const SlideModel& model, SlideWork& work, SlideView& v) {
   v.nz = p.nz.data();
   v.thickness = work.thickness.data();
   static_assert(sizeof(GridFields::Node) == 4 * sizeof(double), "kernels read records of four");
-  v.nodes = &work.fields.nodes()->thickness;
+  GridFields::Node* nodes = work.fields.nodes();  // none before the first step
+  v.nodes = nodes ? &nodes->thickness : nullptr;
   v.flow = v.nodes;
   v.flow_column = work.fields.first_column();
   v.flow_row = work.fields.first_row();
