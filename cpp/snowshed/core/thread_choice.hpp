@@ -44,7 +44,7 @@ class ThreadChoice {
   using Clock = std::chrono::steady_clock;
   // Steps. The first trials are soon repeated: a program that has just begun is slower.
   static constexpr std::size_t first_period = 64, longest_period = 1024, trials = 9;
-  static constexpr double worthwhile = 0.9;                // of the time with one thread
+  static constexpr double worthwhile = 0.9;  // of the time with one thread
   using Times = std::array<double, trials>;
 
   static double median(Times times) {
