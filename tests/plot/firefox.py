@@ -13,6 +13,7 @@ import re
 import shutil
 import signal
 import subprocess
+import time
 
 import pytest
 
@@ -130,3 +131,13 @@ class FirefoxPage:
         return base64.b64decode(
             self.call("browsingContext.captureScreenshot", context=self.context)["data"]
         )
+
+    def changed_picture(self, before):
+        """Return what the page shows as soon as it differs, or what it shows after some time."""
+        shown = before
+        for _ in range(60):
+            shown = self.picture()
+            if shown != before:
+                break
+            time.sleep(0.2)
+        return shown
