@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Optional
 
 import click
-from reproduction.computing import check_failures, compute_stages
+from reproduction.computing import check_failures, compute_and_report
 
 PATH = click.Path(path_type=Path)
 
@@ -46,7 +46,6 @@ def hagenmuller(
     Example:
       snowshed reproduce hagenmuller --quick -o grains
     """  # noqa: D301 - click wants the control character
-    from reproduction.display import print_claims
     from reproduction.folder import claim_folder
     from reproduction.stage import choose
 
@@ -57,10 +56,8 @@ def hagenmuller(
     claim_folder(folder, {"publication": "hagenmuller", "size": size})
     found = Reproduction(folder, SIZES[size])
     stages = choose(list(found.stages.values()), names)
-    if not report_only:
-        compute_stages(stages, folder, jobs, quiet)
-    claims = write_report(found)
-    if not quiet:
-        print_claims(claims, "the paper")
-        click.echo(f"report in {report_file(folder)}")
+    compute_and_report(
+        [] if report_only else stages, folder, lambda: write_report(found),
+        publication="the paper", file=report_file(folder), jobs=jobs, quiet=quiet,
+    )  # fmt: skip
     check_failures(found.stages, found.runs)

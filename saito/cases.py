@@ -117,10 +117,17 @@ class Path:
             found.append(Obstacle(name=f"slope {k + 1}", shape=plane, condition="sticky"))
         return found
 
-    def box(self, way: float, size: tuple[float, float, float], across: float = 0.0) -> Shape:
-        """Return a box that stands on the ground; its middle is at a way and at a y."""
+    def box(
+        self,
+        way: float,
+        size: tuple[float, float, float],
+        *,
+        across: float = 0.0,
+        above: float = 0.0,
+    ) -> Shape:
+        """Return a box on the ground, or above it; its middle is at a way and at a y."""
         point, _, normal, tilt = self.frame(way)
-        centre = point + 0.5 * size[2] * normal + np.array([0.0, across, 0.0])
+        centre = point + (0.5 * size[2] + above) * normal + np.array([0.0, across, 0.0])
         box = Shape.box((0, 0, 0), size)
         return Shape.transform(box, axis=(0, 1, 0), angle=tilt, translate=tuple(centre))
 
@@ -196,7 +203,7 @@ def slope(number: int, model: str, size: Size) -> Case:
     spacing = SLOPE_SNOW.spacing
     assert spacing is not None
     top = sum(length for _, length in SLOPES[number])
-    snow = [Body(shape=_lifted(path, -top + SOURCE[0] / 2, SOURCE, spacing))]
+    snow = [Body(shape=path.box(-top + SOURCE[0] / 2, SOURCE, above=spacing))]
     lengths = [length for _, length in SLOPES[number]]
     ends = [-sum(lengths[k + 1 :]) for k in range(len(lengths))]
     for end, length in zip(ends, lengths):
@@ -235,25 +242,14 @@ def _stakes(path: Path, width: float, gap: float) -> list[Shape]:
     count = int((width + 1e-9) // (STAKE + gap))
     first = -0.5 * (count - 1) * (STAKE + gap)
     size = (STAKE, STAKE, STAKE_HEIGHT)
-    return [path.box(-OBSTACLE_AT, size, first + k * (STAKE + gap)) for k in range(count)]
+    return [path.box(-OBSTACLE_AT, size, across=first + k * (STAKE + gap)) for k in range(count)]
 
 
 def _board(path: Path, width: float) -> Shape:
     """Return a board that leaves gaps at its ends and has a notch in the middle of its top."""
     board = path.box(-OBSTACLE_AT, (STAKE, width - 2 * BOARD_GAP, BOARD_HEIGHT))
-    point, _, normal, tilt = path.frame(-OBSTACLE_AT)
-    middle = point + (BOARD_HEIGHT - NOTCH[1] / 2 + 0.01) * normal
-    cut = Shape.box((0, 0, 0), (3 * STAKE, NOTCH[0], NOTCH[1] + 0.02))
-    notch = Shape.transform(cut, axis=(0, 1, 0), angle=tilt, translate=tuple(middle))
-    return Shape.difference(board, notch)
-
-
-def _lifted(path: Path, way: float, size: tuple[float, float, float], by: float) -> Shape:
-    """Return a box above the erodible layer."""
-    point, _, normal, tilt = path.frame(way)
-    centre = point + (0.5 * size[2] + by) * normal
-    box = Shape.box((0, 0, 0), size)
-    return Shape.transform(box, axis=(0, 1, 0), angle=tilt, translate=tuple(centre))
+    cut = (3 * STAKE, NOTCH[0], NOTCH[1] + 0.02)  # beyond the board's faces
+    return Shape.difference(board, path.box(-OBSTACLE_AT, cut, above=BOARD_HEIGHT - NOTCH[1]))
 
 
 def _scene(

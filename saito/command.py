@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import click
-from reproduction.computing import compute_stages
+from reproduction.computing import compute_and_report
 
 PATH = click.Path(path_type=Path)
 
@@ -37,7 +37,6 @@ def saito(folder: Path, size: str, names: Sequence[str], report_only: bool, quie
     Example:
       snowshed reproduce saito --quick -o avalanches
     """  # noqa: D301 - click wants the control character
-    from reproduction.display import print_claims
     from reproduction.folder import claim_folder
     from reproduction.stage import choose
 
@@ -49,12 +48,10 @@ def saito(folder: Path, size: str, names: Sequence[str], report_only: bool, quie
     claim_folder(folder, {"publication": "saito", "size": size})
     found = Reproduction(folder, SIZES[size])
     stages = choose(list(found.stages.values()), names)
-    if not report_only:
-        compute_stages(stages, folder, None, quiet)
-    claims = write_report(found)
-    if not quiet:
-        print_claims(claims, "the paper")
-        click.echo(f"report in {report_file(folder)}")
+    compute_and_report(
+        [] if report_only else stages, folder, lambda: write_report(found),
+        publication="the paper", file=report_file(folder), jobs=None, quiet=quiet,
+    )  # fmt: skip
     failures = found.failures()
     if failures:
         raise Failed("; ".join(failures))

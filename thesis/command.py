@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import click
-from reproduction.computing import check_failures, compute_stages
+from reproduction.computing import check_failures, compute_and_report
 
 if TYPE_CHECKING:
     from snowshed.scene.components import Condition
@@ -70,7 +70,6 @@ def thesis(
     Example:
       snowshed reproduce thesis --quick -o report
     """  # noqa: D301 - click wants the control character
-    from reproduction.display import print_claims
     from reproduction.stage import choose
 
     from snowshed.analysis.regression.rows import read_rows
@@ -84,10 +83,9 @@ def thesis(
         chosen.folds.check(read_rows(table))
     results = ReproductionFolder.claim(folder, chosen.name, condition)
     all_of_it = Reproduction(results, chosen, table)
-    if not report_only:
-        compute_stages(choose(all_of_it.stages, names), folder, jobs, quiet)
-    claims = write_report(all_of_it)
-    if not quiet:
-        print_claims(claims, "the thesis")
-        click.echo(f"report in {results.report}")
+    compute_and_report(
+        [] if report_only else choose(all_of_it.stages, names), folder,
+        lambda: write_report(all_of_it),
+        publication="the thesis", file=results.report, jobs=jobs, quiet=quiet,
+    )  # fmt: skip
     check_failures(all_of_it.study_stages, results.runs)

@@ -124,10 +124,6 @@ void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles
   });
 }
 
-}  // namespace
-
-namespace {
-
 /// Inner walls that no snow touches are dummies: no pressure spreads along a wall beyond the snow.
 template <int D>
 void leave_dry_walls(MpsParticles<D>& particles, MpsNeighbourhood<D>& near, int threads) {
@@ -182,11 +178,11 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
   if (model.has_wall_particles()) {
     near.images.clear(particles.size());
     near.coupling = near.weight;
+    leave_dry_walls(particles, near, threads);
   } else {
     near.images.update(near.lists, near.contacts, reach, model.settings().spacing, threads,
                        near.weight, near.coupling);
   }
-  if (model.has_wall_particles()) leave_dry_walls(particles, near, threads);
   find_surface(model, particles, near, threads);
   if (model.has_wall_particles()) guess_wall_pressures(model, particles, near);
   if (model.settings().gradient == MpsGradient::corrected)

@@ -286,12 +286,14 @@ void WallParticles<D>::append_near(double time, double period, double mass, MpsP
     if (group.obstacles.empty()) continue;
     const bool moves = &group != &groups_.front();
     RigidPose pose;
-    AlignedVector<VecD<D>> seen = points;
+    AlignedVector<VecD<D>> seen;  // from a moving group
     if (moves) {
       pose = (*obstacles_)[group.obstacles.front()].motion->at(time);
+      seen = points;
       for (VecD<D>& x : seen) x = section<D>(pose.to_body(embed(x)));
     }
-    append_group(group, pose, period, cells_with<D>(seen, edge_, period), mass, snow);
+    const auto cells = cells_with<D>(moves ? seen : points, edge_, period);
+    append_group(group, pose, period, cells, mass, snow);
   }
 }
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from snowshed.analysis.clearance.design import Design, scene_of, season_settings
 from snowshed.analysis.clearance.winters import Winter
-from snowshed.run.season.accumulation import Day, accumulate, pauses
+from snowshed.run.season.accumulation import Day, accumulate, stack_ageing
 from snowshed.run.season.clearance import Contact, first_contact
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
@@ -92,8 +92,8 @@ class Case:
 
     def run(self, height: float) -> Run:
         """Return the slide-offs of the season as a run of a study."""
-        ageing = self.season.ageing(pauses(self.days)) if self.season.ages else None
-        return Run.of(season_scene(self.panel(height), self.days, self.season), ageing)
+        scene = season_scene(self.panel(height), self.days, self.season)
+        return Run.of(scene, stack_ageing(self.days, self.season))
 
     def outcome(self, height: float, events: pd.DataFrame) -> Outcome:
         """Return how near the snow comes.

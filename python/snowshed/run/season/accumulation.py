@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Optional
 
-from snowshed.run.ageing import Interval
+from snowshed.run.ageing import Ageing, Interval
 from snowshed.run.season.column import SnowColumn
 from snowshed.run.season.release import Balance, balance
 from snowshed.run.season.settings import SeasonSettings
@@ -130,6 +130,11 @@ def pauses(days: Sequence[Day]) -> dict[int, list[Interval]]:
                 found[day.event] = waiting
             waiting = []
     return found
+
+
+def stack_ageing(days: Sequence[Day], settings: SeasonSettings) -> Optional[Ageing]:
+    """Return how the stack ages between the events of a season; None if it does not."""
+    return settings.ageing(pauses(days)) if settings.ages else None
 
 
 def _density(row: Weather, settings: SeasonSettings) -> Optional[float]:

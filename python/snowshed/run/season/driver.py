@@ -14,7 +14,7 @@ from snowshed.methods.registry import resolution_of
 from snowshed.run.events import run_events
 from snowshed.run.progress import Reporter
 from snowshed.run.results import check_empty
-from snowshed.run.season.accumulation import Day, accumulate, pauses
+from snowshed.run.season.accumulation import Day, accumulate, stack_ageing
 from snowshed.run.season.clearance import Contact, first_contact, first_reached, panel_ends
 from snowshed.run.season.notes import assumptions, first_staying, notes
 from snowshed.run.season.results import SeasonFolder
@@ -130,7 +130,7 @@ def run_season(
             slides,
             folder.run.folder,
             resume=resume and folder.run.scene.is_file(),
-            ageing=settings.ageing(pauses(days)) if settings.ages else None,
+            ageing=stack_ageing(days, settings),
             progress=progress,
             pictures=pictures,
         )
