@@ -6,13 +6,18 @@
 
 namespace snowshed {
 
-PointGrid::PointGrid(const std::vector<Vec3>& points, double edge) : edge_(edge), y_reach_(0) {
+PointGrid::PointGrid(const std::vector<Vec3>& points, double edge, const StopRequest& stop)
+    : edge_(edge), y_reach_(0) {
+  StopCheck check_stop(stop);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(points.size());
   for (std::size_t n = 0; n < points.size(); ++n) {
     keyed[n] = {key(cell_of(points[n])), static_cast<std::uint32_t>(n)};
     if (points[n].y() != 0) y_reach_ = 1;
   }
-  std::sort(keyed.begin(), keyed.end());
+  std::sort(keyed.begin(), keyed.end(), [&](const auto& a, const auto& b) {
+    check_stop();
+    return a < b;
+  });
 
   std::size_t cells = 0;
   for (std::size_t n = 0; n < keyed.size(); ++n)
@@ -21,10 +26,11 @@ PointGrid::PointGrid(const std::vector<Vec3>& points, double edge) : edge_(edge)
   while (slots < 2 * cells) slots *= 2;
   table_.resize(slots);
 
-  sorted_.resize(keyed.size());
+  sorted_.reserve(keyed.size());
   for (std::size_t begin = 0, end = 0; begin < keyed.size(); begin = end) {
+    check_stop();
     for (; end < keyed.size() && keyed[end].first == keyed[begin].first; ++end)
-      sorted_[end] = {points[keyed[end].second], keyed[end].second};
+      sorted_.push_back({points[keyed[end].second], keyed[end].second});
     const std::uint64_t key = keyed[begin].first;
     table_[slot_of(key)] = {key, static_cast<std::uint32_t>(begin),
                             static_cast<std::uint32_t>(end)};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/core/vec.hpp"
 
 namespace snowshed {
@@ -13,8 +14,9 @@ namespace snowshed {
 /// depends on the number of points and not on the volume that they occupy.
 class PointGrid {
  public:
-  /// Sorts the points, of which there must be fewer than 2^32. `edge` > 0 is in metres.
-  PointGrid(const std::vector<Vec3>& points, double edge);
+  /// Sorts the points, of which there must be fewer than 2^32. `edge` > 0 is in metres. Throws
+  /// Stopped on request.
+  PointGrid(const std::vector<Vec3>& points, double edge, const StopRequest& stop = {});
 
   /// Calls visit(index, point) for every point within one cell edge of x and some farther ones.
   template <class Visit>

@@ -84,7 +84,7 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
   const std::vector<Vec3>& points = candidates.points;
   const double kept_ratio = static_cast<double>(count) / candidates.inside_count;
   const PairWeight pair_weight(dimension, point_measure, kept_ratio);
-  const PointGrid grid(points, pair_weight.reach());
+  const PointGrid grid(points, pair_weight.reach(), stop);
 
   std::vector<std::int64_t> weights(points.size(), 0);
   for (std::uint32_t i = 0; i < points.size(); ++i) {

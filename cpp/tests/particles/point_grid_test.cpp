@@ -39,5 +39,19 @@ TEST(PointGrid, NoPointsNoVisits) {
   grid.for_each_near(Vec3::Zero(), [](std::uint32_t, const Vec3&) { FAIL(); });
 }
 
+TEST(PointGrid, IsGivenUpWhileItSorts) {
+  Random random(21);
+  std::vector<Vec3> points(50000);
+  for (Vec3& x : points) x = random_point(random, 1.0);
+  int asked = 0;
+  const auto never = [&] { return ++asked, false; };
+  PointGrid(points, 0.05, never);
+  EXPECT_GT(asked, 100);  // sorting compares more than ten times as often as there are points
+  for (int turn : {1, asked / 2, asked}) {
+    int left = turn;
+    EXPECT_THROW(PointGrid(points, 0.05, [&] { return --left == 0; }), Stopped);
+  }
+}
+
 }  // namespace
 }  // namespace snowshed
