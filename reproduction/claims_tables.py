@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
-from reproduction.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, Judged
-from snowshed.io.csv_table import csv_text
+from reproduction.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, Finding, Judged
+from snowshed._core import InputError
+from snowshed.io.csv_table import csv_text, read_csv
 from snowshed.plot.html_page import Grid
 
 VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
+COLUMNS = ("source", "claim", "confirmed_if", "verdict", "finding")
 
 
 def claims_grid(claims: Sequence[Judged], author: str) -> Grid:
@@ -32,5 +35,21 @@ def claims_csv(claims: Sequence[Judged]) -> str:
         (one.source, one.text, one.rule, one.finding.verdict, one.finding.sentence)
         for one in claims
     ]
-    columns = ["source", "claim", "confirmed_if", "verdict", "finding"]
-    return csv_text(pd.DataFrame(rows, columns=columns))
+    return csv_text(pd.DataFrame(rows, columns=list(COLUMNS)))
+
+
+def read_claims(path: Path) -> list[Judged]:
+    """Return claims and findings from a file that `claims_csv` made.
+
+    Raises
+    ------
+    InputError
+        If the file is not such a table.
+    """
+    table = read_csv(path, as_text=True)
+    if tuple(table.columns) != COLUMNS or not table["verdict"].isin(VERDICTS).all():
+        raise InputError(f"{path}: no table of claims; its columns are {', '.join(COLUMNS)}")
+    return [
+        Judged(source, claim, rule, Finding(verdict, finding))
+        for source, claim, rule, verdict, finding in table.itertuples(index=False)
+    ]

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Optional
 
 import click
 from reproduction.hypothesis_tests import SIGMAS
+from reproduction.markdown import markdown_table
 
 from snowshed._core import InputError
 from snowshed.analysis.deviations import DEVIATIONS
@@ -69,21 +70,6 @@ def page(data: Path = DATA) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def markdown(grid: Grid) -> str:
-    """Return a table in Markdown.
-
-    Examples
-    --------
-    >>> print(markdown(Grid(["name", "m"], [["a", "1"]], "lr")))
-    | name | m |
-    | --- | ---: |
-    | a | 1 |
-    """
-    marks = ["---:" if one == "r" else "---" for one in grid.align]
-    lines = [grid.head, marks, *([cell.replace("|", "\\|") for cell in row] for row in grid.rows)]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
 def _scatter_part(stacks: pd.DataFrame) -> list[str]:
     panels, seeds = len(stacks[list(PANEL)].drop_duplicates()), stacks["seed"].nunique()
     cells = ", ".join(f"{100 * dx:.3g} cm" for dx in stacks["dx"].unique())
@@ -105,7 +91,7 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
         f"{stacks['panel.length'].max():g} m long, {seeds} seedings each, cells of {cells}. The "
         "columns are the deviation between seedings as a part of the mean (root mean square over "
         "panels and events), and the quartiles of H/L of the rows.",
-        markdown(grid),
+        markdown_table(grid),
         f"The length by `{DEFAULT_TRIMMING}` scatters by {percent(ours, 2)}, by `{other}` by "
         f"{percent(theirs, 2)}. The steadier one is the default, whatever it says of the thesis's "
         "numbers.",
@@ -117,11 +103,11 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
     return [
         "## Causes, the largest first",
         " ".join(deviations_section.sample_text(stacks)),
-        markdown(deviations_section.changes_grid(stacks)),
+        markdown_table(deviations_section.changes_grid(stacks)),
         "\n".join(f"{place}. {_cause(stacks, name)}" for place, name in enumerate(order, 1)),
         *_variations_part(stacks),
         "### Quartiles of H/L with each deviation undone",
-        markdown(deviations_section.quartiles_grid(stacks)),
+        markdown_table(deviations_section.quartiles_grid(stacks)),
         *_left_over(stacks),
         "### Regressions with each deviation undone",
         f"ε-SVR of H/L of the same rows ({errors['rows'].max():.0f} for each), by "
@@ -129,7 +115,7 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
         f"{SCHEME.inner_folds} inner folds. The "
         "quartiles are those of the predictions. A sample has a tenth of the rows of the data set, "
         "so that its errors are to be compared with each other.",
-        markdown(deviations_section.errors_grid(errors, stacks)),
+        markdown_table(deviations_section.errors_grid(errors, stacks)),
     ]
 
 
@@ -138,7 +124,7 @@ def _variations_part(stacks: pd.DataFrame) -> list[str]:
         "### Settings of our own, varied on the same sample",
         "Damping is a rate in our settings, so that it does not depend on the length of the "
         "steps. A share in each step does.",
-        markdown(deviations_section.variations_grid(stacks)),
+        markdown_table(deviations_section.variations_grid(stacks)),
     ]
 
 
@@ -216,10 +202,10 @@ def _regression_part(data: Path) -> list[str]:
         f"snowshed)), by both readings of A.4.2, regressed in {times}. The thesis's table "
         "holds quartiles of predictions, and its rows are single stacks: our predictions from rows "
         "of one seed are their like.",
-        markdown(quartiles_grid(found)),
+        markdown_table(quartiles_grid(found)),
         f"The RBF kernel's predictions from rows of one seed differ {'; '.join(gaps)}.",
-        markdown(rows_grid(geometry_table())),
-        markdown(errors_grid(found)),
+        markdown_table(rows_grid(geometry_table())),
+        markdown_table(errors_grid(found)),
         f"The RBF kernel's error is {' and '.join(shares)} of its median prediction; the thesis's "
         f"is {percent(thesis_relative_error('rbf'), 2)}. Means of several seeds have "
         "smaller errors because they scatter less, which says nothing of the model.",

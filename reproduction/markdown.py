@@ -1,0 +1,20 @@
+"""Tables in Markdown."""
+
+from __future__ import annotations
+
+from snowshed.plot.html_page import Grid
+
+
+def markdown_table(grid: Grid) -> str:
+    """Return a table in Markdown.
+
+    Examples
+    --------
+    >>> print(markdown_table(Grid(["name", "m"], [["a", "1"]], "lr")))
+    | name | m |
+    | --- | ---: |
+    | a | 1 |
+    """
+    marks = ["---:" if one == "r" else "---" for one in grid.align]
+    lines = [grid.head, marks, *([cell.replace("|", "\\|") for cell in row] for row in grid.rows)]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
