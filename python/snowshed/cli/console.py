@@ -9,6 +9,7 @@ from rich.table import Table
 
 from snowshed.analysis.dimension_ratio import RULE_OF_THUMB
 from snowshed.cli.terminal import PlainConsole, plain_table, wide_console
+from snowshed.io.formatting import duration
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import settings_of
 from snowshed.plot.caption import contact_text, mean_damping_rate
@@ -89,9 +90,7 @@ def plan_rows(plan: dict[str, Any]) -> dict[str, str]:
         "memory": f"{plan['memory_bytes'] / 1e6:,.1f} MB for particles and grid",
         "time step": f"{plan['time_step_s']:.3g} s",
         "steps": f"{plan['steps_per_event']:,} per event",
-        "run time": f"about {plan['expected_wall_s']:,.2g} s"
-        if plan["expected_wall_s"] < 10
-        else f"about {plan['expected_wall_s']:,.0f} s",
+        "run time": f"about {duration(plan['expected_wall_s'])}",
         "speed": f"{plan['updates_per_s'] / 1e6:.1f} M particle updates/s, measured now",
         "threads": f"{plan['threads']} at most",
         "scalar": f"{plan['scalar']}, {plan['kernels']}",
