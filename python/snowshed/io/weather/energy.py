@@ -95,7 +95,7 @@ def is_tmy3(lines: Sequence[str]) -> bool:
 def read_tmy3(name: str, lines: Sequence[str]) -> Station:
     """Return a TMY3 file's observations; raises InputError naming line and column."""
     head = split_cells(lines[1], f"{name}, line 2")
-    for needed in (TMY3_TIME, *TMY3_NAMES):
+    for needed in (TMY3_DATE, TMY3_TIME, *TMY3_NAMES):
         if needed not in head:
             raise InputError(f"{name}, line 2, column {needed}: missing")
     rows = []
