@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import sqlite3
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -89,18 +86,6 @@ def contents(folder: Path) -> dict[str, list[tuple]]:
         }
     finally:
         connection.close()
-
-
-def snowshed_command(*arguments: object, **options) -> subprocess.Popen:
-    """Start ``snowshed``; its output is text in pipes."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "snowshed", *map(str, arguments)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        **options,
-    )
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,8 @@ import numpy as np
 import pandas as pd
 import pytest
 import study_helpers
-from study_helpers import ALONE, contents, snowshed_command, tiny_scene, tiny_study
+from processes import children_of, snowshed_command, wait_for
+from study_helpers import ALONE, contents, tiny_scene, tiny_study
 
 from snowshed import Obstacle, ResolvedScene, Shape, _core, read_events, run_events
 from snowshed.study import Run, Study, StudyError, read_table, resume
@@ -329,18 +330,3 @@ def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed):
     if seeding:
         study.run(tmp_path / "whole", **ALONE)
     assert contents(tmp_path / "full") == contents(tmp_path / "whole" if seeding else computed)
-
-
-def children_of(pid: int) -> list[int]:
-    children = Path(f"/proc/{pid}/task/{pid}/children")
-    try:
-        return [int(child) for child in children.read_text().split()]
-    except FileNotFoundError:
-        return []
-
-
-def wait_for(condition, timeout: float = 120.0) -> None:
-    end = time.monotonic() + timeout
-    while not condition():
-        assert time.monotonic() < end, "waited too long"
-        time.sleep(0.01)

@@ -1,7 +1,12 @@
-"""Every format: a file as its provider writes it, and five damaged ones."""
+"""Every format: files in the layout of their providers, and five damaged ones."""
 
+import gzip
+import re
+
+import pandas as pd
 import pytest
-from weather_files import FILES, METEOSWISS, SMET
+import weather_files
+from weather_files import FILES, METEOSWISS, NEW_SNOW, VARIANTS
 
 from snowshed import InputError
 from snowshed.io.weather import FORMATS, read_station
@@ -10,58 +15,154 @@ from snowshed.run.season.observed import snow_fraction
 from snowshed.run.season.weather import read_weather
 from snowshed.snow.relations.new_snow import hedstrom_pomeroy_1998
 
+BY_RULE = 24.0 / hedstrom_pomeroy_1998(-7.0)  # m
+BY_DEPTH = 0.3  # m
 
-def written(folder, text):
+
+def written(folder, content):
     file = folder / "station.txt"
-    file.write_text(text)
+    file.write_bytes(content if isinstance(content, bytes) else content.encode())
     return file
+
+
+def check(file, fallen, rounding=0.0):
+    rows, notes = read_weather(file)
+    assert [(row.date.month, row.date.day) for row in rows] == [(1, 1), (1, 2), (1, 3)]
+    temperatures = [row.temperature for row in rows]
+    assert temperatures == pytest.approx([-5.0, -7.0, -6.0], abs=0.01 + rounding)
+    assert rows[1].snowfall == pytest.approx(fallen, abs=1e-3)
+    assert rows[0].snowfall == rows[2].snowfall == 0.0
+    return rows, notes
 
 
 def test_every_format_has_files():
     assert FILES.keys() == FORMATS.keys()
+    assert all(len(damages) == 5 for _, _, damages in FILES.values())
 
 
 @pytest.mark.parametrize("form", FILES)
 def test_a_file_as_its_provider_writes_it(form, tmp_path):
-    text, fallen, _ = FILES[form]
-    file = written(tmp_path, text)
-    assert [one.recognises(text.splitlines()) for one in FORMATS.values()].count(True) == 1
-    rows, notes = read_weather(file)
-    assert [row.temperature for row in rows] == pytest.approx([-5.0, -7.0, -6.0])
-    by_rule = 24.0 / hedstrom_pomeroy_1998(-7.0)
-    by_depth = 0.3
-    expected = fallen or (by_depth if form == "IMIS" else by_rule)
-    assert rows[1].snowfall == pytest.approx(expected, abs=1e-3)
-    assert rows[0].snowfall == rows[2].snowfall == 0.0
-    if form in ("SMET", "iCSV", "EPW", "MeteoSwiss", "IMIS", "GHCN-daily, fixed width"):
-        assert rows[1].snow_depth == pytest.approx(1.4)
-    if fallen is None:
+    text, measured, _ = FILES[form]
+    lines = text.splitlines()
+    assert [name for name, one in FORMATS.items() if one.recognises(lines)] == [form]
+    fallen = measured or (BY_DEPTH if form == "IMIS" else BY_RULE)
+    rows, notes = check(written(tmp_path, text), fallen)
+    if form != "TMY3":
+        assert rows[1].snow_depth == pytest.approx(1.4, abs=0.01)
+    if form not in ("TMY3", "iCSV"):
+        assert rows[2].snow_depth is None  # missing, or failed a check of quality
+    if measured is None:
         assert any("new snow follows" in note or "daily rise" in note for note in notes)
+    check(written(tmp_path, text.replace("\n", "\r\n")), fallen)
+    check(written(tmp_path, b"\xef\xbb\xbf" + text.encode()), fallen)
 
 
 @pytest.mark.parametrize(
-    ("form", "old", "new", "message"),
+    ("form", "_", "content", "measured"), VARIANTS, ids=lambda one: str(one)[:40]
+)
+def test_other_layouts_of_providers(form, _, content, measured, tmp_path):
+    file = written(tmp_path, content)
+    assert read_station(file).format == form.partition(",")[0]
+    rounded = form == "GHCN-daily, summaries" and '"18"' in str(content)  # whole degrees F
+    check(file, NEW_SNOW if measured else BY_RULE, 0.3 if rounded else 0.0)
+
+
+@pytest.mark.parametrize(
+    ("form", "line", "old", "new", "message"),
     [(form, *damage) for form, (_, _, damages) in FILES.items() for damage in damages],
 )
-def test_a_damaged_file_is_refused_by_line_and_column(form, old, new, message, tmp_path):
-    text = FILES[form][0]
-    assert old in text
-    file = written(tmp_path, text.replace(old, new, 1))
+def test_a_damaged_file_is_refused_by_line_and_column(form, line, old, new, message, tmp_path):
+    lines = FILES[form][0].split("\n")
+    assert old in lines[line - 1], lines[line - 1]
+    lines[line - 1] = lines[line - 1].replace(old, new, 1)
+    file = written(tmp_path, "\n".join(lines))
     with pytest.raises(InputError) as error:
         read_season(file)
-    assert message in str(error.value)
-    assert str(error.value).startswith(str(file))
+    assert str(error.value).startswith(f"{file}, {message}")
+    assert re.match("line [0-9]+, column .+: ", message)
 
 
-def test_units_of_a_smet_file_are_converted(tmp_path):
-    header = "units_offset = 0 273.15 0 0 0\nunits_multiplier = 1 1 0.01 0.01 1\n"
-    text = SMET.replace("[DATA]", f"{header}[DATA]")
-    for kelvin, cell in (("268.15", "-5"), ("266.15", "-7"), ("267.15", "-6")):
-        text = text.replace(kelvin, cell)
-    for metres, cell in ((" 1.10 ", " 110 "), (" 1.40 ", " 140 "), (" 1.35 ", " 135 ")):
-        text = text.replace(metres, cell)
-    rows = read_season(written(tmp_path, text))
-    assert (rows[1].temperature, rows[1].snow_depth) == pytest.approx((-7.0, 1.4))
+@pytest.mark.parametrize(
+    ("column", "value", "message"),
+    [
+        ("snowfall_m", "lots", "row 2, column snowfall_m: 'lots' is not a number"),
+        ("snowfall_m", 30.0, "row 2, column snowfall_m: 30 is outside the allowed range"),
+        ("temperature_c", 266.15, "row 2, column temperature_c: 266.15 is outside"),
+        ("temperature_c", None, "row 2, column temperature_c: empty; give a number"),
+        ("date", "2024-13-02", "row 2, column date: '2024-13-02' is not a date"),
+    ],
+)
+def test_a_damaged_frame_is_refused_by_row_and_column(column, value, message):
+    frame = pd.DataFrame(
+        {"date": ["2024-01-01", "2024-01-02"], "snowfall_m": [0.2, 0.1], "temperature_c": [-5, -7]},
+        dtype=object,
+    )
+    assert len(read_season(frame)) == 2
+    frame.loc[1, column] = value
+    with pytest.raises(InputError, match=f"^the season, {re.escape(message)}"):
+        read_season(frame)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("HINTERALP\n2024-01-01,28,17,T\n", "line 2, column 1: rows of ACIS without the names"),
+        ("SMET 1.1 BINARY\n[HEADER]\n", "line 1, column 3: 'BINARY'; allowed: ASCII"),
+        ("# iCSV 1.0 UTF-8 2DTIMESERIES\n", "line 1, column 5: 2DTIMESERIES holds profiles"),
+        (
+            weather_files.summaries(lambda *_: "0", weather_files.ORDERED),
+            "line 2, column TMAX: without a decimal in any row, its units cannot be told",
+        ),
+        (
+            weather_files.ICSV_UNITS.replace("|cm|", "|feet|"),
+            "line 13, column units: 'feet' of HS; allowed: m, cm, mm",
+        ),
+        (weather_files.ICSV_UNITS.replace("|TA", "|T"), None),
+        (weather_files.SMET.replace("timestamp", "time"), "line 14, column fields: neither"),
+    ],
+)
+def test_what_cannot_be_read_says_why(content, message, tmp_path):
+    file = written(tmp_path, content)
+    with pytest.raises(InputError, match=re.escape(f"{file}, {message}" if message else str(file))):
+        read_season(file)
+
+
+def test_packed_files(tmp_path):
+    packed = gzip.compress(weather_files.BY_STATION.encode())
+    for damaged, message in (
+        (packed[:60], "gzip: it ends too early"),
+        (packed[:20] + b"\xff" * 30, "damaged: gzip"),
+        (b"PK\x03\x04...", "a zip archive; unpack it"),
+    ):
+        with pytest.raises(InputError, match=message):
+            read_season(written(tmp_path, damaged))
+
+
+def test_a_packed_file_does_not_fill_the_memory(tmp_path):
+    file = written(tmp_path, gzip.compress(b"0" * (65 << 20), 1))
+    with pytest.raises(InputError, match="longer than 64 MB when unpacked"):
+        read_season(file)
+
+
+def test_a_sensor_that_reads_below_the_ground_sees_none(tmp_path):
+    text = METEOSWISS.replace(";0;110", ";0;-4")
+    assert read_season(written(tmp_path, text))[0].snow_depth == 0.0
+    with pytest.raises(InputError, match="line 2, column htoautd0: -40 is outside"):
+        read_season(written(tmp_path, METEOSWISS.replace(";0;110", ";0;-40")))
+
+
+def test_older_files_of_building_energy_have_depths_only(tmp_path):
+    text = weather_files.EPW_HEADER + weather_files.epw_rows(older=True)
+    assert "new snow is the daily rise" in check(written(tmp_path, text), BY_DEPTH)[1][-1]
+    nothing = re.sub(",(110|140|999),88", ",999,88", text)
+    with pytest.raises(InputError, match="neither new snow, .* in any row of this EPW file"):
+        read_season(written(tmp_path, nothing))
+
+
+def test_daily_files_of_the_slf_have_no_temperature(tmp_path):
+    text = "station_code,measure_date,hyear,HS,HN_1D\nHAL2,2024-01-01T06:00:00Z,2024,110.0,0.0\n"
+    with pytest.raises(InputError, match="no air temperature in any row of this IMIS file"):
+        read_season(written(tmp_path, text))
 
 
 def test_gaps_are_told(tmp_path):

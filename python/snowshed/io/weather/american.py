@@ -9,7 +9,15 @@ from datetime import datetime
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.weather.observation import Observation, Quantity, Station, cells_of, time_of
+from snowshed.io.messages import quoted
+from snowshed.io.weather.observation import (
+    Observation,
+    Quantity,
+    Station,
+    cells_of,
+    split_cells,
+    time_of,
+)
 
 #: Elements of GHCN-daily: SNOW and SNWD in mm, PRCP in tenths of mm, temperatures in tenths of C.
 ELEMENTS: Mapping[str, Quantity] = {
@@ -22,26 +30,31 @@ ELEMENTS: Mapping[str, Quantity] = {
 }
 DLY = re.compile(r"^[A-Z0-9_-]{11}\d{6}[A-Z0-9]{4}")
 DLY_LINE, DLY_CELL, DLY_DAYS = 21, 8, 31
-BY_STATION = re.compile(r"^[A-Z0-9_-]{11},\d{8},[A-Z0-9]{4},")
-BY_STATION_CELLS = 8
+BY_STATION = re.compile(r'^"?[A-Z0-9_-]{11}"?,"?\d{8}"?,"?[A-Z0-9]{4}"?,')
+BY_STATION_HEAD = (
+    "ID", "DATE", "ELEMENT", "DATA_VALUE", "M_FLAG", "Q_FLAG", "S_FLAG", "OBS_TIME",
+)  # fmt: skip
 MISSING = ("", "-9999")
 INCH = 0.0254  # m
 FAHRENHEIT = (5.0 / 9.0, -160.0 / 9.0)
-#: ACIS columns, by what is left of their names in small letters without blanks.
+_HIGHEST = ("TMAX", Quantity("temperature", "degrees F", *FAHRENHEIT))
+_LOWEST = ("TMIN", Quantity("temperature", "degrees F", *FAHRENHEIT))
+_MEAN = ("TAVG", Quantity("temperature", "degrees F", *FAHRENHEIT))
+_WATER = ("PRCP", Quantity("precipitation", "inches", 1e3 * INCH))
+_NEW = ("SNOW", Quantity("snowfall", "inches", INCH))
+_DEPTH = ("SNWD", Quantity("snow_depth", "inches", INCH))
+#: ACIS columns, by what is left of their names in small letters without blanks: those of the
+#: service, of its data listings, and of the tables of NOWData.
 ACIS: Mapping[str, tuple[str, Quantity]] = {
-    "maxt": ("TMAX", Quantity("temperature", "degrees F", *FAHRENHEIT)),
-    "maxtemperature": ("TMAX", Quantity("temperature", "degrees F", *FAHRENHEIT)),
-    "mint": ("TMIN", Quantity("temperature", "degrees F", *FAHRENHEIT)),
-    "mintemperature": ("TMIN", Quantity("temperature", "degrees F", *FAHRENHEIT)),
-    "avgt": ("TAVG", Quantity("temperature", "degrees F", *FAHRENHEIT)),
-    "avgtemperature": ("TAVG", Quantity("temperature", "degrees F", *FAHRENHEIT)),
-    "pcpn": ("PRCP", Quantity("precipitation", "inches", 1e3 * INCH)),
-    "precipitation": ("PRCP", Quantity("precipitation", "inches", 1e3 * INCH)),
-    "snow": ("SNOW", Quantity("snowfall", "inches", INCH)),
-    "snowfall": ("SNOW", Quantity("snowfall", "inches", INCH)),
-    "snwd": ("SNWD", Quantity("snow_depth", "inches", INCH)),
-    "snowdepth": ("SNWD", Quantity("snow_depth", "inches", INCH)),
+    **dict.fromkeys(("maxt", "maxtemp", "maxtemperature", "temperaturemaximum"), _HIGHEST),
+    **dict.fromkeys(("mint", "mintemp", "mintemperature", "temperatureminimum"), _LOWEST),
+    **dict.fromkeys(("avgt", "avgtemp", "avgtemperature", "temperatureaverage"), _MEAN),
+    **dict.fromkeys(("pcpn", "precip", "precipitation"), _WATER),
+    **dict.fromkeys(("snow", "newsnow", "snowfall"), _NEW),
+    **dict.fromkeys(("snwd", "snowdepth"), _DEPTH),
 }
+SUMMARIES = ("sum", "average", "normal")  # rows at the end of a month of NOWData
+ISO_DATE = re.compile(r"^\d{4}-\d{2}-\d{2},.*,")
 TRACE, LACKING = "T", ("M", "", "S")
 
 Days = dict[datetime, dict[str, Any]]
@@ -60,95 +73,99 @@ def read_dly(name: str, lines: Sequence[str]) -> Station:
             continue
         place = f"{name}, line {number}"
         if not DLY.match(line):
-            raise InputError(f"{place}: does not begin with station, year, month and element")
+            raise InputError(
+                f"{place}, column 1: {quoted(line[:DLY_LINE])} is no station, year, month and "
+                "element"
+            )
+        _same_station(line[:11], lines[0][:11], f"{place}, column station")
         element = line[17:21]
         if element not in ELEMENTS:
             continue
         year, month = int(line[11:15]), int(line[15:17])
         if not 1 <= month <= 12 or year < 1:
             raise InputError(f"{place}, column month: {line[15:17]!r}; allowed: 01 to 12")
-        full = DLY_LINE + DLY_CELL * DLY_DAYS - 3  # flags at the end may be cut off
-        if len(line.rstrip("\r\n")) < full - 5:
-            raise InputError(f"{place}: {len(line.rstrip())} characters; needed: {full}")
         for day in range(1, calendar.monthrange(year, month)[1] + 1):
             start = DLY_LINE + DLY_CELL * (day - 1)
+            if len(line) < start + 5:  # flags at the end may be cut off
+                raise InputError(
+                    f"{place}, column day {day}: the line ends after {len(line)} characters; "
+                    f"needed: {DLY_LINE + DLY_CELL * DLY_DAYS}"
+                )
             if line[start + 6 : start + 7].strip():  # failed a check of quality
                 continue
             where = f"{place}, column day {day}"
             value = ELEMENTS[element].read(line[start : start + 5], where, MISSING)
-            _enter(days, datetime(year, month, day), number, element, value)
-    return Station("GHCN-daily", lines[0][:11], _rows(days), NOTES)
+            enter(days, datetime(year, month, day), number, element, value)
+    return Station("GHCN-daily", lines[0][:11], rows_of(days), NOTES)
 
 
 def is_by_station(lines: Sequence[str]) -> bool:
     """Return whether a file is GHCN-daily as of its folder by_station."""
-    return bool(lines) and bool(BY_STATION.match(lines[0]))
+    return bool(BY_STATION.match(lines[0])) or _is_head(lines[0])
 
 
 def read_by_station(name: str, lines: Sequence[str]) -> Station:
     """Return a by_station file's observations; raises InputError naming line and column."""
     days: Days = {}
-    for number, line in enumerate(lines, 1):
+    start = 1 if _is_head(lines[0]) else 0  # the copies of cloud services name the columns
+    station = ""
+    for number, line in enumerate(lines[start:], start + 1):
         if not line.strip():
             continue
         place = f"{name}, line {number}"
-        _, date, element, text, _, quality, *_ = cells_of(line, BY_STATION_CELLS, place)
+        own, date, element, text, _, quality, *_ = cells_of(line, BY_STATION_HEAD, place)
+        station = station or own
+        _same_station(own, station, f"{place}, column ID")
         if element not in ELEMENTS or quality:
             continue
-        value = ELEMENTS[element].read(text, f"{place}, column value ({element})", MISSING)
-        _enter(days, time_of(date, f"{place}, column date", "%Y%m%d"), number, element, value)
-    return Station("GHCN-daily", lines[0][:11], _rows(days), NOTES)
+        value = ELEMENTS[element].read(text, f"{place}, column DATA_VALUE ({element})", MISSING)
+        enter(days, time_of(date, f"{place}, column DATE", "%Y%m%d"), number, element, value)
+    return Station("GHCN-daily", station, rows_of(days), NOTES)
 
 
 def is_acis(lines: Sequence[str]) -> bool:
-    """Return whether a file has the columns of ACIS."""
-    return _acis_head(lines) is not None
+    """Return whether a file has the columns of ACIS, or its rows without their names."""
+    return _acis_head(lines) is not None or _is_bare_acis(lines)
 
 
 def read_acis(name: str, lines: Sequence[str]) -> Station:
     """Return ACIS columns as observations; raises InputError naming line and column."""
-    start = _acis_head(lines)
-    assert start is not None
-    head = [cell.strip().strip('"') for cell in lines[start].split(",")]
+    found = _acis_head(lines)
+    if found is None:
+        raise InputError(
+            f"{name}, line 2, column 1: rows of ACIS without the names of their columns; add a "
+            "line above, such as Date,maxt,mint,pcpn,snow,snwd, in the order of your request"
+        )
+    start, separator = found
+    head = split_cells(lines[start], f"{name}, line {start + 1}", separator)
     columns = {i: ACIS[key] for i, key in enumerate(map(_key, head)) if key in ACIS}
     days: Days = {}
     for number, line in enumerate(lines[start + 1 :], start + 2):
-        if not line.strip() or line.startswith("#"):
+        if not line.strip() or line.startswith("#") or _key(line).startswith(SUMMARIES):
             continue
         place = f"{name}, line {number}"
-        cells = cells_of(line, len(head), place)
+        cells = cells_of(line, head, place, separator)
         day = time_of(cells[0], f"{place}, column {head[0]}", "%Y-%m-%d", "%m/%d/%Y")
         days.setdefault(day, {"line": number})
         for i, (element, quantity) in columns.items():
             cell = cells[i].removesuffix("A")  # what gathered over several days
             where = f"{place}, column {head[i]}"
             value = 0.0 if cell == TRACE else quantity.read(cell, where, LACKING)
-            _enter(days, day, number, element, value)
+            enter(days, day, number, element, value)
     title = lines[0].strip().strip('"') if start else ""
-    return Station("ACIS", title, _rows(days), ("temperatures in F, depths in inches",))
+    return Station("ACIS", title, rows_of(days), ("temperatures in F, depths in inches",))
 
 
 NOTES = ("values that failed a check of quality are left out",)
 
 
-def _acis_head(lines: Sequence[str]) -> int | None:
-    """Return the line, from 0, that names ACIS columns."""
-    for number, line in enumerate(lines[:3]):
-        keys = [_key(cell) for cell in line.split(",")]
-        if keys and keys[0] == "date" and len([key for key in keys if key in ACIS]) >= 2:
-            return number
-    return None
-
-
-def _key(text: str) -> str:
-    return re.sub(r"[^a-z]", "", text.lower())
-
-
-def _enter(days: Days, day: datetime, line: int, element: str, value: float | None) -> None:
+def enter(days: Days, day: datetime, line: int, element: str, value: float | None) -> None:
+    """Enter what was measured on a day; its line is that of the first element."""
     days.setdefault(day, {"line": line})[element] = value
 
 
-def _rows(days: Days) -> list[Observation]:
+def rows_of(days: Days) -> list[Observation]:
+    """Return the days on which anything was measured as observations, in their order."""
     rows = []
     for day, found in sorted(days.items()):
         if all(value is None for key, value in found.items() if key != "line"):
@@ -162,3 +179,31 @@ def _rows(days: Days) -> list[Observation]:
             )
         )
     return rows
+
+
+def _is_head(line: str) -> bool:
+    return tuple(re.sub('[" ]', "", line).split(",")) == BY_STATION_HEAD
+
+
+def _same_station(own: str, station: str, where: str) -> None:
+    if own != station:
+        raise InputError(f"{where}: {quoted(own)} is another station than {quoted(station)}")
+
+
+def _acis_head(lines: Sequence[str]) -> tuple[int, str] | None:
+    """Return the line, from 0, that names ACIS columns, and what separates them."""
+    for number, line in enumerate(lines[:3]):
+        for separator in (",", "\t", ";"):
+            keys = [_key(cell) for cell in line.split(separator)]
+            if keys[0] == "date" and len([key for key in keys if key in ACIS]) >= 2:
+                return number, separator
+    return None
+
+
+def _is_bare_acis(lines: Sequence[str]) -> bool:
+    """Return whether a file is what the service answers: a station's name, then rows."""
+    return len(lines) > 1 and "," not in lines[0] and bool(ISO_DATE.match(lines[1]))
+
+
+def _key(text: str) -> str:
+    return re.sub(r"[^a-z]", "", text.lower())

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
+from functools import lru_cache
 from typing import Optional
 
 from snowshed._core import InputError
@@ -80,8 +82,6 @@ class Quantity:
         In the file, for messages.
     factor, offset
         value = factor * cell + offset.
-    low, high
-        Of the value.
     """
 
     name: str
@@ -120,7 +120,7 @@ class Quantity:
             raise InputError(
                 f"{where}: {quoted(cell)} is not a number ({self._allowed(low, high)})"
             )
-        if any(number_in(one) == number for one in missing):
+        if number in _numbers(tuple(missing)):
             return None
         value = self.factor * number + self.offset
         if not (math.isfinite(value) and low <= value <= high):
@@ -128,19 +128,25 @@ class Quantity:
                 f"{where}: {cell} is outside the allowed range ({self._allowed(low, high)}); "
                 f"is it really in {self.unit}?"
             )
-        return round(value, 9)
+        return round(max(value, 0.0) if self.name == "snow_depth" else value, 9)
 
     def _allowed(self, low: float, high: float) -> str:
         ends = [(end - self.offset) / self.factor for end in (low, high)]
         return f"{ends[0]:g} <= value <= {ends[1]:g} {self.unit}"
 
 
-#: Beyond these nothing was ever measured, and a unit is mistaken.
+@lru_cache(maxsize=64)
+def _numbers(texts: tuple[str, ...]) -> frozenset[float]:
+    return frozenset(number_in(one) for one in texts)
+
+
+#: Beyond these nothing was ever measured, and a unit is mistaken. Ultrasonic sensors show bare
+#: ground some centimetres too low; such a depth counts as 0.
 RANGES = {
     "temperature": (-90.0, 60.0),
     "precipitation": (0.0, 2000.0),
     "snowfall": (0.0, 3.0),
-    "snow_depth": (0.0, 15.0),
+    "snow_depth": (-0.2, 15.0),
 }
 
 
@@ -167,22 +173,44 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
     raise InputError(f"{where}: {quoted(cell)} is not a date such as {example}")
 
 
-def cells_of(line: str, count: int, where: str, separator: Optional[str] = ",") -> list[str]:
-    """Return the cells of a line, which must be so many.
+def split_cells(line: str, where: str, separator: Optional[str] = ",") -> list[str]:
+    """Return the cells of a line without blanks around them; None separates at blanks.
 
     Raises
     ------
     InputError
-        If there are more or fewer.
+        If it has a cell without end.
     """
-    import csv
-
     try:
         cells = (
             line.split() if separator is None else next(csv.reader([line], delimiter=separator), [])
         )
-    except csv.Error as error:  # a cell without end
+    except csv.Error as error:
         raise InputError(f"{where}: not a table: {error}") from None
-    if len(cells) != count:
-        raise InputError(f"{where}: {len(cells)} cells in {count} columns")
     return [cell.strip() for cell in cells]
+
+
+def cells_of(
+    line: str, head: Sequence[str], where: str, separator: Optional[str] = ","
+) -> list[str]:
+    """Return the cells of a line, one for each column.
+
+    Parameters
+    ----------
+    line, separator
+        As for `split_cells`.
+    head
+        The names of the columns.
+    where
+        File and line, for messages.
+
+    Raises
+    ------
+    InputError
+        Naming the first column without a cell, or the first cell without a column.
+    """
+    cells = split_cells(line, where, separator)
+    if len(cells) != len(head):
+        first = head[len(cells)] if len(cells) < len(head) else str(len(head) + 1)
+        raise InputError(f"{where}, column {first}: {len(cells)} cells in {len(head)} columns")
+    return cells

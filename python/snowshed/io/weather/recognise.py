@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import re
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import InputError
-from snowshed.io.input_file import LARGEST, read_input
-from snowshed.io.weather import american, energy, smet, swiss
+from snowshed.io.input_file import LARGEST, MB, read_input
+from snowshed.io.weather import american, energy, ncei, smet, swiss
 from snowshed.io.weather.observation import Station
+
+GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 
 
 class Format(NamedTuple):
@@ -26,6 +30,7 @@ FORMATS: Mapping[str, Format] = {
     "TMY3": Format(energy.is_tmy3, energy.read_tmy3),
     "GHCN-daily, fixed width": Format(american.is_dly, american.read_dly),
     "GHCN-daily, by station": Format(american.is_by_station, american.read_by_station),
+    "GHCN-daily, summaries": Format(ncei.is_summaries, ncei.read_summaries),
     "ACIS": Format(american.is_acis, american.read_acis),
     "MeteoSwiss": Format(swiss.is_meteoswiss, swiss.read_meteoswiss),
     "IMIS": Format(swiss.is_imis, swiss.read_imis),
@@ -35,6 +40,8 @@ FORMATS: Mapping[str, Format] = {
 def read_station(path: Path) -> Optional[Station]:
     """Return the observations of a weather file; None if its format is none of `FORMATS`.
 
+    A file packed with gzip, as GHCN-daily is published, is read like the file inside.
+
     Raises
     ------
     InputError
@@ -42,12 +49,7 @@ def read_station(path: Path) -> Optional[Station]:
     OSError
         If it cannot be read.
     """
-    content = read_input(path, LARGEST)
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("latin-1")  # names of places in EPW and MeteoSwiss files
-    lines = text.splitlines()
+    lines = re.split("\r\n|\n|\r", _text(_unpacked(read_input(path, LARGEST), path)).rstrip("\r\n"))
     form = next((one for one in FORMATS.values() if one.recognises(lines)), None)
     if form is None:
         return None
@@ -55,3 +57,32 @@ def read_station(path: Path) -> Optional[Station]:
     if not station.rows:
         raise InputError(f"{path}: no rows below the header of this {station.format} file")
     return station
+
+
+def _text(content: bytes) -> str:
+    for encoding in ("utf-8-sig", "cp1252"):  # names of places in EPW and MeteoSwiss files
+        try:
+            return content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    return content.decode("latin-1")
+
+
+def _unpacked(content: bytes, path: Path) -> bytes:
+    if content.startswith(ZIP):
+        raise InputError(f"{path}: a zip archive; unpack it and give the file of the weather")
+    if not content.startswith(GZIP):
+        return content
+    unpacked = b""
+    while content:  # members one after another
+        member = zlib.decompressobj(16 + zlib.MAX_WBITS)
+        try:
+            unpacked += member.decompress(content, LARGEST + 1 - len(unpacked))
+        except zlib.error as error:
+            raise InputError(f"{path}: damaged: gzip: {error}") from None
+        if len(unpacked) > LARGEST:
+            raise InputError(f"{path}: longer than {LARGEST // MB} MB when unpacked")
+        if not member.eof:
+            raise InputError(f"{path}: damaged: gzip: it ends too early")
+        content = member.unused_data.lstrip(b"\0")
+    return unpacked

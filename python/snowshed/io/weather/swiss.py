@@ -5,20 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from snowshed._core import InputError
+from snowshed.io.messages import quoted
 from snowshed.io.weather.observation import Observation, Quantity, Station, cells_of, time_of
 
-#: Parameters of MeteoSwiss, daily and hourly: depths in cm.
+#: Parameters of MeteoSwiss, daily, hourly and of ten minutes: depths in cm.
 METEOSWISS: Mapping[str, Quantity] = {
     "tre200d0": Quantity("temperature", "degrees C"),
     "tre200h0": Quantity("temperature", "degrees C"),
+    "tre200s0": Quantity("temperature", "degrees C"),
     "rre150d0": Quantity("precipitation", "mm"),
     "rre150h0": Quantity("precipitation", "mm"),
+    "rre150z0": Quantity("precipitation", "mm"),
     "rka150d0": Quantity("precipitation", "mm"),
     "hns000d0": Quantity("snowfall", "cm", 0.01),
     "hto000d0": Quantity("snow_depth", "cm", 0.01),
     "htoautd0": Quantity("snow_depth", "cm", 0.01),
+    "htoauts0": Quantity("snow_depth", "cm", 0.01),
 }
-TIMES, STATIONS = ("reference_timestamp", "time"), ("station_abbr", "stn")
+#: Of the open data, of its forerunner, and of IDAWEB; in small letters.
+STATIONS = ("station_abbr", "station/location", "stn")
+TIMES = ("reference_timestamp", "date", "time")
+MISSING = ("", "-", "NA", "NaN", "null")
 FORMATS = ("%d.%m.%Y %H:%M", "%Y%m%d%H%M", "%Y%m%d")
 #: Columns of the SLF; depths in cm.
 IMIS: Mapping[str, Quantity] = {
@@ -51,7 +58,7 @@ def read_imis(name: str, lines: Sequence[str]) -> Station:
 def _head(lines: Sequence[str], separator: str, stations: Sequence[str]) -> int | None:
     """Return the line, from 0, whose first cell is that of a station."""
     for number, line in enumerate(lines[:5]):
-        if line.split(separator)[0].strip().strip('"') in stations:
+        if _title(line.split(separator)[0]).lower() in stations:
             return number
     return None
 
@@ -68,31 +75,38 @@ def _read(
 ) -> Station:
     start = _head(lines, separator, stations)
     assert start is not None
-    head = [cell.strip().strip('"') for cell in lines[start].split(separator)]
-    when = next((i for i, title in enumerate(head) if title in times), None)
+    head = [_title(cell) for cell in lines[start].split(separator)]
+    when = next((i for i, title in enumerate(head) if title.lower() in times), None)
     if when is None:
-        raise InputError(f"{name}, line {start + 1}: no column {' or '.join(times)}")
+        raise InputError(f"{name}, line {start + 1}, column {' or '.join(times)}: missing")
     columns = _best(head, parameters)
     if not columns:
-        raise InputError(f"{name}, line {start + 1}: none of the columns {', '.join(parameters)}")
+        raise InputError(
+            f"{name}, line {start + 1}, column {' or '.join(parameters)}: all are missing"
+        )
     rows, station = [], ""
     for number, line in enumerate(lines[start + 1 :], start + 2):
-        if not line.strip():
-            continue
         place = f"{name}, line {number}"
-        cells = cells_of(line, len(head), place, separator)
+        if not line.strip() or [_title(cell) for cell in line.split(separator)] == head:
+            continue  # orders of IDAWEB name the columns again above every part
+        cells = cells_of(line, head, place, separator)
         if station and cells[0] != station:
             raise InputError(
-                f"{place}, column {head[0]}: {cells[0]!r} is another station than {station!r}"
+                f"{place}, column {head[0]}: {quoted(cells[0])} is another station than "
+                f"{quoted(station)}"
             )
         station = cells[0]
         values = {
-            one.name: one.read(cells[i], f"{place}, column {head[i]}", ("", "-", "NA"))
+            one.name: one.read(cells[i], f"{place}, column {head[i]}", MISSING)
             for i, one in columns.items()
         }
         time = time_of(cells[when], f"{place}, column {head[when]}", *formats)
         rows.append(Observation(number, time, **values))
     return Station(form, station, rows)
+
+
+def _title(cell: str) -> str:
+    return cell.strip().strip('"')
 
 
 def _best(head: Sequence[str], parameters: Mapping[str, Quantity]) -> dict[int, Quantity]:

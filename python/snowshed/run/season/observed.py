@@ -40,7 +40,7 @@ def days_of(station: Station, source: str) -> tuple[list[Weather], list[str]]:
     InputError
         If snow cannot be told from its columns, or there are no temperatures.
     """
-    days = _with_temperature(_daily(_ordered(station, source)), source)
+    days = _with_temperature(_daily(_ordered(station, source)), station.format, source)
     notes = [*station.notes, *_gaps(days)]
     if station.typical_year:
         notes.append(
@@ -48,7 +48,7 @@ def days_of(station: Station, source: str) -> tuple[list[Weather], list[str]]:
             "together from July to June"
         )
     temperatures = _temperatures(days)
-    falls, rule = _snowfalls(days, temperatures, source)
+    falls, rule = _snowfalls(days, temperatures, station.format, source)
     if rule:
         notes.append(rule)
     rows = [
@@ -132,11 +132,13 @@ def _gaps(days: Sequence[Observation]) -> list[str]:
     ]
 
 
-def _with_temperature(days: Sequence[Observation], source: str) -> list[Observation]:
+def _with_temperature(days: Sequence[Observation], form: str, source: str) -> list[Observation]:
     """Return the days whose temperature is known, or known a few days before or after."""
     known = np.array([i for i, day in enumerate(days) if day.temperature is not None])
     if len(known) == 0:
-        raise InputError(f"{source}: no temperatures; a season needs them")
+        raise InputError(
+            f"{source}: no air temperature in any row of this {form} file; a season needs them"
+        )
     near = np.searchsorted(known, np.arange(len(days)))
     before, after = known[np.maximum(near - 1, 0)], known[np.minimum(near, len(known) - 1)]
     distance = np.minimum(
@@ -152,7 +154,7 @@ def _temperatures(days: Sequence[Observation]) -> list[float]:
 
 
 def _snowfalls(
-    days: Sequence[Observation], temperatures: Sequence[float], source: str
+    days: Sequence[Observation], temperatures: Sequence[float], form: str, source: str
 ) -> tuple[list[float], Optional[str]]:
     """Return the new snow of each day, m, and the rule by which it was found."""
     if any(day.snowfall is not None for day in days):
@@ -175,7 +177,10 @@ def _snowfalls(
         last = depths[-1] if depths else 0.0
         depths.append(last if day.snow_depth is None else day.snow_depth)
     if not any(depths):
-        raise InputError(f"{source}: neither new snow, precipitation nor snow depth in its columns")
+        raise InputError(
+            f"{source}: neither new snow, precipitation nor snow depth in any row of this {form} "
+            "file"
+        )
     rises = np.diff(depths, prepend=depths[0])
     falls = [round(float(rise), 4) if rise >= LEAST_RISE else 0.0 for rise in rises]
     return falls, (

@@ -55,7 +55,7 @@ COLUMNS: Mapping[str, _Column] = {
 ALLOWED = ("date", *COLUMNS)
 #: Other spellings of units.
 SAME_UNITS: Mapping[str, Sequence[str]] = {"degrees C": ("degC", "°C"), "": ("1",)}
-MOST_ROWS = 20_000  # twice an hourly season
+MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
 
 
 Season = Union[PathLike, "pd.DataFrame", Sequence[Weather]]

@@ -1,0 +1,97 @@
+"""NOAA's daily summaries: a row for each day, a column for each element of GHCN-daily.
+
+Files of the archive's folder `access` hold the units of GHCN-daily (tenths of mm and of degrees C).
+Those of an order or of the data service may be metric or in inches and degrees F, and do not say
+so. What they hold tells it: only metric temperatures, and only amounts in inches, have decimals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from snowshed._core import InputError
+from snowshed.io.messages import quoted
+from snowshed.io.weather.american import (
+    ELEMENTS,
+    FAHRENHEIT,
+    INCH,
+    MISSING,
+    NOTES,
+    Days,
+    enter,
+    rows_of,
+)
+from snowshed.io.weather.observation import Quantity, Station, cells_of, split_cells, time_of
+
+METRIC: Mapping[str, Quantity] = {
+    "SNOW": Quantity("snowfall", "mm", 1e-3),
+    "SNWD": Quantity("snow_depth", "mm", 1e-3),
+    "PRCP": Quantity("precipitation", "mm"),
+    **dict.fromkeys(("TMAX", "TMIN", "TAVG"), Quantity("temperature", "degrees C")),
+}
+STANDARD: Mapping[str, Quantity] = {
+    "SNOW": Quantity("snowfall", "inches", INCH),
+    "SNWD": Quantity("snow_depth", "inches", INCH),
+    "PRCP": Quantity("precipitation", "inches", 1e3 * INCH),
+    **dict.fromkeys(("TMAX", "TMIN", "TAVG"), Quantity("temperature", "degrees F", *FAHRENHEIT)),
+}
+STATION, DATE, PLACE = "STATION", "DATE", "LATITUDE"
+FLAGS, QUALITY = "_ATTRIBUTES", 1  # the second of the flags of a value
+ARCHIVE = [STATION, DATE, PLACE]  # the order of columns in the archive alone
+
+
+def is_summaries(lines: Sequence[str]) -> bool:
+    """Return whether a file is of the daily summaries."""
+    head = [cell.strip().strip('"') for cell in lines[0].split(",")]
+    return head[0] == STATION and DATE in head and any(one in head for one in ELEMENTS)
+
+
+def read_summaries(name: str, lines: Sequence[str]) -> Station:
+    """Return the observations of daily summaries; raises InputError naming line and column."""
+    head = split_cells(lines[0], f"{name}, line 1")
+    rows = [
+        (number, dict(zip(head, cells_of(line, head, f"{name}, line {number}"))))
+        for number, line in enumerate(lines[1:], 2)
+        if line.strip()
+    ]
+    units, title = _units(name, head, [row for _, row in rows])
+    days: Days = {}
+    for number, row in rows:
+        place = f"{name}, line {number}"
+        if row[STATION] != rows[0][1][STATION]:
+            raise InputError(
+                f"{place}, column {STATION}: {quoted(row[STATION])} is another station than "
+                f"{quoted(rows[0][1][STATION])}"
+            )
+        day = time_of(row[DATE], f"{place}, column {DATE}", "%Y-%m-%d")
+        for element, quantity in units.items():
+            if element not in row:
+                continue
+            value = quantity.read(row[element], f"{place}, column {element}", MISSING)
+            flags = row.get(element + FLAGS, "").split(",")
+            if len(flags) > QUALITY and flags[QUALITY].strip():
+                continue
+            enter(days, day, number, element, value)
+    station = rows[0][1].get("NAME") or rows[0][1][STATION] if rows else ""
+    return Station("GHCN-daily", station, rows_of(days), (*NOTES, f"its units are {title}"))
+
+
+def _units(
+    name: str, head: Sequence[str], rows: Sequence[Mapping[str, str]]
+) -> tuple[Mapping[str, Quantity], str]:
+    """Return the units of a file, and their name."""
+    if _have_decimals(rows, "TMAX", "TMIN", "TAVG"):
+        return METRIC, "mm and degrees C"
+    if _have_decimals(rows, "PRCP", "SNOW"):
+        return STANDARD, "inches and degrees F"
+    if head[:3] == ARCHIVE or not rows:
+        return ELEMENTS, "tenths of mm and of degrees C, and mm of snow"
+    first = next(one for one in head if one in ELEMENTS)
+    raise InputError(
+        f"{name}, line 2, column {first}: without a decimal in any row, its units cannot be told; "
+        f"give a longer file, or that of the archive (its columns begin {', '.join(ARCHIVE)})"
+    )
+
+
+def _have_decimals(rows: Sequence[Mapping[str, str]], *elements: str) -> bool:
+    return any("." in row.get(element, "") for row in rows for element in elements)

@@ -1,0 +1,46 @@
+"""Commands in processes of their own, which tests interrupt and kill."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+
+def snowshed_command(*arguments: object, **options) -> subprocess.Popen:
+    """Start ``snowshed``; its output is text in pipes."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "snowshed", *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        **options,
+    )
+
+
+def children_of(pid: int) -> list[int]:
+    """Return the processes that a process has started and that still run."""
+    children = Path(f"/proc/{pid}/task/{pid}/children")
+    try:
+        return [int(child) for child in children.read_text().split()]
+    except FileNotFoundError:
+        return []
+
+
+def kill_with_children(command: subprocess.Popen) -> None:
+    """Kill a command and its workers, none of which may do anything any more."""
+    command.send_signal(signal.SIGSTOP)  # so that it starts no other worker meanwhile
+    for child in children_of(command.pid):
+        os.kill(child, signal.SIGKILL)
+    command.kill()
+    command.communicate()
+
+
+def wait_for(condition, timeout: float = 120.0) -> None:
+    """Wait until a condition holds."""
+    end = time.monotonic() + timeout
+    while not condition():
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.01)
