@@ -131,6 +131,17 @@ SNOWSHED_INLINE V sqrt(const V& x) {
 }
 
 template <class V>
+SNOWSHED_INLINE V floor(const V& x) {
+  if constexpr (is_simd_pack<V>) {
+    V r;
+    for (int i = 0; i < lane_count<V>; ++i) r[i] = std::floor(x[i]);
+    return r;
+  } else {
+    return std::floor(x);
+  }
+}
+
+template <class V>
 SNOWSHED_INLINE V abs(const V& x) {
   return select(x < Scalar<V>(0), V(-x), x);
 }
