@@ -156,40 +156,45 @@ struct ParticleKernels {
       }
   }
 
-  /// Kirchhoff stress of the present elastic strain; for plastic laws after bringing the strain
-  /// back to the yield surface, unless `committed` says that it is there already.
-  SNOWSHED_INLINE Tensor stress(State& s, const Snow& snow, int n, bool committed) const {
+  struct Stress {
+    Tensor tau;        // Kirchhoff's
+    V strain_squared;  // |e|^2 of the Hencky strain that goes with it
+  };
+
+  /// Stress of the present elastic strain; for plastic laws after bringing the strain back to the
+  /// yield surface, unless `committed` says that it is there already.
+  SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int n, bool committed) const {
     const auto& el = snow.law.elastic;
     Tensor e = hencky_strain(s.be_minus_identity);
     const V volumetric = trace(e);
-    const V third = volumetric * (T(1) / T(D));
+    V third = volumetric * (T(1) / T(D));
     Tensor dev = e;
     for (int k = 0; k < D; ++k) dev.c[k] -= third;
-    V p_now = -el.bulk * volumetric;
-    V shear_scale = broadcast<V>(T(2) * el.mu);
+    const V dev_squared = norm_squared(dev);
+    V keep = broadcast<V>(T(1)), p_now = -el.bulk * volumetric;
     if constexpr (Snow::plastic) {
-      const V q_trial = sqrt(V(T(6) * norm_squared(dev))) * el.mu;  // q = sqrt(3/2 s:s)
+      const V q_trial = sqrt(V(T(6) * dev_squared)) * el.mu;  // q = sqrt(3/2 s:s)
       PQ<V> pq{p_now, q_trial};
       if (!committed && snow.law.return_map(pq, s.plastic)) {
         const auto sheared = q_trial > T(0);
-        const V keep = select(sheared, V(pq.q / select(sheared, q_trial, broadcast<V>(T(1)))),
-                              broadcast<V>(T(1)));
-        const V new_third = pq.p * (T(-1) / (el.bulk * T(D)));
+        keep = select(sheared, V(pq.q / select(sheared, q_trial, keep)), keep);
+        third = pq.p * (T(-1) / (el.bulk * T(D)));
         for (int k = 0; k < Tensor::size; ++k) e.c[k] = keep * dev.c[k];
-        for (int k = 0; k < D; ++k) e.c[k] += new_third;
+        for (int k = 0; k < D; ++k) e.c[k] += third;
         const Tensor returned = cauchy_green_minus_identity(e);
         const auto changed = (pq.p != p_now) | (pq.q != q_trial);
         for (int k = 0; k < Tensor::size; ++k)
           s.be_minus_identity.c[k] = select(changed, returned.c[k], s.be_minus_identity.c[k]);
-        shear_scale *= keep;
       }
       if constexpr (energy) record_energy(PQ<V>{p_now, q_trial}, pq, s.mass, snow, n);
       p_now = pq.p;
     }
-    Tensor tau;
-    for (int k = 0; k < Tensor::size; ++k) tau.c[k] = shear_scale * dev.c[k];
-    for (int k = 0; k < D; ++k) tau.c[k] -= p_now;
-    return tau;
+    Stress r;
+    const V shear_scale = T(2) * el.mu * keep;
+    for (int k = 0; k < Tensor::size; ++k) r.tau.c[k] = shear_scale * dev.c[k];
+    for (int k = 0; k < D; ++k) r.tau.c[k] -= p_now;
+    r.strain_squared = keep * keep * dev_squared + T(D) * third * third;
+    return r;
   }
 
   /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work of the
@@ -255,16 +260,6 @@ struct ParticleKernels {
     }
   }
 
-  /// |e|^2 of the Hencky strain that goes with a stress.
-  SNOWSHED_INLINE V elastic_strain_squared(const Tensor& tau, const Snow& snow) const {
-    const V mean = trace(tau) * (T(1) / T(D));
-    const V volumetric = mean / snow.law.elastic.bulk;
-    Tensor dev = tau;
-    for (int k = 0; k < D; ++k) dev.c[k] -= mean;
-    for (int k = 0; k < Tensor::size; ++k) dev.c[k] *= T(0.5) / snow.law.elastic.mu;
-    return norm_squared(dev) + volumetric * volumetric * (T(1) / T(D));
-  }
-
   /// Notes a particle whose strain is beyond the limit; what is not finite is, too.
   SNOWSHED_INLINE void check(const V& strain_squared, int at, int n) const {
     const auto sound = strain_squared <= T(elastic_strain_limit * elastic_strain_limit);
@@ -296,7 +291,7 @@ struct ParticleKernels {
         return;
       }
       const Snow& snow = snows.of(p, at, n);
-      const Tensor tau = stress(s, snow, n, true);
+      const Tensor tau = stress(s, snow, n, true).tau;
       scatter_chunk(stencil, s, tau, snow, n, tile);
       reach |= stencil.reach;
       if constexpr (energy) record_kinetic_energy(s, n);
@@ -315,7 +310,7 @@ struct ParticleKernels {
       move(s, m);
       update_left_cauchy_green(s, m);
       const Snow& snow = snows.of(p, at, n);
-      const Tensor tau = stress(s, snow, n, false);
+      const auto [tau, strain_squared] = stress(s, snow, n, false);
       write(s, at, n);
 
       V v2 = s.velocity[0] * s.velocity[0], u2 = m.pic[0] * m.pic[0];
@@ -325,7 +320,7 @@ struct ParticleKernels {
       }
       speed = max(speed, max(v2, u2));
       if constexpr (energy) record_stress_power(s, m, tau, snow, n);
-      check(elastic_strain_squared(tau, snow) + T(0) * v2, at, n);
+      check(strain_squared + T(0) * v2, at, n);
       if constexpr (energy) record_kinetic_energy(s, n);
 
       const Stencil<T, D, basis> stencil(s.cell);
