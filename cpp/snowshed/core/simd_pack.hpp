@@ -113,8 +113,16 @@ SNOWSHED_INLINE auto bits_in(const M& mask) {
 
 template <class M>
 SNOWSHED_INLINE bool any(const M& mask) {
-  if constexpr (std::is_integral_v<M>)
-    return mask;
+  if constexpr (std::is_integral_v<M>) return mask;
+#if defined(__AVX512DQ__)
+  else if constexpr (sizeof(M) == 64 && sizeof(mask[0]) == 4)
+    return _mm512_movepi32_mask((__m512i)mask) != 0;
+  else if constexpr (sizeof(M) == 64)
+    return _mm512_movepi64_mask((__m512i)mask) != 0;
+#elif defined(__AVX2__)
+  else if constexpr (sizeof(M) == 32)
+    return _mm256_movemask_ps((__m256)mask) != 0;
+#endif
   else
     return bits_in(mask) != 0;
 }
@@ -127,6 +135,17 @@ SNOWSHED_INLINE V sqrt(const V& x) {
     return r;
   } else {
     return std::sqrt(x);
+  }
+}
+
+template <class V>
+SNOWSHED_INLINE V floor(const V& x) {
+  if constexpr (is_simd_pack<V>) {
+    V r;
+    for (int i = 0; i < lane_count<V>; ++i) r[i] = std::floor(x[i]);
+    return r;
+  } else {
+    return std::floor(x);
   }
 }
 

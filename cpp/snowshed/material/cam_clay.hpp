@@ -148,15 +148,18 @@ struct CamClay {
     ev = select(yields, V(ev + select(loose, to_origin, V((p_on - trial.p) / elastic.bulk))), ev);
   }
 
-  /// Returns the root D by safeguarded Newton steps; zero for particles with `skip` > 0.
+  /// Returns the root D by safeguarded steps of Chebyshev's method, Newton's with a correction for
+  /// the curvature of y; zero for particles with `skip` > 0.
   template <class V>
   SNOWSHED_INLINE V root(const PQ<V>& trial, const V& ev, const V& p0_old, const V& n_trial,
                          const V& far, const V& skip) const {
     constexpr T tolerance = sizeof(T) == 4 ? T(3e-7) : T(1e-15);
+    constexpr T root_of_tolerance = sizeof(T) == 4 ? T(5e-4) : T(3e-8);
     const V zero = broadcast<V>(T(0)), one = broadcast<V>(T(1));
     const C c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
     // Close to the root, the search ends once the change of pressure is below rounding.
-    const V rounding = T(0.2) * tolerance * (abs(trial.p) + beta * p0_old);
+    const V pressure = abs(trial.p) + beta * p0_old;
+    const V rounding = T(0.2) * tolerance * pressure;
     V near = zero, end = far;
     // Snow that dilated far beyond the loss of its strength (u < -1) has none; u is clamped there.
     const auto at_trial = hyperbolic(max(V(-xi * ev), broadcast<V>(T(-1))));
@@ -203,14 +206,24 @@ struct CamClay {
       const auto past = (y <= T(0)) | (n * n_trial <= T(0));
       near = select(past, near, d);
       end = select(past, d, end);
-      const V newton = d - y / select(abs(y_slope) > T(0), y_slope, zero + T(1));
+      // Half the second derivative, but for that of p0, which changes too little to matter.
+      const V y_curve = (T(1) + T(2) * beta) / m2 *
+                            (q_slope * q_slope - T(2) * q * q_slope * (n_slope - c) * per_flow) +
+                        (elastic.bulk + beta * p0_slope) * (elastic.bulk - p0_slope);
+      const V per_slope = T(1) / select(abs(y_slope) > T(0), y_slope, one);
+      const V newton = y * per_slope;
+      const V correction = clamp(V(newton * y_curve * per_slope), V(T(-0.5) * one), one);
+      const V stepped = d - newton * (T(1) + correction);
       const V lo = min(near, end), hi = max(near, end);
-      const auto usable = (newton > lo) & (newton < hi) & before_centre;
-      const V next = select(usable, newton, V(T(0.5) * (near + end)));
+      const auto usable = (stepped > lo) & (stepped < hi) & before_centre;
+      const V next = select(usable, stepped, V(T(0.5) * (near + end)));
       const V change = abs(V(next - d));
-      const auto moved =
-          (change > tolerance * abs(next)) &
-          ((change * (elastic.bulk - p0_slope) > rounding) | (abs(y) > T(0.01) * size));
+      const V change_of_p = change * (elastic.bulk - p0_slope);
+      // After a small step the next one is that small again by comparison, hence below rounding.
+      const auto small = (change <= root_of_tolerance * abs(next)) &
+                         (change_of_p <= root_of_tolerance * pressure) & usable;
+      const auto settled = ((change_of_p <= rounding) | small) & (abs(y) <= T(0.01) * size);
+      const auto moved = (change > tolerance * abs(next)) & !settled;
       active = active & !found;
       d = select(active, next, d);
       active = active & moved;

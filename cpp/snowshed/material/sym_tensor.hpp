@@ -66,8 +66,9 @@ SNOWSHED_INLINE V determinant(const Sym<V, D>& a) {
 namespace detail {
 
 /// Below this norm the power series is used instead of an eigen-decomposition. The strains of snow
-/// practically always are this small, since p0/E bounds them.
-inline constexpr double series_norm = 0.04;
+/// practically always are this small: p0/E bounds the elastic ones, and an impact adds some percent
+/// in a step.
+inline constexpr double series_norm = 0.1;
 
 /// Returns the sum over n >= 1 of coefficient(n) A^n by the Cayley-Hamilton recurrence
 /// A^n = x A^2 + y A + z I. It needs one matrix product in all.
@@ -176,7 +177,7 @@ __attribute__((noinline)) Sym<V, D> spectral(Sym<V, D> a, F f) {
 template <class V, int D>
 SNOWSHED_INLINE Sym<V, D> hencky_strain(const Sym<V, D>& a) {
   using T = Scalar<V>;
-  constexpr int terms = sizeof(T) == 4 ? 6 : 11;
+  constexpr int terms = sizeof(T) == 4 ? 7 : 15;  // norm^terms / (terms + 1) is below rounding
   if (!any(norm_squared(a) > T(detail::series_norm * detail::series_norm)))
     return detail::power_series<terms>(a, [](int n) { return T(n % 2 ? 0.5 : -0.5) / T(n); });
   return detail::spectral(a, [](const V& x) { return V(T(0.5) * log1p(x)); });
@@ -186,11 +187,12 @@ SNOWSHED_INLINE Sym<V, D> hencky_strain(const Sym<V, D>& a) {
 template <class V, int D>
 SNOWSHED_INLINE Sym<V, D> cauchy_green_minus_identity(const Sym<V, D>& e) {
   using T = Scalar<V>;
-  constexpr int terms = sizeof(T) == 4 ? 5 : 9;
+  constexpr int terms = sizeof(T) == 4 ? 5 : 10;
   constexpr double limit = detail::series_norm / 2;
   if (!any(norm_squared(e) > T(limit * limit))) {
-    constexpr T c[] = {T(1),        T(2),        T(2),         T(4.0 / 3),   T(2.0 / 3),
-                       T(4.0 / 15), T(4.0 / 45), T(8.0 / 315), T(2.0 / 315), T(4.0 / 2835)};
+    constexpr T c[] = {T(1),         T(2),          T(2),          T(4.0 / 3),
+                       T(2.0 / 3),   T(4.0 / 15),   T(4.0 / 45),   T(8.0 / 315),
+                       T(2.0 / 315), T(4.0 / 2835), T(4.0 / 14175)};
     return detail::power_series<terms>(e, [&c](int n) { return c[n]; });  // 2^n/n!
   }
   return detail::spectral(e, [](const V& x) { return expm1(V(x + x)); });

@@ -24,7 +24,7 @@ MpmOptions sleepy(const Way& way, double speed = sleep_speed, bool energy_balanc
 Obstacle floor() { return fixed(make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1)), Condition::sticky); }
 
 /// A low wall of snow, resting on the floor.
-ParticleBatch wall(const Way& way) {
+ParticleBatch wall_of_snow(const Way& way) {
   return filled_box(way.dimension, Vec3(0, 0, 0), Vec3(0.3, 0.06, 0.08), 0.005);
 }
 
@@ -42,7 +42,7 @@ std::unique_ptr<Method> wall_under_lump(const Way& way, double speed, int thread
   MpmOptions o = sleepy(way, speed, energy_balance);
   o.numerics.threads = threads;
   auto solver = make_mpm(o, {floor()});
-  solver->add(wall(way));
+  solver->add(wall_of_snow(way));
   solver->add(falling_lump(way, 0.15));
   return solver;
 }
@@ -58,7 +58,7 @@ class SleepFiles : public TemporaryFolder {};
 TEST(Sleep, SnowAtRestCostsNothingAndStaysWhereItIs) {
   for (const Way& way : {two_d, three_d}) {
     const auto solver = make_mpm(sleepy(way), {floor()});
-    solver->add(wall(way));
+    solver->add(wall_of_snow(way));
     run_until(*solver, 0.2);
     const ParticleState before = solver->state();
     const StepCounters counters = solver->counters();
@@ -73,7 +73,7 @@ TEST(Sleep, SnowAtRestCostsNothingAndStaysWhereItIs) {
 
 TEST(Sleep, IsOffAtSpeedZero) {
   const auto solver = make_mpm(sleepy(two_d, 0.0, true), {floor()});
-  solver->add(wall(two_d));
+  solver->add(wall_of_snow(two_d));
   run_until(*solver, 0.2);
   EXPECT_EQ(solver->counters().slept_updates, 0);
   EXPECT_EQ(solver->energy().sleep, 0.0);
@@ -85,7 +85,7 @@ TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
   MpmOptions o = sleepy(two_d);
   o.gravity = 0.4;
   const auto solver = make_mpm(o, {});
-  solver->add(wall(two_d));
+  solver->add(wall_of_snow(two_d));
   const double start = weighted_mean(solver->state(), solver->state().positions)[2];
   run_until(*solver, 0.3);
   const double fallen = start - weighted_mean(solver->state(), solver->state().positions)[2];
@@ -119,7 +119,7 @@ TEST(Sleep, BeginsAtTheStatedSpeedAndAfterTheStatedTime) {
     MpmOptions o = sleepy(two_d);
     o.gravity = 0;
     const auto solver = make_mpm(o, {});
-    ParticleBatch drifting = wall(two_d);
+    ParticleBatch drifting = wall_of_snow(two_d);
     drifting.velocity.x() = part * sleep_speed;
     solver->add(drifting);
     run_until(*solver, 0.9 * o.numerics.sleep_time);
@@ -222,7 +222,7 @@ TEST(Sleep, AMovingObstacleWakes) {
   motion.velocity = Vec3(0.5, 0, 0);
   paddle.motion.emplace(motion);
   const auto solver = make_mpm(sleepy(two_d), {floor(), paddle});
-  solver->add(wall(two_d));
+  solver->add(wall_of_snow(two_d));
   run_until(*solver, 0.2);
   EXPECT_EQ(solver->motion(sleep_speed).rms_speed, 0.0);
   run_until(*solver, 0.35);
@@ -231,7 +231,7 @@ TEST(Sleep, AMovingObstacleWakes) {
 
 TEST(Sleep, AKickWakes) {
   const auto solver = make_mpm(sleepy(two_d), {floor()});
-  solver->add(wall(two_d));
+  solver->add(wall_of_snow(two_d));
   run_until(*solver, 0.2);
   solver->add_velocity(std::vector<Vec3>(solver->size(), Vec3(0.2, 0, 0)));
   const std::int64_t before = solver->counters().particle_updates;
@@ -286,7 +286,7 @@ TEST_F(SleepFiles, SnowThatSleepsLiesWithinItsBlock) {
     o.gravity = 0;
     o.numerics.sleep_time = 0.005;
     const auto solver = make_mpm(o, {});
-    ParticleBatch glider = wall(two_d);
+    ParticleBatch glider = wall_of_snow(two_d);
     glider.velocity.x() = speed;
     solver->add(glider);
     std::size_t asleep = 0;

@@ -45,4 +45,14 @@ struct BSpline<Basis::cubic> {
   }
 };
 
+/// Weights of the steps from each node's value to the next one's that make the sum over the values
+/// with weights w: sum_k w_k n_k = (sum_k w_k) n_1 + sum_k r_k (n_{k+1} - n_k), by parts.
+template <class V, int S>
+SNOWSHED_INLINE void weights_of_steps(const V (&w)[S], V (&r)[S - 1]) {
+  r[0] = -w[0];
+  r[S - 2] = w[S - 1];
+  SNOWSHED_UNROLL
+  for (int k = S - 3; k > 0; --k) r[k] = r[k + 1] + w[k + 1];
+}
+
 SNOWSHED_VARIANT_END

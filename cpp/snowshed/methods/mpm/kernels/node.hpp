@@ -36,6 +36,9 @@ SNOWSHED_INLINE void store_half(T* values, const NodeHalf<T>& half) {
   std::memcpy(values, &half, sizeof half);
 }
 
+/// Which registers of a node hold values of a half. A register that holds both belongs to both.
+enum class Halves { both, first, second };
+
 /// A node's values, or what each of them is multiplied by.
 template <class T>
 struct Node {
@@ -49,15 +52,14 @@ struct Node {
     for (int i = 0; i < parts; ++i) std::memcpy(&n.part[i], values + i * part_values, sizeof(Part));
     return n;
   }
+  /// All values, or those of the first half.
+  template <Halves halves = Halves::both>
   SNOWSHED_INLINE void store(T* values) const {
-    for (int i = 0; i < parts; ++i) std::memcpy(values + i * part_values, &part[i], sizeof(Part));
-  }
-
-  SNOWSHED_INLINE void store_first_half(T* values) const {
-    if constexpr (parts == 1)
+    static_assert(halves != Halves::second);
+    if constexpr (halves == Halves::first && parts == 1)
       store_half(values, NodeHalf<T>(__builtin_shufflevector(part[0], part[0], 0, 1, 2, 3)));
     else
-      for (int i = 0; i < parts / 2; ++i)
+      for (int i = 0; i < (halves == Halves::first ? parts / 2 : parts); ++i)
         std::memcpy(values + i * part_values, &part[i], sizeof(Part));
   }
 
@@ -87,8 +89,6 @@ struct Node {
   }
 };
 
-/// Which registers of a node hold values of a half. A register that holds both belongs to both.
-enum class Halves { both, first, second };
 template <class T, Halves halves>
 inline constexpr int first_part =
     halves == Halves::second && Node<T>::parts > 1 ? Node<T>::parts / 2 : 0;
@@ -107,6 +107,14 @@ template <Halves halves = Halves::both, class T>
 SNOWSHED_INLINE void add_scaled(Node<T>& sum, const Node<T>& weight, const Node<T>& node) {
   for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
     sum.part[i] += weight.part[i] * node.part[i];
+}
+/// a - b, in the registers of some halves; nothing is said of the others.
+template <Halves halves = Halves::both, class T>
+SNOWSHED_INLINE Node<T> difference(const Node<T>& a, const Node<T>& b) {
+  Node<T> r;
+  for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
+    r.part[i] = a.part[i] - b.part[i];
+  return r;
 }
 /// weight * node, in the registers of some halves; zero in the others.
 template <Halves halves = Halves::both, class T>

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "snowshed/methods/mpm/kernels/chunk.hpp"
+#include "snowshed/methods/mpm/kernels/node.hpp"
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 
 SNOWSHED_VARIANT_BEGIN

@@ -5,9 +5,10 @@
 // that its state is read and written once.
 #pragma once
 
-#include "snowshed/methods/mpm/kernels/chunk.hpp"
+#include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/kernels/material_lookup.hpp"
 #include "snowshed/methods/mpm/kernels/tile.hpp"
+#include "snowshed/methods/mpm/kernels/transfer_rules.hpp"
 
 SNOWSHED_VARIANT_BEGIN
 
@@ -16,11 +17,8 @@ struct ParticleKernels {
   using Snow = typename Snows::Chunk;
   using V = SimdPack<T>;
   using Tensor = Sym<V, D>;
+  using Rule = TransferRule<T, D, transfer, basis>;
   static constexpr int W = simd_width<T>;
-  static constexpr int S = support(basis);
-  static constexpr int N = tile_edge<D>(basis);
-  static constexpr bool apic = transfer == Transfer::apic;
-  static constexpr T apic_scale = T(apic_inverse_inertia(basis));
 
   const StepParameters<T>& step;
   const ParticleView<T>& p;
@@ -32,7 +30,8 @@ struct ParticleKernels {
 
   /// One chunk's state in registers.
   struct State {
-    V cell[D], velocity[D], affine[apic ? D * D : 1], plastic, mass;
+    V cell[D], velocity[D], plastic, mass;
+    typename Rule::Carried carried;
     Tensor be_minus_identity;
   };
 
@@ -45,8 +44,7 @@ struct ParticleKernels {
     SNOWSHED_UNROLL
     for (int k = 0; k < Tensor::size; ++k)
       s.be_minus_identity.c[k] = load(p.be_minus_identity[k] + at, n);
-    if constexpr (apic)
-      for (int k = 0; k < D * D; ++k) s.affine[k] = load(p.affine[k] + at, n);
+    s.carried.read(p, at, n);
     if constexpr (Snow::plastic) s.plastic = load(p.plastic + at, n);
     s.mass = load(p.mass + at, n);
   }
@@ -60,29 +58,11 @@ struct ParticleKernels {
     SNOWSHED_UNROLL
     for (int k = 0; k < Tensor::size; ++k)
       store(p.be_minus_identity[k] + at, s.be_minus_identity.c[k], n);
-    if constexpr (apic)
-      for (int k = 0; k < D * D; ++k) store(p.affine[k] + at, s.affine[k], n);
+    s.carried.write(p, at, n);
     if constexpr (Snow::plastic) store(p.plastic + at, s.plastic, n);
   }
 
   // --- grid to particles ------------------------------------------------------------------
-
-  SNOWSHED_INLINE static auto gradient_only(const Stencil<T, D, basis>& stencil, int l) {
-    return [&stencil, l](int d, int k) { return stencil.gradient[d][k][l]; };
-  }
-  /// APIC: the first half of a node meets the derivative, the second the arm.
-  SNOWSHED_INLINE static auto gradient_then_arm(const Stencil<T, D, basis>& stencil, int l) {
-    return [&stencil, l](int d, int k) {
-      return Node<T>::of_halves(stencil.gradient[d][k][l],
-                                stencil.weight[d][k][l] * stencil.arm(d, k, l));
-    };
-  }
-  SNOWSHED_INLINE static auto arm_then_gradient(const Stencil<T, D, basis>& stencil, int l) {
-    return [&stencil, l](int d, int k) {
-      return Node<T>::of_halves(stencil.weight[d][k][l] * stencil.arm(d, k, l),
-                                stencil.gradient[d][k][l]);
-    };
-  }
 
   /// The least multiple of a pack's lanes that holds n values.
   static constexpr int whole_packs(int n) { return (n + W - 1) / W * W; }
@@ -115,28 +95,20 @@ struct ParticleKernels {
 
   /// Everything the grid tells a chunk.
   struct Motion {
-    V pic[D], change[D], gradient[D][D];  // gradient[i][j] = dt d v_i / d x_j
-    V affine[apic ? D * D : 1];
+    V pic[D], gradient[D][D];  // gradient[i][j] = dt d v_i / d x_j
+    typename Rule::Taken taken;
   };
 
   SNOWSHED_INLINE void interpolate(const Stencil<T, D, basis>& stencil, const T* tile, int n,
                                    Motion& m) const {
-    constexpr int derived = apic ? node_values : 4;  // values of a derivative that count
-    constexpr int row = node_values + D * derived;
+    constexpr int derived = Rule::derived_values, row = node_values + D * derived;
+    const typename Rule::Interpolation weights(stencil);
     alignas(64) T rows[W][whole_packs(row)];
     for (int l = 0; l < n; ++l) {
-      if constexpr (apic) {
-        const auto sums =
-            interpolate_nodes<Halves::both>(stencil, l, tile, gradient_then_arm(stencil, l));
-        sums.value.store(rows[l]);
-        for (int j = 0; j < D; ++j) sums.along[j].store(rows[l] + node_values + j * derived);
-      } else {
-        const auto sums =
-            interpolate_nodes<Halves::first>(stencil, l, tile, gradient_only(stencil, l));
-        sums.value.store(rows[l]);
-        for (int j = 0; j < D; ++j)
-          sums.along[j].store_first_half(rows[l] + node_values + j * derived);
-      }
+      const auto sums = interpolate_nodes<Rule, T, D, basis>(weights, l, tile + stencil.address[l]);
+      sums.value.store(rows[l]);
+      for (int j = 0; j < D; ++j)
+        sums.along[j].template store<Rule::interpolated>(rows[l] + node_values + j * derived);
     }
     for (int l = n; l < W; ++l) std::memcpy(rows[l], rows[0], row * sizeof(T));
     V columns[whole_packs(row)];
@@ -145,14 +117,11 @@ struct ParticleKernels {
     SNOWSHED_UNROLL
     for (int i = 0; i < D; ++i) {
       m.pic[i] = columns[i];
-      if constexpr (!apic) m.change[i] = columns[4 + i];
       SNOWSHED_UNROLL
-      for (int j = 0; j < D; ++j) {
-        const V* along = columns + node_values + j * derived;
-        m.gradient[i][j] = along[i] * per_step;
-        if constexpr (apic) m.affine[i * D + j] = along[4 + i] * (apic_scale / step.dx);
-      }
+      for (int j = 0; j < D; ++j)
+        m.gradient[i][j] = columns[node_values + j * derived + i] * per_step;
     }
+    m.taken.read(columns, columns + node_values, step.dx);
   }
 
   SNOWSHED_INLINE V largest_gradient(const Motion& m) const {
@@ -165,15 +134,8 @@ struct ParticleKernels {
   // --- the particle's own step ------------------------------------------------------------
 
   SNOWSHED_INLINE void move(State& s, const Motion& m) const {
-    for (int d = 0; d < D; ++d) {
-      s.cell[d] += m.pic[d] * (step.dt / step.dx);
-      if constexpr (apic)
-        s.velocity[d] = m.pic[d];
-      else  // (1.2.26)
-        s.velocity[d] = m.pic[d] + step.flip_ratio * (s.velocity[d] + m.change[d] - m.pic[d]);
-    }
-    if constexpr (apic)
-      for (int k = 0; k < D * D; ++k) s.affine[k] = m.affine[k];
+    for (int d = 0; d < D; ++d) s.cell[d] += m.pic[d] * (step.dt / step.dx);
+    m.taken.move(s.velocity, s.carried, m.pic, step.flip_ratio);
   }
 
   /// b <- (I + G) b (I + G)^T with G = dt grad v (1.2.14), on b - I: with H = G b,
@@ -194,40 +156,45 @@ struct ParticleKernels {
       }
   }
 
-  /// Kirchhoff stress of the present elastic strain; for plastic laws after bringing the strain
-  /// back to the yield surface, unless `committed` says that it is there already.
-  SNOWSHED_INLINE Tensor stress(State& s, const Snow& snow, int n, bool committed) const {
+  struct Stress {
+    Tensor tau;        // Kirchhoff's
+    V strain_squared;  // |e|^2 of the Hencky strain that goes with it
+  };
+
+  /// Stress of the present elastic strain; for plastic laws after bringing the strain back to the
+  /// yield surface, unless `committed` says that it is there already.
+  SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int n, bool committed) const {
     const auto& el = snow.law.elastic;
     Tensor e = hencky_strain(s.be_minus_identity);
     const V volumetric = trace(e);
-    const V third = volumetric * (T(1) / T(D));
+    V third = volumetric * (T(1) / T(D));
     Tensor dev = e;
     for (int k = 0; k < D; ++k) dev.c[k] -= third;
-    V p_now = -el.bulk * volumetric;
-    V shear_scale = broadcast<V>(T(2) * el.mu);
+    const V dev_squared = norm_squared(dev);
+    V keep = broadcast<V>(T(1)), p_now = -el.bulk * volumetric;
     if constexpr (Snow::plastic) {
-      const V q_trial = sqrt(V(T(6) * norm_squared(dev))) * el.mu;  // q = sqrt(3/2 s:s)
+      const V q_trial = sqrt(V(T(6) * dev_squared)) * el.mu;  // q = sqrt(3/2 s:s)
       PQ<V> pq{p_now, q_trial};
       if (!committed && snow.law.return_map(pq, s.plastic)) {
         const auto sheared = q_trial > T(0);
-        const V keep = select(sheared, V(pq.q / select(sheared, q_trial, broadcast<V>(T(1)))),
-                              broadcast<V>(T(1)));
-        const V new_third = pq.p * (T(-1) / (el.bulk * T(D)));
+        keep = select(sheared, V(pq.q / select(sheared, q_trial, keep)), keep);
+        third = pq.p * (T(-1) / (el.bulk * T(D)));
         for (int k = 0; k < Tensor::size; ++k) e.c[k] = keep * dev.c[k];
-        for (int k = 0; k < D; ++k) e.c[k] += new_third;
+        for (int k = 0; k < D; ++k) e.c[k] += third;
         const Tensor returned = cauchy_green_minus_identity(e);
         const auto changed = (pq.p != p_now) | (pq.q != q_trial);
         for (int k = 0; k < Tensor::size; ++k)
           s.be_minus_identity.c[k] = select(changed, returned.c[k], s.be_minus_identity.c[k]);
-        shear_scale *= keep;
       }
       if constexpr (energy) record_energy(PQ<V>{p_now, q_trial}, pq, s.mass, snow, n);
       p_now = pq.p;
     }
-    Tensor tau;
-    for (int k = 0; k < Tensor::size; ++k) tau.c[k] = shear_scale * dev.c[k];
-    for (int k = 0; k < D; ++k) tau.c[k] -= p_now;
-    return tau;
+    Stress r;
+    const V shear_scale = T(2) * el.mu * keep;
+    for (int k = 0; k < Tensor::size; ++k) r.tau.c[k] = shear_scale * dev.c[k];
+    for (int k = 0; k < D; ++k) r.tau.c[k] -= p_now;
+    r.strain_squared = keep * keep * dev_squared + T(D) * third * third;
+    return r;
   }
 
   /// Elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work of the
@@ -260,11 +227,7 @@ struct ParticleKernels {
     for (int l = 0; l < n; ++l) {
       double v2 = 0;
       for (int d = 0; d < D; ++d) v2 += double(s.velocity[d][l]) * double(s.velocity[d][l]);
-      if constexpr (apic) {
-        const double inertia = double(step.dx) * double(step.dx) / double(apic_scale);
-        for (int k = 0; k < D * D; ++k)
-          v2 += inertia * double(s.affine[k][l]) * double(s.affine[k][l]);
-      }
+      v2 += s.carried.squared(double(step.dx), l);
       stats.kinetic += 0.5 * double(s.mass[l]) * v2;
     }
   }
@@ -274,44 +237,27 @@ struct ParticleKernels {
   /// Adds a chunk to the tile: mass, momentum, and the force -V0 tau grad w (1.2.13).
   SNOWSHED_INLINE void scatter_chunk(const Stencil<T, D, basis>& stencil, const State& s,
                                      const Tensor& tau, const Snow& snow, int n, T* tile) const {
-    constexpr int row = 4 * (1 + D * (apic ? 2 : 1));
+    constexpr int row = half_node * Rule::given_halves;
     V columns[whole_packs(row)]{};
-    const auto half = [&columns](int h) { return columns + 4 * h; };
     const V force_scale = s.mass * (-snow.specific_volume / step.dx);
-    half(0)[0] = s.mass;
+    columns[0] = s.mass;
     SNOWSHED_UNROLL
     for (int i = 0; i < D; ++i) {
-      half(0)[1 + i] = s.mass * s.velocity[i];
+      columns[1 + i] = s.mass * s.velocity[i];
       SNOWSHED_UNROLL
-      for (int j = 0; j < D; ++j) {
-        half(1 + j)[i] = force_scale * tau(i, j);
-        if constexpr (apic) half(1 + D + j)[1 + i] = s.mass * s.affine[i * D + j] * step.dx;
-      }
+      for (int j = 0; j < D; ++j) columns[half_node * (1 + j) + i] = force_scale * tau(i, j);
     }
+    s.carried.give(columns, s.mass, step.dx);
     alignas(64) T rows[W][whole_packs(row)];
     transpose_columns(columns, rows);
+    const typename Rule::Scattering weights(stencil);
     for (int l = 0; l < n; ++l) {
       const T* nothing = nullptr;
-      NodeSums<T, D> a;
-      a.value = Node<T>::of_halves(rows[l], nothing);
-      for (int j = 0; j < D; ++j)
-        a.along[j] =
-            Node<T>::of_halves(apic ? rows[l] + 4 * (1 + D + j) : nothing, rows[l] + 4 * (1 + j));
-      if constexpr (apic)
-        scatter_nodes<Halves::both>(stencil, l, a, tile, arm_then_gradient(stencil, l));
-      else
-        scatter_nodes<Halves::second>(stencil, l, a, tile, gradient_only(stencil, l));
+      NodeSums<T, D> sums;
+      sums.value = Node<T>::of_halves(rows[l], nothing);
+      for (int j = 0; j < D; ++j) sums.along[j] = Rule::given(rows[l], j);
+      scatter_nodes<Rule, T, D, basis>(weights, l, sums, tile + stencil.address[l]);
     }
-  }
-
-  /// |e|^2 of the Hencky strain that goes with a stress.
-  SNOWSHED_INLINE V elastic_strain_squared(const Tensor& tau, const Snow& snow) const {
-    const V mean = trace(tau) * (T(1) / T(D));
-    const V volumetric = mean / snow.law.elastic.bulk;
-    Tensor dev = tau;
-    for (int k = 0; k < D; ++k) dev.c[k] -= mean;
-    for (int k = 0; k < Tensor::size; ++k) dev.c[k] *= T(0.5) / snow.law.elastic.mu;
-    return norm_squared(dev) + volumetric * volumetric * (T(1) / T(D));
   }
 
   /// Notes a particle whose strain is beyond the limit; what is not finite is, too.
@@ -339,14 +285,13 @@ struct ParticleKernels {
     for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
       State s;
       read(s, at, n);
-      Stencil<T, D, basis> stencil;
-      stencil.place(s.cell, n);
+      const Stencil<T, D, basis> stencil(s.cell);
       if (!stencil.inside) {
         stats.escaped = true;
         return;
       }
       const Snow& snow = snows.of(p, at, n);
-      const Tensor tau = stress(s, snow, n, true);
+      const Tensor tau = stress(s, snow, n, true).tau;
       scatter_chunk(stencil, s, tau, snow, n, tile);
       reach |= stencil.reach;
       if constexpr (energy) record_kinetic_energy(s, n);
@@ -360,14 +305,12 @@ struct ParticleKernels {
     for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
       State s;
       read(s, at, n);
-      Stencil<T, D, basis> stencil;
-      stencil.place(s.cell, n);
       Motion m;
-      interpolate(stencil, velocities, n, m);
+      interpolate(Stencil<T, D, basis>(s.cell), velocities, n, m);
       move(s, m);
       update_left_cauchy_green(s, m);
       const Snow& snow = snows.of(p, at, n);
-      const Tensor tau = stress(s, snow, n, false);
+      const auto [tau, strain_squared] = stress(s, snow, n, false);
       write(s, at, n);
 
       V v2 = s.velocity[0] * s.velocity[0], u2 = m.pic[0] * m.pic[0];
@@ -377,10 +320,10 @@ struct ParticleKernels {
       }
       speed = max(speed, max(v2, u2));
       if constexpr (energy) record_stress_power(s, m, tau, snow, n);
-      check(elastic_strain_squared(tau, snow) + T(0) * v2, at, n);
+      check(strain_squared + T(0) * v2, at, n);
       if constexpr (energy) record_kinetic_energy(s, n);
 
-      stencil.place(s.cell, n);
+      const Stencil<T, D, basis> stencil(s.cell);
       reach |= stencil.reach;
       if (stencil.inside)
         scatter_chunk(stencil, s, tau, snow, n, tile);
@@ -396,10 +339,8 @@ struct ParticleKernels {
     for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
       V cell[D];
       for (int d = 0; d < D; ++d) cell[d] = load(p.cell[d] + at, n);
-      Stencil<T, D, basis> stencil;
-      stencil.place(cell, n);
       Motion m;
-      interpolate(stencil, velocities, n, m);
+      interpolate(Stencil<T, D, basis>(cell), velocities, n, m);
       strain = max(strain, largest_gradient(m));
     });
     stats.strain = double(largest(strain));

@@ -64,6 +64,29 @@ TYPED_TEST(BSplineWeights, ReproduceLinearFields) {
   }
 }
 
+TYPED_TEST(BSplineWeights, OfStepsMakeTheSameSums) {
+  const double values[] = {3.0, -1.0, 4.0, -1.5};
+  for (double f : fractions) {
+    this->at(f);
+    typename TestFixture::T steps[TestFixture::n - 1], slopes[TestFixture::n - 1];
+    weights_of_steps(this->w, steps);
+    weights_of_steps(this->g, slopes);
+    double sum = 0, gradient = 0, by_steps = values[1], gradient_by_steps = 0, total = 0;
+    for (int k = 0; k < this->n; ++k) {
+      sum += this->w[k] * values[k];
+      gradient += this->g[k] * values[k];
+    }
+    for (int k = 0; k + 1 < this->n; ++k) {
+      by_steps += steps[k] * (values[k + 1] - values[k]);
+      gradient_by_steps += slopes[k] * (values[k + 1] - values[k]);
+      total += slopes[k];
+    }
+    EXPECT_NEAR(by_steps, sum, 16 * this->epsilon);
+    EXPECT_NEAR(gradient_by_steps, gradient, 32 * this->epsilon);
+    EXPECT_NEAR(total, 1.0, 4 * this->epsilon);  // the gradient of equal steps of one is one
+  }
+}
+
 TYPED_TEST(BSplineWeights, HaveTheInertiaOfApic) {
   // sum w (x_i - x)^2 = 1/4 (quadratic), 1/3 (cubic): the D_p that APIC relies on.
   for (double f : fractions) {

@@ -1,0 +1,116 @@
+// What a particle takes from its nodes and gives to them: weighted sums, one direction after the
+// other. How a transfer weights the derivatives is its own rule (transfer_rules.hpp).
+#pragma once
+
+#include "snowshed/methods/mpm/kernels/node.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// The same address, kept in a register: nodes are then addressed by constants from it.
+template <class P>
+SNOWSHED_INLINE P* in_register(P* address) {
+  asm("" : "+r"(address));
+  return address;
+}
+
+/// Sums over a particle's nodes: of the values with the weights, and with their derivative along
+/// each direction.
+template <class T, int D>
+struct NodeSums {
+  Node<T> value, along[D];
+};
+
+/// The nodes along a line, as the second one and the steps from each node to the next. Weights add
+/// up to one, and their derivatives to nothing: sums over steps are exact for what does not vary,
+/// and take fewer multiplications. Only `halves` of the values count.
+template <class T, int S, Halves halves>
+struct Line {
+  Node<T> second, step[S - 1];
+
+  SNOWSHED_INLINE explicit Line(const Node<T> (&nodes)[S]) : second(nodes[1]) {
+    for (int k = 0; k + 1 < S; ++k) step[k] = difference<halves>(nodes[k + 1], nodes[k]);
+  }
+
+  /// The weighted sum along direction d, for the particle in a lane; `weights` are of the steps.
+  template <class Weights>
+  SNOWSHED_INLINE Node<T> value(const Weights& weights, int d, int lane) const {
+    Node<T> sum = second;
+    for (int k = 0; k + 1 < S; ++k) add_scaled<halves>(sum, weights(d, k, lane), step[k]);
+    return sum;
+  }
+};
+
+/// The sums of the particle in a lane, whose lowest node stands at `nodes`.
+template <class Rule, class T, int D, Basis basis>
+SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolation& weights,
+                                                 int lane, const T* nodes) {
+  constexpr int S = support(basis), N = tile_edge<D>(basis);
+  using Values = Line<T, S, Halves::both>;
+  using Derivatives = Line<T, S, Rule::interpolated>;
+  nodes = in_register(nodes);
+  Node<T> value[S], along[D][S];  // of the lines, planes beyond each node along the first direction
+  const auto along_last = [&](const T* row, Node<T>& a, Node<T>& b) SNOWSHED_INLINE_LAMBDA {
+    Node<T> node[S];
+    for (int k = 0; k < S; ++k) node[k] = Node<T>::load(row + k * node_values);
+    const Values line(node);
+    a = line.value(weights.value, D - 1, lane);
+    b = weights.derivative(line, D - 1, lane);
+  };
+  for (int i = 0; i < S; ++i) {
+    if constexpr (D == 2) {
+      along_last(nodes + i * N * node_values, value[i], along[1][i]);
+    } else {
+      Node<T> a[S], b[S];
+      for (int j = 0; j < S; ++j) along_last(nodes + (i * N + j) * N * node_values, a[j], b[j]);
+      const Values line(a);
+      value[i] = line.value(weights.value, 1, lane);
+      along[1][i] = weights.derivative(line, 1, lane);
+      along[2][i] = Derivatives(b).value(weights.value, 1, lane);
+    }
+  }
+  const Values line(value);
+  NodeSums<T, D> sums;
+  sums.value = line.value(weights.value, 0, lane);
+  sums.along[0] = weights.derivative(line, 0, lane);
+  for (int d = 1; d < D; ++d) sums.along[d] = Derivatives(along[d]).value(weights.value, 0, lane);
+  return sums;
+}
+
+/// Adds to each node of the particle in a lane its share of `sums`: the value times the weight, and
+/// what is along a direction times the weight's derivative there. Outside the halves that the rule
+/// scatters, along[d] is zero.
+template <class Rule, class T, int D, Basis basis>
+SNOWSHED_INLINE void scatter_nodes(const typename Rule::Scattering& weights, int lane,
+                                   const NodeSums<T, D>& sums, T* nodes) {
+  constexpr int S = support(basis), N = tile_edge<D>(basis);
+  constexpr Halves derived = Rule::scattered;
+  nodes = in_register(nodes);
+  const auto along_last = [&](T* row, const Node<T>& value,
+                              const Node<T>& along_z) SNOWSHED_INLINE_LAMBDA {
+    for (int k = 0; k < S; ++k) {
+      Node<T> node = Node<T>::load(row + k * node_values);
+      add_scaled(node, weights.value(D - 1, k, lane), value);
+      add_scaled<derived>(node, weights.derived(D - 1, k, lane), along_z);
+      node.store(row + k * node_values);
+    }
+  };
+  for (int i = 0; i < S; ++i) {
+    const T wi = weights.value(0, i, lane);
+    Node<T> value_i = scaled(wi, sums.value);
+    add_scaled<derived>(value_i, weights.derived(0, i, lane), sums.along[0]);
+    if constexpr (D == 2) {
+      along_last(nodes + i * N * node_values, value_i, scaled<derived>(wi, sums.along[1]));
+    } else {
+      const Node<T> along_y = scaled<derived>(wi, sums.along[1]);
+      const Node<T> along_z = scaled<derived>(wi, sums.along[2]);
+      for (int j = 0; j < S; ++j) {
+        const T wj = weights.value(1, j, lane);
+        Node<T> value_ij = scaled(wj, value_i);
+        add_scaled<derived>(value_ij, weights.derived(1, j, lane), along_y);
+        along_last(nodes + (i * N + j) * N * node_values, value_ij, scaled<derived>(wj, along_z));
+      }
+    }
+  }
+}
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,229 @@
+// What FLIP and APIC do differently. A rule says how a transfer weights the nodes, what particles
+// carry beside their velocity, what they take from the sums over their nodes, and what they give.
+//
+// FLIP: a node holds its velocity and the change of it; particles take the change, and a share of
+// the velocity (thesis 1.2.26). APIC: both halves of a node hold the velocity; particles take an
+// affine velocity C too, from the sums weighted with the distance of a node (Jiang et al. 2015).
+#pragma once
+
+#include "snowshed/methods/mpm/kernels/bspline.hpp"
+#include "snowshed/methods/mpm/kernels/chunk.hpp"
+#include "snowshed/methods/mpm/kernels/node_sums.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// Values of half a node.
+inline constexpr int half_node = node_values / 2;
+
+template <class T, int D, Basis basis>
+struct FlipRule {
+  using V = SimdPack<T>;
+  static constexpr int S = support(basis);
+  /// The halves that count of the sums with a weight's derivative.
+  static constexpr Halves interpolated = Halves::first;  // the gradient of the velocity
+  static constexpr Halves scattered = Halves::second;    // force
+  static constexpr int derived_values = half_node;
+  static constexpr int given_halves = 1 + D;
+
+  /// Weights of the steps between nodes.
+  struct Interpolation {
+    LaneWeights<T, D, S - 1> value;
+    LaneWeights<T, D, S - 2> slope;  // but for the first step: the weights add up to one
+
+    SNOWSHED_INLINE explicit Interpolation(const Stencil<T, D, basis>& stencil) {
+      SNOWSHED_UNROLL
+      for (int d = 0; d < D; ++d) {
+        V w[S], g[S], r[S - 1];
+        BSpline<basis>::evaluate(stencil.fraction[d], w, g);
+        weights_of_steps(w, r);
+        SNOWSHED_UNROLL
+        for (int k = 0; k < S - 1; ++k) value.set(d, k, r[k]);
+        weights_of_steps(g, r);
+        SNOWSHED_UNROLL
+        for (int k = 1; k < S - 1; ++k) slope.set(d, k - 1, r[k]);
+      }
+    }
+    template <class Nodes>
+    SNOWSHED_INLINE Node<T> derivative(const Nodes& line, int d, int lane) const {
+      Node<T> sum = line.step[0];
+      for (int k = 1; k < S - 1; ++k)
+        add_scaled<interpolated>(sum, slope(d, k - 1, lane),
+                                 difference<interpolated>(line.step[k], line.step[0]));
+      return sum;
+    }
+  };
+
+  /// Weights of the nodes.
+  struct Scattering {
+    LaneWeights<T, D, S> value, slope;
+
+    SNOWSHED_INLINE explicit Scattering(const Stencil<T, D, basis>& stencil) {
+      SNOWSHED_UNROLL
+      for (int d = 0; d < D; ++d) {
+        V w[S], g[S];
+        BSpline<basis>::evaluate(stencil.fraction[d], w, g);
+        SNOWSHED_UNROLL
+        for (int k = 0; k < S; ++k) {
+          value.set(d, k, w[k]);
+          slope.set(d, k, g[k]);
+        }
+      }
+    }
+    SNOWSHED_INLINE T derived(int d, int k, int lane) const { return slope(d, k, lane); }
+  };
+
+  /// What particles carry beside their velocity: nothing.
+  struct Carried {
+    SNOWSHED_INLINE void read(const ParticleView<T>&, int, int) {}
+    SNOWSHED_INLINE void write(const ParticleView<T>&, int, int) const {}
+    /// The square of a velocity (m2/s2) that holds as much energy.
+    double squared(double, int) const { return 0; }
+    /// Momentum that varies within the particle's nodes, per cell.
+    SNOWSHED_INLINE void give(V*, const V&, T) const {}
+  };
+
+  /// What particles take from the sums, beside the velocity and its gradient.
+  struct Taken {
+    V change[D];
+    SNOWSHED_INLINE void read(const V* value, const V*, T) {
+      SNOWSHED_UNROLL
+      for (int i = 0; i < D; ++i) change[i] = value[half_node + i];
+    }
+    /// (1.2.26)
+    SNOWSHED_INLINE void move(V (&velocity)[D], Carried&, const V (&pic)[D], T flip_ratio) const {
+      SNOWSHED_UNROLL
+      for (int d = 0; d < D; ++d)
+        velocity[d] = pic[d] + flip_ratio * (velocity[d] + change[d] - pic[d]);
+    }
+  };
+
+  /// What goes to the nodes with the derivative along j, from the halves of a row.
+  SNOWSHED_INLINE static Node<T> given(const T* row, int j) {
+    const T* nothing = nullptr;
+    return Node<T>::of_halves(nothing, row + half_node * (1 + j));
+  }
+};
+
+template <class T, int D, Basis basis>
+struct ApicRule {
+  using V = SimdPack<T>;
+  static constexpr int S = support(basis);
+  static constexpr T inverse_inertia = T(apic_inverse_inertia(basis));
+  static constexpr Halves interpolated = Halves::both;
+  static constexpr Halves scattered = Halves::both;
+  static constexpr int derived_values = node_values;
+  static constexpr int given_halves = 1 + 2 * D;
+
+  /// Weights times the distance from the particle to each node along d, in cells.
+  SNOWSHED_INLINE static void moments(const V& fraction, const V (&w)[S], V (&moment)[S]) {
+    SNOWSHED_UNROLL
+    for (int k = 0; k < S; ++k) moment[k] = w[k] * (T(k - base_offset(basis)) - fraction);
+  }
+
+  struct Interpolation {
+    LaneWeights<T, D, S - 1> value, slope, moment;
+
+    SNOWSHED_INLINE explicit Interpolation(const Stencil<T, D, basis>& stencil) {
+      SNOWSHED_UNROLL
+      for (int d = 0; d < D; ++d) {
+        V w[S], g[S], c[S];
+        BSpline<basis>::evaluate(stencil.fraction[d], w, g);
+        moments(stencil.fraction[d], w, c);
+        set(value, d, w);
+        set(slope, d, g);
+        set(moment, d, c);
+      }
+    }
+    SNOWSHED_INLINE static void set(LaneWeights<T, D, S - 1>& weights, int d, const V (&w)[S]) {
+      V r[S - 1];
+      weights_of_steps(w, r);
+      SNOWSHED_UNROLL
+      for (int k = 0; k < S - 1; ++k) weights.set(d, k, r[k]);
+    }
+    /// The gradient in the first half, the moment in the second: of either weights the sum is zero.
+    template <class Nodes>
+    SNOWSHED_INLINE Node<T> derivative(const Nodes& line, int d, int lane) const {
+      Node<T> sum{};
+      for (int k = 0; k < S - 1; ++k)
+        add_scaled(sum, Node<T>::of_halves(slope(d, k, lane), moment(d, k, lane)), line.step[k]);
+      return sum;
+    }
+  };
+
+  struct Scattering {
+    LaneWeights<T, D, S> value, slope, moment;
+
+    SNOWSHED_INLINE explicit Scattering(const Stencil<T, D, basis>& stencil) {
+      SNOWSHED_UNROLL
+      for (int d = 0; d < D; ++d) {
+        V w[S], g[S], c[S];
+        BSpline<basis>::evaluate(stencil.fraction[d], w, g);
+        moments(stencil.fraction[d], w, c);
+        SNOWSHED_UNROLL
+        for (int k = 0; k < S; ++k) {
+          value.set(d, k, w[k]);
+          slope.set(d, k, g[k]);
+          moment.set(d, k, c[k]);
+        }
+      }
+    }
+    /// Momentum, in the first half, meets the moment; force meets the derivative.
+    SNOWSHED_INLINE Node<T> derived(int d, int k, int lane) const {
+      return Node<T>::of_halves(moment(d, k, lane), slope(d, k, lane));
+    }
+  };
+
+  struct Carried {
+    V affine[D * D];  // C, row by row, 1/s
+
+    SNOWSHED_INLINE void read(const ParticleView<T>& p, int at, int n) {
+      SNOWSHED_UNROLL
+      for (int k = 0; k < D * D; ++k) affine[k] = load(p.affine[k] + at, n);
+    }
+    SNOWSHED_INLINE void write(const ParticleView<T>& p, int at, int n) const {
+      SNOWSHED_UNROLL
+      for (int k = 0; k < D * D; ++k) store(p.affine[k] + at, affine[k], n);
+    }
+    double squared(double dx, int lane) const {
+      double sum = 0;
+      for (int k = 0; k < D * D; ++k) sum += double(affine[k][lane]) * double(affine[k][lane]);
+      return dx * dx / double(inverse_inertia) * sum;
+    }
+    SNOWSHED_INLINE void give(V* halves, const V& mass, T dx) const {
+      SNOWSHED_UNROLL
+      for (int i = 0; i < D; ++i) {
+        SNOWSHED_UNROLL
+        for (int j = 0; j < D; ++j)
+          halves[half_node * (1 + D + j) + 1 + i] = mass * affine[i * D + j] * dx;
+      }
+    }
+  };
+
+  struct Taken {
+    V affine[D * D];
+    SNOWSHED_INLINE void read(const V*, const V* along, T dx) {
+      SNOWSHED_UNROLL
+      for (int i = 0; i < D; ++i) {
+        SNOWSHED_UNROLL
+        for (int j = 0; j < D; ++j)
+          affine[i * D + j] = along[node_values * j + half_node + i] * (inverse_inertia / dx);
+      }
+    }
+    SNOWSHED_INLINE void move(V (&velocity)[D], Carried& carried, const V (&pic)[D], T) const {
+      SNOWSHED_UNROLL
+      for (int d = 0; d < D; ++d) velocity[d] = pic[d];
+      SNOWSHED_UNROLL
+      for (int k = 0; k < D * D; ++k) carried.affine[k] = affine[k];
+    }
+  };
+
+  SNOWSHED_INLINE static Node<T> given(const T* row, int j) {
+    return Node<T>::of_halves(row + half_node * (1 + D + j), row + half_node * (1 + j));
+  }
+};
+
+template <class T, int D, Transfer transfer, Basis basis>
+using TransferRule =
+    std::conditional_t<transfer == Transfer::flip, FlipRule<T, D, basis>, ApicRule<T, D, basis>>;
+
+SNOWSHED_VARIANT_END
