@@ -22,6 +22,10 @@ double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
   return (gradient + gradient.transpose()).norm() / std::sqrt(2.0);
 }
 
+/// Makes ready what find_rates needs of the places where particles stand.
+template <int D>
+void prepare_rates(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
+
 /// The velocity gradients and shear rates of the present velocities.
 template <int D>
 void find_rates(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);

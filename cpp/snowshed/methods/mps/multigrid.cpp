@@ -124,10 +124,20 @@ void Multigrid<D>::fill_first() {
     for (std::uint32_t i = level.child_first[c]; i < level.child_first[c + 1]; ++i) {
       if (diagonal_[i] == 0) continue;
       add_diagonal(diagonal_[i]);
+      // Neighbours of a cell follow on each other.
+      std::uint32_t last = std::uint32_t(c);
+      float sum = 0;
       for (std::uint32_t e = lists_->begin(i); e < lists_->end(i); ++e) {
         const std::uint32_t j = lists_->neighbour(e);
-        if (diagonal_[j] != 0) add(parent_[j], weight_[e]);
+        if (diagonal_[j] == 0) continue;
+        if (parent_[j] != last) {
+          add(last, sum);
+          last = parent_[j];
+          sum = 0;
+        }
+        sum += weight_[e];
       }
+      add(last, sum);
     }
   });
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "snowshed/methods/mps/forces.hpp"
+#include "snowshed/methods/mps/moments.hpp"
 
 namespace snowshed {
 namespace {
@@ -99,28 +100,56 @@ void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles
   near.correction.resize(near.lists.size());
   near.asymmetry.resize(near.lists.size());
   near.spread.resize(near.lists.size());
+  const bool has_dummies = model.has_wall_particles();
   for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
-    Matrix moment = Matrix::Zero(), second = Matrix::Zero();
-    VecD<D> side = VecD<D>::Zero();
-    const auto add = [&](const VecD<D>& r, double weight, double slope, bool in_gradients) {
-      if (in_gradients) moment += slope * r * r.transpose();
-      second += weight * r * r.transpose();
-      side += weight * r;
+    near.asymmetry[i].setZero();
+    near.spread[i].setIdentity();
+    near.correction[i].setIdentity();
+    if (particles.is_wall(i)) return;
+    const bool whole = !near.below_surface[i];
+    MomentSum<D> moments, seconds;
+    float side[D] = {};
+    const auto add = [&](const float* r, float weight, float slope) {
+      moments.add(slope, r);
+      if (!whole) return;
+      seconds.add(weight, r);
+      for (int d = 0; d < D; ++d) side[d] += weight * r[d];
     };
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-      add(near.way(e), double(near.weight[e]), double(near.slope[e]),
-          particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall);
-    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
-      add(m->way, double(m->weight), double(m->slope), true);
-    const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
-    near.spread[i] = Matrix::Identity();
-    const bool whole = !near.below_surface[i] && !particles.is_wall(i);
-    if (whole) near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
-    near.asymmetry[i] = whole ? side : VecD<D>(VecD<D>::Zero());
-    moment *= model.gradient();
-    near.correction[i] = !particles.is_wall(i) && moment.determinant() > least_determinant
-                             ? Matrix(moment.inverse())
-                             : Matrix(Matrix::Identity());
+    float r[D];
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      for (int d = 0; d < D; ++d) r[d] = near.lists.offset(d)[e];
+      const bool dummy =
+          has_dummies && particles.kind[near.lists.neighbour(e)] == MpsKind::dummy_wall;
+      add(r, near.weight[e], dummy ? 0.0f : near.slope[e]);
+    }
+    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
+      for (int d = 0; d < D; ++d) r[d] = float(m->way[d]);
+      add(r, m->weight, m->slope);
+    }
+    if (whole) {
+      const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * seconds.matrix();
+      near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
+      for (int d = 0; d < D; ++d) near.asymmetry[i][d] = double(side[d]);
+    }
+    const Matrix moment = model.gradient() * moments.matrix();
+    if (moment.determinant() > least_determinant) near.correction[i] = moment.inverse();
+  });
+}
+
+/// The weights of pairs in the Laplacians of velocities, see find_corrections.
+template <int D>
+void find_even_weights(MpsNeighbourhood<D>& near, int threads) {
+  near.even_weight.resize(near.lists.pairs());
+  for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const Eigen::Matrix<double, D, D>& other = near.spread[near.lists.neighbour(e)];
+      float r[D], r2 = 0, sum = 0;
+      for (int d = 0; d < D; ++d) r2 += (r[d] = near.lists.offset(d)[e]) * r[d];
+      for (int a = 0; a < D; ++a)
+        for (int b = a; b < D; ++b)
+          sum += (a == b ? 0.5f : 1.0f) * float(near.spread[i](a, b) + other(a, b)) * r[a] * r[b];
+      near.even_weight[e] = near.weight[e] * std::clamp(sum / std::max(r2, 1e-30f), 0.5f, 2.0f);
+    }
   });
 }
 
@@ -185,8 +214,12 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
   }
   find_surface(model, particles, near, threads);
   if (model.has_wall_particles()) guess_wall_pressures(model, particles, near);
-  if (model.settings().gradient == MpsGradient::corrected)
+  if (model.settings().gradient == MpsGradient::corrected) {
     find_corrections(model, particles, near, threads);
+    find_even_weights(near, threads);
+  } else {
+    near.even_weight = near.weight;
+  }
 }
 
 template void find_neighbours(const MpsModel<2>&, MpsParticles<2>&, double, MpsWork<2>&);

@@ -83,6 +83,7 @@ struct MpsNeighbourhood {
   AlignedVector<float> weight;                // w of each pair
   AlignedVector<float> coupling;              // w of each pair and of the neighbour's images
   AlignedVector<float> slope;                 // w/r^2 of each pair, 1/m2
+  AlignedVector<float> even_weight;           // w of each pair in Laplacians of velocities
   AlignedVector<double> density;              // number density
   AlignedVector<std::uint8_t> surface;        // whether a particle lies at the free surface
   AlignedVector<std::uint8_t> below_surface;  // or has such a neighbour
@@ -118,6 +119,7 @@ struct MpsWork {
   AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
   AlignedVector<Eigen::Matrix<double, D, D>> velocity_gradient;  // 1/s
+  AlignedVector<Eigen::Matrix<double, D, D>> rate_correction;    // of velocity gradients
   AlignedVector<float> coupling;                                 // of velocities, of each pair
   AlignedVector<double> smooth_pressure;                         // Pa
   AlignedVector<double> diagonal, source, pressure;
