@@ -12,6 +12,12 @@ namespace snowshed {
 template <int D>
 void find_neighbours(const MpsModel<D>&, MpsParticles<D>&, double time, MpsWork<D>&);
 
+/// The slope of each pair, but zero where the neighbour is a wall of this kind or one farther in;
+/// until it is asked for the next time.
+template <int D>
+const float* slope_without(MpsKind, const MpsModel<D>&, const MpsParticles<D>&,
+                           MpsNeighbourhood<D>&);
+
 /// The pressures of the yield stress: those of the particles, smoothed and not negative.
 template <int D>
 void smooth_pressures(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);

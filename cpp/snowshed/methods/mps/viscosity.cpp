@@ -35,58 +35,47 @@ double share_of_particles(const MpsModel<D>& model, const MpsParticles<D>& parti
   return model.laplacian() * model.settings().spacing * sum;
 }
 
-/// The viscosity between two particles, Pa s: that of the velocity gradient midway, which is the
-/// mean of both but for its part along the way, which is the difference of both velocities.
-template <int D>
-double viscosity_between(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                         const MpsWork<D>& work, std::size_t i, std::uint32_t entry) {
-  const std::size_t j = work.near.lists.neighbour(entry);
-  const VecD<D> way = work.near.way(entry);
-  const Eigen::Matrix<double, D, D> mean =
-      0.5 * (work.velocity_gradient[i] + work.velocity_gradient[j]);
-  const VecD<D> change = particles.velocity[j] - particles.velocity[i];
-  const VecD<D> along = (change - mean * way) / way.squaredNorm();  // beside the way
-  const Rheology& law = model.rheology;
-  const double pressure =
-      law.friction > 0 ? 0.5 * (work.smooth_pressure[i] + work.smooth_pressure[j]) : 0.0;
-  double square = 0;  // of the rate: half of that of the symmetric matrix's elements
-  for (int a = 0; a < D; ++a) {
-    const double diagonal = mean(a, a) + along[a] * way[a];
-    square += 2 * diagonal * diagonal;
-    for (int b = 0; b < a; ++b) {
-      const double shear = mean(a, b) + mean(b, a) + along[a] * way[b] + along[b] * way[a];
-      square += shear * shear;
-    }
-  }
-  return law.apparent_viscosity(law.yield_stress(pressure), std::sqrt(square));
-}
-
-/// The coupling of the velocities of each pair. Walls have none: they act by their drag.
+/// The coupling of the velocities of each pair, from the viscosity between them: that of the shear
+/// rate midway, and of the mean of both pressures. Walls have none: they act by their drag.
 template <int D>
 void find_couplings(const MpsModel<D>& model, double factor, const MpsParticles<D>& particles,
                     MpsWork<D>& work) {
-  const NeighbourLists<D>& lists = work.near.lists;
+  const MpsNeighbourhood<D>& near = work.near;
+  const NeighbourLists<D>& lists = near.lists;
+  const Rheology& law = model.rheology;
   const int threads = model.threads_for(lists.size());
   work.coupling.resize(lists.pairs());
-  const auto find = [&](std::size_t i, std::uint32_t e, const auto& viscosity) {
-    const bool walls = particles.is_wall(i) || particles.is_wall(lists.neighbour(e));
-    work.coupling[e] = walls ? 0 : float(factor * viscosity() * double(work.near.even_weight[e]));
-  };
-  if (model.rheology.is_newtonian()) {
+  const auto for_each_pair = [&](const auto& coupling) {
     for_each_particle(lists.size(), threads, [&](std::size_t i) {
-      for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e)
-        find(i, e, [&] { return model.rheology.viscosity; });
+      for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e) {
+        const std::size_t j = lists.neighbour(e);
+        coupling(i, j, e, particles.is_wall(i) || particles.is_wall(j));
+      }
+    });
+  };
+  const auto set = [&](std::uint32_t e, double viscosity, bool is_wall) {
+    work.coupling[e] = is_wall ? 0.0f : float(factor * viscosity * double(near.even_weight[e]));
+  };
+  if (law.is_newtonian()) {
+    for_each_pair([&](std::size_t, std::size_t, std::uint32_t e, bool is_wall) {
+      set(e, law.viscosity, is_wall);
     });
     return;
   }
-  for_each_particle(lists.size(), threads, [&](std::size_t i) {
-    for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e)
-      if (lists.neighbour(e) > i)
-        find(i, e, [&] { return viscosity_between(model, particles, work, i, e); });
+  work.pair_rate.resize(lists.pairs());
+  for_each_piece(lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.pair_rates(near.rows(), near.offsets().data(), particles.velocity.data()->data(),
+                             work.velocity_gradient.data()->data(), work.pair_rate.data(), begin,
+                             end);
   });
-  for_each_particle(lists.size(), threads, [&](std::size_t i) {
-    for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e)
-      if (lists.neighbour(e) < i) work.coupling[e] = work.coupling[lists.mirror(e)];
+  for_each_pair([&](std::size_t i, std::size_t j, std::uint32_t e, bool is_wall) {
+    if (j < i) return;
+    const double pressure =
+        law.friction > 0 ? 0.5 * (work.smooth_pressure[i] + work.smooth_pressure[j]) : 0.0;
+    set(e, law.apparent_viscosity(law.yield_stress(pressure), double(work.pair_rate[e])), is_wall);
+  });
+  for_each_pair([&](std::size_t i, std::size_t j, std::uint32_t e, bool) {
+    if (j < i) work.coupling[e] = work.coupling[lists.mirror(e)];
   });
 }
 
@@ -163,23 +152,15 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
     work.inverse_block[i] = moves ? Matrix(block.inverse()) : Matrix(Matrix::Zero());
   });
 
-  const std::uint32_t *first = near.lists.first(), *index = near.lists.index();
-  const auto as_vectors = [](const double* values) {
-    return reinterpret_cast<const VecD<D>*>(values);
-  };
   const auto apply = [&](const double* p, double* q) {
-    const VecD<D>* const in = as_vectors(p);
-    for_each_particle(n, threads, [&](std::size_t i) {
-      VecD<D> sum = work.block[i] * in[i];
-      if (particles.moves(i))
-        for (std::uint32_t e = first[i]; e < first[i + 1]; ++e)
-          sum -= double(work.coupling[e]) * in[index[e]];
-      VecD<D>::Map(q + i * D) = sum;
+    for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      model.kernels.apply_to_velocities(near.rows(), work.coupling.data(),
+                                        work.block.data()->data(), p, q, begin, end);
     });
   };
   const auto precondition = [&](const double* r, double* z) {
     for_each_particle(n, threads, [&](std::size_t i) {
-      VecD<D>::Map(z + i * D) = work.inverse_block[i] * as_vectors(r)[i];
+      VecD<D>::Map(z + i * D) = work.inverse_block[i] * VecD<D>::Map(r + i * D);
     });
   };
   return conjugate_gradients(n * D, tolerance, scale, model.settings().max_iterations, threads, work.cg,
@@ -228,10 +209,11 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
   // From nearly the velocities before the step, not from those that forces have driven apart: what
   // creeps comes to rest. Nor quite from rest, which viscosity would keep for too many iterations.
   const Velocities<D> start = particles.velocity;
-  for (std::size_t i = 0; i < start.size(); ++i)
-    particles.velocity[i] = work.before[i] + first_guess * (start[i] - work.before[i]);
-  const double scale = velocity_scale(model, dt, particles);
   const bool newtonian = model.rheology.is_newtonian();
+  if (!newtonian)
+    for (std::size_t i = 0; i < start.size(); ++i)
+      particles.velocity[i] = work.before[i] + first_guess * (start[i] - work.before[i]);
+  const double scale = velocity_scale(model, dt, particles);
   if (!newtonian) {
     prepare_rates(model, particles, work);
     work.near.lists.find_mirrors(model.threads_for(particles.size()));
