@@ -37,8 +37,8 @@ void collide(const MpsModel<D>& model, const Collision& law, MpsParticles<D>& pa
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       if (near.weight[e] < least_weight) continue;
       const VecD<D> r = near.way(e);
-      const double distance = r.norm();
-      if (!(distance < limit) || distance == 0) continue;
+      const double distance = model.reach() / double(1 + near.weight[e]);
+      if (!(distance < limit)) continue;
       const std::size_t j = near.lists.neighbour(e);
       const double approach = (particles.velocity[i] - particles.velocity[j]).dot(r) / distance;
       const double share = particles.moves(j) ? 0.5 : 1.0;

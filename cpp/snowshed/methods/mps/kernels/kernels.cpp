@@ -23,7 +23,7 @@ struct Rows {
                     const double* p, double* q, std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       q[i] = diagonal[i] > 0
-                 ? diagonal[i] * p[i] - sum_row<SimdPack<double>>(rows, weight, p, std::size_t(i))
+                 ? diagonal[i] * p[i] - sum_row(rows, weight, p, std::size_t(i))
                  : 0.0;
   }
   static void residual(const PairRows& rows, const float* weight, const float* diagonal,
@@ -31,7 +31,7 @@ struct Rows {
                        std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       r[i] = diagonal[i] > 0 ? b[i] - diagonal[i] * x[i] +
-                                   sum_row<SimdPack<float>>(rows, weight, x, std::size_t(i))
+                                   sum_row(rows, weight, x, std::size_t(i))
                              : 0.0f;
   }
   static void apply_to_velocities(const PairRows& rows, const float* coupling, const double* block,
