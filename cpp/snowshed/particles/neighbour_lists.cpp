@@ -12,6 +12,7 @@ namespace snowshed {
 namespace {
 
 constexpr std::size_t cells_in_part = 64;
+constexpr std::ptrdiff_t points_in_part = 256;
 
 }  // namespace
 
@@ -90,8 +91,24 @@ void NeighbourLists<D>::update(const AlignedVector<VecD<D>>& points, const CellO
 }
 
 template <int D>
+void NeighbourLists<D>::find_mirrors(int threads) {
+  mirror_.resize(pairs());
+  parallel_pieces(std::ptrdiff_t(size()), threads, points_in_part,
+                  [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+                    for (std::uint32_t i = std::uint32_t(first); i < std::uint32_t(last); ++i)
+                      for (std::uint32_t e = begin(i); e < end(i); ++e) {
+                        const std::uint32_t j = index_[e];
+                        const auto row = index_.begin();
+                        const auto found = std::find(row + begin(j), row + end(j), i);
+                        mirror_[e] = std::uint32_t(found - row);
+                      }
+                  });
+}
+
+template <int D>
 std::size_t NeighbourLists<D>::bytes() const {
-  std::size_t total = first_.capacity() * sizeof(std::uint32_t) + index_.capacity() * 4;
+  std::size_t total = first_.capacity() * sizeof(std::uint32_t) +
+                      (index_.capacity() + mirror_.capacity()) * sizeof(std::uint32_t);
   for (int d = 0; d < D; ++d)
     total += offset_[d].capacity() * sizeof(float) + coordinate_[d].capacity() * sizeof(double);
   for (const Part& part : parts_) total += part.index.capacity() * 4 * (D + 1);

@@ -27,6 +27,11 @@ class NeighbourLists {
   std::uint32_t end(std::size_t i) const { return first_[i + 1]; }
   std::uint32_t neighbour(std::size_t entry) const { return index_[entry]; }
 
+  /// Finds for each entry (i, j) where (j, i) stands.
+  void find_mirrors(int threads);
+  /// The entry of the same pair in the neighbour's list, as `find_mirrors` has found it.
+  std::uint32_t mirror(std::size_t entry) const { return mirror_[entry]; }
+
   const std::uint32_t* first() const { return first_.data(); }
   const std::uint32_t* index() const { return index_.data(); }
   /// From the point to its neighbour, one array for each axis, m.
@@ -53,7 +58,7 @@ class NeighbourLists {
             double period, std::size_t first_cell, std::size_t last_cell, Part& part);
 
   std::vector<std::uint32_t> first_{0};
-  AlignedVector<std::uint32_t> index_;
+  AlignedVector<std::uint32_t> index_, mirror_;
   std::array<AlignedVector<float>, D> offset_;
   std::vector<Part> parts_;
   std::array<AlignedVector<double>, D> coordinate_;

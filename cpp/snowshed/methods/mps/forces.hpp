@@ -12,6 +12,12 @@ namespace snowshed {
 template <int D>
 void find_neighbours(const MpsModel<D>&, MpsParticles<D>&, double time, MpsWork<D>&);
 
+/// The slope of each pair, but zero where the neighbour is a wall of this kind or one farther in;
+/// until it is asked for the next time.
+template <int D>
+const float* slope_without(MpsKind, const MpsModel<D>&, const MpsParticles<D>&,
+                           MpsNeighbourhood<D>&);
+
 /// The pressures of the yield stress: those of the particles, smoothed and not negative.
 template <int D>
 void smooth_pressures(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
@@ -21,6 +27,10 @@ template <int D>
 double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
   return (gradient + gradient.transpose()).norm() / std::sqrt(2.0);
 }
+
+/// Makes ready what find_rates needs of the places where particles stand.
+template <int D>
+void prepare_rates(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
 
 /// The velocity gradients and shear rates of the present velocities.
 template <int D>

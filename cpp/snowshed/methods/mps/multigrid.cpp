@@ -124,10 +124,20 @@ void Multigrid<D>::fill_first() {
     for (std::uint32_t i = level.child_first[c]; i < level.child_first[c + 1]; ++i) {
       if (diagonal_[i] == 0) continue;
       add_diagonal(diagonal_[i]);
+      // Neighbours of a cell follow on each other.
+      std::uint32_t last = std::uint32_t(c);
+      float sum = 0;
       for (std::uint32_t e = lists_->begin(i); e < lists_->end(i); ++e) {
         const std::uint32_t j = lists_->neighbour(e);
-        if (diagonal_[j] != 0) add(parent_[j], weight_[e]);
+        if (diagonal_[j] == 0) continue;
+        if (parent_[j] != last) {
+          add(last, sum);
+          last = parent_[j];
+          sum = 0;
+        }
+        sum += weight_[e];
       }
+      add(last, sum);
     }
   });
 }
@@ -245,21 +255,23 @@ void Multigrid<D>::cycle(std::size_t l, bool from_zero) {
 
 template <int D>
 void Multigrid<D>::apply(const double* r, double* z) {
-  const std::uint32_t *first = lists_->first(), *index = lists_->index();
-  const auto row = [&](std::size_t i) {
-    float sum = b_[i] - diagonal_[i] * x_[i];
-    for (std::uint32_t e = first[i]; e < first[i + 1]; ++e) sum += weight_[e] * x_[index[e]];
-    return sum;
+  const PairRows rows{lists_->first(), lists_->index()};
+  const auto find_residual = [&] {
+    parallel_pieces(std::ptrdiff_t(size_), threads_, rows_in_piece,
+                    [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                      kernels_.residual(rows, weight_, diagonal_.data(), x_.data(), b_.data(),
+                                        r_.data(), begin, end);
+                    });
   };
   for_each_row(size_, threads_, [&](std::size_t i) {
     b_[i] = diagonal_[i] > 0 ? float(r[i]) : 0.0f;
     x_[i] = inverse_[i] * b_[i];
   });
+  find_residual();
   Level& above = levels_.front();
   for_each_row(above.size(), threads_, [&](std::size_t c) {
     float sum = 0;
-    for (std::uint32_t i = above.child_first[c]; i < above.child_first[c + 1]; ++i)
-      if (diagonal_[i] > 0) sum += row(i);
+    for (std::uint32_t i = above.child_first[c]; i < above.child_first[c + 1]; ++i) sum += r_[i];
     above.b[c] = sum;
   });
   cycle(0, true);
@@ -267,8 +279,9 @@ void Multigrid<D>::apply(const double* r, double* z) {
   for_each_row(size_, threads_, [&](std::size_t i) {
     if (diagonal_[i] > 0) x_[i] += enlargement * above.x[parent_[i]];
   });
+  find_residual();
   for_each_row(size_, threads_,
-               [&](std::size_t i) { z[i] = double(x_[i] + inverse_[i] * row(i)); });
+               [&](std::size_t i) { z[i] = double(x_[i] + inverse_[i] * r_[i]); });
 }
 
 template <int D>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/methods/mps/kernel_api.hpp"
 #include "snowshed/particles/cell_order.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
@@ -60,6 +61,7 @@ class Multigrid {
   void sweep(Level& level);
   void residual(Level& level);
 
+  const MpsKernels<D>& kernels_ = mps_kernels<D>();
   const NeighbourLists<D>* lists_ = nullptr;
   const float* weight_ = nullptr;
   std::size_t size_ = 0;

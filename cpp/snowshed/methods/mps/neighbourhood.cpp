@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "snowshed/methods/mps/forces.hpp"
+#include "snowshed/methods/mps/moments.hpp"
 
 namespace snowshed {
 namespace {
@@ -35,18 +36,12 @@ void sort_particles(const CellOrder<D>& cells, MpsParticles<D>& particles, MpsPa
 
 template <int D>
 void weigh_pairs(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int threads) {
-  const float reach = float(model.reach());
   near.weight.resize(near.lists.pairs());
   near.slope.resize(near.lists.pairs());
-  for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-      float r2 = 0;
-      for (int d = 0; d < D; ++d) r2 += near.lists.offset(d)[e] * near.lists.offset(d)[e];
-      r2 = std::max(r2, 1e-4f * reach * reach);  // particles in the same place
-      const float w = std::max(reach / std::sqrt(r2) - 1, 0.0f);
-      near.weight[e] = w;
-      near.slope[e] = w / r2;
-    }
+  near.weight_sum.resize(near.lists.size());
+  for_each_piece(near.lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.weigh(near.rows(), near.offsets().data(), float(model.reach()),
+                        near.weight.data(), near.slope.data(), near.weight_sum.data(), begin, end);
   });
 }
 
@@ -59,9 +54,7 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
   near.density.resize(particles.size());
   near.surface.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
-    float sum = 0;
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) sum += near.weight[e];
-    double n = double(sum);
+    double n = double(near.weight_sum[i]);
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
       n += double(m->weight);
     near.density[i] = n;
@@ -96,31 +89,57 @@ template <int D>
 void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles,
                       MpsNeighbourhood<D>& near, int threads) {
   using Matrix = Eigen::Matrix<double, D, D>;
-  near.correction.resize(near.lists.size());
-  near.asymmetry.resize(near.lists.size());
-  near.spread.resize(near.lists.size());
-  for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
-    Matrix moment = Matrix::Zero(), second = Matrix::Zero();
-    VecD<D> side = VecD<D>::Zero();
-    const auto add = [&](const VecD<D>& r, double weight, double slope, bool in_gradients) {
-      if (in_gradients) moment += slope * r * r.transpose();
-      second += weight * r * r.transpose();
-      side += weight * r;
-    };
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-      add(near.way(e), double(near.weight[e]), double(near.slope[e]),
-          particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall);
-    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
-      add(m->way, double(m->weight), double(m->slope), true);
-    const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
-    near.spread[i] = Matrix::Identity();
-    const bool whole = !near.below_surface[i] && !particles.is_wall(i);
-    if (whole) near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
-    near.asymmetry[i] = whole ? side : VecD<D>(VecD<D>::Zero());
+  const std::size_t n = near.lists.size();
+  near.correction.resize(n);
+  near.asymmetry.resize(n);
+  near.spread.resize(n);
+  near.moments.resize(n);
+  const float* const slope = slope_without(MpsKind::dummy_wall, model, particles, near);
+  for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.sum_moments(near.rows(), near.offsets().data(), near.weight.data(), slope,
+                              near.moments.data(), begin, end);
+  });
+  for_each_particle(n, threads, [&](std::size_t i) {
+    near.asymmetry[i].setZero();
+    near.spread[i].setIdentity();
+    near.correction[i].setIdentity();
+    if (particles.is_wall(i)) return;
+    Matrix moment = symmetric<D>(near.moments[i].slope);
+    Matrix second = symmetric<D>(near.moments[i].weight);
+    VecD<D> side;
+    for (int d = 0; d < D; ++d) side[d] = double(near.moments[i].side[d]);
+    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
+      moment += double(m->slope) * m->way * m->way.transpose();
+      second += double(m->weight) * m->way * m->way.transpose();
+      side += double(m->weight) * m->way;
+    }
+    if (!near.below_surface[i]) {
+      const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
+      near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
+      near.asymmetry[i] = side;
+    }
     moment *= model.gradient();
-    near.correction[i] = !particles.is_wall(i) && moment.determinant() > least_determinant
-                             ? Matrix(moment.inverse())
-                             : Matrix(Matrix::Identity());
+    if (moment.determinant() > least_determinant) near.correction[i] = moment.inverse();
+  });
+}
+
+/// The weights of pairs in the Laplacians of velocities, see find_corrections.
+template <int D>
+void find_even_weights(MpsNeighbourhood<D>& near, int threads) {
+  near.even_weight.resize(near.lists.pairs());
+  for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const Eigen::Matrix<double, D, D>& other = near.spread[near.lists.neighbour(e)];
+      float r[D], r2 = 0, sum = 0;
+      for (int d = 0; d < D; ++d) {
+        r[d] = near.lists.offset(d)[e];
+        r2 += r[d] * r[d];
+      }
+      for (int a = 0; a < D; ++a)
+        for (int b = a; b < D; ++b)
+          sum += (a == b ? 0.5f : 1.0f) * float(near.spread[i](a, b) + other(a, b)) * r[a] * r[b];
+      near.even_weight[e] = near.weight[e] * std::clamp(sum / std::max(r2, 1e-30f), 0.5f, 2.0f);
+    }
   });
 }
 
@@ -162,6 +181,18 @@ void guess_wall_pressures(const MpsModel<D>& model, MpsParticles<D>& particles,
 }  // namespace
 
 template <int D>
+const float* slope_without(MpsKind kind, const MpsModel<D>& model, const MpsParticles<D>& particles,
+                           MpsNeighbourhood<D>& near) {
+  if (!model.has_wall_particles()) return near.slope.data();
+  near.snow_slope.resize(near.lists.pairs());
+  for_each_particle(near.lists.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
+      near.snow_slope[e] = particles.kind[near.lists.neighbour(e)] < kind ? near.slope[e] : 0.0f;
+  });
+  return near.snow_slope.data();
+}
+
+template <int D>
 void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, double time,
                      MpsWork<D>& work) {
   MpsNeighbourhood<D>& near = work.near;
@@ -185,10 +216,18 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
   }
   find_surface(model, particles, near, threads);
   if (model.has_wall_particles()) guess_wall_pressures(model, particles, near);
-  if (model.settings().gradient == MpsGradient::corrected)
+  if (model.settings().gradient == MpsGradient::corrected) {
     find_corrections(model, particles, near, threads);
+    find_even_weights(near, threads);
+  } else {
+    near.even_weight = near.weight;
+  }
 }
 
+template const float* slope_without(MpsKind, const MpsModel<2>&, const MpsParticles<2>&,
+                                    MpsNeighbourhood<2>&);
+template const float* slope_without(MpsKind, const MpsModel<3>&, const MpsParticles<3>&,
+                                    MpsNeighbourhood<3>&);
 template void find_neighbours(const MpsModel<2>&, MpsParticles<2>&, double, MpsWork<2>&);
 template void find_neighbours(const MpsModel<3>&, MpsParticles<3>&, double, MpsWork<3>&);
 

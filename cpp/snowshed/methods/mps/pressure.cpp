@@ -154,15 +154,10 @@ SolveReport solve(const MpsModel<D>& model, MpsWork<D>& work) {
   const MpsNeighbourhood<D>& near = work.near;
   const std::size_t n = near.lists.size();
   const int threads = model.threads_for(n);
-  const std::uint32_t *first = near.lists.first(), *index = near.lists.index();
-  const float* weight = near.coupling.data();
   const auto apply = [&](const double* p, double* q) {
-    for_each_particle(n, threads, [&](std::size_t i) {
-      double sum = work.diagonal[i] * p[i];
-      if (work.diagonal[i] > 0)
-        for (std::uint32_t e = first[i]; e < first[i + 1]; ++e)
-          sum -= double(weight[e]) * p[index[e]];
-      q[i] = sum;
+    for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      model.kernels.apply(near.rows(), near.coupling.data(), work.diagonal.data(), p, q, begin,
+                          end);
     });
   };
   const auto by_conjugate_gradients = [&](const auto& precondition) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "snowshed/methods/mps/forces.hpp"
+#include "snowshed/methods/mps/moments.hpp"
 
 namespace snowshed {
 namespace {
@@ -17,41 +18,48 @@ double no_slip_factor(const WallContact<D>& c, const VecD<D>& way, double spacin
   return std::max(1.0, -way.dot(c.normal) / std::max(c.distance, nearest_no_slip * spacing));
 }
 
-/// The gradient of the velocity among the snow, corrected so that it is right for linear velocities
-/// however the neighbours lie (as find_corrections). Snow does not slide on sticky walls: images
-/// behind them have the opposite velocity, and wall particles one that makes the velocity at the
-/// surface that of the wall (Morris and others 1997, doi:10.1006/jcph.1997.5776).
-template <int D>
-Eigen::Matrix<double, D, D> velocity_gradient(const MpsModel<D>& model,
-                                              const MpsParticles<D>& particles,
-                                              const MpsNeighbourhood<D>& near, std::size_t i) {
-  using Matrix = Eigen::Matrix<double, D, D>;
-  Matrix sum = Matrix::Zero(), moment = Matrix::Zero();
-  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-    const std::size_t j = near.lists.neighbour(e);
-    const VecD<D> r = near.way(e), weighted = double(near.slope[e]) * r;
-    VecD<D> change = particles.velocity[j] - particles.velocity[i];
-    if (particles.is_wall(j)) {
+/// Calls visit(way, slope, change of velocity) for each wall particle and image that a velocity
+/// gradient sees. Snow does not slide on sticky walls: images behind them have the opposite
+/// velocity, and wall particles one that makes the velocity at the surface that of the wall (Morris
+/// and others 1997, doi:10.1006/jcph.1997.5776).
+template <int D, class Visit>
+void visit_walls(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                 const MpsNeighbourhood<D>& near, std::size_t i, const Visit& visit) {
+  if (model.has_wall_particles())
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const std::size_t j = near.lists.neighbour(e);
+      if (!particles.is_wall(j)) continue;
       const WallContact<D>* c = near.contact_with(i, particles.event[j]);
       if (!c || !model.is_sticky(*c)) continue;
-      change *= no_slip_factor(*c, r, model.settings().spacing);
+      const VecD<D> r = near.way(e);
+      visit(r, double(near.slope[e]),
+            VecD<D>(no_slip_factor(*c, r, model.settings().spacing) *
+                    (particles.velocity[j] - particles.velocity[i])));
     }
-    sum += change * weighted.transpose();
-    moment += r * weighted.transpose();
-  }
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     const bool two = m->rise[1] != 0;
     const WallContact<D>& wall = near.wall(*m, 0);
     if (two || !model.is_sticky(wall)) continue;
-    const VecD<D> weighted = double(m->slope) * m->way;
-    sum += (2 * wall.velocity - particles.velocity[m->of] - particles.velocity[i]) *
-           weighted.transpose();
-    moment += m->way * weighted.transpose();
+    visit(m->way, double(m->slope),
+          VecD<D>(2 * wall.velocity - particles.velocity[m->of] - particles.velocity[i]));
   }
-  sum *= model.gradient();
+}
+
+/// What makes velocity gradients right for linear velocities however the neighbours lie (as
+/// find_corrections).
+template <int D>
+Eigen::Matrix<double, D, D> rate_correction(const MpsModel<D>& model,
+                                            const MpsParticles<D>& particles,
+                                            const MpsNeighbourhood<D>& near, std::size_t i) {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  Matrix moment = symmetric<D>(near.moments[i].slope);
+  visit_walls(model, particles, near, i, [&](const VecD<D>& way, double slope, const VecD<D>&) {
+    moment += slope * way * way.transpose();
+  });
   moment *= model.gradient();
   constexpr double least_determinant = 0.05;  // 1 on a lattice
-  return moment.determinant() > least_determinant ? Matrix(sum * moment.inverse()) : sum;
+  if (!(moment.determinant() > least_determinant)) return model.gradient() * Matrix::Identity();
+  return model.gradient() * moment.inverse();
 }
 
 /// The pressures of the last step, smoothed over the neighbours with the weight function and cut
@@ -96,16 +104,45 @@ void smooth_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles
 }
 
 template <int D>
+void prepare_rates(const MpsModel<D>& model, const MpsParticles<D>& particles, MpsWork<D>& work) {
+  MpsNeighbourhood<D>& near = work.near;
+  const std::size_t n = particles.size();
+  const int threads = model.threads_for(n);
+  near.moments.resize(n);
+  work.snow_slope = slope_without(MpsKind::inner_wall, model, particles, near);
+  for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.sum_moments(near.rows(), near.offsets().data(), near.weight.data(),
+                              work.snow_slope, near.moments.data(), begin, end);
+  });
+  work.rate_correction.resize(n);
+  for_each_particle(n, threads, [&](std::size_t i) {
+    if (!particles.is_wall(i)) work.rate_correction[i] = rate_correction(model, particles, near, i);
+  });
+}
+
+template <int D>
 void find_rates(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const MpsNeighbourhood<D>& near = work.near;
+  const int threads = model.threads_for(particles.size());
   work.velocity_gradient.resize(particles.size());
-  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+  for_each_piece(particles.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.sum_gradients(near.rows(), near.offsets().data(), work.snow_slope,
+                                particles.velocity.data()->data(),
+                                work.velocity_gradient.data()->data(), begin, end);
+  });
+  for_each_particle(particles.size(), threads, [&](std::size_t i) {
+    Matrix& gradient = work.velocity_gradient[i];
     if (particles.is_wall(i)) {
-      work.velocity_gradient[i].setZero();
-      particles.rate[i] = 0;
-      return;
+      gradient.setZero();
+    } else {
+      visit_walls(model, particles, near, i,
+                  [&](const VecD<D>& way, double slope, const VecD<D>& change) {
+                    gradient += change * (slope * way).transpose();
+                  });
+      gradient = Matrix(gradient * work.rate_correction[i]);
     }
-    work.velocity_gradient[i] = velocity_gradient(model, particles, work.near, i);
-    particles.rate[i] = shear_rate<D>(work.velocity_gradient[i]);
+    particles.rate[i] = shear_rate<D>(gradient);
   });
 }
 
@@ -121,6 +158,8 @@ void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles,
 
 template void smooth_pressures(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
 template void smooth_pressures(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
+template void prepare_rates(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
+template void prepare_rates(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
 template void find_rates(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
 template void find_rates(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
 template void find_viscosities(const MpsModel<2>&, MpsParticles<2>&, const MpsWork<2>&);

@@ -49,7 +49,8 @@ struct Rheology {
   double regularised(double stress, double rate) const {
     const double x = growth * rate;
     if (bi_viscous) return stress * growth / std::max(x, 1.0);
-    return x > 1e-6 ? stress * (1 - std::exp(-x)) / rate : stress * growth * (1 - 0.5 * x);
+    if (x < 1e-6) return stress * growth * (1 - 0.5 * x);
+    return stress * (x < 40 ? 1 - std::exp(-x) : 1.0) / rate;  // exp(-40) is lost beside 1
   }
 
   /// The apparent viscosity eta' (22), Pa s.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "snowshed/methods/mps/forces.hpp"
+#include "snowshed/methods/mps/kernel_function.hpp"
 
 namespace snowshed {
 namespace {
@@ -28,13 +29,16 @@ void collide(const MpsModel<D>& model, const Collision& law, MpsParticles<D>& pa
              MpsWork<D>& work) {
   const MpsNeighbourhood<D>& near = work.near;
   const double limit = law.distance * model.settings().spacing;
+  // Pairs farther apart weigh less; a little room for rounding, since most need no root then.
+  const float least_weight = 0.999f * float(kernel_weight(limit, model.reach()));
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
     if (!particles.moves(i)) return;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      if (near.weight[e] < least_weight) continue;
       const VecD<D> r = near.way(e);
-      const double distance = r.norm();
-      if (!(distance < limit) || distance == 0) continue;
+      const double distance = model.reach() / double(1 + near.weight[e]);
+      if (!(distance < limit)) continue;
       const std::size_t j = near.lists.neighbour(e);
       const double approach = (particles.velocity[i] - particles.velocity[j]).dot(r) / distance;
       const double share = particles.moves(j) ? 0.5 : 1.0;

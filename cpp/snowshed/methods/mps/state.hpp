@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/mps/boundary.hpp"
 #include "snowshed/methods/mps/conjugate_gradients.hpp"
+#include "snowshed/methods/mps/kernel_api.hpp"
 #include "snowshed/methods/mps/multigrid.hpp"
 #include "snowshed/methods/mps/particles.hpp"
 #include "snowshed/methods/mps/rheology.hpp"
@@ -43,6 +45,7 @@ struct MpsModel {
   KernelConstants kernel;
   double second_layer;  // see second_layer_share
   Rheology rheology;
+  const MpsKernels<D>& kernels = mps_kernels<D>();
   int threads;
 
   bool has_wall_particles() const { return settings().walls == MpsWalls::particles; }
@@ -83,6 +86,10 @@ struct MpsNeighbourhood {
   AlignedVector<float> weight;                // w of each pair
   AlignedVector<float> coupling;              // w of each pair and of the neighbour's images
   AlignedVector<float> slope;                 // w/r^2 of each pair, 1/m2
+  AlignedVector<float> even_weight;           // w of each pair in Laplacians of velocities
+  AlignedVector<float> snow_slope;            // the same, but zero for walls, see slope_without
+  AlignedVector<float> weight_sum;            // of each particle's pairs
+  AlignedVector<RowMoments<D>> moments;       // of each particle's pairs
   AlignedVector<double> density;              // number density
   AlignedVector<std::uint8_t> surface;        // whether a particle lies at the free surface
   AlignedVector<std::uint8_t> below_surface;  // or has such a neighbour
@@ -99,6 +106,12 @@ struct MpsNeighbourhood {
     return nullptr;
   }
   VecD<D> way(std::size_t entry) const { return lists.way(entry); }
+  PairRows rows() const { return {lists.first(), lists.index()}; }
+  std::array<const float*, D> offsets() const {
+    std::array<const float*, D> axes;
+    for (int d = 0; d < D; ++d) axes[std::size_t(d)] = lists.offset(d);
+    return axes;
+  }
   const WallContact<D>& wall(const WallImage<D>& image, int k) const {
     return contacts.all()[image.contact[k]];
   }
@@ -118,7 +131,10 @@ struct MpsWork {
   AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
   AlignedVector<Eigen::Matrix<double, D, D>> velocity_gradient;  // 1/s
+  AlignedVector<Eigen::Matrix<double, D, D>> rate_correction;    // of velocity gradients
   AlignedVector<float> coupling;                                 // of velocities, of each pair
+  const float* snow_slope = nullptr;                             // near.slope without walls
+  AlignedVector<float> pair_rate;                                // 1/s, midway between a pair
   AlignedVector<double> smooth_pressure;                         // Pa
   AlignedVector<double> diagonal, source, pressure;
   AlignedVector<std::uint8_t> fixed;  // whose pressure is no unknown
@@ -130,13 +146,17 @@ struct MpsWork {
 
 inline constexpr std::ptrdiff_t mps_particles_in_piece = 256;
 
+/// f(begin, end) for all particles, in pieces.
+template <class F>
+void for_each_piece(std::size_t count, int threads, F f) {
+  parallel_pieces(std::ptrdiff_t(count), threads, mps_particles_in_piece, f);
+}
 /// f(i) for all particles, in pieces.
 template <class F>
 void for_each_particle(std::size_t count, int threads, F f) {
-  parallel_pieces(std::ptrdiff_t(count), threads, mps_particles_in_piece,
-                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                    for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
-                  });
+  for_each_piece(count, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
+  });
 }
 
 }  // namespace snowshed

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+
+#include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
 namespace snowshed {
@@ -33,21 +35,48 @@ double share_of_particles(const MpsModel<D>& model, const MpsParticles<D>& parti
   return model.laplacian() * model.settings().spacing * sum;
 }
 
-/// The viscosity between two particles, Pa s: that of the velocity gradient midway, which is the
-/// mean of both but for its part along the way, which is the difference of both velocities.
+/// The coupling of the velocities of each pair, from the viscosity between them: that of the shear
+/// rate midway, and of the mean of both pressures. Walls have none: they act by their drag.
 template <int D>
-double viscosity_between(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                         const MpsWork<D>& work, std::size_t i, std::uint32_t entry) {
-  const std::size_t j = work.near.lists.neighbour(entry);
-  const VecD<D> way = work.near.way(entry);
-  Eigen::Matrix<double, D, D> gradient =
-      0.5 * (work.velocity_gradient[i] + work.velocity_gradient[j]);
-  const VecD<D> change = particles.velocity[j] - particles.velocity[i];
-  gradient += (change - gradient * way) * way.transpose() / way.squaredNorm();
+void find_couplings(const MpsModel<D>& model, double factor, const MpsParticles<D>& particles,
+                    MpsWork<D>& work) {
+  const MpsNeighbourhood<D>& near = work.near;
+  const NeighbourLists<D>& lists = near.lists;
   const Rheology& law = model.rheology;
-  const double pressure =
-      law.friction > 0 ? 0.5 * (work.smooth_pressure[i] + work.smooth_pressure[j]) : 0.0;
-  return law.apparent_viscosity(law.yield_stress(pressure), shear_rate<D>(gradient));
+  const int threads = model.threads_for(lists.size());
+  work.coupling.resize(lists.pairs());
+  const auto for_each_pair = [&](const auto& coupling) {
+    for_each_particle(lists.size(), threads, [&](std::size_t i) {
+      for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e) {
+        const std::size_t j = lists.neighbour(e);
+        coupling(i, j, e, particles.is_wall(i) || particles.is_wall(j));
+      }
+    });
+  };
+  const auto set = [&](std::uint32_t e, double viscosity, bool is_wall) {
+    work.coupling[e] = is_wall ? 0.0f : float(factor * viscosity * double(near.even_weight[e]));
+  };
+  if (law.is_newtonian()) {
+    for_each_pair([&](std::size_t, std::size_t, std::uint32_t e, bool is_wall) {
+      set(e, law.viscosity, is_wall);
+    });
+    return;
+  }
+  work.pair_rate.resize(lists.pairs());
+  for_each_piece(lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.pair_rates(near.rows(), near.offsets().data(), particles.velocity.data()->data(),
+                             work.velocity_gradient.data()->data(), work.pair_rate.data(), begin,
+                             end);
+  });
+  for_each_pair([&](std::size_t i, std::size_t j, std::uint32_t e, bool is_wall) {
+    if (j < i) return;
+    const double pressure =
+        law.friction > 0 ? 0.5 * (work.smooth_pressure[i] + work.smooth_pressure[j]) : 0.0;
+    set(e, law.apparent_viscosity(law.yield_stress(pressure), double(work.pair_rate[e])), is_wall);
+  });
+  for_each_pair([&](std::size_t i, std::size_t j, std::uint32_t e, bool) {
+    if (j < i) work.coupling[e] = work.coupling[lists.mirror(e)];
+  });
 }
 
 template <int D>
@@ -59,6 +88,10 @@ constexpr double yield_tolerance = 1e-3;
 /// Where these iterations begin: so far on the way from the velocities before the step to those
 /// that all but viscosity makes.
 constexpr double first_guess = 0.01;
+
+/// The equation of an iteration is solved the better the less changed in the one before: at first
+/// so well, relative to what gravity adds in a step, and then to this share of the change.
+constexpr double loosest_solve = 0.1, solve_share = 0.03;
 
 /// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
 /// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
@@ -84,48 +117,26 @@ double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles,
   return share * viscosity / (s.density * s.spacing * height);
 }
 
-/// The factor of a pair's weight in Laplacians, see find_corrections.
-template <int D>
-double spread_factor(const MpsNeighbourhood<D>& near, std::size_t i, std::uint32_t entry) {
-  const VecD<D> way = near.way(entry);
-  const double factor = 0.5 *
-                        way.dot((near.spread[i] + near.spread[near.lists.neighbour(entry)]) * way) /
-                        way.squaredNorm();
-  return std::clamp(factor, 0.5, 2.0);
-}
-
 /// The equation of the present apparent viscosities; `start` are the velocities before viscosity
 /// acts, particles.velocity a guess that becomes the solution.
 template <int D>
 SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocities<D>& start,
-                            double scale, MpsParticles<D>& particles, MpsWork<D>& work) {
+                            double tolerance, double scale, MpsParticles<D>& particles,
+                            MpsWork<D>& work) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const MpsNeighbourhood<D>& near = work.near;
-  const double factor = dt / model.settings().density * model.laplacian();
-  const bool newtonian = model.rheology.is_newtonian();
-  const bool corrected = model.settings().gradient == MpsGradient::corrected;
+  find_couplings(model, dt / model.settings().density * model.laplacian(), particles, work);
   work.velocity.resize(n);
   work.block.resize(n);
   work.inverse_block.resize(n);
-  work.coupling.resize(near.lists.pairs());
   work.drag.resize(near.contacts.all().size());
   for_each_particle(n, threads, [&](std::size_t i) {
     const bool moves = particles.moves(i);
     double sum = 0;
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-      if (particles.is_wall(i) || particles.is_wall(near.lists.neighbour(e))) {
-        work.coupling[e] = 0;  // walls act by their drag
-        continue;
-      }
-      const double viscosity =
-          newtonian ? model.rheology.viscosity : viscosity_between(model, particles, work, i, e);
-      double weight = double(near.weight[e]);
-      if (corrected) weight *= spread_factor(near, i, e);
-      work.coupling[e] = float(factor * viscosity * weight);
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
       sum += double(work.coupling[e]);
-    }
     Matrix block = (1 + sum) * Matrix::Identity();
     VecD<D> right = start[i];
     if (moves)
@@ -141,27 +152,18 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
     work.inverse_block[i] = moves ? Matrix(block.inverse()) : Matrix(Matrix::Zero());
   });
 
-  const std::uint32_t *first = near.lists.first(), *index = near.lists.index();
-  const auto as_vectors = [](const double* values) {
-    return reinterpret_cast<const VecD<D>*>(values);
-  };
   const auto apply = [&](const double* p, double* q) {
-    const VecD<D>* const in = as_vectors(p);
-    for_each_particle(n, threads, [&](std::size_t i) {
-      VecD<D> sum = work.block[i] * in[i];
-      if (particles.moves(i))
-        for (std::uint32_t e = first[i]; e < first[i + 1]; ++e)
-          sum -= double(work.coupling[e]) * in[index[e]];
-      VecD<D>::Map(q + i * D) = sum;
+    for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      model.kernels.apply_to_velocities(near.rows(), work.coupling.data(),
+                                        work.block.data()->data(), p, q, begin, end);
     });
   };
   const auto precondition = [&](const double* r, double* z) {
     for_each_particle(n, threads, [&](std::size_t i) {
-      VecD<D>::Map(z + i * D) = work.inverse_block[i] * as_vectors(r)[i];
+      VecD<D>::Map(z + i * D) = work.inverse_block[i] * VecD<D>::Map(r + i * D);
     });
   };
-  return conjugate_gradients(n * D, model.settings().viscosity_tolerance, scale,
-                             model.settings().max_iterations, threads, work.cg,
+  return conjugate_gradients(n * D, tolerance, scale, model.settings().max_iterations, threads, work.cg,
                              particles.velocity.data()->data(), work.velocity.data()->data(), apply,
                              precondition);
 }
@@ -198,7 +200,8 @@ void add_gravity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles
 }
 
 /// The apparent viscosity is that of the velocities after the step: it is found by fixed-point
-/// iteration (Kacanov's, which descends for Bingham fluids), from the rates of the last step.
+/// iteration (Kacanov's, which descends for Bingham fluids), from the rates of the last step, and
+/// accelerated.
 template <int D>
 SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
                             MpsWork<D>& work) {
@@ -206,21 +209,34 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
   // From nearly the velocities before the step, not from those that forces have driven apart: what
   // creeps comes to rest. Nor quite from rest, which viscosity would keep for too many iterations.
   const Velocities<D> start = particles.velocity;
-  for (std::size_t i = 0; i < start.size(); ++i)
-    particles.velocity[i] = work.before[i] + first_guess * (start[i] - work.before[i]);
-  const double scale = velocity_scale(model, dt, particles);
   const bool newtonian = model.rheology.is_newtonian();
+  if (!newtonian)
+    for (std::size_t i = 0; i < start.size(); ++i)
+      particles.velocity[i] = work.before[i] + first_guess * (start[i] - work.before[i]);
+  const double scale = velocity_scale(model, dt, particles);
+  if (!newtonian) {
+    prepare_rates(model, particles, work);
+    work.near.lists.find_mirrors(model.threads_for(particles.size()));
+  }
   SolveReport report;
+  AndersonMixing<D> mixing;
   Velocities<D> last;
+  double tolerance = newtonian ? s.viscosity_tolerance : loosest_solve;
   for (int k = 0; k < std::max(s.yield_iterations, 1); ++k) {
+    const bool last_chance = k + 1 >= s.yield_iterations;
+    if (last_chance) tolerance = s.viscosity_tolerance;
+    tolerance = std::max(tolerance, s.viscosity_tolerance);
     if (!newtonian) find_rates(model, particles, work);
     last = particles.velocity;
-    const SolveReport one = solve_viscosity(model, dt, start, scale, particles, work);
+    const SolveReport one = solve_viscosity(model, dt, start, tolerance, scale, particles, work);
     report = {report.iterations + one.iterations, one.residual, one.converged};
-    if (!one.converged || newtonian) break;
-    if (distance<D>(particles.velocity, last) <=
-        yield_tolerance * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale))
-      break;
+    if (!one.converged || newtonian || last_chance) break;
+    const double change = distance<D>(particles.velocity, last);
+    const double limit =
+        yield_tolerance * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale);
+    if (change <= limit && tolerance <= s.viscosity_tolerance) break;
+    tolerance = change <= 2 * limit ? 0.0 : std::min(tolerance, solve_share * change / scale);
+    mixing.mix(last, particles.velocity);
   }
   find_viscosities(model, particles, work);
   return report;

@@ -1,0 +1,50 @@
+// Acceleration of fixed-point iterations.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "snowshed/core/aligned_vector.hpp"
+#include "snowshed/core/vec.hpp"
+
+namespace snowshed {
+
+/// Anderson's acceleration of depth one (Anderson 1965, doi:10.1145/321296.321305; Walker and Ni
+/// 2011, doi:10.1137/10078356X): the next point is that combination of the last two results whose
+/// residual would be least, were the iteration linear.
+template <int D>
+class AndersonMixing {
+ public:
+  using Vectors = AlignedVector<VecD<D>>;
+
+  /// Replaces the result of an iteration from a point by the point to go on from.
+  void mix(const Vectors& point, Vectors& result) {
+    const std::size_t n = result.size();
+    Vectors residual(n), plain = result;
+    double square = 0, changed = 0, along = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      residual[i] = result[i] - point[i];
+      square += residual[i].squaredNorm();
+    }
+    if (square < last_square_) {  // what diverges is not extrapolated
+      for (std::size_t i = 0; i < n; ++i) {
+        const VecD<D> change = residual[i] - last_residual_[i];
+        changed += change.squaredNorm();
+        along += residual[i].dot(change);
+      }
+      const double share = changed > 0 ? along / changed : 0.0;
+      if (std::abs(share) <= most_extrapolation)
+        for (std::size_t i = 0; i < n; ++i) result[i] -= share * (result[i] - last_result_[i]);
+    }
+    last_square_ = square;
+    last_residual_ = std::move(residual);
+    last_result_ = std::move(plain);
+  }
+
+ private:
+  static constexpr double most_extrapolation = 10;
+  double last_square_ = 0;  // of the residual; 0: there is none
+  Vectors last_residual_, last_result_;
+};
+
+}  // namespace snowshed

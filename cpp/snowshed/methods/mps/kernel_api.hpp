@@ -1,0 +1,57 @@
+// What the MPS solver and its kernels agree on: raw views, and a table of functions. The kernels are
+// compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here depends on
+// one. All take the rows [begin, end): particles, whose pairs follow on each other. The order in
+// which a row is summed depends on the instruction set only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace snowshed {
+
+/// The pairs of all particles, in compressed rows.
+struct PairRows {
+  const std::uint32_t *first, *index;  // of each row; the neighbour of each pair
+};
+
+/// The sums of a row of which corrections are made: of slope r r^T, weight r r^T (the upper halves
+/// by rows) and weight r.
+template <int D>
+struct RowMoments {
+  static constexpr int half = D * (D + 1) / 2;
+  float slope[half], weight[half], side[D];
+};
+
+template <int D>
+struct MpsKernels {
+  /// Weights r_e/r - 1, weights over r^2, and the sum of the weights of each row. `offset`: of each
+  /// pair, by axes.
+  void (*weigh)(const PairRows&, const float* const* offset, float reach, float* weight,
+                float* slope, float* sum, std::ptrdiff_t begin, std::ptrdiff_t end);
+  void (*sum_moments)(const PairRows&, const float* const* offset, const float* weight,
+                      const float* slope, RowMoments<D>*, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// q = diagonal p - sum of weight p; a row whose diagonal is zero is left out.
+  void (*apply)(const PairRows&, const float* weight, const double* diagonal, const double* p,
+                double* q, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// The same in single precision: r = b - (diagonal x - sum of weight x).
+  void (*residual)(const PairRows&, const float* weight, const float* diagonal, const float* x,
+                   const float* b, float* r, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// q = block p - sum of coupling p, with vectors p and matrices by columns; rows whose block is
+  /// zero at first are left out.
+  void (*apply_to_velocities)(const PairRows&, const float* coupling, const double* block,
+                              const double* p, double* q, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// The sum of slope (u_j - u_i) r^T of each row, matrices by columns, 1/s.
+  void (*sum_gradients)(const PairRows&, const float* const* offset, const float* slope,
+                        const double* velocity, double* gradient, std::ptrdiff_t begin,
+                        std::ptrdiff_t end);
+  /// The shear rate midway of each pair whose neighbour comes after the particle, 1/s: that of the
+  /// mean of both gradients but for its part along the way, which is the difference of velocities.
+  void (*pair_rates)(const PairRows&, const float* const* offset, const double* velocity,
+                     const double* gradient, float* rate, std::ptrdiff_t begin, std::ptrdiff_t end);
+};
+
+/// Those of the instruction set in use.
+template <int D>
+const MpsKernels<D>& mps_kernels();
+
+}  // namespace snowshed

@@ -1,0 +1,68 @@
+// The kernels of MPS for one instruction set.
+#include "snowshed/methods/mps/kernels/products.hpp"
+#include "snowshed/methods/mps/kernels/rates.hpp"
+#include "snowshed/methods/mps/kernels/weights.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+namespace {
+
+template <int D>
+struct Rows {
+  static void weigh(const PairRows& rows, const float* const* offset, float reach, float* weight,
+                    float* slope, float* sum, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      weigh_row<D>(rows, offset, reach, weight, slope, sum, std::size_t(i));
+  }
+  static void sum_moments(const PairRows& rows, const float* const* offset, const float* weight,
+                          const float* slope, RowMoments<D>* moments, std::ptrdiff_t begin,
+                          std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      sum_row_moments<D>(rows, offset, weight, slope, moments[i], std::size_t(i));
+  }
+  static void apply(const PairRows& rows, const float* weight, const double* diagonal,
+                    const double* p, double* q, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      q[i] = diagonal[i] > 0
+                 ? diagonal[i] * p[i] - sum_row(rows, weight, p, std::size_t(i))
+                 : 0.0;
+  }
+  static void residual(const PairRows& rows, const float* weight, const float* diagonal,
+                       const float* x, const float* b, float* r, std::ptrdiff_t begin,
+                       std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      r[i] = diagonal[i] > 0 ? b[i] - diagonal[i] * x[i] +
+                                   sum_row(rows, weight, x, std::size_t(i))
+                             : 0.0f;
+  }
+  static void apply_to_velocities(const PairRows& rows, const float* coupling, const double* block,
+                                  const double* p, double* q, std::ptrdiff_t begin,
+                                  std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      apply_row_to_velocities<D>(rows, coupling, block, p, q, std::size_t(i));
+  }
+  static void sum_gradients(const PairRows& rows, const float* const* offset, const float* slope,
+                            const double* velocity, double* gradient, std::ptrdiff_t begin,
+                            std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      sum_row_gradients<D>(rows, offset, slope, velocity, gradient, std::size_t(i));
+  }
+  static void pair_rates(const PairRows& rows, const float* const* offset, const double* velocity,
+                         const double* gradient, float* rate, std::ptrdiff_t begin,
+                         std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      find_pair_rates<D>(rows, offset, velocity, gradient, rate, std::size_t(i));
+  }
+
+  static constexpr MpsKernels<D> table{&weigh,    &sum_moments,         &apply,
+                                       &residual, &apply_to_velocities, &sum_gradients,
+                                       &pair_rates};
+};
+
+}  // namespace
+
+extern const MpsKernels<2> mps_kernel_table_2d;
+extern const MpsKernels<3> mps_kernel_table_3d;
+const MpsKernels<2> mps_kernel_table_2d = Rows<2>::table;
+const MpsKernels<3> mps_kernel_table_3d = Rows<3>::table;
+
+SNOWSHED_VARIANT_END

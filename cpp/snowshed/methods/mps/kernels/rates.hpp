@@ -1,0 +1,91 @@
+// Gradients of velocities, and shear rates midway between particles.
+#pragma once
+
+#include "snowshed/methods/mps/kernels/row_packs.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// The ways of some pairs and how velocities change along them.
+template <int D>
+struct PairMotion {
+  using V = SimdPack<double>;
+  IndexPack<V> index;
+  V way[D], change[D];
+
+  SNOWSHED_INLINE PairMotion(const PairRows& rows, const float* const* offset,
+                             const double* velocity, std::size_t row, const RowPack<V>& pack)
+      : index(pack.load_index(rows.index)) {
+    const IndexPack<V> at = index * D;
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) {
+      way[d] = pack.load(offset[d]);
+      change[d] = gather<V>(velocity + d, at) - velocity[row * D + d];
+    }
+  }
+};
+
+template <int D>
+SNOWSHED_INLINE void sum_row_gradients(const PairRows& rows, const float* const* offset,
+                                       const float* slope, const double* velocity, double* gradient,
+                                       std::size_t row) {
+  using V = SimdPack<double>;
+  V sum[D * D] = {};
+  for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
+    const PairMotion<D> pair(rows, offset, velocity, row, pack);
+    const V s = pack.load(slope);
+    SNOWSHED_UNROLL
+    for (int b = 0; b < D; ++b) {
+      const V weighted = s * pair.way[b];
+      SNOWSHED_UNROLL
+      for (int a = 0; a < D; ++a) sum[b * D + a] += pair.change[a] * weighted;
+    }
+  });
+  SNOWSHED_UNROLL
+  for (int k = 0; k < D * D; ++k) gradient[row * D * D + k] = sum_lanes(sum[k]);
+}
+
+template <int D>
+SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* offset,
+                                     const double* velocity, const double* gradient, float* rate,
+                                     std::size_t row) {
+  using V = SimdPack<double>;
+  for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
+    std::uint32_t last = 0;  // neighbours need not be in order
+    for (int k = 0; k < pack.count; ++k) {
+      const std::uint32_t other = rows.index[pack.entry + std::size_t(k)];
+      last = other > last ? other : last;
+    }
+    if (last < row) return;
+    const PairMotion<D> pair(rows, offset, velocity, row, pack);
+    const IndexPack<V> at = pair.index * (D * D);
+    V mean[D * D], along[D], square{};
+    SNOWSHED_UNROLL
+    for (int k = 0; k < D * D; ++k)
+      mean[k] = 0.5 * (gather<V>(gradient + k, at) + gradient[row * D * D + k]);
+    SNOWSHED_UNROLL
+    for (int a = 0; a < D; ++a) {
+      along[a] = pair.change[a];
+      SNOWSHED_UNROLL
+      for (int b = 0; b < D; ++b) along[a] -= mean[b * D + a] * pair.way[b];
+      square += pair.way[a] * pair.way[a];
+    }
+    const V inverse = 1.0 / max(square, broadcast<V>(1e-30));
+    SNOWSHED_UNROLL
+    for (int a = 0; a < D; ++a) along[a] *= inverse;
+    V sum{};  // half of the square of the gradient and its transpose
+    SNOWSHED_UNROLL
+    for (int a = 0; a < D; ++a) {
+      const V diagonal = mean[a * D + a] + along[a] * pair.way[a];
+      sum += 2 * diagonal * diagonal;
+      SNOWSHED_UNROLL
+      for (int b = 0; b < a; ++b) {
+        const V shear =
+            mean[a * D + b] + mean[b * D + a] + along[a] * pair.way[b] + along[b] * pair.way[a];
+        sum += shear * shear;
+      }
+    }
+    pack.store(rate, sqrt(sum));
+  });
+}
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,62 @@
+// Weights of pairs, and their sums.
+#pragma once
+
+#include "snowshed/methods/mps/kernels/row_packs.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+template <int D>
+SNOWSHED_INLINE void weigh_row(const PairRows& rows, const float* const* offset, float reach,
+                               float* weight, float* slope, float* sum, std::size_t row) {
+  using V = SimdPack<float>;
+  V total{};
+  for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
+    V square{};
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) {
+      const V r = pack.load(offset[d]);
+      square += r * r;
+    }
+    square = max(square, broadcast<V>(1e-4f * reach * reach));  // particles in the same place
+    const V w = max(V(reach / sqrt(square) - 1.0f), V{});
+    pack.store(weight, w);
+    pack.store(slope, V(w / square));
+    total += select(first_lanes<V>(pack.count), w, V{});
+  });
+  sum[row] = sum_lanes(total);
+}
+
+template <int D>
+SNOWSHED_INLINE void sum_row_moments(const PairRows& rows, const float* const* offset,
+                                     const float* weight, const float* slope,
+                                     RowMoments<D>& moments, std::size_t row) {
+  using V = SimdPack<float>;
+  constexpr int half = RowMoments<D>::half;
+  V by_slope[half] = {}, by_weight[half] = {}, side[D] = {};
+  for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
+    const V w = pack.load(weight), s = pack.load(slope);
+    V r[D];
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) r[d] = pack.load(offset[d]);
+    int k = 0;
+    SNOWSHED_UNROLL
+    for (int a = 0; a < D; ++a) {
+      const V weighted = w * r[a];
+      side[a] += weighted;
+      SNOWSHED_UNROLL
+      for (int b = a; b < D; ++b, ++k) {
+        by_slope[k] += s * r[a] * r[b];
+        by_weight[k] += weighted * r[b];
+      }
+    }
+  });
+  SNOWSHED_UNROLL
+  for (int k = 0; k < half; ++k) {
+    moments.slope[k] = sum_lanes(by_slope[k]);
+    moments.weight[k] = sum_lanes(by_weight[k]);
+  }
+  SNOWSHED_UNROLL
+  for (int d = 0; d < D; ++d) moments.side[d] = sum_lanes(side[d]);
+}
+
+SNOWSHED_VARIANT_END
