@@ -13,7 +13,7 @@ _STRENGTH = (
 )
 
 CAUSES: Mapping[str, str] = {
-    "The tail hardly moves after the first event.": "This is the shape of the measured stacks. The "
+    "The tail hardly moves after the first event.": "The claim describes the measured stacks. The "
     "simulated slab lands as a board and pushes the snow beneath it outward: the far end consists "
     "of the second and third slab, and advances at every event. Sieved snow of very low cohesion "
     "lands in lumps, and by hand a stack was measured only as far as it was one body. Both readings "
@@ -39,4 +39,7 @@ CAUSES: Mapping[str, str] = {
     "other; the claim's bar, a quarter, may be stricter than its figure.",
     "H/L hardly depends on the tilt.": "A few panels decide: the largest difference is between two "
     "of four tilts. The thesis calls this dependence the noisiest; its panels are single runs.",
+    "The quartiles of the predicted H/L.": "The lowest is a quarter too high, the others lie within "
+    "16 %. Cells of 1 cm instead of 1.5 cm lower H/L by a fifth, and damping by a share in each "
+    "step by a tenth (the gap's causes); the middle quartiles would then be too low.",
 }
