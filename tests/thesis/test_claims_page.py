@@ -37,7 +37,7 @@ def test_causes_are_of_contradictions():
 
 
 def test_a_contradiction_without_a_cause_is_refused(data):
-    with pytest.raises(InputError, match="no cause for 'It grows.'"):
+    with pytest.raises(InputError, match=r"no cause for 'It grows\.'"):
         claims_page.page(data(judged(CONTRADICTED)))
     assert "| confirmed | 5.1 | It grows. |" in claims_page.page(data(judged(CONFIRMED)))
 
