@@ -21,6 +21,7 @@ from reproduction.hypothesis_tests import CONTRADICTED, Judged
 from reproduction.markdown import markdown_table
 
 from snowshed._core import InputError
+from snowshed.cli.main import main as snowshed
 from snowshed.io.atomic import write_text
 from snowshed.study.store import Store
 from thesis.claims.causes import CAUSES
@@ -30,6 +31,8 @@ DATA = Path(__file__).with_name("data")
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, REPORT = DOCS / "thesis-claims.md", DOCS / "reports" / "thesis-middle.html"
 CLAIMS_FILE, COMPUTED_FILE = "claims.csv", "claims-computed.json"
+#: A store may hold runs of sizes that are not computed any more.
+OF_A_STUDY = "hash IN (SELECT hash FROM study_run)"
 
 
 def page(data: Path = DATA) -> str:
@@ -49,7 +52,7 @@ def page(data: Path = DATA) -> str:
         "This page is written by `python -m thesis.claims_page` from the results in "
         "`thesis/data`; change those, not this. It holds what `snowshed reproduce thesis "
         f"--middle` says of the thesis's {len(claims)} claims: {verdicts}. "
-        "{download}`The report <reports/thesis-middle.html>` has its figures and tables, and when "
+        "[The report](reports/thesis-middle.html) has its figures and tables, and when "
         "a claim counts as confirmed.",
         f"Of its {computed['runs']} simulations the last ended on {computed['date']}, on "
         f"{computed['cpu']}. [Reproducing the thesis](reproduce.md) says what `--middle` "
@@ -84,11 +87,14 @@ def keep(folder: Path, data: Path = DATA, report: Path = REPORT) -> None:
     found = ReproductionFolder(folder)
     claims = read_claims(found.claims)
     with Store.open(found.runs) as store:
-        ((left,),) = store.read("SELECT count(*) FROM run WHERE status = 'pending'")
+        ((left,),) = store.read(
+            f"SELECT count(*) FROM run WHERE status = 'pending' AND {OF_A_STUDY}"
+        )
         if left:
             raise InputError(f"{folder}: {left} simulations are not computed yet")
         ((runs, date, cpu),) = store.read(
             "SELECT count(*), substr(max(finished), 1, 10), max(cpu) FROM run_timing"
+            f" WHERE {OF_A_STUDY}"
         )
     write_text(data / CLAIMS_FILE, claims_csv(claims))
     write_text(data / COMPUTED_FILE, json.dumps({"runs": runs, "date": date, "cpu": cpu}) + "\n")
@@ -106,4 +112,4 @@ def main(folder: Optional[Path]) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(snowshed(command=main, name="python -m thesis.claims_page"))

@@ -87,11 +87,15 @@ class Pressed:
                 )
 
     def _set_engines(self) -> None:
+        # Yade's default moves the points of contact of two spheres outward to where they would just
+        # touch, so that cycles of load cannot creep. Slips of pressed spheres are then larger than
+        # those of the points themselves, and peaks with friction by 2 %.
+        spheres = y.Ig2_Sphere_Sphere_ScGeom6D(avoidGranularRatcheting=False)
         y.O.engines = [
             y.ForceResetter(),
             y.InsertionSortCollider([y.Bo1_Sphere_Aabb(), y.Bo1_Box_Aabb()]),
             y.InteractionLoop(
-                [y.Ig2_Sphere_Sphere_ScGeom6D(), y.Ig2_Box_Sphere_ScGeom6D()],
+                [spheres, y.Ig2_Box_Sphere_ScGeom6D()],
                 [y.Ip2_CohFrictMat_CohFrictMat_CohFrictPhys()],
                 [y.Law2_ScGeom6D_CohFrictPhys_CohesionMoment(useIncrementalForm=True)],
             ),

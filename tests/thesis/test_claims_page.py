@@ -37,13 +37,13 @@ def test_causes_are_of_contradictions():
 
 
 def test_a_contradiction_without_a_cause_is_refused(data):
-    with pytest.raises(InputError, match="no cause for 'It grows.'"):
+    with pytest.raises(InputError, match=r"no cause for 'It grows\.'"):
         claims_page.page(data(judged(CONTRADICTED)))
     assert "| confirmed | 5.1 | It grows. |" in claims_page.page(data(judged(CONFIRMED)))
 
 
 def test_claims_are_read_as_they_were_written(data):
-    claims = [judged(CONFIRMED), judged(CONTRADICTED, "It grows, as \"they\" say; ±")]
+    claims = [judged(CONFIRMED), judged(CONTRADICTED, 'It grows, as "they" say; ±')]
     assert read_claims(data(*claims) / "claims.csv") == claims
     with pytest.raises(InputError, match="no table of claims"):
         read_claims(data(judged("believed")) / "claims.csv")
