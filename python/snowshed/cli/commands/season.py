@@ -126,8 +126,8 @@ def season(
 
     FILE is that of a weather station (SMET, iCSV, EPW, TMY3, GHCN-daily, ACIS, MeteoSwiss, IMIS),
     or a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
-    friction, adhesion_pa and snow_depth_m. The panel, the ground and the method are described by the same
-    options as in ``snowshed panel``; --friction is that of sliding snow.
+    friction, adhesion_pa and snow_depth_m. The panel, the ground and the method are described by
+    the same options as in ``snowshed panel``; --friction is that of sliding snow.
 
     \b
     Example:
