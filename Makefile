@@ -199,8 +199,8 @@ $(VENV)/.cpp-tools: $(VENV)/.created
 	$(PIP) --quiet "clang-format==$(CLANG_FORMAT)" clang-tidy
 	touch $@
 
-$(VENV)/.docs-tools: $(VENV)/.created
-	$(PIP) --quiet sphinx myst-nb ipykernel furo
+$(VENV)/.docs-tools: $(VENV)/.created docs/conf.py
+	$(PIP) --quiet sphinx myst-nb ipykernel furo sphinx-mathjax-offline
 	touch $@
 
 clean:

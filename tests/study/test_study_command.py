@@ -52,6 +52,9 @@ def test_from_template_to_table(tmp_path, file, capsys):
     assert capsys.readouterr().out.split() == ["tiny:", "3", "runs", "3", "done"]
     assert run("export", folder, "-o", tmp_path / "table.csv") == 0
     assert len((tmp_path / "table.csv").read_text().splitlines()) == 7
+    assert run("picture", folder) == 0
+    assert capsys.readouterr().out == f"{folder / 'study.png'}\n"
+    assert (folder / "study.png").read_bytes().startswith(b"\x89PNG")
     assert run("run", file, "-o", folder, "-q") == 0
     assert capsys.readouterr() == ("", "")
 

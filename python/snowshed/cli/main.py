@@ -1,8 +1,8 @@
 """The command line: the list of commands, and their exit codes.
 
 ``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``grains`` a loading test of segmented
-snow, ``scene|plan|schema`` describe a scene, ``study`` computes many runs, ``season`` a winter, and
-``clearance`` many of them, to the height a panel needs.
+snow, ``scene|structure|plan|schema`` describe a scene, ``study`` computes many runs, ``season`` a
+winter, and ``clearance`` many of them, to the height a panel needs.
 ``compare|sensitivity|calibrate`` answer questions about runs, and ``geometry|regress|predict``
 treat the data set of panels.
 
@@ -32,6 +32,8 @@ OF_NAMES = (
     *(errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENOTEMPTY, errno.EACCES),
     *(errno.EPERM, errno.ENAMETOOLONG, errno.ELOOP, errno.EINVAL, errno.ENXIO, errno.EROFS),
 )
+#: What click raises where a group of commands is called alone; before 8.2 it printed its help.
+NO_ARGUMENTS: type = getattr(click.exceptions, "NoArgsIsHelpError", type(None))
 LONGEST_MESSAGE = 4000  # characters
 
 
@@ -49,6 +51,7 @@ DEFERRED = (
     ("grains", "grains", "Load segmented snow grain by grain."),
     ("plan", "scene", "Print the features and the cost of a scene file, without running it."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
+    ("structure", "structure", "Write scenes of roofs, rows, tables, trackers and terrain."),
     ("schema", "scene", "Print the JSON Schema of a scene."),
     ("compare", "scene", "Compare the stack heights of two results folders."),
     ("lua", "lua", "Run a scene that Lua scripts describe, or write it as JSON."),
@@ -100,6 +103,9 @@ def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) 
         _refuse_bytes(sys.argv[1:] if arguments is None else arguments)
         return command.main(arguments, prog_name=name, standalone_mode=False, **settings) or 0
     except click.ClickException as error:
+        if isinstance(error, NO_ARGUMENTS):  # of a group of commands: its help is the answer
+            click.echo(error.message)
+            return 0
         return _fail(error.format_message(), max(error.exit_code, 2))
     except OSError as error:
         said = f"{error.filename}: {error.strerror}" if error.filename else str(error)

@@ -155,7 +155,7 @@ def test_older_files_of_building_energy_have_depths_only(tmp_path):
     text = weather_files.EPW_HEADER + weather_files.epw_rows(older=True)
     assert "new snow is the daily rise" in check(written(tmp_path, text), BY_DEPTH)[1][-1]
     nothing = re.sub(",(110|140|999),88", ",999,88", text)
-    with pytest.raises(InputError, match="neither new snow, .* in any row of this EPW file"):
+    with pytest.raises(InputError, match=r"neither new snow, .* in any row of this EPW file"):
         read_season(written(tmp_path, nothing))
 
 

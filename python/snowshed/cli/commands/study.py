@@ -144,6 +144,19 @@ def export(
 
 @study.command()
 @click.argument("folder", type=PATH)
+@click.option(
+    "-o", "--output", "file", type=PATH, help="File to write.  [default: study.png in the folder]"
+)
+@click.option("--study", "name", help="Name of the study, if the folder holds several.")
+def picture(folder: Path, file: Optional[Path], name: Optional[str]) -> None:
+    """Draw what a study's runs measured over each parameter that varies."""
+    with _outcome_as_exit_code():
+        say(_draw(folder, file, name))
+        _warn_of_missing(folder, name)
+
+
+@study.command()
+@click.argument("folder", type=PATH)
 @click.option("-o", "--output", "file", type=PATH, required=True, help="File to write.")
 @click.option(
     "--trimming",
@@ -221,6 +234,20 @@ def _progress(quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
     return progress_bar(quiet=quiet, announce=announcement, speed_period_s=LONG_PERIOD_S)
 
 
+def _draw(folder: Path, file: Optional[Path], name: Optional[str]) -> Path:
+    """Write the picture of a study, and return its file."""
+    from snowshed.plot.figure_style import save
+    from snowshed.plot.study_figure import study_figure
+    from snowshed.study.table import read_table
+
+    with Store.open(folder) as store:
+        found = store.named(name)
+        axes = store.axes(found)
+    picture_file = file or folder / "study.png"
+    save(study_figure(read_table(folder, found), axes, found), picture_file)
+    return picture_file
+
+
 def _finish(folder: Path, names: list[str], quiet: bool) -> None:
     """Print where the results are; fail if runs have failed."""
     from snowshed.cli.display.study import print_failures
@@ -233,6 +260,7 @@ def _finish(folder: Path, names: list[str], quiet: bool) -> None:
         done = len(runs) - len(failed)
         say(f"{done} of {len(runs)} runs done")
         say(f"their table: snowshed study export {folder} -o table.csv")
+        say(f"their picture: snowshed study picture {folder}")
     if failed:
         listed = ", ".join(run.hash[:12] for run in failed[:LISTED])
         listed += ", ..." if len(failed) > LISTED else ""

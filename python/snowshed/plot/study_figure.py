@@ -1,0 +1,104 @@
+"""The picture of a study: what its runs measured, over each parameter that varies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from snowshed.plot.figure_style import BODY, STACK, STYLE, blank, headline
+from snowshed.plot.labels import label
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+#: What is drawn of each method's runs, those that there are: two at most.
+MEASURES = {
+    "height_m": "height of the stack, m",
+    "length_m": "length of the stack, m",
+    "run_out_m": "run-out, m",
+    "peak_thickness_m": "largest thickness, m",
+    "strength_pa": "strength, Pa",
+    "tangent_modulus_pa": "tangent modulus, Pa",
+}
+MOST_PARAMETERS = 8
+COLUMN, ROW = 3.0, 2.6  # inches
+
+
+def study_figure(table: pd.DataFrame, axes: Sequence[str], title: str) -> Figure:
+    """Draw the measures of a study's runs after their last event over the parameters that vary.
+
+    Parameters
+    ----------
+    table
+        From `read_table`.
+    axes
+        Paths of the parameters that vary; of more than eight the first.
+    title
+        The study's name.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Dots are runs. Lines join the medians of runs that share a value, where several do.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> runs = {"hash": ["a", "b"], "event": 1, "panel.tilt": [40, 50], "height_m": [0.2, 0.3]}
+    >>> len(study_figure(pd.DataFrame(runs), ["panel.tilt"], "tilts").axes)
+    1
+    """
+    done = table[table["error"].fillna("") == ""] if "error" in table else table
+    last = done.sort_values("event", kind="stable").groupby("hash", sort=False).tail(1)
+    measures = [name for name in MEASURES if name in last and last[name].notna().any()][:2]
+    shown = [path for path in axes if path in last][:MOST_PARAMETERS]
+    with rc_context(STYLE):
+        rows, columns = max(len(measures), 1), max(len(shown), 1)
+        figure = blank(1.2 + COLUMN * columns, 0.9 + ROW * rows)
+        count = "1 run" if len(last) == 1 else f"{len(last)} runs"
+        headline(figure, f"{title}: {count}, each after its last event")
+        grid = figure.subplots(rows, columns, squeeze=False, sharey="row")
+        for row, measure in enumerate(measures):
+            for column, path in enumerate(shown):
+                _draw(grid[row][column], last, path, measure)
+            grid[row][0].set_ylabel(MEASURES[measure])
+        for column, path in enumerate(shown):
+            for above in grid[:-1, column]:
+                above.tick_params(labelbottom=False)
+            grid[-1][column].set_xlabel(label(path).axis)
+        if not (measures and shown):
+            grid[0][0].set_axis_off()
+            grid[0][0].text(0.5, 0.5, "nothing to show", ha="center", va="center")
+        return figure
+
+
+def _draw(axes: Axes, runs: pd.DataFrame, path: str, measure: str) -> None:
+    """Draw a measure over a parameter: numbers along an axis, anything else one beside another."""
+    import pandas as pd
+
+    values = pd.to_numeric(runs[path], errors="coerce")
+    known = runs[path].map(str)
+    if values.notna().all() and runs[path].dtype != bool:
+        places = values / label(path).scale
+        if places.min() > 0 and places.max() > 30 * places.min():
+            axes.set_xscale("log")
+    else:
+        names = list(dict.fromkeys(known))
+        places = known.map({name: float(place) for place, name in enumerate(names)})
+        axes.set_xticks(range(len(names)), [_short(name) for name in names])
+        axes.set_xlim(-0.5, len(names) - 0.5)
+    found = runs[measure].astype(float)
+    axes.scatter(places, found, s=14, color=STACK, alpha=0.6, linewidths=0)
+    medians = found.groupby(np.round(places.astype(float), 12)).median()
+    if 1 < len(medians) < len(runs):
+        axes.plot(medians.index, medians, color=BODY, linewidth=1.2)
+    axes.set_ylim(bottom=min(0.0, float(found.min())))
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= 14 else f"…{name[-13:]}"
