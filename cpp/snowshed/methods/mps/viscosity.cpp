@@ -96,7 +96,7 @@ constexpr double loosest_solve = 0.1, solve_share = 0.03;
 /// Few iterations suffice with the diagonal alone where viscosity does not reach far in a step; after
 /// so many multigrid takes over. Its sweeps of the particles' velocities are damped by this.
 constexpr int most_by_diagonal = 12;
-constexpr double jacobi_damping = 0.9;
+constexpr double sweep_damping = 0.9;
 
 /// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
 /// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
@@ -146,7 +146,7 @@ void precondition_velocities(std::size_t n, int threads, const Apply& apply, con
     for_each_particle(n * D, threads, [&](std::size_t k) { residual[k] = r[k] - residual[k]; });
   };
   const auto damp = [&](double* x) {
-    for_each_particle(n * D, threads, [&](std::size_t k) { x[k] *= jacobi_damping; });
+    for_each_particle(n * D, threads, [&](std::size_t k) { x[k] *= sweep_damping; });
   };
   smooth(r, z);
   damp(z);
