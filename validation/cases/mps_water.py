@@ -19,10 +19,10 @@ ACROSS = (10, 20, 40)  # particles across the dam
 #: T* = t sqrt(2 g/L) and X* = x/L of the front.
 MARTIN_MOYCE = ((0.832, 1.217), (1.219, 1.474), (1.997, 2.292), (2.547, 2.995), (3.345, 4.134), (4.034, 4.944))  # fmt: skip # noqa: E501
 KOSHIZUKA_OKA = ((0.381, 1.111), (0.769, 1.252), (1.153, 1.505), (1.537, 1.892), (1.935, 2.241), (2.323, 2.615), (2.719, 3.003), (3.096, 3.624))  # fmt: skip # noqa: E501
-#: Front of the same column as a volume of fluid without friction (benchmarks/engines/gerris_dam.gfs).
+#: Front of such water, let go at once, as a volume of fluid (benchmarks/engines/gerris_dam.gfs).
 GERRIS = ((0.5, 1.16), (1.0, 1.53), (1.5, 2.03), (2.0, 2.64), (2.5, 3.32), (3.0, 4.07), (3.5, 4.85))
-#: Martin and Moyce could not see when the water was let go: their tables count the time so that the
-#: fronts of all columns twice as high as wide, 1 1/8 and 2 1/4 inches, are here at the same time.
+#: Martin and Moyce's tables, as others print them, do not count the time from when water was let
+#: go: fronts of both columns twice as high as wide, 1 1/8 and 2 1/4 inches, are here.
 ORIGIN = (1.19, 1.44)  # T*, X*
 
 
@@ -147,8 +147,8 @@ DAM_BREAK = Case(
     A column of water, 2 1/4 inches wide and twice as high, collapses. Compared is the foremost
     particle, half a distance ahead, in widths of the column over T* = t √(2g/a): with another
     method for water without friction that is let go at once (volume of fluid, Gerris), and with two
-    measured series, as they stand and with the origin of time of Martin and Moyce's tables. They
-    could not see when the water was let go, and count the time so that X* = 1.44 at T* = 1.19.
+    measured series, as they stand and with the origin of time of Martin and Moyce's tables, which
+    bring their runs together at X* = 1.44, T* = 1.19.
     """,
     quantities=(
         Quantity(

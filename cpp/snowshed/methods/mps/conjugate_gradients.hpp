@@ -23,7 +23,7 @@ struct CgWork {
 
 namespace conjugate_gradient_details {
 
-inline constexpr std::ptrdiff_t piece = 2048;
+inline constexpr std::ptrdiff_t piece = 512;
 
 /// The sum of f(i) in a fixed order.
 template <class F>

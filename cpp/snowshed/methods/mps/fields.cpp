@@ -95,14 +95,21 @@ MotionSummary MpsSolver<D>::motion(double limit) const {
 template <int D>
 std::size_t MpsSolver<D>::bytes() const {
   std::size_t total = work_.near.cells.bytes() + work_.near.lists.bytes() +
-                      work_.near.contacts.bytes() + work_.multigrid.bytes() + work_.walls.bytes();
+                      work_.near.contacts.bytes() + work_.multigrid.bytes() +
+                      work_.velocity_multigrid.bytes() + work_.walls.bytes();
   const auto count = [&total](const auto& vector) {
     total += vector.capacity() * sizeof(vector[0]);
   };
-  for (const auto* particles : {&state_.particles, &work_.spare})
+  for (const auto* particles : {&state_.particles, &work_.next.particles,
+                                &work_.start.particles, &work_.spare})
     particles->for_each_array([&](const char*, const auto& array) { count(array); });
   count(work_.near.weight);
   count(work_.near.slope);
+  count(work_.near.even_weight);
+  count(work_.near.snow_slope);
+  count(work_.near.moments);
+  count(work_.pair_rate);
+  count(work_.rate_correction);
   count(work_.coupling);
   count(work_.block);
   count(work_.inverse_block);

@@ -8,11 +8,12 @@
 namespace snowshed {
 namespace {
 
-constexpr float jacobi_damping = 0.7f;   // of Jacobi sweeps
-constexpr float enlargement = 1.6f;      // of corrections that are constant within aggregates
+constexpr float jacobi_damping = 0.9f;   // of Jacobi sweeps
+// Of corrections that are constant within aggregates: of particles, and of aggregates.
+constexpr float first_enlargement = 1.4f, enlargement = 1.8f;
 constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
 constexpr std::size_t most_levels = 24;
-constexpr std::ptrdiff_t rows_in_piece = 512;
+constexpr std::ptrdiff_t rows_in_piece = 128;
 
 template <class F>
 void for_each_row(std::size_t n, int threads, F f) {
@@ -41,8 +42,8 @@ int slot_of(const std::array<std::int32_t, D>& from, const std::array<std::int32
 }  // namespace
 
 /// One aggregate for each cell.
-template <int D>
-void Multigrid<D>::make_first(const CellOrder<D>& cells, std::int32_t period_cells) {
+template <int D, int C>
+void Multigrid<D, C>::make_first(const CellOrder<D>& cells, std::int32_t period_cells) {
   Level& level = levels_.front();
   level.period = period_cells;
   level.at.resize(cells.cells());
@@ -59,8 +60,8 @@ void Multigrid<D>::make_first(const CellOrder<D>& cells, std::int32_t period_cel
 }
 
 /// One aggregate for 2^D of the level below.
-template <int D>
-void Multigrid<D>::make_next() {
+template <int D, int C>
+void Multigrid<D, C>::make_next() {
   levels_.emplace_back();
   Level& level = levels_.back();
   Level& below = levels_[levels_.size() - 2];
@@ -90,9 +91,9 @@ void Multigrid<D>::make_next() {
 
 /// Makes the rows of a level: visit(c, add_diagonal, add) adds what the unknowns in aggregate c
 /// have on the diagonal, and their couplings with those in other aggregates, or in c itself.
-template <int D>
+template <int D, int C>
 template <class Visit>
-void Multigrid<D>::fill(Level& level, const Visit& visit) {
+void Multigrid<D, C>::fill(Level& level, const Visit& visit) {
   level.value.resize(level.size() * stencil);
   level.column.resize(level.size() * stencil);
   level.diagonal.resize(level.size());
@@ -117,8 +118,8 @@ void Multigrid<D>::fill(Level& level, const Visit& visit) {
   });
 }
 
-template <int D>
-void Multigrid<D>::fill_first() {
+template <int D, int C>
+void Multigrid<D, C>::fill_first() {
   Level& level = levels_.front();
   fill(level, [&](std::size_t c, const auto& add_diagonal, const auto& add) {
     for (std::uint32_t i = level.child_first[c]; i < level.child_first[c + 1]; ++i) {
@@ -142,8 +143,8 @@ void Multigrid<D>::fill_first() {
   });
 }
 
-template <int D>
-void Multigrid<D>::fill_next(const Level& below, Level& level) {
+template <int D, int C>
+void Multigrid<D, C>::fill_next(const Level& below, Level& level) {
   fill(level, [&](std::size_t c, const auto& add_diagonal, const auto& add) {
     for (std::uint32_t k = level.child_first[c]; k < level.child_first[c + 1]; ++k) {
       const std::size_t row = std::size_t(level.child[k]);
@@ -155,8 +156,8 @@ void Multigrid<D>::fill_next(const Level& below, Level& level) {
 }
 
 /// A little on the diagonal keeps rounding, and a fluid without a free surface, from spoiling it.
-template <int D>
-void Multigrid<D>::factor_coarsest() {
+template <int D, int C>
+void Multigrid<D, C>::factor_coarsest() {
   const Level& level = levels_.back();
   const Eigen::Index n = Eigen::Index(level.size());
   Eigen::MatrixXf a = Eigen::MatrixXf::Zero(n, n);
@@ -173,8 +174,8 @@ void Multigrid<D>::factor_coarsest() {
     coarsest_.compute(Eigen::MatrixXf(a.diagonal().asDiagonal()));
 }
 
-template <int D>
-void Multigrid<D>::update(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
+template <int D, int C>
+void Multigrid<D, C>::update(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
                           const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
                           std::int32_t period_cells, int threads) {
   lists_ = &lists;
@@ -196,8 +197,8 @@ void Multigrid<D>::update(const NeighbourLists<D>& lists, const AlignedVector<fl
     fill_next(levels_[levels_.size() - 2], levels_.back());
   }
   for (Level& level : levels_) {
-    for (auto* vector : {&level.x, &level.b, &level.r, &level.inverse})
-      vector->resize(level.size());
+    for (auto* vector : {&level.x, &level.b, &level.r}) vector->resize(level.size());
+    level.inverse.resize(level.size());
     for (std::size_t i = 0; i < level.size(); ++i)
       level.inverse[i] = level.diagonal[i] > 0 ? jacobi_damping / level.diagonal[i] : 0.0f;
   }
@@ -205,10 +206,10 @@ void Multigrid<D>::update(const NeighbourLists<D>& lists, const AlignedVector<fl
 }
 
 /// r = b - A x.
-template <int D>
-void Multigrid<D>::residual(Level& level) {
+template <int D, int C>
+void Multigrid<D, C>::residual(Level& level) {
   for_each_row(level.size(), threads_, [&](std::size_t i) {
-    float sum = level.b[i] - level.diagonal[i] * level.x[i];
+    Value sum = level.b[i] - level.diagonal[i] * level.x[i];
     for (int s = 0; s < stencil; ++s) {
       const std::int32_t j = level.column[i * stencil + std::size_t(s)];
       if (j >= 0) sum += level.value[i * stencil + std::size_t(s)] * level.x[std::size_t(j)];
@@ -217,20 +218,22 @@ void Multigrid<D>::residual(Level& level) {
   });
 }
 
-template <int D>
-void Multigrid<D>::sweep(Level& level) {
+template <int D, int C>
+void Multigrid<D, C>::sweep(Level& level) {
   residual(level);
   for_each_row(level.size(), threads_,
                [&](std::size_t i) { level.x[i] += level.inverse[i] * level.r[i]; });
 }
 
 /// Improves x of a level, whose b is given; from zero, or from what is there.
-template <int D>
-void Multigrid<D>::cycle(std::size_t l, bool from_zero) {
+template <int D, int C>
+void Multigrid<D, C>::cycle(std::size_t l, bool from_zero) {
   Level& level = levels_[l];
   if (l + 1 == levels_.size()) {
-    const Eigen::Map<const Eigen::VectorXf> b(level.b.data(), Eigen::Index(level.size()));
-    Eigen::Map<Eigen::VectorXf>(level.x.data(), Eigen::Index(level.size())) = coarsest_.solve(b);
+    using Values = Eigen::Matrix<float, C, Eigen::Dynamic>;  // columns: unknowns of an aggregate
+    const Eigen::Index n = Eigen::Index(level.size());
+    const Eigen::Map<const Values> b(level.b.data()->data(), C, n);
+    Eigen::Map<Values>(level.x.data()->data(), C, n) = coarsest_.solve(b.transpose()).transpose();
     return;
   }
   if (from_zero)
@@ -241,7 +244,7 @@ void Multigrid<D>::cycle(std::size_t l, bool from_zero) {
   residual(level);
   Level& above = levels_[l + 1];
   for_each_row(above.size(), threads_, [&](std::size_t c) {
-    float sum = 0;
+    Value sum = Value::Zero();
     for (std::uint32_t k = above.child_first[c]; k < above.child_first[c + 1]; ++k)
       sum += level.r[above.child[k]];
     above.b[c] = sum;
@@ -253,8 +256,28 @@ void Multigrid<D>::cycle(std::size_t l, bool from_zero) {
   sweep(level);
 }
 
-template <int D>
-void Multigrid<D>::apply(const double* r, double* z) {
+template <int D, int C>
+template <class T>
+void Multigrid<D, C>::correct(const T* residual, T* x) {
+  using Values = Eigen::Array<T, C, 1>;
+  Level& above = levels_.front();
+  for_each_row(above.size(), threads_, [&](std::size_t c) {
+    Value sum = Value::Zero();
+    for (std::uint32_t i = above.child_first[c]; i < above.child_first[c + 1]; ++i)
+      sum += Eigen::Map<const Values>(residual + std::size_t(i) * C).template cast<float>();
+    above.b[c] = sum;
+  });
+  cycle(0, true);
+  if (levels_.size() > 1) cycle(0, false);
+  for_each_row(size_, threads_, [&](std::size_t i) {
+    if (diagonal_[i] > 0)
+      Eigen::Map<Values>(x + i * C) +=
+          (first_enlargement * above.x[parent_[i]]).template cast<T>();
+  });
+}
+
+template <int D, int C>
+void Multigrid<D, C>::apply(const double* r, double* z) {
   const PairRows rows{lists_->first(), lists_->index()};
   const auto find_residual = [&] {
     parallel_pieces(std::ptrdiff_t(size_), threads_, rows_in_piece,
@@ -268,31 +291,26 @@ void Multigrid<D>::apply(const double* r, double* z) {
     x_[i] = inverse_[i] * b_[i];
   });
   find_residual();
-  Level& above = levels_.front();
-  for_each_row(above.size(), threads_, [&](std::size_t c) {
-    float sum = 0;
-    for (std::uint32_t i = above.child_first[c]; i < above.child_first[c + 1]; ++i) sum += r_[i];
-    above.b[c] = sum;
-  });
-  cycle(0, true);
-  if (levels_.size() > 1) cycle(0, false);
-  for_each_row(size_, threads_, [&](std::size_t i) {
-    if (diagonal_[i] > 0) x_[i] += enlargement * above.x[parent_[i]];
-  });
+  correct(r_.data(), x_.data());
   find_residual();
   for_each_row(size_, threads_,
                [&](std::size_t i) { z[i] = double(x_[i] + inverse_[i] * r_[i]); });
 }
 
-template <int D>
-std::size_t Multigrid<D>::bytes() const {
+template <int D, int C>
+std::size_t Multigrid<D, C>::bytes() const {
   std::size_t total = size_ * (5 * sizeof(float) + sizeof(std::uint32_t));
   for (const Level& level : levels_)
-    total += level.size() * (stencil * (sizeof(float) + sizeof(std::int32_t)) + 10 * sizeof(float));
+    total += level.size() * (stencil * (sizeof(float) + sizeof(std::int32_t)) +
+                             (7 + 3 * C) * sizeof(float));
   return total;
 }
 
-template class Multigrid<2>;
-template class Multigrid<3>;
+template class Multigrid<2, 1>;
+template class Multigrid<2, 2>;
+template class Multigrid<3, 1>;
+template class Multigrid<3, 3>;
+template void Multigrid<2, 2>::correct(const double*, double*);
+template void Multigrid<3, 3>::correct(const double*, double*);
 
 }  // namespace snowshed

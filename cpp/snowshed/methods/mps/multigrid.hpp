@@ -16,8 +16,9 @@ namespace snowshed {
 /// Aggregation multigrid (Notay 2010; Braess 1995, doi:10.1007/BF02238484): the unknowns of a cell
 /// are one unknown of the next level, those of 2^D cells one of the level after it. Corrections are
 /// constant within an aggregate, and enlarged to make up for that. A damped Jacobi sweep goes
-/// before and one after each correction, which is symmetric, as conjugate gradients need it.
-template <int D>
+/// before and one after each correction, which is symmetric, as conjugate gradients need it. There
+/// are C unknowns for each particle, which do not depend on each other above the particles.
+template <int D, int C>
 class Multigrid {
  public:
   /// The matrix has the given diagonal, and -weight for each pair of neighbours. Unknowns with a
@@ -27,14 +28,19 @@ class Multigrid {
               const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
               std::int32_t period_cells, int threads);
 
-  /// z = M^-1 r.
+  /// z = M^-1 r, for one unknown.
   void apply(const double* r, double* z);
+
+  /// Adds to the particles' unknowns what the levels above make of their residuals.
+  template <class T>
+  void correct(const T* residual, T* x);
 
   std::size_t levels() const { return 1 + levels_.size(); }
   std::size_t bytes() const;
 
  private:
   using Coordinates = std::array<std::int32_t, D>;
+  using Value = Eigen::Array<float, C, 1>;
   static constexpr int stencil = D == 2 ? 9 : 27;
 
   /// A level above the particles: rows of at most `stencil` entries, itself among them.
@@ -45,7 +51,8 @@ class Multigrid {
     std::vector<std::uint32_t> parent;   // in the level above
     AlignedVector<float> value;          // stencil of each row, positive couplings
     AlignedVector<std::int32_t> column;  // or -1
-    AlignedVector<float> diagonal, inverse, x, b, r;
+    AlignedVector<float> diagonal, inverse;
+    AlignedVector<Value> x, b, r;
     std::int32_t period = 0;
     std::size_t size() const { return at.size(); }
   };

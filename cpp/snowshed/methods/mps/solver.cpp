@@ -177,13 +177,14 @@ void MpsSolver<D>::act_before_pressure(double dt, MpsState<D>& next) {
 template <int D>
 void MpsSolver<D>::step() {
   if (size() == 0) throw SimulationError("there is no snow");
-  MpsState<D> next = state_;
+  MpsState<D>&next = work_.next, &start = work_.start;
+  next = state_;
   if (model_.has_wall_particles())
     work_.walls.append_near(state_.time, model_.options.period, model_.particle_mass(),
                             next.particles);
   find_neighbours(model_, next.particles, state_.time, work_);
   double dt = choose_step(next.particles);
-  const MpsState<D> start = next;
+  start = next;
   work_.before = start.particles.velocity;
   const MpsSettings& s = model_.settings();
   for (int halvings = 0;; ++halvings) {
@@ -218,7 +219,7 @@ void MpsSolver<D>::step() {
   ++c.steps;
   c.particle_updates += std::int64_t(size());
   c.smallest_dt = c.smallest_dt > 0 ? std::min(c.smallest_dt, dt) : dt;
-  state_ = std::move(next);
+  std::swap(state_, next);
   order_known_ = false;
 }
 

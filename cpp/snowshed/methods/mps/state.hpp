@@ -120,7 +120,8 @@ struct MpsNeighbourhood {
 template <int D>
 struct MpsWork {
   WallParticles<D> walls;  // where the settings say so
-  MpsParticles<D> next, spare;
+  MpsState<D> next, start;  // of a step, and what it begins with once walls are there
+  MpsParticles<D> spare;
   MpsNeighbourhood<D> near;
   AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
   AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
@@ -141,7 +142,10 @@ struct MpsWork {
   bool enclosed = false;              // whether there is no free surface
   double pressure_scale = 0;          // norm of the right-hand side of the step's pressure
   CgWork cg;
-  Multigrid<D> multigrid;
+  Multigrid<D, 1> multigrid;           // of pressures
+  Multigrid<D, D> velocity_multigrid;  // made where it is needed
+  AlignedVector<double> velocity_diagonal;
+  AlignedVector<VecD<D>> velocity_residual;  // m/s
 };
 
 inline constexpr std::ptrdiff_t mps_particles_in_piece = 256;

@@ -93,6 +93,11 @@ constexpr double first_guess = 0.01;
 /// so well, relative to what gravity adds in a step, and then to this share of the change.
 constexpr double loosest_solve = 0.1, solve_share = 0.03;
 
+/// Few iterations suffice with the diagonal alone where viscosity does not reach far in a step; after
+/// so many multigrid takes over. Its sweeps of the particles' velocities are damped by this.
+constexpr int most_by_diagonal = 12;
+constexpr double sweep_damping = 0.9;
+
 /// The wall's shear stress is that of the snow at the rate u/h with which it slides by, h its
 /// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
 /// obstacle is not sticky, it is at most the obstacle's own friction.
@@ -115,6 +120,42 @@ double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles,
   if (contact.condition != Condition::sticky)
     viscosity = std::min(viscosity, law.regularised(contact.friction * pressure, rate));
   return share * viscosity / (s.density * s.spacing * height);
+}
+
+/// The levels above the particles know their walls' drag as if it acted in all directions alike.
+template <int D>
+void prepare_velocity_multigrid(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                                MpsWork<D>& work) {
+  const std::size_t n = particles.size();
+  const int threads = model.threads_for(n);
+  work.velocity_diagonal.resize(n);
+  work.velocity_residual.resize(n);
+  for_each_particle(n, threads,
+                    [&](std::size_t i) { work.velocity_diagonal[i] = work.block[i].trace() / D; });
+  work.velocity_multigrid.update(work.near.lists, work.coupling, work.velocity_diagonal,
+                                 work.near.cells, work.near.cells.period_cells(), threads);
+}
+
+/// z = M^-1 r: a damped Jacobi sweep, the levels above, and another sweep.
+template <int D, class Apply, class Smooth>
+void precondition_velocities(std::size_t n, int threads, const Apply& apply, const Smooth& smooth,
+                             MpsWork<D>& work, const double* r, double* z) {
+  double* const residual = work.velocity_residual.data()->data();
+  const auto find_residual = [&] {
+    apply(z, residual);
+    for_each_particle(n * D, threads, [&](std::size_t k) { residual[k] = r[k] - residual[k]; });
+  };
+  const auto damp = [&](double* x) {
+    for_each_particle(n * D, threads, [&](std::size_t k) { x[k] *= sweep_damping; });
+  };
+  smooth(r, z);
+  damp(z);
+  find_residual();
+  work.velocity_multigrid.correct(residual, z);
+  find_residual();
+  smooth(residual, residual);
+  damp(residual);
+  for_each_particle(n * D, threads, [&](std::size_t k) { z[k] += residual[k]; });
 }
 
 /// The equation of the present apparent viscosities; `start` are the velocities before viscosity
@@ -158,14 +199,25 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
                                         work.block.data()->data(), p, q, begin, end);
     });
   };
-  const auto precondition = [&](const double* r, double* z) {
+  const auto smooth = [&](const double* r, double* z) {
     for_each_particle(n, threads, [&](std::size_t i) {
       VecD<D>::Map(z + i * D) = work.inverse_block[i] * VecD<D>::Map(r + i * D);
     });
   };
-  return conjugate_gradients(n * D, tolerance, scale, model.settings().max_iterations, threads, work.cg,
-                             particles.velocity.data()->data(), work.velocity.data()->data(), apply,
-                             precondition);
+  const auto solve = [&](int most, const auto& precondition) {
+    return conjugate_gradients(n * D, tolerance, scale, most, threads, work.cg,
+                               particles.velocity.data()->data(), work.velocity.data()->data(),
+                               apply, precondition);
+  };
+  const int most = model.settings().max_iterations;
+  const SolveReport first = solve(std::min(most, most_by_diagonal), smooth);
+  if (first.converged || most <= most_by_diagonal) return first;
+  prepare_velocity_multigrid(model, particles, work);
+  const SolveReport second =
+      solve(most - most_by_diagonal, [&](const double* r, double* z) {
+        precondition_velocities<D>(n, threads, apply, smooth, work, r, z);
+      });
+  return {first.iterations + second.iterations, second.residual, second.converged};
 }
 
 /// What residuals and changes of all velocities are compared with: what gravity adds in a step,

@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "snowshed/methods/mps/kernel_api.hpp"
+#include "snowshed/methods/mps/kernel_function.hpp"
+#include "snowshed/particles/neighbour_lists.hpp"
+
+namespace snowshed {
+namespace {
+
+/// A random cloud, denser and sparser than a lattice, so that rows of many lengths come up.
+template <int D>
+struct Cloud {
+  static constexpr double radius = 2.1;
+  AlignedVector<VecD<D>> position, velocity;
+  NeighbourLists<D> lists;
+  std::array<const float*, D> offset;
+  PairRows rows;
+  AlignedVector<float> weight, slope, sum;
+
+  explicit Cloud(std::size_t count) : position(count), velocity(count) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(0, 8), speed(-1, 1);
+    for (std::size_t i = 0; i < count; ++i)
+      for (int d = 0; d < D; ++d) {
+        position[i][d] = place(random);
+        velocity[i][d] = speed(random);
+      }
+    CellOrder<D> cells;
+    cells.update(position, radius);
+    const AlignedVector<VecD<D>> unsorted = position;
+    for (std::size_t k = 0; k < count; ++k) position[k] = unsorted[cells.order()[k]];
+    cells.update(position, radius);
+    lists.update(position, cells, radius, 0, 1);
+    lists.find_mirrors(1);
+    for (int d = 0; d < D; ++d) offset[std::size_t(d)] = lists.offset(d);
+    rows = {lists.first(), lists.index()};
+    weight.resize(lists.pairs());
+    slope.resize(lists.pairs());
+    sum.resize(count);
+    mps_kernels<D>().weigh(rows, offset.data(), float(radius), weight.data(), slope.data(),
+                           sum.data(), 0, std::ptrdiff_t(count));
+  }
+  std::ptrdiff_t size() const { return std::ptrdiff_t(position.size()); }
+  template <class F>
+  void for_each_pair(const F& f) const {
+    for (std::size_t i = 0; i < position.size(); ++i)
+      for (std::uint32_t e = lists.begin(i); e < lists.end(i); ++e)
+        f(i, std::size_t(lists.neighbour(e)), std::size_t(e));
+  }
+};
+
+template <class T>
+class MpsKernelsOf : public ::testing::Test {};
+using Dimensions =
+    ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(MpsKernelsOf, Dimensions);
+
+TYPED_TEST(MpsKernelsOf, WeighPairsAndSumThem) {
+  constexpr int D = TypeParam::value;
+  const Cloud<D> cloud(150);
+  AlignedVector<RowMoments<D>> moments(150);
+  mps_kernels<D>().sum_moments(cloud.rows, cloud.offset.data(), cloud.weight.data(),
+                               cloud.slope.data(), moments.data(), 0, cloud.size());
+  std::vector<double> sum(150), last(150), side(150);
+  cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
+    const VecD<D> r = cloud.position[j] - cloud.position[i];
+    const double w = kernel_weight(std::max(r.norm(), 0.01 * cloud.radius), cloud.radius);
+    EXPECT_NEAR(cloud.weight[e], w, 1e-5 * (1 + w));
+    sum[i] += w;
+    last[i] += w / r.squaredNorm() * r[D - 1] * r[D - 1];
+    side[i] += w * r[0];
+  });
+  for (std::size_t i = 0; i < 150; ++i) {
+    EXPECT_NEAR(cloud.sum[i], sum[i], 1e-4 * (1 + sum[i]));
+    EXPECT_NEAR(moments[i].slope[RowMoments<D>::half - 1], last[i], 1e-3 * (1 + last[i]));
+    EXPECT_NEAR(moments[i].side[0], side[i], 1e-4 * (1 + sum[i]));
+  }
+}
+
+TYPED_TEST(MpsKernelsOf, MultiplyRows) {
+  constexpr int D = TypeParam::value;
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const Cloud<D> cloud(150);
+  AlignedVector<double> diagonal(150, 3.0), p(150), q(150);
+  AlignedVector<Matrix> block(150, Matrix(2 * Matrix::Identity() + 0.5 * Matrix::Ones()));
+  AlignedVector<VecD<D>> moved(150);
+  diagonal[5] = 0;
+  block[5].setZero();
+  for (std::size_t i = 0; i < 150; ++i) p[i] = cloud.velocity[i][0];
+  mps_kernels<D>().apply(cloud.rows, cloud.weight.data(), diagonal.data(), p.data(), q.data(), 0,
+                         cloud.size());
+  mps_kernels<D>().apply_to_velocities(cloud.rows, cloud.weight.data(), block.data()->data(),
+                                       cloud.velocity.data()->data(), moved.data()->data(), 0,
+                                       cloud.size());
+  AlignedVector<double> expected(150);
+  AlignedVector<VecD<D>> expected_moved(150);
+  for (std::size_t i = 0; i < 150; ++i) {
+    expected[i] = diagonal[i] * p[i];
+    expected_moved[i] = block[i] * cloud.velocity[i];
+  }
+  cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
+    if (i == 5) return;
+    expected[i] -= double(cloud.weight[e]) * p[j];
+    expected_moved[i] -= double(cloud.weight[e]) * cloud.velocity[j];
+  });
+  for (std::size_t i = 0; i < 150; ++i) {
+    EXPECT_NEAR(q[i], expected[i], 1e-9 * (1 + double(cloud.sum[i])));
+    EXPECT_LT((moved[i] - expected_moved[i]).norm(), 1e-9 * (1 + double(cloud.sum[i])));
+  }
+}
+
+/// The velocity of a linear field has the same shear rate midway of all pairs.
+TYPED_TEST(MpsKernelsOf, FindTheShearRateOfALinearField) {
+  constexpr int D = TypeParam::value;
+  using Matrix = Eigen::Matrix<double, D, D>;
+  Cloud<D> cloud(150);
+  Matrix field;
+  for (int a = 0; a < D; ++a)
+    for (int b = 0; b < D; ++b) field(a, b) = 1.0 + a - 2.5 * b + a * b;
+  for (std::size_t i = 0; i < 150; ++i) cloud.velocity[i] = field * cloud.position[i];
+  AlignedVector<Matrix> gradient(150);
+  mps_kernels<D>().sum_gradients(cloud.rows, cloud.offset.data(), cloud.slope.data(),
+                                 cloud.velocity.data()->data(), gradient.data()->data(), 0,
+                                 cloud.size());
+  AlignedVector<Matrix> expected(150, Matrix(Matrix::Zero()));
+  cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
+    expected[i] += double(cloud.slope[e]) * (cloud.velocity[j] - cloud.velocity[i]) *
+                   (cloud.position[j] - cloud.position[i]).transpose();
+  });
+  for (std::size_t i = 0; i < 150; ++i)
+    EXPECT_LT((gradient[i] - expected[i]).norm(), 1e-5 * (1 + expected[i].norm()));
+  gradient.assign(150, field);
+  AlignedVector<float> rate(cloud.lists.pairs());
+  mps_kernels<D>().pair_rates(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
+                              gradient.data()->data(), rate.data(), 0, cloud.size());
+  const double known = (field + field.transpose()).norm() / std::sqrt(2.0);
+  cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
+    if (j > i) {
+      EXPECT_NEAR(rate[e], known, 1e-4 * known);
+    }
+    EXPECT_EQ(cloud.lists.neighbour(cloud.lists.mirror(e)), i);
+  });
+}
+
+}  // namespace
+}  // namespace snowshed
