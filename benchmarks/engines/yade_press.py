@@ -89,7 +89,7 @@ class Pressed:
     def _set_engines(self) -> None:
         # Yade's default moves the points of contact of two spheres outward to where they would just
         # touch, so that cycles of load cannot creep. Slips of pressed spheres are then larger than
-        # those of the points themselves, and peaks with friction by 2 %.
+        # those of the points themselves, and peaks with friction by 1.5 %.
         spheres = y.Ig2_Sphere_Sphere_ScGeom6D(avoidGranularRatcheting=False)
         y.O.engines = [
             y.ForceResetter(),
