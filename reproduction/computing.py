@@ -48,7 +48,9 @@ def compute_and_report(
         click.echo(f"report in {file}")
 
 
-def _compute_stages(stages: Sequence[Stage], folder: Path, jobs: Optional[int], quiet: bool) -> None:
+def _compute_stages(
+    stages: Sequence[Stage], folder: Path, jobs: Optional[int], quiet: bool
+) -> None:
     """Compute what is left of some stages; end as commands do after Ctrl-C or a full disk."""
     from reproduction.display import progress_bar
     from reproduction.stage import compute
