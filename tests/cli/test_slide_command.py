@@ -4,6 +4,7 @@ import json
 
 import pytest
 from pages import Page
+from plot.browser import check_page
 
 from snowshed.cli.main import main
 from snowshed.io.raster import read_raster
@@ -72,3 +73,12 @@ def test_the_page_of_a_slide_needs_no_other_file_and_says_what_to_know(tmp_path,
     assert all(source.startswith("data:") for source in page.sources)
     assert ["slab", "0.5"] in [row[:2] for row in page.rows]
     assert ["friction", "0.325"] in [row[:2] for row in page.rows]
+
+
+def test_the_pages_can_be_read(tmp_path):
+    assert snowshed("slide", "--example", "--max-time", 1.0, "-q", "-o", tmp_path / "out") == 0
+    check_page(tmp_path / "out/slide.html")
+    ranges = ("--range", "mu=0.3:0.5", "--runs", 2, "--jobs", 1, "-q")
+    command = ("slide", "--example", "--max-time", 1.0, *ranges, "-o", tmp_path / "maps")
+    assert snowshed(*command) == 0
+    check_page(tmp_path / "maps/hazard.html")

@@ -1,5 +1,9 @@
 """``snowshed structure``: the builders on the command line."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -82,3 +86,26 @@ def test_a_group_of_commands_alone_shows_its_help(group, capsys):
     assert main([group]) == 0
     shown = capsys.readouterr()
     assert shown.err == "" and shown.out.count("\n") > 8
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("snowshed pan", ["plain,panel"]),
+        ("snowshed panel --preset lab", ["plain,lab-40", "plain,lab-50"]),
+        ("snowshed scene --snow cal", ["plain,calibrated"]),
+        ("snowshed scene --snow mine.j", ["file,mine.j"]),
+        ("snowshed structure gab", ["plain,gable-roof"]),
+    ],
+)
+def test_the_shell_completes_names(typed, offered):
+    words = typed.split()
+    asked = {"_SNOWSHED_COMPLETE": "bash_complete", "COMP_WORDS": typed}
+    command = [sys.executable, "-c", "from snowshed.cli.start import main; main()"]
+    done = subprocess.run(
+        command,
+        env={**os.environ, **asked, "COMP_CWORD": str(len(words) - 1)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.stdout.split() == offered

@@ -2,10 +2,12 @@
 
 import contextlib
 import shutil
+from pathlib import Path
 
 import pytest
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "chrome")
+AUDIT = Path(__file__).with_name("audit.js")
 #: A sandbox is not to be had for root, and without a graphics card WebGL is computed.
 OPTIONS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader"]
 
@@ -27,3 +29,23 @@ def open_page(file, *, width=900, height=700, **context):
         page.goto(file.as_uri())
         yield page, told
         browser.close()
+
+
+def faults_of(file, *, width=900, scheme="light"):
+    """Return what is wrong with a page as a browser shows it.
+
+    That is what cannot be read, has no name or cannot be reached by keys (see audit.js), what is
+    asked for elsewhere, and what its scripts complain of.
+    """
+    with open_page(file, width=width, color_scheme=scheme, reduced_motion="reduce") as (page, told):
+        if page.evaluate("!!document.getElementById('data')"):  # the moving view
+            page.wait_for_function("document.body.dataset.ready === 'true'", timeout=120_000)
+        faults = page.evaluate(AUDIT.read_text(encoding="utf-8"))
+        own = (file.as_uri(), "data:", "blob:")
+        return [*faults, *(one for one in told if not one.startswith(own))]
+
+
+def check_page(file):
+    """Check a page on a telephone in light and on a screen in dark colours."""
+    assert faults_of(file, width=390, scheme="light") == []
+    assert faults_of(file, width=1280, scheme="dark") == []

@@ -4,6 +4,7 @@ import re
 
 import pytest
 from paths import ROOT
+from plot.browser import faults_of
 
 TEMPLATES = sorted(
     path
@@ -84,3 +85,20 @@ def test_scripts_ask_for_nothing():
         found = re.findall(r"\b(fetch|XMLHttpRequest|WebSocket|import)\s*\(|https?:", text)
         assert [one for one in re.findall(r"https?://\S+", text) if "www.w3.org" not in one] == []
         assert not [one for one in found if one]
+
+
+def test_the_audit_finds_faults(tmp_path):
+    """The checks that `check_page` makes of every page, on one that fails them."""
+    bad = """<html><body style="background: white"><h2 id="a">A</h2><h4 id="a">B</h4>
+      <p style="color: #999">pale</p><p style="font-size: 6px">small</p><img src="data:,">
+      <button></button><a href="#nowhere">link</a><table><tr><td>1</td></tr></table>
+      <div style="width: 3000px">wide</div><img alt="far" src="http://localhost:9/x.png">"""
+    (tmp_path / "bad.html").write_text(bad)
+    found = "\n".join(faults_of(tmp_path / "bad.html"))
+    for fault in (
+        "contrast 2.85", "letters of 6 px", "a picture without alt", "without a name: <button>",
+        "twice: id a", "leads nowhere: #nowhere", "a table without headings", "not one h1",
+        "h4 below h2", "no language", "no title", "no viewport", "wider than the window",
+        "http://localhost:9/x.png",
+    ):  # fmt: skip
+        assert fault in found, fault

@@ -6,6 +6,7 @@ import re
 import pandas as pd
 import pytest
 from pages import Page
+from plot.browser import check_page
 from reproduce_helpers import TINY, TINY_WITH_PANELS, fill, geometry_table
 from thesis.folder import ReproductionFolder
 from thesis.report import write_report
@@ -38,6 +39,10 @@ def test_it_needs_no_other_file(whole):
         head, _, data = source.partition(",")
         assert head == "data:image/png;base64"
         assert base64.b64decode(data).startswith(b"\x89PNG\r\n\x1a\n")
+
+
+def test_it_can_be_read(whole):
+    check_page(whole[0].folder.report)
 
 
 def test_every_table_of_the_thesis_is_there(whole):

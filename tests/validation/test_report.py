@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 from made_up import DRIFT, HEIGHT, made_up_case
 from pages import Page
+from plot.browser import check_page
 from validation import sections
 from validation.case import Quantity
 from validation.figures import LineStyles, worth_naming
@@ -60,6 +61,10 @@ def test_the_page_needs_no_other_file(page, report):
     }
     html = (report / "verification.html").read_text(encoding="utf-8")
     assert not re.search(r"https?://|<script|@import|url\(", html)
+
+
+def test_the_page_can_be_read(report):
+    check_page(report / "verification.html")
 
 
 def test_the_page_says_what_holds_and_what_does_not(page):

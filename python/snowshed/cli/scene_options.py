@@ -8,12 +8,13 @@ in front (``--slab-width``). The names in `SHORT_NAMES` are exceptions to both r
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Optional, TypeVar
 
 import click
+from click.shell_completion import CompletionItem
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
@@ -21,6 +22,8 @@ from snowshed.scene.components import Ground, Panel, Slab, Snow
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import Parameter, current_path, scene_parameters
 
+PRESETS = ("lab-40", "lab-50", "sensitivity", "geometry")
+SNOWS = ("calibrated", "reference")
 SHORT_NAMES = {
     "dimension": "dim",
     "panel.height": "height",
@@ -93,13 +96,25 @@ def scene_options(command: Command) -> Command:
         "--snow",
         "snow_preset",
         metavar="NAME",
-        help="Snow of the thesis (calibrated, reference), or a JSON file of a snow.",
+        shell_complete=_completed(SNOWS, files=True),
+        help=f"Snow of the thesis ({', '.join(SNOWS)}), or a JSON file of a snow.",
     )(command)
     return click.option(
         "--preset",
         metavar="NAME",
-        help="Scene to start from: lab-40, lab-50, sensitivity, geometry.",
+        shell_complete=_completed(PRESETS),
+        help=f"Scene to start from: {', '.join(PRESETS)}.",
     )(command)
+
+
+def _completed(names: Sequence[str], *, files: bool = False) -> Callable[..., Any]:
+    """Return what a shell offers for an option: names, and files where none of them fits."""
+
+    def offered(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
+        fitting = [CompletionItem(name) for name in names if name.startswith(begun)]
+        return fitting or ([CompletionItem(begun, type="file")] if files else [])
+
+    return offered
 
 
 def scene_from_options(

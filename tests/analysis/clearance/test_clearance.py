@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plot.browser import check_page
 
 from snowshed import InputError
 from snowshed.analysis.clearance import Design, Ranges, clearance_of, winters_of
@@ -114,6 +115,13 @@ def test_the_page_and_the_summary(answer, tmp_path):
     assert [level["probability"] for level in summary["panels"][0]["levels"]] == [0.5, 0.9, 0.98]
     view = (tmp_path / "worst-winter-0.6-60.html").read_text()
     assert 'href="worst-winter-0.6-60.html"' in page and "slide-offs" in view
+
+
+def test_its_pages_can_be_read(answer, tmp_path):
+    found, _ = answer
+    write_report([found], KNOWN, tmp_path, ["a note"])
+    check_page(tmp_path / "clearance.html")
+    check_page(tmp_path / "worst-winter-0.6-60.html")
 
 
 def test_a_forecast_counts_the_seasons(winters):
