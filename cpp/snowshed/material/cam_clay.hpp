@@ -79,11 +79,11 @@ struct CamClay {
   /// bracket are replaced by bisection.
   template <class V>
   SNOWSHED_INLINE bool return_map(PQ<V>& s, V& ev) const {
-    const V p0 = preconsolidation(ev);
-    const V overshoot = yield(s, p0);
-    const auto yields = overshoot > T(0);
+    // Snow that dilated far beyond the loss of its strength (u < -1) has none; u is clamped there.
+    const auto hardness = hyperbolic(max(V(-xi * ev), broadcast<V>(T(-1))));
+    const auto yields = yield(s, strength(hardness)) > T(0);
     if (!any(yields)) return false;
-    project(s, ev, yields);
+    project(s, ev, hardness, yields);
     return true;
   }
 
@@ -111,15 +111,40 @@ struct CamClay {
     return {k.sinh * cosh_w + k.cosh * sinh_w, k.cosh * cosh_w + k.sinh * sinh_w};
   }
 
+  /// p0 from K sinh(u).
+  template <class V>
+  static SNOWSHED_INLINE V strength(const Hyperbolic<V>& k) {
+    return max(k.sinh, broadcast<V>(T(0)));
+  }
+
+  /// The trial of a return, and how p0 changes from there.
+  template <class V>
+  struct Trial {
+    PQ<V> s;
+    V ev;
+    Hyperbolic<V> hardness;  // at e_v
+    bool series_suffices;    // for every change of e_v that comes into question
+  };
+
+  /// Returns p0 once e_v has changed by d; `slope` receives d p0 / d e_v.
+  template <class V>
+  SNOWSHED_INLINE V preconsolidation_after(const Trial<V>& trial, const V& d, V& slope) const {
+    if (!trial.series_suffices) return preconsolidation(V(trial.ev + d), slope);
+    const auto k = shifted(trial.hardness, V(-xi * d));
+    slope = select(k.sinh > T(0), V(-xi * k.cosh), broadcast<V>(T(0)));
+    return strength(k);
+  }
+
   /// Replaces the trial by the returned state for the particles in `yields`.
   template <class V, class M>
-  __attribute__((noinline)) void project(PQ<V>& s, V& ev, const M& yields) const {
+  __attribute__((noinline)) void project(PQ<V>& s, V& ev, const Hyperbolic<V>& hardness,
+                                         const M& yields) const {
     const V zero = broadcast<V>(T(0));
-    const PQ<V> trial = s;
-    const V p0_old = preconsolidation(ev);
-    const V to_origin = -trial.p / elastic.bulk;  // D at which p = 0
+    Trial<V> trial{s, ev, hardness, true};
+    const V p0_old = strength(hardness);
+    const V to_origin = -s.p / elastic.bulk;  // D at which p = 0
     // N of the trial: positive if the trial lies on the compressive side of the centre.
-    const V n_trial = T(2) * trial.p - (T(1) - beta) * p0_old;
+    const V n_trial = T(2) * s.p - (T(1) - beta) * p0_old;
     const auto compacts = n_trial > T(0);
 
     // The far end of the bracket. In compaction p = 0 lies past the centre. In dilation p0 reaches
@@ -128,42 +153,39 @@ struct CamClay {
     // Loose snow has no strength left at the end: either p0 stays zero on the way to p = 0, or the
     // tension remains after softening to p0 = 0. Its stress becomes zero and e_v takes the rest of
     // the volume.
-    const V p0_origin = preconsolidation(V(ev + to_origin));
-    const V one = broadcast<V>(T(1));
-    const V is_loose = select(compacts, V(select(p0_origin <= T(0), one, zero)),
-                              V(select(ev + to_origin >= T(0), one, zero)));
+    const auto loose = ev + to_origin >= T(0);
+    trial.series_suffices = !any(abs(V(xi * far)) > series_limit);
 
-    const V d = root(trial, ev, p0_old, n_trial, far, V(select(yields, zero, one) + is_loose));
+    const V d = root(trial, n_trial, far, yields & !loose);
 
-    const V p = trial.p + elastic.bulk * d;
-    const V p0 = preconsolidation(V(ev + d));
+    const V p = s.p + elastic.bulk * d;
+    V slope;
+    const V p0 = preconsolidation_after(trial, d, slope);
     const V p_on = clamp(p, V(-beta * p0), p0);
     // q lies exactly on the surface and never exceeds that of the trial.
-    const V q_on = min(
-        trial.q, sqrt(max(V(m2 / (T(1) + T(2) * beta) * (p_on + beta * p0) * (p0 - p_on)), zero)));
-    const auto loose = is_loose > T(0);
-    s.p = select(yields, select(loose, zero, p_on), trial.p);
-    s.q = select(yields, select(loose, zero, q_on), trial.q);
+    const V q_on =
+        min(s.q, sqrt(max(V(m2 / (T(1) + T(2) * beta) * (p_on + beta * p0) * (p0 - p_on)), zero)));
     // e_v takes exactly the volume that the elastic strain lost: p = p_tr + K_d D.
-    ev = select(yields, V(ev + select(loose, to_origin, V((p_on - trial.p) / elastic.bulk))), ev);
+    ev = select(yields, V(ev + select(loose, to_origin, V((p_on - s.p) / elastic.bulk))), ev);
+    s.p = select(yields, select(loose, zero, p_on), s.p);
+    s.q = select(yields, select(loose, zero, q_on), s.q);
   }
 
   /// Returns the root D by safeguarded steps of Chebyshev's method, Newton's with a correction for
-  /// the curvature of y; zero for particles with `skip` > 0.
-  template <class V>
-  SNOWSHED_INLINE V root(const PQ<V>& trial, const V& ev, const V& p0_old, const V& n_trial,
-                         const V& far, const V& skip) const {
+  /// the curvature of y; zero for particles that are not `sought`.
+  template <class V, class M>
+  SNOWSHED_INLINE V root(const Trial<V>& from, const V& n_trial, const V& far,
+                         const M& sought) const {
     constexpr T tolerance = sizeof(T) == 4 ? T(3e-7) : T(1e-15);
     constexpr T root_of_tolerance = sizeof(T) == 4 ? T(5e-4) : T(3e-8);
     const V zero = broadcast<V>(T(0)), one = broadcast<V>(T(1));
     const C c = T(6) * elastic.mu * (T(1) + T(2) * beta) / m2;
+    const PQ<V>& trial = from.s;
+    const V p0_old = strength(from.hardness);
     // Close to the root, the search ends once the change of pressure is below rounding.
     const V pressure = abs(trial.p) + beta * p0_old;
     const V rounding = T(0.2) * tolerance * pressure;
     V near = zero, end = far;
-    // Snow that dilated far beyond the loss of its strength (u < -1) has none; u is clamped there.
-    const auto at_trial = hyperbolic(max(V(-xi * ev), broadcast<V>(T(-1))));
-    const bool series_suffices = !any(abs(V(xi * far)) > series_limit);
 
     // First guess: N (q_tr/q_s - 1) + c D = 0. This is y = 0 written for the shear q_s on the
     // surface, with N linear in D. q_s is that at the pressure of the trial; if the trial lies
@@ -173,19 +195,13 @@ struct CamClay {
         max(V((trial.p + beta * p0_old) * (p0_old - trial.p)), V(T(0.05) * p0_old * p0_old));
     const V q_s = sqrt(V(m2 / (T(1) + T(2) * beta) * inside));
     const V excess = clamp(V(trial.q / (q_s + T(1e-30)) - T(1)), zero, broadcast<V>(T(1e6)));
-    const V n_slope_trial = T(2) * elastic.bulk + (T(1) - beta) * xi * at_trial.cosh;
+    const V n_slope_trial = T(2) * elastic.bulk + (T(1) - beta) * xi * from.hardness.cosh;
     V d = -n_trial * excess / (c + n_slope_trial * excess);
     d = select(abs(d) < abs(far), d, V(T(0.5) * far));
-    auto active = skip <= T(0);
+    auto active = sought;
     for (int iteration = 0; iteration < 100; ++iteration) {
-      V p0, p0_slope;
-      if (series_suffices) {
-        const auto k = shifted(at_trial, V(-xi * d));
-        p0 = max(k.sinh, zero);
-        p0_slope = select(k.sinh > T(0), V(-xi * k.cosh), zero);
-      } else {
-        p0 = preconsolidation(V(ev + d), p0_slope);
-      }
+      V p0_slope;
+      const V p0 = preconsolidation_after(from, d, p0_slope);
       const V p = trial.p + elastic.bulk * d;
       const V n = T(2) * p - (T(1) - beta) * p0;
       const V n_slope = T(2) * elastic.bulk - (T(1) - beta) * p0_slope;
@@ -229,7 +245,7 @@ struct CamClay {
       active = active & moved;
       if (!any(active)) break;
     }
-    return select(skip > T(0), zero, d);
+    return select(sought, d, zero);
   }
 };
 

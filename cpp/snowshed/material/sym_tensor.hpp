@@ -190,10 +190,10 @@ SNOWSHED_INLINE Sym<V, D> cauchy_green_minus_identity(const Sym<V, D>& e) {
   constexpr int terms = sizeof(T) == 4 ? 5 : 10;
   constexpr double limit = detail::series_norm / 2;
   if (!any(norm_squared(e) > T(limit * limit))) {
-    constexpr T c[] = {T(1),         T(2),          T(2),          T(4.0 / 3),
-                       T(2.0 / 3),   T(4.0 / 15),   T(4.0 / 45),   T(8.0 / 315),
-                       T(2.0 / 315), T(4.0 / 2835), T(4.0 / 14175)};
-    return detail::power_series<terms>(e, [&c](int n) { return c[n]; });  // 2^n/n!
+    static constexpr T c[] = {T(1),         T(2),          T(2),          T(4.0 / 3),
+                              T(2.0 / 3),   T(4.0 / 15),   T(4.0 / 45),   T(8.0 / 315),
+                              T(2.0 / 315), T(4.0 / 2835), T(4.0 / 14175)};
+    return detail::power_series<terms>(e, [](int n) { return c[n]; });  // 2^n/n!
   }
   return detail::spectral(e, [](const V& x) { return expm1(V(x + x)); });
 }
