@@ -14,9 +14,11 @@ constexpr float first_enlargement = 1.4f, enlargement = 1.8f;
 constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
 constexpr std::size_t most_levels = 24;
 constexpr std::ptrdiff_t rows_in_piece = 128;
+constexpr std::size_t rows_per_thread = 500;
 
 template <class F>
 void for_each_row(std::size_t n, int threads, F f) {
+  threads = int(std::clamp<std::size_t>(n / rows_per_thread, 1, std::size_t(threads)));
   parallel_pieces(std::ptrdiff_t(n), threads, rows_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
