@@ -100,8 +100,8 @@ std::size_t MpsSolver<D>::bytes() const {
   const auto count = [&total](const auto& vector) {
     total += vector.capacity() * sizeof(vector[0]);
   };
-  for (const auto* particles : {&state_.particles, &work_.next.particles,
-                                &work_.start.particles, &work_.spare})
+  for (const auto* particles :
+       {&state_.particles, &work_.next.particles, &work_.start.particles, &work_.spare})
     particles->for_each_array([&](const char*, const auto& array) { count(array); });
   count(work_.near.weight);
   count(work_.near.slope);

@@ -1,6 +1,6 @@
-// What the MPS solver and its kernels agree on: raw views, and a table of functions. The kernels are
-// compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here depends on
-// one. All take the rows [begin, end): particles, whose pairs follow on each other. The order in
+// What the MPS solver and its kernels agree on: raw views, and a table of functions. The kernels
+// are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here depends
+// on one. All take the rows [begin, end): particles, whose pairs follow on each other. The order in
 // which a row is summed depends on the instruction set only.
 #pragma once
 

@@ -8,15 +8,17 @@
 namespace snowshed {
 namespace {
 
-constexpr float jacobi_damping = 0.9f;   // of Jacobi sweeps
+constexpr float jacobi_damping = 0.9f;  // of Jacobi sweeps
 // Of corrections that are constant within aggregates: of particles, and of aggregates.
 constexpr float first_enlargement = 1.4f, enlargement = 1.8f;
 constexpr std::size_t most_direct = 64;  // unknowns of the level that is solved directly
 constexpr std::size_t most_levels = 24;
 constexpr std::ptrdiff_t rows_in_piece = 128;
+constexpr std::size_t rows_per_thread = 500;
 
 template <class F>
 void for_each_row(std::size_t n, int threads, F f) {
+  threads = int(std::clamp<std::size_t>(n / rows_per_thread, 1, std::size_t(threads)));
   parallel_pieces(std::ptrdiff_t(n), threads, rows_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::ptrdiff_t i = begin; i < end; ++i) f(std::size_t(i));
@@ -176,8 +178,8 @@ void Multigrid<D, C>::factor_coarsest() {
 
 template <int D, int C>
 void Multigrid<D, C>::update(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
-                          const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
-                          std::int32_t period_cells, int threads) {
+                             const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
+                             std::int32_t period_cells, int threads) {
   lists_ = &lists;
   weight_ = weight.data();
   size_ = lists.size();
@@ -271,8 +273,7 @@ void Multigrid<D, C>::correct(const T* residual, T* x) {
   if (levels_.size() > 1) cycle(0, false);
   for_each_row(size_, threads_, [&](std::size_t i) {
     if (diagonal_[i] > 0)
-      Eigen::Map<Values>(x + i * C) +=
-          (first_enlargement * above.x[parent_[i]]).template cast<T>();
+      Eigen::Map<Values>(x + i * C) += (first_enlargement * above.x[parent_[i]]).template cast<T>();
   });
 }
 
@@ -293,16 +294,15 @@ void Multigrid<D, C>::apply(const double* r, double* z) {
   find_residual();
   correct(r_.data(), x_.data());
   find_residual();
-  for_each_row(size_, threads_,
-               [&](std::size_t i) { z[i] = double(x_[i] + inverse_[i] * r_[i]); });
+  for_each_row(size_, threads_, [&](std::size_t i) { z[i] = double(x_[i] + inverse_[i] * r_[i]); });
 }
 
 template <int D, int C>
 std::size_t Multigrid<D, C>::bytes() const {
   std::size_t total = size_ * (5 * sizeof(float) + sizeof(std::uint32_t));
   for (const Level& level : levels_)
-    total += level.size() * (stencil * (sizeof(float) + sizeof(std::int32_t)) +
-                             (7 + 3 * C) * sizeof(float));
+    total += level.size() *
+             (stencil * (sizeof(float) + sizeof(std::int32_t)) + (7 + 3 * C) * sizeof(float));
   return total;
 }
 

@@ -119,7 +119,7 @@ struct MpsNeighbourhood {
 
 template <int D>
 struct MpsWork {
-  WallParticles<D> walls;  // where the settings say so
+  WallParticles<D> walls;   // where the settings say so
   MpsState<D> next, start;  // of a step, and what it begins with once walls are there
   MpsParticles<D> spare;
   MpsNeighbourhood<D> near;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 #include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
@@ -93,8 +92,8 @@ constexpr double first_guess = 0.01;
 /// so well, relative to what gravity adds in a step, and then to this share of the change.
 constexpr double loosest_solve = 0.1, solve_share = 0.03;
 
-/// Few iterations suffice with the diagonal alone where viscosity does not reach far in a step; after
-/// so many multigrid takes over. Its sweeps of the particles' velocities are damped by this.
+/// Few iterations suffice with the diagonal alone where viscosity does not reach far in a step;
+/// after so many multigrid takes over. Its sweeps of the particles' velocities are damped by this.
 constexpr int most_by_diagonal = 12;
 constexpr double sweep_damping = 0.9;
 
@@ -213,10 +212,9 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
   const SolveReport first = solve(std::min(most, most_by_diagonal), smooth);
   if (first.converged || most <= most_by_diagonal) return first;
   prepare_velocity_multigrid(model, particles, work);
-  const SolveReport second =
-      solve(most - most_by_diagonal, [&](const double* r, double* z) {
-        precondition_velocities<D>(n, threads, apply, smooth, work, r, z);
-      });
+  const SolveReport second = solve(most - most_by_diagonal, [&](const double* r, double* z) {
+    precondition_velocities<D>(n, threads, apply, smooth, work, r, z);
+  });
   return {first.iterations + second.iterations, second.residual, second.converged};
 }
 

@@ -54,8 +54,7 @@ struct Cloud {
 
 template <class T>
 class MpsKernelsOf : public ::testing::Test {};
-using Dimensions =
-    ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(MpsKernelsOf, Dimensions);
 
 TYPED_TEST(MpsKernelsOf, WeighPairsAndSumThem) {

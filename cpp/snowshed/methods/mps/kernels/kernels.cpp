@@ -22,16 +22,13 @@ struct Rows {
   static void apply(const PairRows& rows, const float* weight, const double* diagonal,
                     const double* p, double* q, std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
-      q[i] = diagonal[i] > 0
-                 ? diagonal[i] * p[i] - sum_row(rows, weight, p, std::size_t(i))
-                 : 0.0;
+      q[i] = diagonal[i] > 0 ? diagonal[i] * p[i] - sum_row(rows, weight, p, std::size_t(i)) : 0.0;
   }
   static void residual(const PairRows& rows, const float* weight, const float* diagonal,
                        const float* x, const float* b, float* r, std::ptrdiff_t begin,
                        std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
-      r[i] = diagonal[i] > 0 ? b[i] - diagonal[i] * x[i] +
-                                   sum_row(rows, weight, x, std::size_t(i))
+      r[i] = diagonal[i] > 0 ? b[i] - diagonal[i] * x[i] + sum_row(rows, weight, x, std::size_t(i))
                              : 0.0f;
   }
   static void apply_to_velocities(const PairRows& rows, const float* coupling, const double* block,
@@ -53,9 +50,8 @@ struct Rows {
       find_pair_rates<D>(rows, offset, velocity, gradient, rate, std::size_t(i));
   }
 
-  static constexpr MpsKernels<D> table{&weigh,    &sum_moments,         &apply,
-                                       &residual, &apply_to_velocities, &sum_gradients,
-                                       &pair_rates};
+  static constexpr MpsKernels<D> table{
+      &weigh, &sum_moments, &apply, &residual, &apply_to_velocities, &sum_gradients, &pair_rates};
 };
 
 }  // namespace

@@ -82,7 +82,8 @@ SNOWSHED_INLINE V gather(const Scalar<V>* p, const IndexPack<V>& index) {
 
 template <class V>
 SNOWSHED_INLINE Scalar<V> sum_lanes(const V& v) {
-  return combine_lanes(v, [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return a + b; });
+  return combine_lanes(v,
+                       [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return a + b; });
 }
 
 SNOWSHED_VARIANT_END
