@@ -54,7 +54,8 @@ ACIS: Mapping[str, tuple[str, Quantity]] = {
     **dict.fromkeys(("snwd", "snowdepth"), _DEPTH),
 }
 SUMMARIES = ("sum", "average", "normal")  # rows at the end of a month of NOWData
-ISO_DATE = re.compile(r"^\d{4}-\d{2}-\d{2},.*,")
+BARE_TITLE = re.compile(r'"?[A-Za-z0-9 .&()/-]{1,60}"?')
+BARE_ROW = re.compile(r"\d{4}-\d{2}-\d{2}(,[MTS]?-?[0-9.]*A?){2,}")
 TRACE, LACKING = "T", ("M", "", "S")
 
 Days = dict[datetime, dict[str, Any]]
@@ -202,7 +203,8 @@ def _acis_head(lines: Sequence[str]) -> tuple[int, str] | None:
 
 def _is_bare_acis(lines: Sequence[str]) -> bool:
     """Return whether a file is what the service answers: a station's name, then rows."""
-    return len(lines) > 1 and "," not in lines[0] and bool(ISO_DATE.match(lines[1]))
+    bare = len(lines) > 1 and BARE_TITLE.fullmatch(lines[0]) and BARE_ROW.fullmatch(lines[1])
+    return bool(bare)
 
 
 def _key(text: str) -> str:
