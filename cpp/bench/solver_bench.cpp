@@ -104,7 +104,7 @@ void add(const std::string& name, Case c, const std::function<void(Case&)>& chan
 
 const Vec3 in_flow(5, 0, -5);  // onto the ground
 
-/// Returns the slab while it flows: after so many steps nine particles of ten yield in each.
+/// Returns the slab while it flows: after so many steps nine packs of ten yield in each.
 Case slab_in_flow() {
   Case c = slab_3d(in_flow);
   c.steps_before = 160;
