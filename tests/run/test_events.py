@@ -125,7 +125,7 @@ def test_the_handler_of_interrupts_is_put_back(tmp_path, tiny):
 
 
 def test_checkpoints_on_the_way_change_nothing(finished, tmp_path, tiny, monkeypatch):
-    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.02)
+    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     saved = set()
 
     def look(progress):
