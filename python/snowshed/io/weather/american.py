@@ -78,7 +78,7 @@ def read_dly(name: str, lines: Sequence[str]) -> Station:
                 f"{place}, column 1: {quoted(line[:DLY_LINE])} is no station, year, month and "
                 "element"
             )
-        _same_station(line[:11], lines[0][:11], f"{place}, column station")
+        same_station(line[:11], lines[0][:11], f"{place}, column station")
         element = line[17:21]
         if element not in ELEMENTS:
             continue
@@ -116,7 +116,7 @@ def read_by_station(name: str, lines: Sequence[str]) -> Station:
         place = f"{name}, line {number}"
         own, date, element, text, _, quality, *_ = cells_of(line, BY_STATION_HEAD, place)
         station = station or own
-        _same_station(own, station, f"{place}, column ID")
+        same_station(own, station, f"{place}, column ID")
         if element not in ELEMENTS or quality:
             continue
         value = ELEMENTS[element].read(text, f"{place}, column DATA_VALUE ({element})", MISSING)
@@ -186,7 +186,8 @@ def _is_head(line: str) -> bool:
     return tuple(re.sub('[" ]', "", line).split(",")) == BY_STATION_HEAD
 
 
-def _same_station(own: str, station: str, where: str) -> None:
+def same_station(own: str, station: str, where: str) -> None:
+    """Raise InputError where a row is of another station than the rows before."""
     if own != station:
         raise InputError(f"{where}: {quoted(own)} is another station than {quoted(station)}")
 

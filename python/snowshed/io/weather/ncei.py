@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
 from snowshed.io.weather.american import (
     ELEMENTS,
     FAHRENHEIT,
@@ -20,6 +19,7 @@ from snowshed.io.weather.american import (
     Days,
     enter,
     rows_of,
+    same_station,
 )
 from snowshed.io.weather.observation import Quantity, Station, cells_of, split_cells, time_of
 
@@ -58,11 +58,7 @@ def read_summaries(name: str, lines: Sequence[str]) -> Station:
     days: Days = {}
     for number, row in rows:
         place = f"{name}, line {number}"
-        if row[STATION] != rows[0][1][STATION]:
-            raise InputError(
-                f"{place}, column {STATION}: {quoted(row[STATION])} is another station than "
-                f"{quoted(rows[0][1][STATION])}"
-            )
+        same_station(row[STATION], rows[0][1][STATION], f"{place}, column {STATION}")
         day = time_of(row[DATE], f"{place}, column {DATE}", "%Y-%m-%d")
         for element, quantity in units.items():
             if element not in row:
