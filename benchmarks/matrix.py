@@ -3,9 +3,9 @@
 Usage: python benchmarks/matrix.py path/to/snowshed_bench
 
 Prints nanoseconds of processor time for each particle update, on one thread, and writes
-benchmarks/results/DATE-matrix.json. A cell is out of line if it takes more than twice what its
-neighbours predict: those that differ from it in one choice only, such as the transfer, scaled by
-what this choice costs elsewhere.
+benchmarks/results/DATE-matrix-COMPILER.json. A cell is out of line if it takes more than twice
+what its neighbours predict: those that differ from it in one choice only, such as the transfer,
+scaled by what this choice costs elsewhere.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ Cell = tuple[str, ...]
 Times = dict[Cell, float]
 
 
-def measure(program: str, variant: str, repetitions: int = 3) -> Times:
-    """Return the least processor time of an update, in ns, of each cell."""
+def measure(program: str, variant: str, repetitions: int = 3) -> tuple[Times, str]:
+    """Return the least processor time of an update, in ns, of each cell; and the compiler."""
     command = [
         program,
         "--benchmark_format=json",
@@ -46,14 +46,15 @@ def measure(program: str, variant: str, repetitions: int = 3) -> Times:
     ]
     environment = {**os.environ, "SNOWSHED_KERNELS": variant}
     done = subprocess.run(command, check=True, capture_output=True, env=environment)
+    report = json.loads(done.stdout)
     found: Times = {}
-    for row in json.loads(done.stdout)["benchmarks"]:
+    for row in report["benchmarks"]:
         if row["run_type"] != "iteration":
             continue
         cell = tuple(row["name"].split("/")[1 : 1 + len(CHOICES)])
         updates = row["items_per_second"] * row["real_time"] * 1e-3  # in a step
         found[cell] = min(found.get(cell, np.inf), row["cpu_time"] * 1e6 / updates)
-    return found
+    return found, report["context"]["compiler"].strip()
 
 
 def predicted(times: Times, cell: Cell) -> float:
@@ -99,13 +100,27 @@ def table(found: dict[str, Times]) -> str:
     return "\n".join(lines)
 
 
+def double_over_float(times: Times) -> tuple[float, float]:
+    """Return the least and the largest ratio of times in double and in single precision."""
+    ratios = [
+        time / times[(cell[0], "float", *cell[2:])]
+        for cell, time in times.items()
+        if cell[1] == "double"
+    ]
+    return min(ratios), max(ratios)
+
+
 def main() -> None:
     """Measure, print and keep the matrix."""
     if len(sys.argv) != 2:
         raise SystemExit(__doc__)
-    found = {variant: measure(sys.argv[1], variant) for variant in VARIANTS}
+    measured = {variant: measure(sys.argv[1], variant) for variant in VARIANTS}
+    found = {variant: times for variant, (times, _) in measured.items()}
+    [compiler] = {name for _, name in measured.values()}
     print(table(found))
     for variant, times in found.items():
+        least, most = double_over_float(times)
+        print(f"{variant}: double takes {least:.2f} to {most:.2f} times as long as float")
         for finding in findings(times):
             print(f"{variant}: {finding}")
     today = datetime.date.today().isoformat()
@@ -113,8 +128,12 @@ def main() -> None:
         variant: {"/".join(cell): round(time, 2) for cell, time in sorted(times.items())}
         for variant, times in found.items()
     }
-    facts = {"date": today, "machine": cpu_name(), "unit": "ns of processor time", "kernels": kept}
-    (RESULTS / f"{today}-matrix.json").write_text(json.dumps(facts, indent=1) + "\n")
+    facts = {
+        **{"date": today, "machine": cpu_name(), "compiler": compiler},
+        **{"unit": "ns of processor time", "kernels": kept},
+    }
+    file = RESULTS / f"{today}-matrix-{compiler.split()[0].lower()}.json"
+    file.write_text(json.dumps(facts, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -23,6 +23,17 @@ def tiny_scene(**values: object) -> Scene:
     return scene.update(values)
 
 
+def tiny_mps(**values: object) -> Scene:
+    """A column of eighty particles of MPS that slumps onto snow which erodes."""
+    column = {"shape": {"type": "box", "center": [0, 0.25], "size": [0.4, 0.5]}}
+    scene = Scene.from_data(
+        {"snowshed": 2, "method": "mps", "dimension": 2, "ground": {}, "bodies": [column]}
+    )
+    erosion = {"erosion": True, "erodible_thickness": 0.1, "cohesion": 20.0}
+    scene.update({"numerics": {"spacing": 0.05, "threads": 1, **erosion}})
+    return scene.update(values)
+
+
 @pytest.fixture
 def hide(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
     """Return a function that hides an optional library, as if it were not installed."""

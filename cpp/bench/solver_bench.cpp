@@ -258,6 +258,12 @@ void add_matrix() {
           }
 }
 
+#ifdef __clang__
+const char* const compiler = "Clang " __clang_version__;
+#else
+const char* const compiler = "GCC " __VERSION__;
+#endif
+
 }  // namespace
 }  // namespace snowshed
 
@@ -267,6 +273,7 @@ int main(int argc, char** argv) {
   snowshed::add_scaling();
   snowshed::add_slides();
   snowshed::add_matrix();
+  benchmark::AddCustomContext("compiler", snowshed::compiler);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -78,6 +78,26 @@ const char* const grains_scene = R"({"snowshed": 2, "method": "grains", "dimensi
   "cone": {"radius": 0.002, "half_angle": 30},
   "numerics": {"elastic_modulus": 1e8, "sides": "periodic", "bonded_plates": true}})";
 
+/// A column that slumps onto snow that erodes.
+const char* const mps_scene = R"({"snowshed": 2, "method": "mps", "dimension": 2, "ground": {},
+  "bodies": [{"shape": {"type": "box", "center": [0, 0.25], "size": [0.4, 0.5]}}],
+  "numerics": {"spacing": 0.05, "cohesion": 20, "erosion": true, "erodible_thickness": 0.1,
+               "threads": 1},
+  "events": {"count": 2, "max_time": 1}, "output": {"energy": true}})";
+
+/// Two grains and more of eight voxels, see `write_labels`.
+const char* const loaded_grains = R"({"snowshed": 2, "method": "grains", "dimension": 3,
+  "sample": {"file": "small.npy", "voxel_size": 1e-4}, "gravity": 0,
+  "loading": [{"kind": "compress", "speed": 0.1, "strain": 0.01}], "numerics": {"threads": 1},
+  "output": {"energy": true}})";
+
+/// On the plane of `write_terrain`.
+const char* const small_slide = R"({"snowshed": 2, "method": "slide", "dimension": 3,
+  "terrain": {"file": "plane.asc",
+    "release": [{"outline": [[8, 8], [20, 8], [20, 20], [8, 20]], "thickness": 0.5}],
+    "entrainment": [{"outline": [[20, 8], [30, 8], [30, 20]], "thickness": 0.2}]},
+  "numerics": {"cell": 2, "threads": 1}, "events": {"max_time": 10}})";
+
 std::string rich_scene_in(int dimension) {
   const std::string scene =
       std::regex_replace(rich_scene, std::regex("%D"), std::to_string(dimension));
@@ -91,10 +111,7 @@ void write_scenes(const fs::path& folder) {
     write(folder / ("rich-" + std::to_string(dimension) + "d.json"),
           write_scene(parse_scene(rich_scene_in(dimension))));
   write(folder / "grains.json", write_scene(parse_scene(grains_scene)));
-  write(folder / "mps.json",
-        R"({"snowshed": 2, "method": "mps", "dimension": 2, "numerics": {"spacing": 0.05},)"
-        R"( "ground": {}, "bodies": [{"shape": {"type": "box", "center": [0, 0.5],)"
-        R"( "size": [1, 1]}}]})");
+  write(folder / "mps.json", write_scene(parse_scene(mps_scene)));
   write(folder / "slide.json", write_scene(parse_scene(slide_scene)));
   write(folder / "least.json", R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere",)"
                                R"( "center": [0, 0, 1], "radius": 1e-1}}]})");
@@ -279,6 +296,15 @@ void write_rasters(const fs::path& folder) {
         size + "xllcorner 1\nyllcorner 2\ncellsize 0.5\nnodata_value nan\n1 nan 3\n4 5 6\n");
 }
 
+/// A plane of 38 degrees.
+void write_terrain(const fs::path& file) {
+  std::string heights = "ncols 20\nnrows 15\nxllcenter 0\nyllcenter 0\ncellsize 2\n";
+  for (int row = 0; row < 15; ++row)
+    for (int column = 0; column < 20; ++column)
+      heights += std::to_string(100 - 1.5626 * column) + (column < 19 ? " " : "\n");
+  write(file, heights);
+}
+
 /// Particles that come, move and go.
 void write_films(const fs::path& folder) {
   fs::create_directories(folder);
@@ -333,6 +359,24 @@ Scene scene_of_checkpoint(int dimension, bool running) {
   return scene;
 }
 
+/// Writes the checkpoint of a scene after some steps of its first event.
+void write_checkpoint(const Scene& scene, const fs::path& inputs, const fs::path& file) {
+  Simulation simulation(scene, inputs);
+  simulation.begin_event();
+  simulation.step(3);
+  simulation.save(file);
+}
+
+/// Of each other method, with everything that its state can hold. `inputs` gets the files that the
+/// scenes name.
+void write_checkpoints_of_methods(const fs::path& folder, const fs::path& inputs) {
+  write_terrain(inputs / "plane.asc");
+  write_labels(inputs);
+  write_checkpoint(parse_scene(mps_scene), inputs, folder / "mps");
+  write_checkpoint(parse_scene(loaded_grains), inputs, folder / "grains");
+  write_checkpoint(parse_scene(small_slide), inputs, folder / "slide");
+}
+
 void write_checkpoints(const fs::path& folder) {
   fs::create_directories(folder);
   for (const int dimension : {2, 3})
@@ -355,6 +399,7 @@ void write_seeds(const fs::path& folder) {
   write_rasters(folder / "asc");
   write_films(folder / "film");
   write_checkpoints(folder / "checkpoint");
+  write_checkpoints_of_methods(folder / "checkpoint", fs::absolute(folder / "inputs"));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import tiny_scene
+from conftest import tiny_mps, tiny_scene
 from faults.forks import Forks
 
 from snowshed.io.atomic import LEFTOVER
@@ -43,6 +43,7 @@ PROGRAMS = {
     "study": ([SNOWSHED, "study", "run", "{inputs}/study.toml", "--jobs", "1", "-q"], []),
     "slide": ([SNOWSHED, "run", "{inputs}/slide.json", "-q"], ["--resume"]),
     "grains": ([SNOWSHED, "run", "{inputs}/grains.json", "-q"], ["--resume"]),
+    "mps": ([SNOWSHED, "run", "{inputs}/mps.json", "-q"], ["--resume"]),
     "regress": ([SNOWSHED, "regress", "{inputs}/rows.csv", *REGRESS], []),
     "verify": ([*VERIFY], ["--resume"]),
     "clearance": ([SNOWSHED, "clearance", "{inputs}/winter.csv", *CLEARANCE], []),
@@ -92,6 +93,8 @@ def inputs(tmp_path_factory):
     )
     grains = example_grains(folder / "grains").set("loading.0.strain", 0.0005)
     grains.resolve().save(folder / "grains.json")
+    mps = tiny_mps(**{"events.max_time": 0.2, "output.snapshot_interval": 0.1})
+    mps.resolve().save(folder / "mps.json")
     (folder / "season.csv").write_text(SEASON)
     (folder / "winter.csv").write_text(SEASON + WINTER)
     (folder / "study.toml").write_text(STUDY)

@@ -10,7 +10,7 @@ from typing import Any
 import film_files
 import numpy as np
 import pandas as pd
-from conftest import tiny_scene
+from conftest import tiny_mps, tiny_scene
 from grain_files import write_labels
 from slide_files import plane, write_polygons
 from voxel_files import VOXELS, save_slices
@@ -129,18 +129,33 @@ def polygons(suffix: str) -> Callable[[Path], Path]:
     return make
 
 
-def checkpoint(folder: Path) -> Path:
-    simulation = _core.Simulation(tiny_scene(**{"events.max_time": 0.6}).resolve().json)
+def _checkpoint_of(scene: Scene, folder: Path, steps: int = 0) -> Path:
+    simulation = _core.Simulation(scene.resolve().json)
     simulation.begin_event()
+    if steps:
+        simulation.step(steps)
     simulation.save(str(folder / "checkpoint.bin"))
     return folder / "checkpoint.bin"
+
+
+def checkpoint(folder: Path) -> Path:
+    return _checkpoint_of(tiny_scene(**{"events.max_time": 0.6}), folder)
 
 
 def grains_checkpoint(folder: Path) -> Path:
-    simulation = _core.Simulation(grains_of(write_labels(folder)).resolve().json)
-    simulation.begin_event()
-    simulation.save(str(folder / "checkpoint.bin"))
-    return folder / "checkpoint.bin"
+    return _checkpoint_of(grains_of(write_labels(folder)), folder)
+
+
+def slide_checkpoint(folder: Path) -> Path:
+    write_ascii_grid(folder / "terrain.asc", plane())
+    release = [{"outline": [[20, 20], [40, 20], [40, 40], [20, 40]], "thickness": 0.5}]
+    terrain = {"file": str(folder / "terrain.asc"), "release": release}
+    scene = Scene.from_data({"snowshed": 2, "method": "slide", "dimension": 3, "terrain": terrain})
+    return _checkpoint_of(scene, folder, steps=5)
+
+
+def mps_checkpoint(folder: Path) -> Path:
+    return _checkpoint_of(tiny_mps(**{"output.energy": True}), folder, steps=5)
 
 
 def store(folder: Path) -> Path:

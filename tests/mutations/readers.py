@@ -251,6 +251,8 @@ READERS = {
     "pvd": Reader(good.result("particles.pvd"), read_series),
     "checkpoint": Reader(good.checkpoint, _as_checkpoint, exact=True),
     "checkpoint of grains": Reader(good.grains_checkpoint, _as_checkpoint, exact=True, share=0.5),
+    "checkpoint of a slide": Reader(good.slide_checkpoint, _as_checkpoint, exact=True, share=0.5),
+    "checkpoint of mps": Reader(good.mps_checkpoint, _as_checkpoint, exact=True, share=0.5),
     "run.json": Reader(good.result("run.json"), _as_record, share=0.5),
     "outline.csv": Reader(good.result("outline.csv"), _as_resumed_table, exact=True, share=0.5),
     "energy.csv": Reader(good.result("energy.csv"), _as_resumed_table, exact=True, share=0.5),
