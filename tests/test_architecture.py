@@ -83,6 +83,13 @@ def test_no_cpp_header_includes_itself_by_a_detour():
         visit(header, [])
 
 
+def test_no_kernel_is_for_one_compiler_only():
+    """GCC 12 and Clang 14 know `__builtin_shufflevector`; loops are unrolled by `variant.hpp`."""
+    theirs = re.compile(r"__builtin_shuffle\(|#pragma (GCC|clang)")
+    sources = [path for path in CPP.rglob("*.?pp") if theirs.search(path.read_text())]
+    assert [str(path.relative_to(ROOT)) for path in sources] == []
+
+
 def test_no_python_import_points_up_or_in_a_circle():
     """The contracts stand in pyproject.toml."""
     code = "from importlinter.cli import lint_imports_command; lint_imports_command()"

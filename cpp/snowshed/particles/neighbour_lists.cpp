@@ -20,8 +20,8 @@ template <int D>
 void NeighbourLists<D>::Part::make_room(std::size_t more) {
   if (index.size() >= size + more) return;
   const std::size_t room = 2 * (size + more);
-  index.resize(room);
   for (auto& axis : offset) axis.resize(room);
+  index.resize(room);  // last: its size says what all have room for, also where memory is short
 }
 
 /// Appends what the points of some cells find; `first_` gets the lengths of their lists.

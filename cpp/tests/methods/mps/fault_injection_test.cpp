@@ -35,9 +35,6 @@ class MpsStory {
     take_steps(4);
     calls.push_back([this] { save(); });
     calls.push_back([this] { mps->add_velocity(std::vector<Vec3>(mps->size(), Vec3(0.1, 0, 0))); });
-    calls.push_back([this] {
-      mps->settle(std::vector<double>(mps->size(), 0.001), std::vector<double>(mps->size(), 0.0));
-    });
     take_steps(3);
     calls.push_back([this] { mps->load(BinaryReader::load(file_)); });
     take_steps(2);

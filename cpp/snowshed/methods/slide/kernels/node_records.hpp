@@ -119,13 +119,16 @@ template <NodeRecord record>
 SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const PackIndex& first,
                                       const NodeWeights& weights) {
   Pack parts[8];
-#pragma GCC unroll 8
+  const auto four_of = [](const Pack& west, const Pack& east, const PackMask& lane) {
+    return (Pack)_mm512_permutex2var_pd((__m512d)west, (__m512i)lane, (__m512d)east);
+  };
+  SNOWSHED_UNROLL
   for (int i = 0; i < 8; ++i) {
     const double* south = nodes + 4 * std::ptrdiff_t(first[i]);
     const PackMask lane = PackMask{0, 0, 0, 0, 8, 8, 8, 8} + i;
     parts[i] = node_record<record>(load_pack(south), load_pack(south + 4 * std::ptrdiff_t(columns)),
-                                   __builtin_shuffle(weights.of[0], weights.of[1], lane),
-                                   __builtin_shuffle(weights.of[2], weights.of[3], lane));
+                                   four_of(weights.of[0], weights.of[1], lane),
+                                   four_of(weights.of[2], weights.of[3], lane));
   }
   const auto whole = [&](int i) SNOWSHED_INLINE_LAMBDA {  // lanes i and i + 4, west and east added
     const Pack &a = parts[i], &b = parts[i + 4];
