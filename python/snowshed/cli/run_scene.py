@@ -19,13 +19,19 @@ LONG = 600.0  # s; longer runs are announced
 def run_scene(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
     """Run a scene into a folder with a progress bar, and print its results."""
     run = RUNS.get(str(ready.data.get(NAME_KEY)), _run_events)
-    slow = _core.slow_kernels_note()
-    if slow and not quiet:
-        say(f"note: {slow}", err=True)
+    if not quiet:
+        _tell_of_slow_kernels(ready)
     try:
         run(ready, folder, resume, quiet)
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
+
+
+def _tell_of_slow_kernels(ready: ResolvedScene) -> None:
+    """Say what kernels without AVX2 cost, where these are used and the scene is not refused."""
+    if slow := _core.slow_kernels_note():
+        _core.Simulation(ready.json, ready.base_dir)
+        say(f"note: {slow}", err=True)
 
 
 def _run_events(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
