@@ -45,7 +45,12 @@ def print_events(table: pd.DataFrame, folder: Path) -> None:
     residual = energy_residual(folder)
     if residual is not None:
         console.print(f"energy balance: residual {residual:.2g} of the largest energy")
-    console.print(f"results, stack.png and growth.png in {folder}")
+    pictures = (
+        "stack.png, growth.png and energy.png"
+        if residual is not None
+        else ("stack.png and growth.png")
+    )
+    console.print(f"results, {pictures} in {folder}")
     console.print(f"the snow in motion: snowshed view {folder}")
 
 

@@ -47,6 +47,7 @@ def cli() -> None:
 DEFERRED = (
     ("panel", "run", "Run slide-offs from a panel described by options."),
     ("run", "run", "Run a scene file."),
+    ("extend", "extend", "Let more slabs slide off after a finished run, into a new folder."),
     ("slide", "slide", "Run a small snow slide on terrain."),
     ("grains", "grains", "Load segmented snow grain by grain."),
     ("plan", "scene", "Print the features and the cost of a scene file, without running it."),

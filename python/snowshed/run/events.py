@@ -14,6 +14,7 @@ moved mass, height, length and outline. What time does to a stack that is carrie
 
 from __future__ import annotations
 
+import json
 import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
@@ -23,6 +24,7 @@ from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.vtp import read_particles
 from snowshed.run.ageing import Ageing
 from snowshed.run.conversion import conversion_row
+from snowshed.run.energies import draw_energies, write_energy_history
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
@@ -62,7 +64,8 @@ def run_events(
     progress
         Called with a `Progress` about twice a second.
     pictures
-        Whether to draw ``stack.png`` and ``growth.png`` at the end.
+        Whether to draw ``stack.png``, ``growth.png`` and, with the energy balance, ``energy.png``
+        at the end.
 
     Returns
     -------
@@ -163,6 +166,7 @@ class _Recorder:
         self.interrupt = interrupt
         self.report = report
         self.stack: Optional[StackMeasure] = None
+        self.keeps_energy: bool = json.loads(self.simulation.scene)["output"]["energy"]
 
     def between_events(self) -> None:
         """Let the time since the last event pass."""
@@ -184,7 +188,12 @@ class _Recorder:
         self._tell(report["time_s"], report["progress"], report["updates_per_s"])
 
     def before_checkpoint(self) -> None:
-        """Note the checksums of the tables, which are cut to the checkpoint when a run goes on."""
+        """Note the checksums of the tables, which are cut to the checkpoint when a run goes on.
+
+        The energies over time are in the checkpoint, and written again when it goes on.
+        """
+        if self.keeps_energy:
+            write_energy_history(self.simulation, self.results.folder)
         event, running = self.simulation.event, self.simulation.event_running
         self.sequence.tables = self.results.checksums(self.sequence.tables, event, running=running)
 
@@ -225,6 +234,9 @@ class _Recorder:
         save(stack_figure(self.simulation, stack), self.results.stack_picture)
         table = read_events(self.results.folder)
         save(growth_figure(table, self.simulation.scene), self.results.growth_picture)
+        if self.keeps_energy:
+            write_energy_history(self.simulation, self.results.folder)  # of snowshed-run
+            draw_energies(self.results.folder)
 
     def _record(self, facts: Mapping[str, Any], stack: StackMeasure) -> None:
         event = facts["event"]

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     import xarray
 
 
+HISTORY = "energy_history.csv"
+
+
 class Results:
     """The results folder of a run, as ``snowshed run`` and `run_events` write it.
 
@@ -99,6 +102,14 @@ class Results:
         for name in dataset.data_vars:
             dataset[name].attrs["units"] = unit_of_column(str(name))
         return dataset
+
+    @property
+    def energy_history(self) -> pd.DataFrame:
+        """The energy balance over time, J: at least at both ends of events (energy_history.csv)."""
+        columns = ("event", "time_s", "added_j")
+        table = self._numbers(HISTORY, columns, "a run with output.energy = true")
+        table.attrs["units"] = {str(name): unit_of_column(str(name)) for name in table.columns[1:]}
+        return table
 
     def particles(self, event: Optional[int] = None) -> xarray.Dataset:
         """Return the particles after an event.

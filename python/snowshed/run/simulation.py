@@ -37,6 +37,8 @@ DATASET = (
     "mass",
     "density",
     "pressure",
+    "deviatoric_stress",
+    "preconsolidation_pressure",
     "volumetric_plastic_strain",
     "event",
     "material_id",
@@ -344,7 +346,8 @@ class Simulation:
         InputError
             If xarray (extra ``study``) is not installed.
         """
-        values = {name: self._core.field_by_id(name) for name in DATASET}
+        there = self.fields
+        values = {name: self._core.field_by_id(name) for name in DATASET if name in there}
         return particle_dataset(values, self.event, self.time)
 
     def measure(self) -> StackMeasure:
