@@ -65,6 +65,7 @@ DEFERRED = (
     ("sensitivity", "sensitivity", "Find the snow parameters that matter for the stack."),
     ("calibrate", "calibration", "Find the snow whose simulated stacks agree with measured ones."),
     ("view", "view", "Write the moving view of a run as a page, or as a video."),
+    ("grid", "grid", "Write the grid's mass, velocity and density for ParaView."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
     ("verify", "verify", "Check this installation against known answers, in seconds."),
     ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),
