@@ -30,8 +30,9 @@ from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
 from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.solids_file import write_solids
 from snowshed.run.stack_measuring import measure_particles
-from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
+from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def run_events(
         Called with a `Progress` about twice a second.
     pictures
         Whether to draw ``stack.png``, ``growth.png`` and, with the energy balance, ``energy.png``
-        at the end.
+        at the end, and write ``solids.vtp``.
 
     Returns
     -------
@@ -230,6 +231,8 @@ class _Recorder:
         from snowshed.plot.figure_style import save
         from snowshed.plot.stack_figures import growth_figure, stack_figure
 
+        scene = ResolvedScene.load(self.results.scene)
+        write_solids(scene, self.simulation.positions(), self.results.folder)
         stack = self.stack or self._measure()
         save(stack_figure(self.simulation, stack), self.results.stack_picture)
         table = read_events(self.results.folder)

@@ -13,6 +13,7 @@ run.json           version, machine, size and speed of the run, how each event w
 checkpoint.bin     the state from which the run goes on
 particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series
 film.bin           the particles over time, for `snowshed view` (unless output.film = false)
+solids.vtp         panel, ground and obstacles as triangles
 snapshots/         particle snapshots during the events (only with output.snapshot_interval)
 stack.png          side view of the last stack
 growth.png         height, length, head and tail against the event

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import click
 from click.core import ParameterSource
@@ -250,7 +250,7 @@ def predict(
     from snowshed.analysis.regression.predictor import predict as ask
     from snowshed.cli.display.regression import prediction_json, print_prediction
 
-    asked = {"height": height, "length": length, "tilt": tilt, "events": events}
+    asked: dict[str, Any] = {"height": height, "length": length, "tilt": tilt, "events": events}
     others = dict(map(_input, inputs))
     try:
         found = ask(**asked, inputs=others, model=model, kind=kind, extrapolate=extrapolate)
