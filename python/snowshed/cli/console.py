@@ -45,11 +45,8 @@ def print_events(table: pd.DataFrame, folder: Path) -> None:
     residual = energy_residual(folder)
     if residual is not None:
         console.print(f"energy balance: residual {residual:.2g} of the largest energy")
-    pictures = (
-        "stack.png, growth.png and energy.png"
-        if residual is not None
-        else ("stack.png and growth.png")
-    )
+    drawn = ["stack.png", "growth.png"] + ["energy.png"] * (residual is not None)
+    pictures = f"{', '.join(drawn[:-1])} and {drawn[-1]}"
     console.print(f"results, {pictures} in {folder}")
     console.print(f"the snow in motion: snowshed view {folder}")
 
