@@ -43,6 +43,7 @@ from hagenmuller.studies import (
 )
 from snowshed.analysis.grains.ratios import STRESSES, LogMean, paired_ratios
 from snowshed.analysis.grains.variants import BASE
+from snowshed.io.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -122,7 +123,7 @@ def reversible(tests: Tests) -> Finding:
     return Finding(
         verdict,
         f"{int(good.sum())} of {len(rows)} samples: at most {int(broken.max())} bonds broken, "
-        f"{100 * (rest.abs() / peak).max():.2g} % of the strain left, R2 from {linear.min():.3f}",
+        f"{percent((rest.abs() / peak).max(), 2)} of the strain left, R2 from {linear.min():.3f}",
     )
 
 
@@ -141,7 +142,7 @@ def hardens(tests: Tests) -> Finding:
     found = _factors(positive(rise - Estimate(MUCH, 0.0), ""), rise, "25 to 30 % over 10 to 15 %")
     onset = rows["hardening_onset_strain"].astype(float)
     seen = int(onset.notna().sum())
-    begins = f"exponential from {100 * onset.mean():.2g} % in {seen} of {len(rows)}"
+    begins = f"exponential from {percent(onset.mean(), 2)} in {seen} of {len(rows)}"
     whole = seen == len(rows) or found.verdict != CONFIRMED
     return Finding(found.verdict if whole else UNDECIDED, f"{found.sentence}; {begins}")
 

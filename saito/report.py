@@ -50,7 +50,7 @@ def write_report(found: Reproduction) -> list[Judged]:
         courses, [f"slope {n}, {model}" for n in (1, 2) for model in (BINGHAM, COMBINED)]
     )
     sections = [
-        Section("claims", "What the paper says", claims=judge(CLAIMS, courses), missing=missing),
+        Section("paper", "What the paper says", claims=judge(CLAIMS, courses), missing=missing),
         Section(
             "wooden", "The wooden slope", (), _tables(wooden, WOODEN_TIMES),
             _pictures(wooden, WOODEN_TIMES, "wooden"),

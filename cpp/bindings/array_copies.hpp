@@ -3,6 +3,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <string>
 #include <vector>
 
 #include "snowshed/core/vec.hpp"
@@ -23,6 +24,18 @@ pybind11::array_t<To> column(const std::vector<From>& values) {
   auto out = a.template mutable_unchecked<1>();
   for (pybind11::ssize_t i = 0; i < a.shape(0); ++i) out(i) = To(values[std::size_t(i)]);
   return a;
+}
+
+/// The columns of a table that is held row by row, by their names.
+inline pybind11::dict columns_of(const std::vector<std::string>& names,
+                                 const std::vector<double>& values) {
+  pybind11::dict table;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    std::vector<double> found;
+    for (std::size_t i = c; i < values.size(); i += names.size()) found.push_back(values[i]);
+    table[names[c].c_str()] = column<double>(found);
+  }
+  return table;
 }
 
 }  // namespace snowshed

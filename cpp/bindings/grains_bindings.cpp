@@ -14,15 +14,7 @@ namespace {
 /// The rows so far, column by column.
 py::dict curve(const Simulation& sim) {
   const LoadingCurve& curve = sim.loading_curve();
-  const std::size_t columns = curve.columns().size();
-  py::dict d;
-  for (std::size_t c = 0; c < columns; ++c) {
-    std::vector<double> values;
-    for (std::size_t i = c; i < curve.values().size(); i += columns)
-      values.push_back(curve.values()[i]);
-    d[curve.columns()[c].c_str()] = column<double>(values);
-  }
-  return d;
+  return columns_of(curve.columns(), curve.values());
 }
 
 /// Grains that touch: their numbers (n, 2), where, the force on the first, and whether bonded.

@@ -9,6 +9,7 @@
 #include "snowshed/geometry/readers/ascii_grid.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/particles/quantities.hpp"
+#include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/run_record.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
@@ -65,6 +66,11 @@ py::dict energy(const Simulation& sim) {
   py::dict d;
   for (const auto& [name, joules] : sim.solver().energy_table()) d[name.c_str()] = joules;
   return d;
+}
+
+py::dict energy_history(const Simulation& sim) {
+  const EnergyHistory& history = sim.energy_history();
+  return columns_of(history.columns(), history.values());
 }
 
 /// Values at the nodes of a grid, row by row from the south.
@@ -246,6 +252,14 @@ void bind_files(SimulationClass& c) {
         return std::make_unique<SimulationHandle>(Simulation::load(path));
       },
       "path"_a);
+  (*c).def_static(
+      "load_into",
+      [](const std::string& json, const std::filesystem::path& base_dir,
+         const std::filesystem::path& path) {
+        return std::make_unique<SimulationHandle>(
+            Simulation::load_into(parse_scene(json), base_dir, path));
+      },
+      "scene_json"_a, "base_dir"_a, "path"_a);
   c.reads(
       "save", [](const Simulation& s, const std::filesystem::path& path) { s.save(path); },
       "path"_a);
@@ -293,6 +307,7 @@ void bind_fields(SimulationClass& c) {
 void bind_facts(SimulationClass& c) {
   using namespace py::literals;
   c.reads("energy", &energy);
+  c.reads("energy_history", &energy_history);
   c.reads("panel_frame", &frame);
   c.reads("slide_maps", &slide_maps);
   c.reads("slide_facts", &slide_facts);

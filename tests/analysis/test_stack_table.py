@@ -1,6 +1,7 @@
 """The one table of stacks: the same stacks from a store, its exports and results folders."""
 
 import copy
+import shutil
 
 import numpy as np
 import pandas as pd
@@ -48,6 +49,15 @@ def test_a_results_folder_is_the_run_of_the_study(store, tmp_path):
     heights = alone.measured("stack", ["height"])["height"]
     assert heights.tolist() == pytest.approx(same["height_m"].tolist(), rel=1e-8)
     assert alone.numbers("panel.tilt").tolist() == [40.0, 40.0]
+
+
+def test_a_folder_that_keeps_its_store_as_runs_is_read_there(store, tmp_path):
+    """What ``sensitivity -o results`` writes may be given as ``--stored results``."""
+    shutil.copytree(store, tmp_path / "results" / "runs")
+    found = StackTable.read(tmp_path / "results")
+    pd.testing.assert_frame_equal(found.frame, StackTable.read(store).frame)
+    with pytest.raises(InputError, match="holds no study"):
+        StackTable.read(tmp_path)
 
 
 def test_what_is_no_table_of_stacks_is_named(store, tmp_path):

@@ -12,7 +12,10 @@ import pytest
 import reproduction
 from hagenmuller import claims, printed, studies
 from hagenmuller.claims import ENGINE, PAPER, Tests
-from hagenmuller.report import stress_grid
+from hagenmuller.report import stress_grid, write_report
+from hagenmuller.reproduction import Reproduction
+from hagenmuller.size import Size
+from plot.browser import check_page
 from reproduction.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, judge
 
 from snowshed.analysis.grains.ratios import STRESSES, compare_variants
@@ -122,17 +125,27 @@ def test_the_table_has_yade_beside_us():
 
 
 def test_the_variants_have_the_names_that_claims_use(tmp_path):
-    from hagenmuller.size import Size
-
     made = studies.Comparisons(Size("tiny", 40, 1), tmp_path)
     names = {one.name for stage in studies.MAKERS for one in made[stage].variants}
     assert names >= {*AS_PRINTED, *AS_CLAIMED, studies.ELASTIC}
+
+
+def test_the_page_of_all_stages_can_be_read_by_everyone(tmp_path, monkeypatch):
+    found = Reproduction(tmp_path, Size("quick", 90, 3))
+    sizes = {"final_particles": 90, "spheres": 900, "density_kg_m3": 250.0}
+    tables = [table.assign(**sizes) for table in made_up().tables]
+    monkeypatch.setattr(found, "tests", lambda: tables)
+    write_report(found)
+    text = (tmp_path / "hagenmuller.html").read_text(encoding="utf-8")
+    assert "Nothing is computed yet" not in text and "confirmed" in text
+    check_page(tmp_path / "hagenmuller.html")
 
 
 def test_a_report_of_nothing_says_so(tmp_path, capsys):
     folder = tmp_path / "out"
     assert main(["reproduce", "hagenmuller", "-o", str(folder), "--report-only"]) == 0
     assert "Nothing is computed yet" in (folder / "hagenmuller.html").read_text(encoding="utf-8")
+    check_page(folder / "hagenmuller.html")
     assert main(["reproduce", "hagenmuller", "-o", str(folder), "--full", "--report-only"]) == 2
     assert "take a new folder for --full" in capsys.readouterr().err
     assert main(["reproduce", "hagenmuller", "-o", str(folder), "--stage", "x"]) == 2

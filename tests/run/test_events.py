@@ -37,7 +37,7 @@ def test_the_results_folder_is_complete(finished):
     names = {path.name for path in finished.iterdir()}
     assert names == {
         "scene.json", "events.csv", "outline.csv", "energy.csv", "run.json", "checkpoint.bin",
-        "film.bin",
+        "film.bin", "solids.vtp", "energy_history.csv", "energy.png",
         "particles", "particles.pvd", "stack.png", "growth.png",
     }  # fmt: skip
     assert {path.name for path in (finished / "particles").iterdir()} == {

@@ -8,10 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import saito
+from plot.browser import check_page
 from reproduction.hypothesis_tests import CONFIRMED, CONTRADICTED, UNDECIDED, judge
 from saito import cases as made
 from saito.claims import CLAIMS, Courses
 from saito.measures import Course
+from saito.report import write_report
+from saito.reproduction import Reproduction
 from saito.runs import CaseStage, Snow
 from saito.size import FULL, QUICK
 
@@ -143,4 +146,15 @@ def test_the_command_writes_a_report(tmp_path, capsys):
     assert main(["reproduce", "saito", "-o", str(folder), "--stage", name, "-q"]) == 0
     page = (folder / "saito.html").read_text(encoding="utf-8")
     assert "slope 1, Bingham" in page and "0 of 17 times done" in page
+    check_page(folder / "saito.html")
     assert main(["reproduce", "saito", "-o", str(folder), "--full", "--report-only"]) == 2
+
+
+def test_the_page_of_all_cases_can_be_read_by_everyone(tmp_path, monkeypatch):
+    found = Reproduction(tmp_path, QUICK)
+    courses = as_claimed()
+    monkeypatch.setattr(found, "courses", lambda: courses)
+    write_report(found)
+    text = (tmp_path / "saito.html").read_text(encoding="utf-8")
+    assert text.count("<img") + text.count("<svg") >= 2 and "confirmed" in text
+    check_page(tmp_path / "saito.html")

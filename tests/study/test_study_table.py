@@ -1,5 +1,6 @@
 """The table of a study, and the files it is exported to."""
 
+import re
 import sqlite3
 
 import numpy as np
@@ -7,6 +8,7 @@ import pandas as pd
 import pytest
 import study_helpers
 import xarray
+from paths import ROOT
 from study_helpers import outcome, tiny_scene, tiny_study
 
 from snowshed import InputError, Shape
@@ -174,6 +176,17 @@ def test_a_product_unfolds_into_a_dimension_per_parameter(tmp_path):
     table = read_table(store_with(tmp_path / "store", study, *["done"] * 6))
     grid = to_dataset(table).set_index(run=["panel.tilt", "panel.height"]).unstack("run")
     assert grid.height_m.sizes == {"panel.tilt": 2, "panel.height": 3, "event": 2}
+
+
+def test_the_recipe_of_the_guide_works_with_files(tmp_path):
+    """Of a file xarray reads texts late, which it could not sort into dimensions."""
+    study = Study.product(tiny_scene(), {"panel.tilt": [40, 50], "panel.height": [1.0, 2.0]})
+    export(store_with(tmp_path / "store", study, *["done"] * 4), tmp_path / "t.nc")
+    guide = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+    (recipe,) = re.findall(r"^`(xarray\..*t\.nc.*)` makes", guide, re.M)
+    script = recipe.replace('"t.nc"', repr(str(tmp_path / "t.nc")))
+    grid = eval(script, {"xarray": xarray})
+    assert grid.height_m.sizes == {"panel.tilt": 2, "panel.height": 2, "event": 2}
 
 
 def test_the_form_is_told_by_the_ending_or_given(mixed, tmp_path):

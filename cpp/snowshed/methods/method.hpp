@@ -139,8 +139,8 @@ class Method {
   /// written: no other call may come between. Throws SimulationError if the method has failed.
   virtual void save(BinaryWriter&) const = 0;
 
-  /// Takes over the state from an archive that a method of the same scene has saved. Throws
-  /// InputError where the archive is not sound.
+  /// Takes over the state from an archive that a method of the same scene has saved, or of one that
+  /// has only the first of its snows. Throws InputError where the archive is not sound.
   virtual void load(const BinaryReader&) = 0;
 
   /// Throws InputError where `load` would, but takes nothing over and needs less memory.

@@ -5,21 +5,13 @@
 #include <utility>
 
 #include "snowshed/particles/quantities.hpp"
+#include "snowshed/run/record_times.hpp"
 
 namespace snowshed {
 namespace {
 
-constexpr double frames_of_all_events = 400;
-constexpr double least_frames = 12, most_frames = 40;  // of one event, as long as it should last
-constexpr int frames_before_longer = 240;  // then the interval doubles: endless events stay small
 constexpr double coarsest_quantum = 1.0 / 1024;  // m
 constexpr double most_quanta = 1 << 30;
-
-double automatic_interval(const Scene& scene, const CostEstimate& cost) {
-  const double frames =
-      std::clamp(frames_of_all_events / scene.events.count, least_frames, most_frames);
-  return std::max(cost.event_time, 1e-9) / frames;
-}
 
 /// The smallest length that matters in a picture, m: a part of a grain's radius, or the resolution;
 /// zero where a slide leaves it to its raster, which is coarse.
@@ -121,8 +113,7 @@ FilmFrame frame_of(const Method& solver, const FilmHeader& header, int event) {
 FilmHeader film_header(const Scene& scene, const Method& solver, const CostEstimate& cost) {
   FilmHeader header;
   header.axes = scene.dimension;
-  header.interval =
-      scene.output.film_interval > 0 ? scene.output.film_interval : automatic_interval(scene, cost);
+  header.interval = record_interval(scene, cost);
   header.share = std::min(1.0, FilmRecorder::most_particles / std::max(cost.total_particles, 1.0));
   const std::vector<FieldInfo> fields = solver.fields();
   header.has_radius = find(fields, "equivalent_radius") != nullptr;
@@ -148,16 +139,12 @@ bool FilmRecorder::begun(int event) const {
   return !film_.frames().empty() && int(film_.frames().back().event) == event;
 }
 
-/// Depends on the frames so far alone, so that a resumed run goes on as an uninterrupted one.
 double FilmRecorder::next_time() const {
   const std::vector<FilmFrameFacts>& frames = film_.frames();
   auto first = frames.end() - 1;
   while (first != frames.begin() && (first - 1)->event == frames.back().event) --first;
-  const auto count = frames.end() - first;
-  const double interval =
-      film_.header().interval * std::exp2(double((count - 1) / frames_before_longer));
-  const double passed = (frames.back().time - first->time) / interval;
-  return first->time + (std::floor(passed + 1e-9) + 1) * interval;
+  return next_record_time(first->time, frames.back().time, std::size_t(frames.end() - first),
+                          film_.header().interval);
 }
 
 bool FilmRecorder::due(const RunPlace& place) const {

@@ -18,8 +18,7 @@ struct RunPlace {
 
 /// Chooses what a film holds of a run: of at most about `most_particles` particles, some, chosen by
 /// their ids; positions to a 16th of the resolution (grains: to a 128th of the smallest radius),
-/// and to half a millimetre at least; frames at the scene's output.film_interval, or so that an
-/// event has 40 of them, and fewer where there are more than ten events.
+/// and to half a millimetre at least; frames at the `record_interval`.
 FilmHeader film_header(const Scene&, const Method&, const CostEstimate&);
 
 class FilmRecorder {

@@ -10,11 +10,13 @@
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/methods/slide/solver.hpp"
+#include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/film_recorder.hpp"
 #include "snowshed/run/fingerprint.hpp"
 #include "snowshed/run/grains_cost.hpp"
 #include "snowshed/run/loading_curve.hpp"
 #include "snowshed/run/mps_cost.hpp"
+#include "snowshed/run/record_times.hpp"
 #include "snowshed/run/slide_cost.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/scene/assemble.hpp"
@@ -56,6 +58,9 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
     curve_ = std::make_unique<LoadingCurve>(
         scene_.loading, surroundings_.sample.box.z(),
         scene_.output.energy ? grains().energy_table() : NamedEnergies{});
+  } else if (scene_.output.energy) {
+    energies_ =
+        std::make_unique<EnergyHistory>(solver_->energy_table(), record_interval(scene_, cost_));
   }
 }
 
@@ -81,6 +86,13 @@ const GrainsMethod& Simulation::grains() const {
 const LoadingCurve& Simulation::loading_curve() const {
   grains();  // or throws
   return *curve_;
+}
+
+const EnergyHistory& Simulation::energy_history() const {
+  if (!energies_)
+    throw InputError("/output/energy", curve_ ? "the energies of grains stand in their curve"
+                                              : "false; energies are kept only where true");
+  return *energies_;
 }
 
 int Simulation::threads() const { return threads_to_use(wanted_threads(scene_.numerics)); }
@@ -173,6 +185,7 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
     record();
     if (const auto end = event_end()) {
       if (film_) film_->record_end(*solver_, event_);
+      if (energies_) energies_->record_end(*solver_, event_);
       running_ = false;
       return *end;
     }
@@ -190,6 +203,7 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
 /// Writes what is due now.
 void Simulation::record() {
   if (snapshots_ && snapshots_->due(solver_->time())) snapshots_->write(*solver_);
+  if (energies_) energies_->record(*solver_, event_);
   if (film_ && film_->due({event_, running_, solver_->time()})) film_->record(*solver_, event_);
 }
 

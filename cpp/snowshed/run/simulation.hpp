@@ -21,6 +21,8 @@
 
 namespace snowshed {
 
+class BinaryReader;
+class EnergyHistory;
 class FilmRecorder;
 class GrainsMethod;
 class LoadingCurve;
@@ -90,6 +92,11 @@ class Simulation {
   void save(const std::filesystem::path& checkpoint) const;
   /// Throws InputError where the file is not a sound checkpoint.
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint);
+  /// The same in another scene, which lays other snow from the next event on, or has more events:
+  /// of the same method and obstacles, with the snows of the checkpoint's scene as the first of its
+  /// own. Throws InputError also where an event was running.
+  static std::unique_ptr<Simulation> load_into(const Scene&, const std::filesystem::path& base_dir,
+                                               const std::filesystem::path& checkpoint);
 
   const Scene& scene() const { return scene_; }
   const std::vector<Snow>& snows() const { return snows_; }  ///< by ParticleState::material_ids
@@ -100,6 +107,9 @@ class Simulation {
   /// The same of grains, and what their loading has measured so far.
   const GrainsMethod& grains() const;
   const LoadingCurve& loading_curve() const;
+  /// The energies over time while `run` ran; throws InputError where the scene does not keep them,
+  /// and of grains, whose curve has them.
+  const EnergyHistory& energy_history() const;
   int event() const { return event_; }
   bool event_running() const { return running_; }
   double event_time() const { return solver_->time() - event_start_; }
@@ -142,6 +152,8 @@ class Simulation {
   bool is_at_rest();
   std::optional<RunEnd> event_end();
   std::unique_ptr<Method> empty_method() const;
+  static std::unique_ptr<Simulation> restored(const BinaryReader&, const Scene&,
+                                              const std::filesystem::path& base_dir);
   void read_back(const std::filesystem::path& checkpoint) const;
   RunReport report(double rms_speed) const;
 
@@ -158,7 +170,8 @@ class Simulation {
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
-  std::unique_ptr<LoadingCurve> curve_;  // of grains only
+  std::unique_ptr<LoadingCurve> curve_;      // of grains only
+  std::unique_ptr<EnergyHistory> energies_;  // of all others, with output.energy
   RestDetector rest_;
   int event_ = 0;
   bool running_ = false;

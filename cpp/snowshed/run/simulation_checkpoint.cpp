@@ -4,10 +4,12 @@
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/method.hpp"
+#include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/fingerprint.hpp"
 #include "snowshed/run/loading_curve.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/run/snapshot_series.hpp"
+#include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
@@ -70,6 +72,15 @@ void check_kernels(const BinaryReader& in) {
                                              "those where the machine has them, or start anew");
 }
 
+/// Throws InputError unless the numbers of the particles' snows mean the same in another scene.
+void check_same_snow(const BinaryReader& in, const std::vector<Snow>& then,
+                     const std::vector<Snow>& now) {
+  for (std::size_t i = 0; i < then.size(); ++i)
+    if (i >= now.size() || material_id_of(then[i], now) != int(i))
+      throw InputError(in.path().string(),
+                       "the scene does not name its snows first, in the same order");
+}
+
 }  // namespace
 
 void Simulation::save(const std::filesystem::path& checkpoint) const {
@@ -81,6 +92,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   if (scene_.terrain) out.add("ground", ground_of(surroundings_));
   if (scene_.sample) out.add_value("sample", sample_of(surroundings_));
   if (curve_) curve_->save(out);
+  if (energies_) energies_->save(out);
   out.add("event", std::vector<std::int64_t>{event_, running_});
   const RestDetector::State r = rest_.state();
   out.add("run", std::vector<double>{event_start_, event_mass_, r.since, r.speed_at_start, r.speed,
@@ -105,15 +117,33 @@ void Simulation::read_back(const std::filesystem::path& checkpoint) const {
 std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint) {
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();  // a clock that is not a number would never reach the end of an event
-  auto sim = std::make_unique<Simulation>(parse_scene(in.text("scene"), checkpoint.string()),
-                                          in.text("base_dir"));
+  return restored(in, parse_scene(in.text("scene"), checkpoint.string()), in.text("base_dir"));
+}
+
+std::unique_ptr<Simulation> Simulation::load_into(const Scene& scene,
+                                                  const std::filesystem::path& base_dir,
+                                                  const std::filesystem::path& checkpoint) {
+  const BinaryReader in = BinaryReader::load(checkpoint);
+  in.require_finite();
+  const Scene earlier = resolve(parse_scene(in.text("scene"), checkpoint.string()));
+  check_same_snow(in, assemble_snows(earlier), assemble_snows(resolve(scene)));
+  auto sim = restored(in, scene, base_dir);
+  if (sim->running_)
+    throw InputError(checkpoint.string(),
+                     "its event " + std::to_string(sim->event_) + " still runs; finish it first");
+  return sim;
+}
+
+std::unique_ptr<Simulation> Simulation::restored(const BinaryReader& in, const Scene& scene,
+                                                 const std::filesystem::path& base_dir) {
+  auto sim = std::make_unique<Simulation>(scene, base_dir);
   check_kernels(in);
   check_files(in, sim->scene_, sim->surroundings_);
   check_shape_files(in, sim->scene_, sim->shape_prints_);
   const auto event = in.get<std::int64_t>("event", 2);
   if (event[0] < 0 || event[0] > sim->scene_.events.count)
-    throw InputError(checkpoint.string(), "event " + std::to_string(event[0]) + " of " +
-                                              std::to_string(sim->scene_.events.count));
+    throw InputError(in.path().string(), "event " + std::to_string(event[0]) + " of " +
+                                             std::to_string(sim->scene_.events.count));
   sim->event_ = int(event[0]);
   sim->running_ = event[1] != 0;
   const auto run = in.get<double>("run", 7);
@@ -122,6 +152,7 @@ std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkp
   sim->rest_.restore({run[2], run[3], run[4], run[5]});
   sim->laid_height_ = run[6];
   if (sim->curve_) sim->curve_->load(in);
+  if (sim->energies_) sim->energies_->load(in);
   sim->solver_->load(in);
   return sim;
 }

@@ -78,6 +78,19 @@ void write_grains(const std::filesystem::path& file, const GrainsMethod& grains)
              {"contact_force", 1, of_grain(force)}});
 }
 
+/// Quantities of which only some methods know.
+void add_stresses(const Method& solver, std::vector<PointArray>& arrays) {
+  for (const FieldInfo& info : solver.fields()) {
+    if (info.name != "deviatoric_stress" && info.name != "preconsolidation_pressure") continue;
+    const FieldView view = solver.field(info.name);
+    std::vector<float> values;
+    values.reserve(view.count);
+    for (const std::uint32_t place : solver.order_by_id())
+      values.push_back(float(*view.at<double>(place)));
+    arrays.push_back({info.name, 1, std::move(values)});
+  }
+}
+
 /// What a file of particles holds.
 struct PointCloud {
   std::vector<std::array<float, 3>> points;
@@ -103,6 +116,7 @@ PointCloud point_cloud(const Method& solver) {
                   {"pressure", 1, converted<float>(s.pressures)},
                   {"volumetric_plastic_strain", 1, converted<float>(s.plastic_strains)},
                   {"id", 1, converted<std::int32_t>(s.ids)}};
+  add_stresses(solver, cloud.arrays);
   if (!s.material_ids.empty()) cloud.arrays.push_back({"snow", 1, s.material_ids});
   if (const auto* slide = dynamic_cast<const SlideMethod*>(&solver))
     cloud.lines = add_slide(*slide, s, cloud.arrays);

@@ -9,8 +9,9 @@
 namespace snowshed {
 
 /// Writes all of a solver's particles with velocity, mass (kg), event, density (kg/m3), pressure
-/// (Pa), volumetric plastic strain, id and, where there are several, which snow it is. A slide
-/// adds thickness (m), speed (m/s) and the number of bonds, and its bonds as lines.
+/// (Pa), volumetric plastic strain, id and, where there are several, which snow it is. The material
+/// point method adds the deviatoric stress and, of snow that yields, the preconsolidation pressure
+/// (Pa); a slide adds thickness (m), speed (m/s) and the number of bonds, and its bonds as lines.
 void write_particles(const std::filesystem::path& file, const Method&);
 
 class SnapshotSeries {

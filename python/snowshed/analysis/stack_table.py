@@ -23,6 +23,7 @@ from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.snow.stack.trimming import TRIMMINGS
+from snowshed.study.database import FILE as STORE
 from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
@@ -74,8 +75,9 @@ class StackTable:
         Parameters
         ----------
         source
-            The folder of a study's store, a results folder of one run, or a file that ``snowshed
-            study export`` wrote (CSV or Parquet).
+            The folder of a study's store, that of a command which keeps such a store as ``runs``, a
+            results folder of one run, or a file that ``snowshed study export`` wrote (CSV or
+            Parquet).
         study
             Name of the study in a store; not needed if there is but one.
 
@@ -89,6 +91,8 @@ class StackTable:
             return cls.read_file(path)
         if (path / "events.csv").is_file():
             return cls._of_results(path)
+        if not (path / STORE).is_file() and (path / "runs" / STORE).is_file():
+            path = path / "runs"
         return cls.read_study(path, study)
 
     @classmethod

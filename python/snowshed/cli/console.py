@@ -45,7 +45,9 @@ def print_events(table: pd.DataFrame, folder: Path) -> None:
     residual = energy_residual(folder)
     if residual is not None:
         console.print(f"energy balance: residual {residual:.2g} of the largest energy")
-    console.print(f"results, stack.png and growth.png in {folder}")
+    drawn = ["stack.png", "growth.png"] + ["energy.png"] * (residual is not None)
+    pictures = f"{', '.join(drawn[:-1])} and {drawn[-1]}"
+    console.print(f"results, {pictures} in {folder}")
     console.print(f"the snow in motion: snowshed view {folder}")
 
 

@@ -47,6 +47,7 @@ def cli() -> None:
 DEFERRED = (
     ("panel", "run", "Run slide-offs from a panel described by options."),
     ("run", "run", "Run a scene file."),
+    ("extend", "extend", "Let more slabs slide off after a finished run, into a new folder."),
     ("slide", "slide", "Run a small snow slide on terrain."),
     ("grains", "grains", "Load segmented snow grain by grain."),
     ("plan", "scene", "Print the features and the cost of a scene file, without running it."),
@@ -64,6 +65,7 @@ DEFERRED = (
     ("sensitivity", "sensitivity", "Find the snow parameters that matter for the stack."),
     ("calibrate", "calibration", "Find the snow whose simulated stacks agree with measured ones."),
     ("view", "view", "Write the moving view of a run as a page, or as a video."),
+    ("grid", "grid", "Write the grid's mass, velocity and density for ParaView."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
     ("verify", "verify", "Check this installation against known answers, in seconds."),
     ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from typing import Any, Optional
 
 import numpy as np
@@ -158,3 +159,20 @@ def _check_finite(name: str, array: Floats) -> None:
 
 def _wrong_shape(name: str, array: NDArray[Any], allowed: str) -> InputError:
     return InputError(f"{name}: an array of shape {array.shape}; needed: {allowed}")
+
+
+def whole_number(name: str, given: int, *, lowest: int) -> int:
+    """Return an argument that is to be a whole number, not below `lowest`; InputError if it is not.
+
+    Examples
+    --------
+    >>> whole_number("count", 3, lowest=0)
+    3
+    """
+    try:
+        number = operator.index(given)
+    except TypeError:
+        number = lowest - 1
+    if number < lowest:
+        raise InputError(f"{name}: {given!r}; a whole number from {lowest} is needed")
+    return number

@@ -6,6 +6,7 @@ import errno
 import os
 import re
 import secrets
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -60,6 +61,31 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
         raise
     finally:
         beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
+    """Yield a new folder beside `path`; it takes the place of `path`, if empty, on success.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     with replacing_folder(Path(folder) / "new") as beside:
+    ...         _ = (beside / "a.txt").write_text("whole")
+    ...     [file.name for file in (Path(folder) / "new").iterdir()]
+    ['a.txt']
+    """
+    path = Path(os.path.realpath(path))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}")
+    try:
+        beside.mkdir()
+        yield beside
+        beside.replace(path)
+        _flush(path.parent)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
 
 
 def remove_leftovers(folder: Path, *, deep: bool = False) -> None:

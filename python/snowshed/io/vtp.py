@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Union
@@ -137,6 +137,13 @@ def write_triangles(
         f'offset="{offsets[-3]}"/>\n<DataArray type="Int64" Name="offsets" format="appended" '
         f'offset="{offsets[-2]}"/></Polys>\n</Piece></PolyData>\n'
     )
+    write_appended(path, head, blocks)
+
+
+def write_appended(
+    path: Union[str, os.PathLike[str]], head: str, blocks: Iterable[NDArray[Any]]
+) -> None:
+    """Write a file of VTK whose arrays, `blocks`, follow as raw data after its XML, `head`."""
     with replacing(path) as beside, beside.open("wb") as file:
         file.write(head.encode("ascii") + APPENDED)
         for block in blocks:

@@ -14,6 +14,7 @@ moved mass, height, length and outline. What time does to a stack that is carrie
 
 from __future__ import annotations
 
+import json
 import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
@@ -23,13 +24,15 @@ from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.vtp import read_particles
 from snowshed.run.ageing import Ageing
 from snowshed.run.conversion import conversion_row
+from snowshed.run.energies import draw_energies, write_energy_history
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
 from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.solids_file import write_solids
 from snowshed.run.stack_measuring import measure_particles
-from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
+from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure
 
 if TYPE_CHECKING:
@@ -62,7 +65,8 @@ def run_events(
     progress
         Called with a `Progress` about twice a second.
     pictures
-        Whether to draw ``stack.png`` and ``growth.png`` at the end.
+        Whether to draw ``stack.png``, ``growth.png`` and, with the energy balance, ``energy.png``
+        at the end, and write ``solids.vtp``.
 
     Returns
     -------
@@ -163,6 +167,7 @@ class _Recorder:
         self.interrupt = interrupt
         self.report = report
         self.stack: Optional[StackMeasure] = None
+        self.keeps_energy: bool = json.loads(self.simulation.scene)["output"]["energy"]
 
     def between_events(self) -> None:
         """Let the time since the last event pass."""
@@ -184,7 +189,12 @@ class _Recorder:
         self._tell(report["time_s"], report["progress"], report["updates_per_s"])
 
     def before_checkpoint(self) -> None:
-        """Note the checksums of the tables, which are cut to the checkpoint when a run goes on."""
+        """Note the checksums of the tables, which are cut to the checkpoint when a run goes on.
+
+        The energies over time are in the checkpoint, and written again when it goes on.
+        """
+        if self.keeps_energy:
+            write_energy_history(self.simulation, self.results.folder)
         event, running = self.simulation.event, self.simulation.event_running
         self.sequence.tables = self.results.checksums(self.sequence.tables, event, running=running)
 
@@ -221,10 +231,15 @@ class _Recorder:
         from snowshed.plot.figure_style import save
         from snowshed.plot.stack_figures import growth_figure, stack_figure
 
+        scene = ResolvedScene.load(self.results.scene)
+        write_solids(scene, self.simulation.positions(), self.results.folder)
         stack = self.stack or self._measure()
         save(stack_figure(self.simulation, stack), self.results.stack_picture)
         table = read_events(self.results.folder)
         save(growth_figure(table, self.simulation.scene), self.results.growth_picture)
+        if self.keeps_energy:
+            write_energy_history(self.simulation, self.results.folder)  # of snowshed-run
+            draw_energies(self.results.folder)
 
     def _record(self, facts: Mapping[str, Any], stack: StackMeasure) -> None:
         event = facts["event"]

@@ -13,6 +13,20 @@ if TYPE_CHECKING:
     import xarray
 
 AXES = ("x", "y", "z")
+#: Quantities of a simulation that its Dataset holds, as far as the method knows them.
+DATASET = (
+    "id",
+    "position",
+    "velocity",
+    "mass",
+    "density",
+    "pressure",
+    "deviatoric_stress",
+    "preconsolidation_pressure",
+    "volumetric_plastic_strain",
+    "event",
+    "material_id",
+)
 #: Names that files give to quantities, where they are others.
 RENAMED = {"snow": "material_id"}
 

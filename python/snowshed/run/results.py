@@ -8,10 +8,12 @@ conversions.csv    how far reseeding moved the stack (only with between = "resee
 ageing.csv         what time did to the stack between events (only if it aged), and how long it
                    had: ageing.json
 energy.csv         energy balance at the end of each event (only with output.energy)
+energy_history.csv the same over time, with energy.png, a picture of it
 run.json           version, machine, size and speed of the run, how each event went, and its status
 checkpoint.bin     the state from which the run goes on
 particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series
 film.bin           the particles over time, for `snowshed view` (unless output.film = false)
+solids.vtp         panel, ground and obstacles as triangles
 snapshots/         particle snapshots during the events (only with output.snapshot_interval)
 stack.png          side view of the last stack
 growth.png         height, length, head and tail against the event

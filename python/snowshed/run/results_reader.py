@@ -18,6 +18,7 @@ from snowshed.io.pvd import read_series
 from snowshed.io.units import unit_of_column
 from snowshed.io.vtp import read_particles
 from snowshed.run.film_dataset import film_dataset
+from snowshed.run.grid import grid_dataset, stored_grid
 from snowshed.run.particle_dataset import particle_dataset
 from snowshed.run.results import read_events
 from snowshed.scene.scene import PathLike, ResolvedScene
@@ -25,6 +26,9 @@ from snowshed.scene.scene import PathLike, ResolvedScene
 if TYPE_CHECKING:
     import pandas as pd
     import xarray
+
+
+HISTORY = "energy_history.csv"
 
 
 class Results:
@@ -100,6 +104,14 @@ class Results:
             dataset[name].attrs["units"] = unit_of_column(str(name))
         return dataset
 
+    @property
+    def energy_history(self) -> pd.DataFrame:
+        """The energy balance over time, J: at least at both ends of events (energy_history.csv)."""
+        columns = ("event", "time_s", "added_j")
+        table = self._numbers(HISTORY, columns, "a run with output.energy = true")
+        table.attrs["units"] = {str(name): unit_of_column(str(name)) for name in table.columns[1:]}
+        return table
+
     def particles(self, event: Optional[int] = None) -> xarray.Dataset:
         """Return the particles after an event.
 
@@ -113,6 +125,30 @@ class Results:
         xarray.Dataset
             Dimensions ``particle``, with the ids, and ``component``.
         """
+        number, file = self._stored(event)
+        return particle_dataset(read_particles(file), number, self._duration(number))
+
+    def grid(self, event: Optional[int] = None) -> xarray.Dataset:
+        """Return mass, velocity and density at the nodes of the grid after an event.
+
+        Computed from the stored particles, of runs by the material point method. With APIC the
+        share of a node in the particles' affine velocities is missing; `Simulation.grid` has it.
+
+        Parameters
+        ----------
+        event
+            Its number, from 1; None: the last one there is.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions x, (y,) z, the nodes, and component.
+        """
+        number, file = self._stored(event)
+        return grid_dataset(stored_grid(self.scene.data, file), number, self._duration(number))
+
+    def _stored(self, event: Optional[int]) -> tuple[int, Path]:
+        """Return the number of an event, the last one by default, and the file after it."""
         there = {
             int(file.stem.rpartition("_")[2]): file
             for file in (self.folder / "particles").glob("event_*.vtp")
@@ -123,8 +159,10 @@ class Results:
         if number not in there:
             allowed = ", ".join(map(str, sorted(there)))
             raise InputError(f"event: {event!r}; {self.folder / 'particles'} has {allowed}")
-        times = self.events.set_index("event")["sim_time_s"]
-        return particle_dataset(read_particles(there[number]), number, float(times[number]))
+        return number, there[number]
+
+    def _duration(self, event: int) -> float:
+        return float(self.events.set_index("event")["sim_time_s"][event])
 
     def snapshots(self) -> Iterator[xarray.Dataset]:
         """Yield the particles of one snapshot after the other, each as `particles` does.
@@ -175,3 +213,18 @@ def _with_units(table: pd.DataFrame) -> pd.DataFrame:
     units = {str(name): unit_of_column(str(name)) for name in table}
     table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
     return table
+
+
+def particle_files(folder: Path, *, snapshots: bool) -> list[Path]:
+    """Return the files of the particles after events, or of the snapshots, one after the other.
+
+    Raises
+    ------
+    InputError
+        If there are none.
+    """
+    where, name = ("snapshots", "snapshot_*.vtp") if snapshots else ("particles", "event_*.vtp")
+    files = sorted((folder / where).glob(name))
+    if not files:
+        raise InputError(f"{folder / where}: no particles; none are stored there")
+    return files

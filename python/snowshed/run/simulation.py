@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import operator
 import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Literal, Union, cast
@@ -13,10 +12,11 @@ from numpy.typing import ArrayLike
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.array_arguments import finite, points, positive
+from snowshed.io.array_arguments import finite, points, positive, whole_number
 from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
 from snowshed.run.fields import Fields
-from snowshed.run.particle_dataset import particle_dataset
+from snowshed.run.grid import grid_dataset, scene_grid
+from snowshed.run.particle_dataset import DATASET, particle_dataset
 from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
@@ -30,17 +30,6 @@ Ended = Literal["rest", "time_limit", "reached"]
 
 MOST_STEPS = 64  # most steps at a time: between them Python checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to rest
-DATASET = (
-    "id",
-    "position",
-    "velocity",
-    "mass",
-    "density",
-    "pressure",
-    "volumetric_plastic_strain",
-    "event",
-    "material_id",
-)
 
 
 class Simulation:
@@ -135,7 +124,7 @@ class Simulation:
         SimulationError
             If no event runs, or the simulation cannot go on.
         """
-        left = _whole("count", count, lowest=0)
+        left = whole_number("count", count, lowest=0)
         while left:
             taken = min(left, MOST_STEPS)
             self._core.step(taken)
@@ -170,7 +159,7 @@ class Simulation:
         SimulationError
             If no event runs, or the simulation cannot go on.
         """
-        steps = _whole("every", every, lowest=1)
+        steps = whole_number("every", every, lowest=1)
         if isinstance(until, str):
             if until != "rest":
                 raise InputError(f'until: {until!r}; allowed: "rest", a time in s, a function')
@@ -237,7 +226,7 @@ class Simulation:
         2
         """
         snows = self.snows
-        kind = _whole("material_id", material_id, lowest=0)
+        kind = whole_number("material_id", material_id, lowest=0)
         if kind >= len(snows):
             raise InputError(f"material_id: {kind}; the scene's snows are 0 to {len(snows) - 1}")
         places = points("positions", positions, self.dimension)
@@ -344,8 +333,29 @@ class Simulation:
         InputError
             If xarray (extra ``study``) is not installed.
         """
-        values = {name: self._core.field_by_id(name) for name in DATASET}
+        there = self.fields
+        values = {name: self._core.field_by_id(name) for name in DATASET if name in there}
         return particle_dataset(values, self.event, self.time)
+
+    def grid(self) -> xarray.Dataset:
+        """Return mass, velocity and density at the nodes of the grid, computed from the particles.
+
+        As the next step of the material point method would begin with.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions x, (y,) z, the nodes, m, and component.
+
+        Raises
+        ------
+        InputError
+            If the method has no grid, there are no particles, or xarray (extra ``study``) is not
+            installed.
+        """
+        affine = cast(Floats, self._read("affine", "id")) if "affine" in self.fields else None
+        fields = scene_grid(self._data, self.positions(), self.velocities(), self.masses(), affine)
+        return grid_dataset(fields, self.event, self.time)
 
     def measure(self) -> StackMeasure:
         """Measure the stack: all snow that neither the panel nor a structure holds.
@@ -426,16 +436,6 @@ class Simulation:
             f"<Simulation in {self.dimension}D: event {self.event} {state}, t = {self.time:g} s, "
             f"{self.particle_count} particles>"
         )
-
-
-def _whole(name: str, given: int, *, lowest: int) -> int:
-    try:
-        number = operator.index(given)
-    except TypeError:
-        number = lowest - 1
-    if number < lowest:
-        raise InputError(f"{name}: {given!r}; a whole number from {lowest} is needed")
-    return number
 
 
 def _checked(order: Order) -> Order:

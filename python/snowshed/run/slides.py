@@ -10,6 +10,7 @@ slide.json         the figures of `SlideSummary`
 slide.png          the map: terrain, peak speed, outline of the release
 slide.html         the page: maps, the slide over time, release, mass and settings
 energy.csv         energy balance at the end (only with output.energy)
+energy_history.csv the same over time, with energy.png, a picture of it
 ================== ==========================================================================
 """
 
@@ -39,6 +40,7 @@ from snowshed.methods.slide_validity import (
     thickness_map,
     validity_notes,
 )
+from snowshed.run.energies import draw_energies, write_energy_history
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
@@ -196,6 +198,9 @@ def run_slide(
             energies = Table(Path(out_dir) / "energy.csv")
             energies.keep_through(0)  # a finished slide may be resumed, too
             energies.add([{"event": 1, **facts["energy"]}])
+            write_energy_history(sequence.simulation, out_dir)
+        if pictures and facts["energy"]:
+            draw_energies(out_dir)
         if pictures:
             _draw(Path(out_dir), sequence.simulation, maps, areas, summary)
     return summary

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
@@ -14,7 +14,7 @@ from snowshed._core import InputError
 from snowshed.io.vdb.writing import WrittenVdb, write_vdb
 from snowshed.io.vtp import read_particles
 from snowshed.methods.registry import resolution_of
-from snowshed.run.results_reader import Results
+from snowshed.run.results_reader import Results, particle_files
 from snowshed.scene.scene import PathLike
 
 POINT_QUANTITIES = ("velocity", "event", "mass", "density", "volumetric_plastic_strain", "id")
@@ -60,7 +60,7 @@ def export_folder(
     folder = Path(folder)
     scene = Results(folder).scene.data
     output = folder / "vdb" if output is None else Path(output)
-    files = list(_particle_files(folder, snapshots))
+    files = particle_files(folder, snapshots=snapshots)
     written = []
     for file in files:
         exported = Exported(output / f"{file.stem}.vdb", _write(file, output, scene, width))
@@ -68,14 +68,6 @@ def export_folder(
             report(exported)
         written.append(exported)
     return written
-
-
-def _particle_files(folder: Path, snapshots: bool) -> Iterator[Path]:
-    where, name = ("snapshots", "snapshot_*.vtp") if snapshots else ("particles", "event_*.vtp")
-    files = sorted((folder / where).glob(name))
-    if not files:
-        raise InputError(f"{folder / where}: no particles; none are stored there")
-    yield from files
 
 
 def _write(file: Path, output: Path, scene: dict[str, Any], width: Optional[float]) -> WrittenVdb:

@@ -29,12 +29,14 @@ from snowshed.study.factors import (
 from snowshed.study.formats import export, to_dataset
 from snowshed.study.remeasuring import remeasure
 from snowshed.study.scene_hash import Run
+from snowshed.study.season_part import SeasonPart
 from snowshed.study.session import resume
 from snowshed.study.table import read_table
 
 __all__ = [
     "Factor",
     "Run",
+    "SeasonPart",
     "Span",
     "Study",
     "StudyError",

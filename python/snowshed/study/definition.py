@@ -18,6 +18,7 @@ from snowshed.scene.scene import PathLike, Scene
 from snowshed.study import session, study_file
 from snowshed.study.factors import SEED, Part, axis
 from snowshed.study.scene_hash import Run
+from snowshed.study.season_part import DECIDED, SeasonPart
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
@@ -47,6 +48,10 @@ class Study:
         scene's own.
     description
         Purpose of the study, for readers of its file.
+    season
+        A winter, where the runs are seasons: the snow of each panel gathers, is released and piles
+        up, and every slide-off is an event. The thickness of the slab and the number of events are
+        those of the winter. None: the events are those of the scene.
 
     Raises
     ------
@@ -71,6 +76,7 @@ class Study:
     name: str = "study"
     seeds: Optional[Sequence[int]] = None
     description: str = ""
+    season: Optional[SeasonPart] = None
 
     @classmethod
     def product(
@@ -80,17 +86,19 @@ class Study:
         *,
         name: str = "study",
         seeds: Optional[Sequence[int]] = None,
+        season: Optional[SeasonPart] = None,
     ) -> Study:
         """Return the study of all combinations of the values of some parameters.
 
         Parameters
         ----------
-        scene, name, seeds
+        scene, name, seeds, season
             As for `Study`.
         axes
             The values of each parameter, by its dotted path such as ``"snow.cohesion"``.
         """
-        return cls(scene, [[axis(path, values) for path, values in axes.items()]], name, seeds)
+        factors = [axis(path, values) for path, values in axes.items()]
+        return cls(scene, [factors], name, seeds, season=season)
 
     @classmethod
     def load(cls, file: PathLike) -> Study:
@@ -106,7 +114,7 @@ class Study:
         path = Path(file)
         with study_file.name_in_errors(path):
             found = study_file.read(path)
-            study = cls(found.scene, found.parts, found.name, found.seeds, found.description)
+            study = cls(**vars(found))
             study.runs()  # a wrong scene is the file's error
         return study
 
@@ -135,7 +143,9 @@ class Study:
         <BLANKLINE>
         """
         return study_file.text(
-            study_file.Content(self.scene, self.parts, self.name, self.seeds, self.description)
+            study_file.Content(
+                self.scene, self.parts, self.name, self.seeds, self.description, self.season
+            )
         )
 
     def save(self, file: PathLike) -> None:
@@ -306,7 +316,8 @@ class Study:
         try:
             for path, value in point.items():
                 scene.set(path, value)
-            return Run.of(scene.resolve())
+            ready = scene.resolve()
+            return Run.of(ready) if self.season is None else self.season.run(ready)
         except InputError as error:
             values = ", ".join(f"{path} = {value}" for path, value in point.items())
             raise InputError(f"{values}: {error}" if values else str(error)) from None
@@ -318,6 +329,8 @@ class Study:
                 raise InputError(f"{path}: varied by two factors of the same product")
             if any(path == name or path.startswith(f"{name}.") for name in WITHOUT_EFFECT):
                 raise InputError(f"{path}: cannot be varied; it does not change a result")
+            if self.season is not None and any(path.startswith(name) for name in DECIDED):
+                raise InputError(f"{path}: cannot be varied; the season decides it")
         if self.seeds is not None and SEED in paths:
             raise InputError(f"{SEED}: varied by a factor and by the study's seeds")
         scene = copy.deepcopy(self.scene)

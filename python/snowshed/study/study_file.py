@@ -31,12 +31,13 @@ from snowshed.study.factors import (
     sobol,
 )
 from snowshed.study.scene_hash import FILES
+from snowshed.study.season_part import SeasonPart
 
 Made = TypeVar("Made")
 
 FACTOR_KEYS = ("axes", "zip", "sample")
 KEYS = (
-    *("name", "scene", "dimension", "events", "seeds", "accuracy", "description"),
+    *("name", "scene", "dimension", "events", "seeds", "accuracy", "season", "description"),
     *FACTOR_KEYS,
     "part",
 )
@@ -91,6 +92,8 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 # panel.friction = { from = 0.1, to = 0.4 }
 # snow.preconsolidation_pressure = { from = 1e3, to = 1e4, scale = "log" }
 
+# A table `season` with the name of a season file, `weather`, makes a season of every run.
+
 # Several products in one study: each part is crossed with what stands above, and their union runs.
 # [[part]]
 # axes.panel.tilt = [40]
@@ -114,6 +117,7 @@ class Content:
     name: str
     seeds: Optional[Sequence[int]]
     description: str
+    season: Optional[SeasonPart] = None
 
 
 @contextmanager
@@ -144,6 +148,8 @@ def text(content: Content) -> str:
     folder = Path(content.scene._base_dir).absolute()
     scene = _with_absolute_files(content.scene.to_data(), folder)
     blocks = [list(toml_lines(head)), ["[scene]", *toml_lines(scene)]]
+    if content.season is not None:
+        blocks.append(["[season]", *toml_lines(content.season.data())])
     common = _shared_axes(content.parts)
     blocks += _factor_blocks(common, "", folder)
     for part in content.parts:
@@ -199,6 +205,7 @@ def _content(data: dict[str, Any], file: Path) -> Content:
         _typed(data.get("name", file.stem), str, "name", "a text"),
         _seeds(data["seeds"]) if "seeds" in data else None,
         _typed(data.get("description", ""), str, "description", "a text"),
+        SeasonPart.of(_table(data["season"], "season"), folder) if "season" in data else None,
     )
 
 

@@ -73,6 +73,23 @@ def test_without_a_library_the_error_says_what_to_install(
     assert said.count("\n") == 1 and not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("library", ["emcee", "sklearn", "arviz", "corner", "xarray"])
+def test_without_a_library_nothing_is_computed(
+    evaluated, tmp_path, capsys, hide, monkeypatch, library
+):
+    def computes(*_, **__):
+        raise AssertionError("runs were computed, though nobody can evaluate them")
+
+    monkeypatch.setattr("snowshed.cli.commands.designed_study.compute_study", computes)
+    hide(library)
+    options = ("--quick", "-o", tmp_path / "out", "-q")
+    assert run("calibrate", evaluated / "stacks.csv", *options) == 2
+    assert f"needs {library}" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+    if library != "xarray":  # the cost is told without it
+        assert run("calibrate", evaluated / "stacks.csv", *options, "--plan") == 0
+
+
 def test_what_it_prints(evaluated, capsys):
     from snowshed.cli.display.calibration import print_calibration
 

@@ -25,7 +25,7 @@ def test_particles_come_back_as_they_were(stored):
     particles = read_particles(path)
     assert set(particles) == {
         "position", "velocity", "mass", "event", "density", "pressure",
-        "volumetric_plastic_strain", "id",
+        "volumetric_plastic_strain", "deviatoric_stress", "preconsolidation_pressure", "id",
     }  # fmt: skip
     for name, expected in {
         "position": simulation.positions(),
@@ -34,6 +34,8 @@ def test_particles_come_back_as_they_were(stored):
         "event": simulation.events(),
         "density": simulation.densities(),
         "pressure": simulation.pressures(),
+        "deviatoric_stress": simulation.field_by_id("deviatoric_stress"),
+        "preconsolidation_pressure": simulation.field_by_id("preconsolidation_pressure"),
     }.items():
         assert np.allclose(particles[name], expected, rtol=1e-6, atol=1e-7), name
 

@@ -113,6 +113,26 @@ def test_a_damaged_frame_is_refused_by_row_and_column(column, value, message):
             weather_files.summaries(lambda *_: "0", weather_files.ORDERED),
             "line 2, column TMAX: without a decimal in any row, its units cannot be told",
         ),
+        (  # in mm or in inches: either has amounts with one decimal
+            weather_files.summaries(
+                lambda one, value: "" if one[0] == "T" else weather_files.metric(one, value),
+                weather_files.ORDERED,
+            ),
+            "line 2, column TMAX: with one decimal, as mm and inches have, and no temperature",
+        ),
+        (  # edited by someone
+            weather_files.summaries(
+                lambda one, value: (
+                    weather_files.metric if one[0] == "T" else weather_files.standard
+                )(one, value),
+                weather_files.ORDERED,
+            ),
+            "line 2, column TMAX: with decimals of temperatures, and those of inches",
+        ),
+        (  # the data service writes whole degrees F in the order of the archive, too
+            re.sub(r',"[^"]*_ATTRIBUTES"|,"[^"]*,7,0800"', "", weather_files.summaries()),
+            "line 2, column TMAX: without a decimal in any row, its units cannot be told",
+        ),
         (
             weather_files.ICSV_UNITS.replace("|cm|", "|feet|"),
             "line 13, column units: 'feet' of HS; allowed: m, cm, mm",

@@ -92,12 +92,19 @@ void MpmSolver<T, D>::save(BinaryWriter& out) const {
 
 namespace {
 
+/// Arrays that a solver with one snow may do without, and one with several has.
+bool is_of_several_snows(const std::string& name) { return name == "kind" || name == "plastic"; }
+
 template <class T, int D>
 void read_particles(const BinaryReader& in, std::size_t materials, Particles<T, D>& particles) {
   const std::size_t n = in.view<T>("particles/mass").size;
   particles.resize(n);
-  particles.for_each_array([&in, n](const char* name, auto& array) {
+  particles.for_each_array([&in, n, materials](const char* name, auto& array) {
     using Value = typename std::remove_reference_t<decltype(array)>::value_type;
+    if (materials > 1 && is_of_several_snows(name) && !in.has(std::string("particles/") + name)) {
+      std::fill(array.begin(), array.end(), Value(0));  // all are of the first snow
+      return;
+    }
     const auto values = in.get<Value>(std::string("particles/") + name, n);
     std::copy(values.begin(), values.end(), array.begin());
   });

@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 
-#include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 #include "snowshed/particles/field_sources.hpp"
 
@@ -31,10 +30,15 @@ std::string symmetric_axes(int k) {
 }  // namespace
 
 template <class T, int D>
-double MpmSolver<T, D>::elastic_volume(std::size_t i) const {
+Sym<double, D> MpmSolver<T, D>::elastic_strain(std::size_t i) const {
   Sym<double, D> a;
   for (int k = 0; k < a.size; ++k) a.c[k] = double(state_.particles.be_minus_identity[k][i]);
-  return trace(hencky_strain(a));
+  return hencky_strain(a);
+}
+
+template <class T, int D>
+double MpmSolver<T, D>::elastic_volume(std::size_t i) const {
+  return trace(elastic_strain(i));
 }
 
 template <class T, int D>
@@ -51,6 +55,19 @@ double MpmSolver<T, D>::volume_ratio(std::size_t i) const {
 template <class T, int D>
 double MpmSolver<T, D>::pressure(std::size_t i) const {
   return -state_.material_of(model_, i).elastic.bulk * elastic_volume(i);
+}
+
+template <class T, int D>
+double MpmSolver<T, D>::deviatoric_stress(std::size_t i) const {
+  Sym<double, D> deviator = elastic_strain(i);
+  const double mean = trace(deviator) / D;
+  for (int k = 0; k < D; ++k) deviator.c[k] -= mean;
+  return state_.material_of(model_, i).elastic.mu * std::sqrt(6 * norm_squared(deviator));
+}
+
+template <class T, int D>
+double MpmSolver<T, D>::preconsolidation_pressure(std::size_t i) const {
+  return state_.material_of(model_, i).law.preconsolidation(plastic_strain(i));
 }
 
 template <class T, int D>
@@ -117,9 +134,12 @@ void MpmSolver<T, D>::visit_fields(Visit visit) const {
   });
   of_each("volume_ratio", [this](std::size_t i) { return volume_ratio(i); });
   of_each("pressure", [this](std::size_t i) { return pressure(i); });
-  if (state_.particles.has_plastic)
+  of_each("deviatoric_stress", [this](std::size_t i) { return deviatoric_stress(i); });
+  if (state_.particles.has_plastic) {
+    of_each("preconsolidation_pressure",
+            [this](std::size_t i) { return preconsolidation_pressure(i); });
     column("volumetric_plastic_strain", state_.particles.plastic);
-  else
+  } else
     of_each("volumetric_plastic_strain", [](std::size_t) { return 0.0; });
   components("be_minus_identity", state_.particles.be_minus_identity, symmetric_axes<D>);
   if (state_.particles.has_affine) {

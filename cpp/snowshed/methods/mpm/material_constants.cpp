@@ -1,13 +1,12 @@
 #include "snowshed/methods/mpm/material_constants.hpp"
 
-#include "snowshed/material/cam_clay.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
 namespace snowshed {
 namespace {
 
 template <class T>
-CamClay<T> law(const Snow& s, int dimension) {
+CamClay<T> law_of(const Snow& s, int dimension) {
   return CamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope, s.cohesion,
                           s.hardening_factor, dimension);
 }
@@ -19,14 +18,14 @@ Material::Material(const Snow& s, int dimension, const MpmSettings& n)
       density(s.density),
       elastic_time_step(snowshed::elastic_time_step(s.youngs_modulus, s.poissons_ratio, s.density,
                                                     dimension, n.dx, n.transfer, n.basis)) {
-  if (s.model == SnowModel::cam_clay)
-    initial_plastic_strain =
-        law<double>(s, dimension).initial_plastic_strain(s.preconsolidation_pressure);
+  if (s.model == SnowModel::elastic) return;
+  law = law_of<double>(s, dimension);
+  initial_plastic_strain = law.initial_plastic_strain(s.preconsolidation_pressure);
 }
 
 template <class T>
 MaterialConstants<T> material_constants(const Snow& s, int dimension) {
-  const CamClay<T> c = law<T>(s, dimension);
+  const CamClay<T> c = law_of<T>(s, dimension);
   MaterialConstants<T> k{c.elastic.lambda, c.elastic.mu, c.elastic.bulk, c.m2,
                          c.beta,           c.xi,         c.hardening,    T(1 / s.density)};
   if (s.model == SnowModel::elastic) {

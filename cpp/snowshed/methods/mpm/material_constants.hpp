@@ -1,6 +1,7 @@
 // What the solver derives, once, of each of a run's snows.
 #pragma once
 
+#include "snowshed/material/cam_clay.hpp"
 #include "snowshed/material/elasticity.hpp"
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
@@ -12,6 +13,7 @@ struct Material {
   Elasticity<double> elastic;
   double density = 0;                 // kg/m3, initial
   double initial_plastic_strain = 0;  // volumetric; elastic snow has none
+  CamClay<double> law;                // all zero for elastic snow
   double elastic_time_step = 0;       // s
 
   Material(const Snow&, int dimension, const MpmSettings&);

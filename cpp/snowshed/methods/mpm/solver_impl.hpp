@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/grid.hpp"
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
@@ -82,10 +83,13 @@ class MpmSolver final : public Method {
   void update_energy_balance() noexcept;
   void require_sound() const;  ///< throws SimulationError after a step that broke the particles
   void accept(MpmState<T, D> next) noexcept;
+  Sym<double, D> elastic_strain(std::size_t particle) const;  ///< Hencky's
   double elastic_volume(std::size_t particle) const;  ///< logarithm of the elastic volume ratio
   double plastic_strain(std::size_t particle) const;
   double volume_ratio(std::size_t particle) const;
-  double pressure(std::size_t particle) const;  ///< Kirchhoff, Pa, compression positive
+  double pressure(std::size_t particle) const;           ///< Kirchhoff, Pa, compression positive
+  double deviatoric_stress(std::size_t particle) const;  ///< Kirchhoff, Pa, von Mises's
+  double preconsolidation_pressure(std::size_t particle) const;  ///< Pa; 0 for elastic snow
   Vec3 velocity(std::size_t particle) const;
   Mat3 affine(std::size_t particle) const;
   std::vector<double> positions() const;  ///< x, y, z of each, in the order of storage

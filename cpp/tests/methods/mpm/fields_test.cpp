@@ -2,6 +2,7 @@
 
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/material/cam_clay.hpp"
 #include "snowshed/particles/quantities.hpp"
 
 namespace snowshed {
@@ -10,12 +11,17 @@ namespace {
 class Fields : public testing::TestWithParam<Way> {
  protected:
   Fields() : solver_(make_mpm(options_for(GetParam()), {})) {
-    const int dimension = GetParam().dimension;
-    solver_->add(filled_box(dimension, Vec3(-0.03, -0.03, 1.0), Vec3(0.05, 0.03, 1.1), 0.005));
+    solver_->add(
+        filled_box(GetParam().dimension, Vec3(-0.03, -0.03, 1.0), Vec3(0.05, 0.03, 1.1), 0.005));
+    shake(0.5);
+  }
+
+  /// Gives the particles random velocities up to a speed (m/s), and goes on.
+  void shake(double speed) {
     std::vector<Vec3> changes;
     Random random(1);
     for (std::size_t i = 0; i < solver_->size(); ++i)
-      changes.push_back(random_vector(random, dimension, 0.5));
+      changes.push_back(random_vector(random, GetParam().dimension, speed));
     solver_->add_velocity(changes);
     run_steps(*solver_, 80);
   }
@@ -46,6 +52,28 @@ TEST_P(Fields, AgreeWithTheState) {
   expect("pressure", state.pressures);
   expect("volumetric_plastic_strain", state.plastic_strains);
   EXPECT_TRUE(std::is_sorted(state.ids.begin(), state.ids.end()));
+}
+
+/// The stresses lie within the yield surface of the law, and some on it.
+TEST_P(Fields, StressesAreThoseOfTheLaw) {
+  shake(10.0);  // so that snow yields
+  const ParticleState state = solver_->state();
+  const int dimension = GetParam().dimension;
+  const Snow& snow = options_for(GetParam()).snows.front();
+  const auto law =
+      CamClay<double>::from(snow.youngs_modulus, snow.poissons_ratio, snow.critical_state_slope,
+                            snow.cohesion, snow.hardening_factor, dimension);
+  const FieldView q = solver_->field("deviatoric_stress");
+  const FieldView strength = solver_->field("preconsolidation_pressure");
+  double largest = -1;  // of y over M^2 p0^2, which is -1/4 at least within the surface
+  for (std::size_t k = 0; k < q.count; ++k) {
+    const std::size_t place = solver_->order_by_id()[k];
+    const double p0 = *strength.at<double>(place);
+    EXPECT_NEAR(p0, law.preconsolidation(state.plastic_strains[k]), 1e-9 * p0);
+    const PQ<double> stress{state.pressures[k], *q.at<double>(place)};
+    largest = std::max(largest, law.yield(stress, p0) / (law.m2 * p0 * p0));
+  }
+  EXPECT_NEAR(largest, 0.0, 5e-3);  // to rounding in single precision
 }
 
 TEST_P(Fields, AreOfKnownQuantities) {

@@ -12,9 +12,10 @@ from snowshed.analysis.calibration.comparison import Simulated, compare, read_si
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
-from snowshed.analysis.calibration.surrogate import Surrogate
+from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
+from snowshed.io.extras import require
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 
@@ -105,6 +106,16 @@ def _used(measurements: Sequence[Measurement], quantities: Sequence[str]) -> lis
     if not used:
         raise InputError(f"none of {', '.join(quantities)} was measured")
     return used
+
+
+#: What an evaluation takes beyond what snowshed always has.
+LIBRARIES = ("sklearn.gaussian_process", "emcee", "xarray", "arviz", "corner")
+
+
+def check_libraries() -> None:
+    """Raise InputError if a library that `evaluate` needs is missing, before runs are computed."""
+    for library in LIBRARIES:
+        require(library, EXTRA, "calibration")
 
 
 def evaluate(

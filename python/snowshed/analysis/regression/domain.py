@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,7 +20,6 @@ TOLERANCE = 1e-6  # of standardised inputs
 #: Part of the panels whose nearest neighbours are not farther than what counts as spacing: a few
 #: lonely panels do not make the data dense about them.
 SPACED = 0.9
-NO_PANELS = np.empty((0, 3))
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,13 @@ class Domain:
     Attributes
     ----------
     inputs
-        All rows, shape (n, 4), the columns of `INPUTS`.
+        All rows, shape (n, k), the columns of `names`.
+    names
+        What the inputs are; the event is the first.
     """
 
     inputs: Floats
+    names: Sequence[str] = INPUTS
 
     def objections(self, questions: Floats) -> list[str]:
         """Say in words why questions lie outside the data; an empty list: all lie inside.
@@ -40,8 +43,7 @@ class Domain:
         Parameters
         ----------
         questions
-            Shape (4,) or (m, 4): event, panel height in m, panel length in m, panel tilt in
-            degrees.
+            Shape (k,) or (m, k): the event, and the other inputs in SI units, angles in degrees.
 
         Examples
         --------
@@ -57,7 +59,7 @@ class Domain:
             # Most events have the same panels, which are looked at once.
             asked: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
             for question in questions:
-                panels = self._by_event.get(question[0], NO_PANELS)
+                panels = self._by_event.get(question[0], self.inputs[:0, 1:])
                 asked.setdefault((question[1:].tobytes(), panels.tobytes()), (question, panels))
             found = [text for one in asked.values() for text in self._misplaced(*one)]
         return list(dict.fromkeys(found))
@@ -65,7 +67,7 @@ class Domain:
     def _ranges(self, question: Floats) -> list[str]:
         found = []
         low, high = self.inputs.min(axis=0), self.inputs.max(axis=0)
-        for name, value, least, most in zip(INPUTS, question, low, high):
+        for name, value, least, most in zip(self.names, question, low, high):
             margin = TOLERANCE * max(1.0, abs(most))
             if not least - margin <= value <= most + margin:
                 known = label(name)
@@ -83,21 +85,25 @@ class Domain:
         scaling = Scaling.of(panels)
         points, place = scaling.scaled(panels), scaling.scaled(panel)
         distances = np.linalg.norm(points - place, axis=1)
-        where = f"the nearest panel in the data has {panel_in_words(panels[distances.argmin()])}"
+        where = f"the nearest panel in the data has {self._told(panels[distances.argmin()])}"
         if len(panels) < self._known:
             where = f"only {len(panels)} of {self._known} panels have event {event:g}; {where}"
         if not _in_hull(points, place):
             return [
-                f"each input is within its range, but not together: {panel_in_words(panel)} is "
+                f"each input is within its range, but not together: {self._told(panel)} is "
                 f"outside the convex hull of the data; {where}"
             ]
         if distances.min() > _widest_gap(points) + TOLERANCE:
-            return [f"{panel_in_words(panel)} is in a gap of the data; {where}"]
+            return [f"{self._told(panel)} is in a gap of the data; {where}"]
         return []
+
+    def _told(self, panel: Floats) -> str:
+        """Return the inputs of a panel as text."""
+        return settings(dict(zip(self.names[1:], panel)))
 
     @cached_property
     def _by_event(self) -> dict[float, Floats]:
-        """The panels that have each event, shape (m, 3)."""
+        """The panels that have each event, shape (m, k - 1)."""
         events = self.inputs[:, 0]
         return {
             float(event): np.unique(self.inputs[events == event, 1:], axis=0)
@@ -128,14 +134,3 @@ def _widest_gap(points: Floats) -> float:
     spacing = float(np.quantile(to_nearest, SPACED, method="lower"))
     dimension = int((np.ptp(points, axis=0) > 0).sum())
     return spacing * float(np.sqrt(dimension))
-
-
-def panel_in_words(panel: Floats) -> str:
-    """Return height, length and tilt as text.
-
-    Examples
-    --------
-    >>> panel_in_words(np.array([2, 4, 60]))
-    'panel height 2 m, panel length 4 m, panel tilt 60°'
-    """
-    return settings(dict(zip(INPUTS[1:], panel)))

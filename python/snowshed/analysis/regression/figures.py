@@ -64,7 +64,9 @@ def selection(elected: Elected, titles: Titles, target: str) -> Figure:
     return figure
 
 
-def hyperparameters(elected: Elected, titles: Titles, target: str) -> Figure:
+def hyperparameters(
+    elected: Elected, titles: Titles, target: str, inputs: Sequence[str] = INPUTS
+) -> Figure:
     """Draw how often the search chose each value of each hyper-parameter, as Figure 5.3.2."""
     names = {kind: list(results[0].parameters) for kind, results in elected.items()}
     columns = max(len(listed) for listed in names.values())
@@ -75,7 +77,7 @@ def hyperparameters(elected: Elected, titles: Titles, target: str) -> Figure:
             for axes, name in zip(row, names[kind]):
                 values = np.array([result.parameters[name] for result in results])
                 _count(axes, values, COLOURS[kind])
-                axes.set_title(_parameter_word(name), fontsize=9)
+                axes.set_title(_parameter_word(name, inputs), fontsize=9)
             for axes in row[len(names[kind]) :]:
                 axes.set_visible(False)
             row[0].set_ylabel(f"{titles[kind]}\nmodels")
@@ -118,7 +120,8 @@ def predictions(
     Returns None if there is nothing to draw.
     """
     reference = reference_panel(rows)
-    varying = [number for number in (1, 2, 3) if np.ptp(rows.inputs[:, number]) > 0]
+    numbers = range(1, len(rows.names))
+    varying = [number for number in numbers if np.ptp(rows.inputs[:, number]) > 0]
     if not members or not varying:
         return None
     events = np.unique(rows.inputs[:, 0])
@@ -131,10 +134,11 @@ def predictions(
                     _vary(axes, member, rows, target, reference, number, event, shade)
             row[0].set_ylabel(f"{titles[kind]}\n{_quantity(target)}")
         for axes, number in zip(grid[-1], varying):
-            axes.set_xlabel(label(INPUTS[number]).axis)
+            axes.set_xlabel(label(rows.names[number]).axis)
         for axes, number in zip(grid[0], varying):
-            others = [other for other in (1, 2, 3) if other != number]
-            axes.set_title(", ".join(_at(other, reference) for other in others), fontsize=9)
+            others = [other for other in numbers if other != number]
+            at = [_at(rows.names[other], reference[other - 1]) for other in others]
+            axes.set_title(",\n".join(map(", ".join, _in_threes(at))), fontsize=9)
         keys = [
             Line2D([], [], color=shade, marker="o", markersize=4, label=f"event {event:g}")
             for shade, event in zip(_shades(len(events)), events)
@@ -180,16 +184,19 @@ def cost(errors: pd.DataFrame, titles: Titles, target: str) -> Figure:
 
 
 def reference_panel(rows: StackRows) -> Floats:
-    """Return the panel about which inputs vary: the thesis's, or the one nearest to it.
+    """Return the panel about which inputs vary: the one nearest to the thesis's.
 
     Returns
     -------
     numpy.ndarray
-        Shape (3,): height and length in m, tilt in degrees.
+        Shape (k - 1,), the inputs without the event. Those that the thesis does not vary are near
+        their mean.
     """
     panels = rows.inputs[:, 1:]
     scaling = Scaling.of(panels)
-    away = scaling.scaled(panels) - scaling.scaled(np.array(REFERENCE_PANEL))
+    of_thesis = dict(zip(INPUTS[1:], REFERENCE_PANEL))
+    wanted = [of_thesis.get(name, mean) for name, mean in zip(rows.names[1:], panels.mean(axis=0))]
+    away = scaling.scaled(panels) - scaling.scaled(np.array(wanted))
     return np.asarray(panels[int(np.argmin((away**2).sum(axis=1)))])
 
 
@@ -205,7 +212,7 @@ def _vary(
 ) -> None:
     """Draw data and predictions of one event along one input."""
     here = np.concatenate([[event], reference])
-    others = [other for other in range(4) if other != number]
+    others = [other for other in range(len(here)) if other != number]
     fits = (rows.inputs[:, others] == here[others]).all(axis=1)
     x = rows.inputs[fits, number]
     axes.plot(x, rows.targets[target][fits], "o", color=shade, markersize=3.5)
@@ -248,9 +255,9 @@ def _by_round(results: Sequence[FoldResult], score: str) -> Floats:
     return np.array([getattr(result, score) for result in results]).reshape(-1, folds)
 
 
-def _parameter_word(name: str) -> str:
+def _parameter_word(name: str, inputs: Sequence[str]) -> str:
     if name.startswith("length_"):
-        return f"length scale,\n{label(INPUTS[int(name.removeprefix('length_')) - 1]).name}"
+        return f"length scale,\n{label(inputs[int(name.removeprefix('length_')) - 1]).name}"
     return name
 
 
@@ -259,9 +266,13 @@ def _quantity(target: str) -> str:
     return f"{words}, {TARGETS[target]}" if TARGETS[target] else words
 
 
-def _at(number: int, reference: Floats) -> str:
-    known = label(INPUTS[number])
-    return f"{known.name.removeprefix('panel ')} {known.quantity(reference[number - 1])}"
+def _at(name: str, value: float) -> str:
+    known = label(name)
+    return f"{known.name.removeprefix('panel ')} {known.quantity(value)}"
+
+
+def _in_threes(texts: Sequence[str]) -> list[Sequence[str]]:
+    return [texts[i : i + 3] for i in range(0, len(texts), 3)]
 
 
 def _shades(count: int) -> list[Any]:

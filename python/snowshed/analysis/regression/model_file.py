@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -15,7 +15,7 @@ from snowshed._core import InputError
 from snowshed._core import version as snowshed_version
 from snowshed.analysis.regression.domain import Domain
 from snowshed.analysis.regression.ensemble import Ensemble
-from snowshed.analysis.regression.rows import INPUTS, TARGETS
+from snowshed.analysis.regression.rows import INPUTS, TARGETS, is_input
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
 from snowshed.io.array_archive import open_archive
@@ -65,7 +65,7 @@ class StackModel:
     Attributes
     ----------
     inputs
-        All rows the models come from, shape (n, 4), the columns of `INPUTS`.
+        All rows the models come from, shape (n, k), the columns of `names`.
     members
         By target and kind.
     title
@@ -74,6 +74,8 @@ class StackModel:
         "stack" or "body", as for `read_rows`.
     settings
         What all rows have in common, as in `StackRows`.
+    names
+        What the inputs are; the event is the first.
     """
 
     inputs: Floats
@@ -81,11 +83,12 @@ class StackModel:
     title: str
     measure: str
     settings: Mapping[str, str] = field(default_factory=dict)
+    names: Sequence[str] = INPUTS
 
     @cached_property
     def domain(self) -> Domain:
         """The domain of the model."""
-        return Domain(self.inputs)
+        return Domain(self.inputs, self.names)
 
     @property
     def targets(self) -> list[str]:
@@ -122,7 +125,7 @@ def save_model(model: StackModel, file: PathLike) -> None:
         "title": model.title,
         "measure": model.measure,
         "settings": dict(model.settings),
-        "inputs": list(INPUTS),
+        "inputs": list(model.names),
         "members": members,
     }
     with replacing(file) as beside, beside.open("wb") as stream:
@@ -159,7 +162,8 @@ class _Reader:
 
     def model(self) -> StackModel:
         facts = self._facts()
-        inputs = self._array("inputs", ("n", len(INPUTS)))
+        names = facts["inputs"]
+        inputs = self._array("inputs", ("n", len(names)))
         described = _entry(facts, "members", dict)
         members = {}
         for name, facts_of in described.items():
@@ -176,7 +180,8 @@ class _Reader:
             raise InputError("settings: not texts")
         settings = {FORMER_NAMES.get(key, key): value for key, value in settings.items()}
         settings.setdefault("trimming", FORMER_TRIMMING)
-        return StackModel(inputs, members, _entry(facts, "title", str), measure, settings)
+        title = _entry(facts, "title", str)
+        return StackModel(inputs, members, title, measure, settings, names)
 
     def _facts(self) -> dict[str, Any]:
         text = self._raw("facts")
@@ -192,8 +197,7 @@ class _Reader:
             raise InputError(
                 f"format_version: {facts.get('format_version')!r}; this snowshed reads {VERSION}"
             )
-        if facts.get("inputs") != list(INPUTS):
-            raise InputError(f"inputs: {facts.get('inputs')!r}; must be {', '.join(INPUTS)}")
+        facts["inputs"] = _names(facts.get("inputs"))
         return facts
 
     def _member(self, name: str, facts: Any, inputs: Floats) -> Member:
@@ -243,6 +247,19 @@ class _Reader:
         if not isinstance(array, np.ndarray):
             raise InputError(f"{key}: not an array")
         return array
+
+
+def _names(given: Any) -> tuple[str, ...]:
+    """Return the names of a model's inputs: the event, and parameters of a scene, each once."""
+    sound = isinstance(given, list) and len(given) > 1 and given[0] == INPUTS[0]
+    if not sound or not all(is_input(name) for name in given[1:]):
+        raise InputError(
+            f"inputs: {given!r}; must be {INPUTS[0]} and parameters of a scene, such as "
+            f"{', '.join(INPUTS[1:])}"
+        )
+    if len(set(given)) < len(given):
+        raise InputError(f"inputs: {given!r}; each may occur once")
+    return tuple(given)
 
 
 def _spread(facts: dict[str, Any], where: str) -> Spread:

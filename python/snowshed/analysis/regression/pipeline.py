@@ -15,7 +15,7 @@ from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.kinds import Kind, kinds_named
 from snowshed.analysis.regression.model_file import STORED_KINDS, Member, StackModel, save_model
 from snowshed.analysis.regression.nested import Results, cross_validate
-from snowshed.analysis.regression.rows import TARGETS, StackRows
+from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.spread import stack_spread, unseen_panels
 from snowshed.analysis.regression.threads import one_thread
 from snowshed.io.arrays import Floats
@@ -143,7 +143,7 @@ class _Output:
             reports.append(self._report(target, elected, unseen, members))
         if members:
             rows = self._rows
-            model = StackModel(rows.inputs, members, title, measure, rows.settings)
+            model = StackModel(rows.inputs, members, title, measure, rows.settings, rows.names)
             save_model(model, self._folder / MODEL)
         else:
             (self._folder / MODEL).unlink(missing_ok=True)  # an earlier call's
@@ -177,7 +177,11 @@ class _Output:
         values = self._rows.targets[target]
         linear = elected.get("linear")
         quartiles = summary.quartile_table(elected, values, target)
-        comparable = target == "ratio" and len(values) == summary.THESIS_ROWS
+        comparable = (
+            target == "ratio"
+            and len(values) == summary.THESIS_ROWS
+            and tuple(self._rows.names) == INPUTS
+        )
         errors = summary.error_table(elected, self._rows, target, unseen)
         report = TargetReport(
             target,
@@ -209,7 +213,9 @@ class _Output:
         values = self._rows.targets[target]
         drawings: dict[str, Optional[Figure]] = {
             "selection.png": figures.selection(elected, titles, target),
-            "hyperparameters.png": figures.hyperparameters(elected, titles, target),
+            "hyperparameters.png": figures.hyperparameters(
+                elected, titles, target, self._rows.names
+            ),
             "qq.png": figures.quantiles(elected, titles, values, target),
             "predictions.png": figures.predictions(members, titles, self._rows, target),
             "cost.png": figures.cost(report.errors, titles, target),

@@ -16,6 +16,7 @@ from snowshed.analysis.regression.questions import Numbers, Questions
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD
 from snowshed.io.arrays import Floats
+from snowshed.plot.labels import settings
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ class Prediction:
         What of the snow was measured, and what the data have in common, as in `StackModel`.
     objections
         Why panels lie outside the data, in words; empty: all lie inside.
+    asked
+        The inputs of the first panel, in words.
     """
 
     table: pd.DataFrame
@@ -54,6 +57,7 @@ class Prediction:
     measure: str
     settings: Mapping[str, str]
     objections: tuple[str, ...] = ()
+    asked: str = ""
 
     @property
     def extrapolated(self) -> bool:
@@ -99,6 +103,7 @@ def predict(
     length: Optional[Numbers] = None,
     tilt: Optional[Numbers] = None,
     events: Optional[Numbers] = None,
+    inputs: Optional[Mapping[str, Numbers]] = None,
     model: Union[PathLike, StackModel, None] = None,
     kind: Optional[str] = None,
     extrapolate: bool = False,
@@ -108,8 +113,9 @@ def predict(
     Parameters
     ----------
     panels
-        One row for each panel, with the columns ``height``, ``length``, ``tilt`` and ``events`` in
-        any order and no other: a column that means something else must not be taken for nothing.
+        One row for each panel, with the columns ``height``, ``length``, ``tilt`` and ``events``,
+        or what else are the inputs of the model, in any order and no other: a column that means
+        something else must not be taken for nothing.
     height, length
         Instead of a table: of the panel, its lower edge above the ground, and along the slope, m.
         Each of the four is a number, or a sequence or array with one for each panel.
@@ -117,6 +123,8 @@ def predict(
         Of the panel from the horizontal, degrees.
     events
         Slide-offs, 1 or more; each is answered, from the first on.
+    inputs
+        Of a model with other inputs: their values by their paths, such as "snow.cohesion".
     model
         A model file of ``snowshed regress``, or what `load_model` made of it, which spares reading
         it for every question; None: the one that comes with snowshed.
@@ -140,10 +148,10 @@ def predict(
     >>> predict(height=2, length=[2, 4, 6], tilt=60, events=5).array("height").shape
     (3, 5)
     """
-    named = {"height": height, "length": length, "tilt": tilt, "events": events}
-    questions = Questions.of(panels, named)
     if not isinstance(model, StackModel):
         model = _shipped() if model is None else load_model(model)
+    named = {"height": height, "length": length, "tilt": tilt, "events": events, **(inputs or {})}
+    questions = Questions.of(panels, named, model.names)
     kind = model.kinds[0] if kind is None else kind
     if kind not in model.kinds:
         raise InputError(f"kind: the model holds no {kind!r}; it has: {', '.join(model.kinds)}")
@@ -153,7 +161,8 @@ def predict(
     table = _answers(model, kind, questions)
     table["extrapolated"] = np.isin(table["panel"], [questions.labels[n] for n in outside])
     told = tuple(text for number in outside for text in _told(outside, number, questions))
-    return Prediction(table, kind, model.title, model.measure, model.settings, told)
+    asked = settings(dict(zip(model.names[1:], questions.inputs[0, 1:])))
+    return Prediction(table, kind, model.title, model.measure, model.settings, told, asked)
 
 
 @cache

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Optional, Union
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.analysis.regression.rows import INPUTS
 from snowshed.io.arrays import Booleans, Floats, Integers
 
 if TYPE_CHECKING:
@@ -17,7 +18,11 @@ if TYPE_CHECKING:
 #: A number, or one for each panel.
 Numbers = Union[float, Sequence[float], Floats, Integers, "pd.Series[float]", "pd.Series[int]"]
 
-NAMES = ("height", "length", "tilt", "events")
+#: Short names of inputs, as tables and options have them; the others go by their paths.
+SHORT: Mapping[str, str] = {
+    "panel.height": "height", "panel.length": "length", "panel.tilt": "tilt"
+}  # fmt: skip
+EVENTS = "events"
 MOST_EVENTS = 1000  # of a panel
 MOST = 20_000  # events of all panels: kernel matrices have a row for each
 
@@ -33,7 +38,7 @@ class Questions:
     panel
         Which panel each event belongs to, counted from 0, shape (n,).
     inputs
-        Shape (n, 4), the columns of `INPUTS`.
+        Shape (n, k), the inputs of the model that is asked.
     """
 
     labels: pd.Index[int]
@@ -42,16 +47,22 @@ class Questions:
 
     @classmethod
     def of(
-        cls, table: Optional[pd.DataFrame], columns: Mapping[str, Optional[Numbers]]
+        cls,
+        table: Optional[pd.DataFrame],
+        columns: Mapping[str, Optional[Numbers]],
+        inputs: Sequence[str] = INPUTS,
     ) -> Questions:
         """Return the questions of a table, or of columns by name.
 
         Parameters
         ----------
         table
-            One row for each panel, with the columns of `NAMES` in any order and no other.
+            One row for each panel, with a column for each input (by its short name, or its path)
+            and ``events``, in any order and no other.
         columns
-            For each of `NAMES` a number, or as many as there are panels; None beside a table.
+            The same as numbers, or as many as there are panels; None beside a table.
+        inputs
+            What the model takes; the event is the first.
 
         Raises
         ------
@@ -66,47 +77,51 @@ class Questions:
         """
         import pandas as pd
 
+        names = [*(SHORT.get(name, name) for name in inputs[1:]), EVENTS]
         given = [name for name, value in columns.items() if value is not None]
         if table is not None:
             if given:
                 raise InputError(f"{given[0]}: not beside a table of panels, which has it")
-            columns = _columns_of(table)
-        panels = _stacked(columns)
+            columns = _columns_of(table, names)
+        panels = _stacked(columns, names)
         labels = pd.RangeIndex(panels.shape[1]) if table is None else table.index
-        _check(panels, labels)
+        _check(dict(zip(names, panels)), labels)
         counts = panels[-1].astype(int)
         which = np.repeat(np.arange(len(counts)), counts)
         events = np.concatenate([np.arange(1, count + 1) for count in counts])
         return cls(labels, which, np.column_stack([events, panels[:-1, which].T]))
 
 
-def _columns_of(table: pd.DataFrame) -> dict[str, Optional[Numbers]]:
+def _columns_of(table: pd.DataFrame, allowed: Sequence[str]) -> dict[str, Optional[Numbers]]:
     import pandas as pd
 
     if not isinstance(table, pd.DataFrame):
         raise InputError(
-            f"panels: {type(table).__name__} is no DataFrame; give arrays as height, length, tilt "
-            "and events"
+            f"panels: {type(table).__name__} is no DataFrame; give arrays as "
+            f"{', '.join(allowed[:-1])} and {EVENTS}"
         )
     names = list(table.columns)
     for name in names:
-        if name not in NAMES:
-            raise InputError(f"column {name!r} is unknown; allowed: {', '.join(NAMES)}")
+        if name not in allowed:
+            raise InputError(f"column {name!r} is unknown; allowed: {', '.join(allowed)}")
         if names.count(name) > 1:
             raise InputError(f"column {name!r} occurs twice")
     if not table.index.is_unique:
         twice = table.index[table.index.duplicated()][0]
         raise InputError(f"the table's index holds {twice} twice, which must tell panels apart")
-    return {name: table.get(name) for name in NAMES}
+    return {name: table.get(name) for name in allowed}
 
 
-def _stacked(columns: Mapping[str, Optional[Numbers]]) -> Floats:
+def _stacked(columns: Mapping[str, Optional[Numbers]], names: Sequence[str]) -> Floats:
     """Return the columns as rows of an array, numbers repeated for each panel."""
     arrays = {}
-    for name in NAMES:
-        value = columns[name]
+    for name, value in columns.items():
+        if name not in names and value is not None:
+            raise InputError(f"{name}: is no input of this model, which has {', '.join(names)}")
+    for name in names:
+        value = columns.get(name)
         if value is None:
-            raise InputError(f"{name}: missing; needed are {', '.join(NAMES)}")
+            raise InputError(f"{name}: missing; needed are {', '.join(names)}")
         try:
             arrays[name] = np.asarray(value, dtype=float)
         except (TypeError, ValueError):
@@ -124,20 +139,21 @@ def _stacked(columns: Mapping[str, Optional[Numbers]]) -> Floats:
             )
     if count == 0:
         raise InputError("no panels")
-    return np.stack([np.broadcast_to(arrays[name], count) for name in NAMES])
+    return np.stack([np.broadcast_to(arrays[name], count) for name in names])
 
 
-def _check(panels: Floats, labels: pd.Index[int]) -> None:
+def _check(panels: Mapping[str, Floats], labels: pd.Index[int]) -> None:
     """Raise an InputError about the first impossible value, naming its panel if there are more."""
-    height, length, tilt, events = panels
-    _refuse(
-        "height", height, ~(height > 0) | np.isinf(height), "is not a positive length in m", labels
-    )
-    _refuse(
-        "length", length, ~(length > 0) | np.isinf(length), "is not a positive length in m", labels
-    )
-    outside = "is outside the allowed range (0 <= value < 90 degrees)"
-    _refuse("tilt", tilt, ~((tilt >= 0) & (tilt < 90)), outside, labels)
+    events = panels[EVENTS]
+    for name, values in panels.items():
+        if name in ("height", "length"):
+            wrong = ~(values > 0) | np.isinf(values)
+            _refuse(name, values, wrong, "is not a positive length in m", labels)
+        elif name == "tilt":
+            outside = "is outside the allowed range (0 <= value < 90 degrees)"
+            _refuse(name, values, ~((values >= 0) & (values < 90)), outside, labels)
+        elif name != EVENTS:
+            _refuse(name, values, ~np.isfinite(values), "is not a finite number", labels)
     outside = f"is outside the allowed range (1 to {MOST_EVENTS})"
     _refuse("events", events, ~((events >= 1) & (events <= MOST_EVENTS)), outside, labels)
     _refuse("events", events, events % 1 != 0, "is not a whole number", labels)

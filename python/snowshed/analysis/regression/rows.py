@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Optional
 
@@ -14,6 +15,7 @@ from snowshed.analysis.stack_table import StackTable
 from snowshed.io.arrays import Floats, Integers
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import Measure, measure_named
+from snowshed.study.factors import SEED
 
 #: The inputs of section 5.2.2 with the tilt of section 5.1.3; columns of a study's table.
 INPUTS = ("event", "panel.height", "panel.length", "panel.tilt")
@@ -21,6 +23,7 @@ INPUTS = ("event", "panel.height", "panel.length", "panel.tilt")
 TARGETS: Mapping[str, str] = {"ratio": "", "height": "m", "length": "m"}
 #: What of a stack is regressed.
 STACK = ("height", "length")
+PATH = re.compile(r"[a-z]\w{0,60}(\.\w{1,60}){1,6}", re.ASCII)
 #: Kernel matrices grow with the square of the rows, the time to fit with their cube.
 FEWEST_ROWS, MOST_ROWS = 20, 5000
 
@@ -32,7 +35,7 @@ class StackRows:
     Attributes
     ----------
     inputs
-        Shape (n, 4): the columns of `INPUTS`, heights and lengths in m, tilts in degrees.
+        Shape (n, k): the columns of `names`, in SI units, angles in degrees.
     stacks
         For each name of `TARGETS` an array of shape (n, m): ratio of stack height to length, stack
         height in m, stack length in m, of up to m stacks that differ in their seeds only; NaN where
@@ -43,6 +46,8 @@ class StackRows:
         How many stacks were not at rest when the time of their event was over.
     settings
         Parameters and settings that all rows have in common, by their columns, as text.
+    names
+        What the inputs are: "event", and parameters of the scene by their paths.
     """
 
     inputs: Floats
@@ -50,6 +55,7 @@ class StackRows:
     left_out: int = 0
     moving: int = 0
     settings: Mapping[str, str] = field(default_factory=dict)
+    names: Sequence[str] = INPUTS
 
     @property
     def targets(self) -> Mapping[str, Floats]:
@@ -110,15 +116,29 @@ class StackRows:
     def digest(self) -> str:
         """Hash of the inputs and the stacks."""
         content = hashlib.sha256(np.ascontiguousarray(self.inputs).tobytes())
+        if tuple(self.names) != INPUTS:
+            content.update(repr(tuple(self.names)).encode())
         for name in TARGETS:
             content.update(np.ascontiguousarray(self.stacks[name]).tobytes())
         return content.hexdigest()[:32]
+
+
+def is_input(name: object) -> bool:
+    """Return whether a name may be that of an input: a path in a scene, but not its seed.
+
+    Examples
+    --------
+    >>> [is_input(name) for name in ("snow.cohesion", "slab.layers.0.thickness", "height", SEED)]
+    [True, True, False, False]
+    """
+    return isinstance(name, str) and PATH.fullmatch(name) is not None and name != SEED
 
 
 def read_rows(
     file: PathLike,
     measure: str = "stack",
     where: Optional[Mapping[str, str]] = None,
+    inputs: Sequence[str] = INPUTS[1:],
 ) -> StackRows:
     """Read the rows to regress from a table that ``snowshed study export`` wrote.
 
@@ -132,6 +152,8 @@ def read_rows(
         largest connected body; "outermost_first" or "equal_pace": as "stack", by that reading.
     where
         Columns and the value they must have: only these rows are read.
+    inputs
+        Besides the event, what stacks depend on: any parameters of the scene that the study varied.
 
     Raises
     ------
@@ -140,9 +162,10 @@ def read_rows(
         is not an input, or there are too few. It names file, column and line.
     """
     columns = measure_named(measure)
+    names = _input_names(inputs)
     table = StackTable.read(file)
     try:
-        return _rows(table.chosen(where or {}), columns)
+        return _rows(table.chosen(where or {}), columns, names)
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
 
@@ -181,8 +204,20 @@ def rows_of(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     return StackRows(inputs[first], {name: arranged(values) for name, values in measured.items()})
 
 
-def _rows(table: StackTable, measure: Measure) -> StackRows:
-    table.check_columns([*INPUTS, *measure.columns(STACK)])
+def _input_names(inputs: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of all inputs, the event first."""
+    for name in inputs:
+        if not is_input(name):
+            raise InputError(
+                f"input: {name!r} is no parameter of a scene, such as {', '.join(INPUTS[1:])}"
+            )
+    if not inputs or len(set(inputs)) < len(inputs):
+        raise InputError(f"inputs: {', '.join(inputs) or 'none'}; needed: one or more, each once")
+    return (INPUTS[0], *inputs)
+
+
+def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRows:
+    table.check_columns([*names, *measure.columns(STACK)])
     nothing = table.without_stack(measure, STACK)
     left_out = int(nothing.sum())
     frame = table.frame.loc[~nothing]
@@ -190,8 +225,8 @@ def _rows(table: StackTable, measure: Measure) -> StackRows:
         frame = frame.assign(trimming=measure.trimming)
     table = replace(table, frame=frame)
     _check_enough(len(table.frame), left_out)
-    settings = table.common_settings(INPUTS)
-    inputs = np.column_stack([table.numbers(name) for name in INPUTS])
+    settings = table.common_settings(names)
+    inputs = np.column_stack([table.numbers(name) for name in names])
     height, length = (table.numbers(measure.column(one), positive=True) for one in STACK)
     events = inputs[:, 0]
     _check_seeds(table, inputs)
@@ -202,7 +237,7 @@ def _rows(table: StackTable, measure: Measure) -> StackRows:
         raise InputError(f"{len(found)} rows; at most {MOST_ROWS} are allowed")
     frame = table.frame
     moving = int((frame["ended"] == "time_limit").sum()) if "ended" in frame else 0
-    return replace(found, left_out=left_out, moving=moving, settings=settings)
+    return replace(found, left_out=left_out, moving=moving, settings=settings, names=tuple(names))
 
 
 def _check_enough(rows: int, left_out: int) -> None:

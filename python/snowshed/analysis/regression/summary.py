@@ -10,7 +10,7 @@ import numpy as np
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.nested import Results
-from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
+from snowshed.analysis.regression.rows import TARGETS, StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.io.arrays import Floats
 
@@ -199,6 +199,6 @@ def linear_expression(results: Sequence[FoldResult], rows: StackRows, target: st
     weights = (ensemble.coefficients @ ensemble.points).mean(axis=0) * values.std()
     slopes = weights / inputs.deviation
     offset = ensemble.intercepts.mean() * values.std() + values.mean() - slopes @ inputs.mean
-    terms = " ".join(f"{slope:+.4g} {name}" for slope, name in zip(slopes, INPUTS))
+    terms = " ".join(f"{slope:+.4g} {name}" for slope, name in zip(slopes, rows.names))
     unit = f", {TARGETS[target]}" if TARGETS[target] else ""
     return f"{target} = {offset:.4g} {terms}{unit}"

@@ -61,7 +61,7 @@ def calibrate(
     from snowshed.analysis.calibration import measurements as reading
     from snowshed.analysis.calibration.design import calibration_study
     from snowshed.analysis.calibration.misfit import RANKED
-    from snowshed.analysis.calibration.report import evaluate
+    from snowshed.analysis.calibration.report import check_libraries, evaluate
     from snowshed.io.atomic import write_text
 
     if template is not None:
@@ -71,6 +71,8 @@ def calibrate(
         raise click.UsageError("give a MEASUREMENTS file, or --template FILE to write an empty one")
     folder = check_options(context)
     measured = reading.read_measurements(measurements)
+    if not context.params["plan_only"]:
+        check_libraries()
     if stored is None:
         design = partial(calibration_study, measured, quick=quick, seeds=seeds)
         runs = computed(context, chosen_study(context, folder, design), folder)

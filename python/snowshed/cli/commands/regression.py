@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import click
 from click.core import ParameterSource
 
+from snowshed._core import InputError
 from snowshed.analysis.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.commands.designed_study import measure_help
@@ -116,6 +117,14 @@ def geometry(
     help=f"{measure_help()}  [default: stack]",
 )
 @click.option(
+    "--input",
+    "inputs",
+    multiple=True,
+    metavar="PATH",
+    help="What stacks depend on besides the event: a parameter that the study varied, such as "
+    "snow.cohesion; may be repeated.  [default: panel.height, panel.length, panel.tilt]",
+)
+@click.option(
     "--where",
     "conditions",
     multiple=True,
@@ -147,6 +156,7 @@ def regress(
     targets: Sequence[str],
     kinds: Sequence[str],
     measure: str,
+    inputs: Sequence[str],
     conditions: Sequence[str],
     one_seed: bool,
     split: str,
@@ -167,11 +177,12 @@ def regress(
     from snowshed.analysis.regression.nested import RegressionInterrupted
     from snowshed.analysis.regression.pipeline import MODEL
     from snowshed.analysis.regression.pipeline import regress as run
-    from snowshed.analysis.regression.rows import read_rows
+    from snowshed.analysis.regression.rows import INPUTS, read_rows
     from snowshed.cli.display.regression import print_reports
     from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
 
-    rows = read_rows(table, measure, dict(map(_condition, conditions)))
+    where = dict(map(_condition, conditions))
+    rows = read_rows(table, measure, where, inputs or INPUTS[1:])
     rows = rows.of_one_seed() if one_seed else rows
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
     if rows.left_out and not quiet:
@@ -200,9 +211,16 @@ def regress(
 
 
 @click.command()
-@click.option("--height", type=float, required=True, help="Panel's lower edge above ground, m.")
-@click.option("--length", type=float, required=True, help="Panel along the slope, m.")
-@click.option("--tilt", type=float, required=True, help="Panel from the horizontal, degrees.")
+@click.option("--height", type=float, help="Panel's lower edge above ground, m.")
+@click.option("--length", type=float, help="Panel along the slope, m.")
+@click.option("--tilt", type=float, help="Panel from the horizontal, degrees.")
+@click.option(
+    "--input",
+    "inputs",
+    multiple=True,
+    metavar="PATH=VALUE",
+    help="Another input of the model, such as snow.cohesion=0.2; may be repeated.",
+)
 @click.option("--events", type=int, default=5, help="Slide-offs.  [default: 5]")
 @click.option("--model", type=PATH, help="Model file of regress.  [default: the one shipped]")
 @click.option("--kind", help="rbf, gaussian-process or linear.  [default: the first there is]")
@@ -211,9 +229,10 @@ def regress(
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def predict(
-    height: float,
-    length: float,
-    tilt: float,
+    height: Optional[float],
+    length: Optional[float],
+    tilt: Optional[float],
+    inputs: Sequence[str],
     events: int,
     model: Optional[Path],
     kind: Optional[str],
@@ -231,22 +250,31 @@ def predict(
     from snowshed.analysis.regression.predictor import predict as ask
     from snowshed.cli.display.regression import prediction_json, print_prediction
 
-    found = ask(
-        height=height,
-        length=length,
-        tilt=tilt,
-        events=events,
-        model=model,
-        kind=kind,
-        extrapolate=extrapolate,
-    )
+    asked: dict[str, Any] = {"height": height, "length": length, "tilt": tilt, "events": events}
+    others = dict(map(_input, inputs))
+    try:
+        found = ask(**asked, inputs=others, model=model, kind=kind, extrapolate=extrapolate)
+    except InputError as error:
+        named = str(error).partition(":")[0] in asked
+        raise type(error)(f"--{error}") if named else error from None
     for objection in found.objections:
         say(f"warning: EXTRAPOLATED, do not rely on it: {objection}", err=True)
     if as_json:
         write_out(prediction_json(found))
     else:
-        panel = f"panel height {height:g} m, length {length:g} m, tilt {tilt:g} degrees"
-        print_prediction(found, f"Stack below the panel: {panel}\n{found.kind}, {found.title}")
+        print_prediction(
+            found, f"Stack below the panel: {found.asked}\n{found.kind}, {found.title}"
+        )
+
+
+def _input(text: str) -> tuple[str, float]:
+    path, equals, value = text.partition("=")
+    try:
+        if not equals:
+            raise ValueError
+        return path, float(value)
+    except ValueError:
+        raise click.BadParameter(f"{text}: not PATH=NUMBER", param_hint="--input") from None
 
 
 def _condition(text: str) -> tuple[str, str]:

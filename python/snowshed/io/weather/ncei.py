@@ -2,7 +2,19 @@
 
 Files of the archive's folder `access` hold the units of GHCN-daily (tenths of mm and of degrees C).
 Those of an order or of the data service may be metric or in inches and degrees F, and do not say
-so. What they hold tells it: only metric temperatures, and only amounts in inches, have decimals.
+so anywhere. Only the decimals that NOAA writes tell it:
+
+=========================== ==================== ===================== =================
+units                       temperature          precipitation         new snow
+=========================== ==================== ===================== =================
+tenths (archive)            whole                whole                 whole
+mm and degrees C            one decimal, 10.0    one decimal, or none  whole
+inches and degrees F        whole                two decimals, 0.20    one decimal
+=========================== ==================== ===================== =================
+
+Nothing is guessed: units are taken only where all that a file holds is of one row of this table
+and of no other. Precipitation with one decimal alone may be either, so that it needs temperatures
+beside it; without any decimal a file is taken only in the form that the archive alone has.
 """
 
 from __future__ import annotations
@@ -23,17 +35,18 @@ from snowshed.io.weather.american import (
 )
 from snowshed.io.weather.observation import Quantity, Station, cells_of, split_cells, time_of
 
+TEMPERATURES = ("TMAX", "TMIN", "TAVG")
 METRIC: Mapping[str, Quantity] = {
     "SNOW": Quantity("snowfall", "mm", 1e-3),
     "SNWD": Quantity("snow_depth", "mm", 1e-3),
     "PRCP": Quantity("precipitation", "mm"),
-    **dict.fromkeys(("TMAX", "TMIN", "TAVG"), Quantity("temperature", "degrees C")),
+    **dict.fromkeys(TEMPERATURES, Quantity("temperature", "degrees C")),
 }
 STANDARD: Mapping[str, Quantity] = {
     "SNOW": Quantity("snowfall", "inches", INCH),
     "SNWD": Quantity("snow_depth", "inches", INCH),
     "PRCP": Quantity("precipitation", "inches", 1e3 * INCH),
-    **dict.fromkeys(("TMAX", "TMIN", "TAVG"), Quantity("temperature", "degrees F", *FAHRENHEIT)),
+    **dict.fromkeys(TEMPERATURES, Quantity("temperature", "degrees F", *FAHRENHEIT)),
 }
 STATION, DATE, PLACE = "STATION", "DATE", "LATITUDE"
 FLAGS, QUALITY = "_ATTRIBUTES", 1  # the second of the flags of a value
@@ -76,18 +89,31 @@ def _units(
     name: str, head: Sequence[str], rows: Sequence[Mapping[str, str]]
 ) -> tuple[Mapping[str, Quantity], str]:
     """Return the units of a file, and their name."""
-    if _have_decimals(rows, "TMAX", "TMIN", "TAVG"):
+    temperature, rain = _decimals(rows, *TEMPERATURES), _decimals(rows, "PRCP")
+    inches = rain > 1 or _decimals(rows, "SNOW") > 0
+    if temperature > 0 and inches:
+        raise _unknown(name, head, "with decimals of temperatures, and those of inches")
+    if temperature > 0:
         return METRIC, "mm and degrees C"
-    if _have_decimals(rows, "PRCP", "SNOW"):
+    if inches or (rain > 0 and temperature == 0):
         return STANDARD, "inches and degrees F"
-    if head[:3] == ARCHIVE or not rows:
+    if rain > 0:
+        raise _unknown(name, head, "with one decimal, as mm and inches have, and no temperature")
+    if (head[:3] == ARCHIVE and any(one.endswith(FLAGS) for one in head)) or not rows:
         return ELEMENTS, "tenths of mm and of degrees C, and mm of snow"
+    raise _unknown(name, head, "without a decimal in any row")
+
+
+def _unknown(name: str, head: Sequence[str], found: str) -> InputError:
     first = next(one for one in head if one in ELEMENTS)
-    raise InputError(
-        f"{name}, line 2, column {first}: without a decimal in any row, its units cannot be told; "
-        f"give a longer file, or that of the archive (its columns begin {', '.join(ARCHIVE)})"
+    return InputError(
+        f"{name}, line 2, column {first}: {found}, its units cannot be told; give a longer file, "
+        f"one with temperatures, or that of the archive (its columns begin {', '.join(ARCHIVE)}, "
+        f"and have {FLAGS})"
     )
 
 
-def _have_decimals(rows: Sequence[Mapping[str, str]], *elements: str) -> bool:
-    return any("." in row.get(element, "") for row in rows for element in elements)
+def _decimals(rows: Sequence[Mapping[str, str]], *elements: str) -> int:
+    """Return the most decimals of some elements' values; -1 without any value."""
+    cells = [row.get(element, "").strip() for row in rows for element in elements]
+    return max((len(cell.partition(".")[2]) for cell in cells if cell), default=-1)

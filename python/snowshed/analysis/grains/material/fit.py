@@ -22,6 +22,7 @@ from snowshed.analysis.grains.material.tests import (
 )
 from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
 from snowshed.analysis.grains.ratios import LogMean
+from snowshed.io.formatting import percent
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.phases import LINEAR
 from snowshed.scene.components import Snow
@@ -266,7 +267,7 @@ def _note_meaning(fitted: FittedSnow, modulus: Optional[float], few_grains: int)
     notes.append(
         f"the material point method takes {fitted.steps:.2g} times as many steps as with the "
         "calibrated snow; the law has lost its strength after "
-        f"{100 * fitted.law.lost_after:.2g} % of plastic dilation"
+        f"{percent(fitted.law.lost_after, 2)} of plastic dilation"
     )
     if few_grains:
         notes.append(f"{few_grains} grains: such a small sample hardly stands for its snow")

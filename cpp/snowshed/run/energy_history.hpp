@@ -1,0 +1,49 @@
+// The energy balance over time, as a table that grows while a run goes on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/methods/method.hpp"
+
+namespace snowshed {
+
+class BinaryReader;
+class BinaryWriter;
+
+/// Rows at the beginning and the end of each event, and between them when a record is due
+/// (`record_times.hpp`). They depend on the steps alone: neither on the number of threads nor on
+/// whether the run was resumed.
+class EnergyHistory {
+ public:
+  /// Of energies with these names; `interval` is that between rows, s.
+  EnergyHistory(const NamedEnergies& energies, double interval);
+
+  /// Adds the row that is due, if one is.
+  void record(const Method&, int event);
+  /// Adds the last row of an event, unless it is there already.
+  void record_end(const Method&, int event);
+
+  /// Event, time through all events (s), and the energies (J).
+  const std::vector<std::string>& columns() const { return columns_; }
+  const std::vector<double>& values() const { return values_; }  ///< row by row
+
+  void save(BinaryWriter&) const;
+  /// Begins anew where the archive is of a version that kept no such rows. Throws InputError where
+  /// the rows are not of such energies.
+  void load(const BinaryReader&);
+
+ private:
+  std::size_t rows() const { return values_.size() / columns_.size(); }
+  double event_of(std::size_t row) const { return values_[row * columns_.size()]; }
+  double time_of(std::size_t row) const { return values_[row * columns_.size() + 1]; }
+  double last_time(int event) const;
+  double next_time(int event) const;
+  void add_row(const Method&, int event);
+
+  std::vector<std::string> columns_;
+  double interval_;
+  std::vector<double> values_;
+};
+
+}  // namespace snowshed

@@ -1,0 +1,20 @@
+// When a run is recorded over time: its film and its energies.
+#pragma once
+
+#include <cstddef>
+
+#include "snowshed/run/cost_estimate.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// Simulated time between two records, s: the scene's output.film_interval, or so that an event has
+/// 40 of them, and fewer where there are more than ten events.
+double record_interval(const Scene&, const CostEstimate&);
+
+/// When an event is recorded next, s, after `count` records since `first`, the last one at `last`.
+/// The interval doubles with every 240 records: endless events stay small. Depends on the records
+/// alone, so that a resumed run goes on as an uninterrupted one.
+double next_record_time(double first, double last, std::size_t count, double interval);
+
+}  // namespace snowshed

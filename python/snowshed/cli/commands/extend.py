@@ -1,0 +1,54 @@
+"""The command ``snowshed extend``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Optional
+
+import click
+
+from snowshed.cli.exit_codes import Stopped
+
+PATH = click.Path(path_type=Path)
+
+
+@click.command()
+@click.argument("results", type=PATH)
+@click.option("--events", type=int, default=1, show_default=True, help="How many events follow.")
+@click.option("--snow", metavar="NAME", help="Other snow of their slabs: a name, or a JSON file.")
+@click.option("--thickness", type=float, help="Other thickness of their slabs, m.")
+@click.option(
+    "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
+)
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+def extend(
+    results: Path,
+    events: int,
+    snow: Optional[str],
+    thickness: Optional[float],
+    folder: Path,
+    quiet: bool,
+) -> None:
+    """Let more slabs slide off after a finished run, into a new folder; RESULTS stays as it is.
+
+    \b
+    Example:
+      snowshed extend results --events 3 -o longer
+      snowshed extend results --snow reference --thickness 0.03 -o other
+    """  # noqa: D301 - click wants the control character
+    from snowshed.cli import console
+    from snowshed.cli.progress import progress_bar
+    from snowshed.run.extension import extend_run
+    from snowshed.run.interrupt import Interrupted
+    from snowshed.scene.components import Snow
+
+    other = None if snow is None else Snow.named(snow)
+    try:
+        with progress_bar(quiet=quiet) as progress:
+            table = extend_run(
+                results, folder, events, snow=other, thickness=thickness, progress=progress
+            )
+    except Interrupted as interrupted:
+        raise Stopped(str(interrupted)) from None
+    if not quiet:
+        console.print_events(table, folder)

@@ -1,0 +1,115 @@
+"""The energy of a run over time: what the snow holds, and where the rest went."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from snowshed.plot.caption import scene_caption
+from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank, describe
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+#: Energies that the snow holds, and those of height, whose zero is arbitrary.
+HELD, OF_HEIGHT = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
+#: The other columns that are no loss.
+SUMS = ("added_j", "residual_j")
+SMALL = 1e-3  # of the largest: what is smaller is not drawn
+SCALES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"))
+WIDTH, HEIGHT = 9.0, 6.4  # inches
+MOST_MARKED = 40  # events whose ends are marked
+
+
+def energy_figure(table: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
+    """Draw the energy balance of a run over time.
+
+    Above, the energy that the snow holds: of its motion and of its elastic strain. Below, what
+    height has released and new snow has brought in sum, and what took it up. Thin vertical lines
+    are the beginnings of events.
+
+    Parameters
+    ----------
+    table
+        Rows of energies in J with ``event`` and ``time_s``, as in ``energy_history.csv``.
+    scene
+        Complete scene data, as in scene.json.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> from snowshed import Scene
+    >>> rows = {"event": [1, 1], "time_s": [0.0, 1.0], "kinetic_j": [0, 2e-3],
+    ...         "gravitational_j": [0.01, 0.005], "friction_j": [0, 3e-3], "added_j": [0.01, 0.01]}
+    >>> figure = energy_figure(pd.DataFrame(rows), Scene.preset("lab-50").resolve().data)
+    >>> [axes.get_ylabel() for axes in figure.axes]
+    ['energy, mJ', 'energy, mJ']
+    """
+    energies = [str(name) for name in table if str(name).endswith("_j")]
+    held = [name for name in HELD if name in energies]
+    taken = [name for name in energies if name not in (*HELD, *OF_HEIGHT, *SUMS)]
+    height = sum(table[name] for name in energies if name in OF_HEIGHT)
+    released = (table["added_j"] - height).rename("released")
+    with rc_context(STYLE):
+        figure = blank(WIDTH, HEIGHT)
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 3))
+        per_width = " per m of width" if scene.get("dimension") == 2 else ""
+        _draw(above, table, {name: table[name] for name in held}, per_width)
+        above.set_title("In the snow")
+        lines = {name: table[name] for name in taken}
+        largest = max((np.abs(line).max() for line in (released, *lines.values())), default=0.0)
+        kept = {n: line for n, line in lines.items() if np.abs(line).max() > SMALL * largest}
+        shown = {"released by height, and brought": released, **kept}
+        if "residual_j" in table:
+            shown["gained (+) or lost by time integration"] = table["residual_j"]
+        _draw(below, table, shown, per_width)
+        below.set_title("Released, and what took it up, in sum")
+        below.set_xlabel("time through all events, s")
+        describe(figure, f"Energy balance\n{_caption(scene)}")
+    return figure
+
+
+def _caption(scene: Mapping[str, Any]) -> str:
+    if scene.get("terrain") or scene.get("sample"):
+        return str(scene.get("title", ""))
+    return scene_caption(dict(scene))
+
+
+def _draw(
+    axes: Axes, table: pd.DataFrame, lines: Mapping[str, pd.Series[float]], per_width: str
+) -> None:
+    """Draw energies against time, each with its name and its own colour."""
+    scale, unit = _scale(max((float(np.abs(line).max()) for line in lines.values()), default=1.0))
+    times = table["time_s"]
+    colours = iter((*COLOURS, "#5b4b8a", "#7a2e3a", "#22747c"))
+    for name, line in lines.items():
+        look: dict[str, Any] = {"color": next(colours), "lw": 1.5}
+        if name.startswith("released"):
+            look = {"color": INK, "lw": 2.0}
+        elif name.startswith("gained"):
+            look = {"color": FAINT, "lw": 1.3, "ls": "--"}
+        axes.plot(times, line / scale, label=_named(name), **look)
+    for begun in _beginnings(table):
+        axes.axvline(begun, color=FAINT, lw=0.6, ls=":", zorder=0)
+    axes.set_ylabel(f"energy, {unit}{per_width}")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def _beginnings(table: pd.DataFrame) -> Sequence[float]:
+    """Return when the events after the first began, if they are few."""
+    begun = table.groupby("event")["time_s"].min().tolist()[1:]
+    return begun if len(begun) <= MOST_MARKED else []
+
+
+def _named(name: str) -> str:
+    return name[: -len("_j")].replace("_", " ") if name.endswith("_j") else name
+
+
+def _scale(largest: float) -> tuple[float, str]:
+    """Return the unit in which an energy is between 1 and 1000, as far as there is one."""
+    return next((one for one in SCALES if largest >= one[0]), SCALES[-1])
