@@ -90,9 +90,8 @@ struct EnumNames<MpsGradient> {
 
 template <>
 struct EnumNames<MpsCoupling> {
-  static constexpr Named<MpsCoupling> list[] = {{MpsCoupling::none, "none"},
-                                                {MpsCoupling::stiff, "stiff"},
-                                                {MpsCoupling::always, "always"}};
+  static constexpr Named<MpsCoupling> list[] = {
+      {MpsCoupling::none, "none"}, {MpsCoupling::stiff, "stiff"}, {MpsCoupling::always, "always"}};
 };
 template <>
 struct EnumNames<MpsSplitting> {

@@ -32,10 +32,12 @@ constexpr double expected_shear = 0.5;
 constexpr double surface_tolerance = 0.002;
 
 /// Pressure and viscosity are found together where a step's plastic viscosity over rho l0^2/dt is
-/// at least this, and the root mean square of speeds, over that of a fall that viscosity slows down
-/// within l0, rho g l0^2/eta, is more than that: in a stiff fluid at rest errors of the gradients
-/// would ask for large pressures, since these hardly move it.
-constexpr double least_stiffness = 2, least_fall = 2;
+/// at least this, and the fluid creeps. Its root mean square of speeds u, over that of a fall that
+/// viscosity slows down within l0, rho g l0^2/eta, is more than this: in a stiff fluid at rest
+/// errors of the gradients would ask for large pressures, since these hardly move it. And
+/// rho u^3/(eta g), the square of the Reynolds number of a body so high that it flows at u, is less
+/// than this: fast flows lose no volume to viscosity, and need not pay, however small l0 is.
+constexpr double least_stiffness = 2, least_fall = 2, most_inertia = 1e-3;
 /// That iteration begins with this share of the last step's viscous force, so that errors of the
 /// pressure die out; ends when the force changes by less than this part of gravity; and stops where
 /// it does not, since any number of its iterations is better than one.
@@ -164,7 +166,9 @@ bool MpsSolver<D>::couples(double dt) const {
   double square = 0;
   for (const VecD<D>& u : work_.before) square += u.squaredNorm();
   const double speed = std::sqrt(square / double(work_.before.size()));
-  return per_speed * speed > least_fall * model_.gravity.norm();
+  const double g = model_.gravity.norm();
+  return per_speed * speed > least_fall * g &&
+         s.density * speed * speed * speed < most_inertia * s.viscosity * g;
 }
 
 /// The pressure balances what it can before viscosity acts, so that snow that does not yield stays
@@ -216,9 +220,8 @@ void MpsSolver<D>::act_with_expected_shear(double dt, MpsState<D>& next) {
   next.solves.pressure = solve_pressure(model_, dt, p, work_);
   require_converged(next.solves.pressure, "pressure", model_.settings().max_iterations);
   apply_pressure(model_, dt, p, work_);
-  for_each_particle(p.size(), model_.threads_for(p.size()), [&](std::size_t i) {
-    p.velocity[i] = work_.falling[i] + work_.change[i];
-  });
+  for_each_particle(p.size(), model_.threads_for(p.size()),
+                    [&](std::size_t i) { p.velocity[i] = work_.falling[i] + work_.change[i]; });
   act_viscosity(dt, next);
 }
 

@@ -69,9 +69,8 @@ ParticleBatch block_outside(const MpsOptions& o, const Vec3& low, const Vec3& hi
       return one.shape->distance(x) < 0.5 * o.settings.spacing - 1e-9;
     });
   };
-  batch.positions.erase(
-      std::remove_if(batch.positions.begin(), batch.positions.end(), inside),
-      batch.positions.end());
+  batch.positions.erase(std::remove_if(batch.positions.begin(), batch.positions.end(), inside),
+                        batch.positions.end());
   return batch;
 }
 
