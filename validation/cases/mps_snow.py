@@ -118,7 +118,7 @@ CASES = (
         slides down a plane for 0.2 s. Compared is the mean speed of its middle sixth.
         """,
         quantities=(
-            Quantity("speed", "speed, m/s", bar=0.02, bar_for={"spacing": 0.01, "walls": None}),
+            Quantity("speed", "speed, m/s", bar=0.02, bar_for={"spacing": 0.01}),
         ),
         matrix=slab_matrix,
         measure=measure_slab,
@@ -135,7 +135,7 @@ CASES = (
         quantities=(
             Quantity(
                 "profile", "L2 of the height over it", bar=0.1,
-                bar_for={"spacing": 0.02, "walls": None}, relative=False,
+                bar_for={"spacing": 0.02}, relative=False,
             ),
             Quantity("front", "front, m"),
             Quantity("density", "largest error of the density", relative=False),

@@ -48,6 +48,7 @@ void describe(V& v, MpsSettings& s) {
            "Share of the density's error that a step takes away");
   v.choice("gradient", s.gradient, "Gradient of the pressure");
   v.choice("splitting", s.splitting, "Whether viscosity acts before the pressure or after it");
+  v.choice("coupling", s.coupling, "When pressure and viscosity of a step are found together");
   v.choice("surface", s.surface, "Where the pressure is zero at the free surface");
   v.number("surface_ratio", s.surface_ratio, "", between(0.5, 1.0),
            "Number density over that of a lattice, below which a particle is at the surface");

@@ -89,6 +89,11 @@ struct EnumNames<MpsGradient> {
 };
 
 template <>
+struct EnumNames<MpsCoupling> {
+  static constexpr Named<MpsCoupling> list[] = {
+      {MpsCoupling::none, "none"}, {MpsCoupling::stiff, "stiff"}, {MpsCoupling::always, "always"}};
+};
+template <>
 struct EnumNames<MpsSplitting> {
   static constexpr Named<MpsSplitting> list[] = {{MpsSplitting::viscosity_first, "viscosity_first"},
                                                  {MpsSplitting::pressure_first, "pressure_first"}};

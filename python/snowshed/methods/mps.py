@@ -13,6 +13,7 @@ MpsWalls = Literal["mirrors", "particles"]
 MpsSource = Literal["published", "compensated"]
 MpsGradient = Literal["published", "conservative", "corrected"]
 MpsSplitting = Literal["viscosity_first", "pressure_first"]
+MpsCoupling = Literal["none", "stiff", "always"]
 MpsSurface = Literal["published", "mirrored"]
 MpsOrder = Literal["published", "single_move"]
 MpsSpacing = Literal["none", "collision", "shifting"]
@@ -80,6 +81,8 @@ class MpsSettings(MethodSettings):
         Gradient of the pressure. Default "corrected".
     splitting : {"viscosity_first", "pressure_first"}
         Whether viscosity acts before the pressure or after it. Default "pressure_first".
+    coupling : {"none", "stiff", "always"}
+        When pressure and viscosity of a step are found together. Default "stiff".
     surface : {"published", "mirrored"}
         Where the pressure is zero at the free surface. Default "mirrored".
     surface_ratio : float
@@ -128,6 +131,7 @@ class MpsSettings(MethodSettings):
     compensation: Optional[float] = None
     gradient: Optional[MpsGradient] = None
     splitting: Optional[MpsSplitting] = None
+    coupling: Optional[MpsCoupling] = None
     surface: Optional[MpsSurface] = None
     surface_ratio: Optional[float] = None
     order: Optional[MpsOrder] = None

@@ -33,16 +33,30 @@ inline KernelConstants kernel_constants(int dimension, double radius) {
   return {radius, n, moment / n};
 }
 
-/// 2 d/(lambda n0) sum of w z over what is behind a wall, for the second layer of a lattice above
-/// it, where z is the way along the normal in l0; for all layers it is one.
-inline double second_layer_share(int dimension, const KernelConstants& k) {
+/// Calls visit(w, z) for what the second layer of a lattice would see beyond the layer next to it,
+/// where z is the way across in l0: behind a wall, or above a surface.
+template <class Visit>
+void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Visit& visit) {
   const int reach = int(std::ceil(k.radius)), across = dimension == 3 ? reach : 0;
-  double sum = 0;
   for (int z = 2; z <= reach; ++z)
     for (int y = -across; y <= across; ++y)
       for (int x = -reach; x <= reach; ++x)
-        sum += kernel_weight(std::sqrt(double(x * x + y * y + z * z)), k.radius) * z;
+        visit(kernel_weight(std::sqrt(double(x * x + y * y + z * z)), k.radius), z);
+}
+
+/// 2 d/(lambda n0) sum of w z over what is behind a wall, for the second layer of a lattice above
+/// it, where z is the way along the normal in l0; for all layers it is one.
+inline double second_layer_share(int dimension, const KernelConstants& k) {
+  double sum = 0;
+  visit_beyond_second_layer(dimension, k, [&](double w, int z) { sum += w * z; });
   return 2 * dimension / (k.lambda * k.number_density) * sum;
+}
+
+/// The part of n0 that the second layer of a lattice below a surface lacks.
+inline double second_layer_lack(int dimension, const KernelConstants& k) {
+  double sum = 0;
+  visit_beyond_second_layer(dimension, k, [&](double w, int) { sum += w; });
+  return sum / k.number_density;
 }
 
 }  // namespace snowshed

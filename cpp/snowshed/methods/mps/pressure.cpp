@@ -80,17 +80,26 @@ double compensation_time(const MpsModel<D>& model, double dt, const MpsParticles
                    : dt;
 }
 
+/// Sources smaller than this part of what the weight of a particle makes are rounding errors: no
+/// equation is solved to a part of them.
+constexpr double least_source = 1e-8;
+
 /// The right-hand side of lap p = ..., Pa/m2: equation (18), or after Tanaka and Masunaga (2010,
 /// doi:10.1016/j.jcp.2010.02.011) the divergence of the velocities and a share of the density's
 /// error. They weigh the divergence with one less the share, which would take as much from the
-/// pressure of snow at rest; here its weight is one.
+/// pressure of snow at rest; here its weight is one. At the surface neighbours are missing, and
+/// below it at most as many as below that of a lattice: what is missing beyond that is taken away,
+/// too (ours), so that room that is made there does not stay.
 template <int D>
 double source(const MpsModel<D>& model, double dt, double compensation_time,
               const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near, std::size_t i) {
   const MpsSettings& s = model.settings();
   double excess = near.density[i] / model.kernel.number_density - 1;
   if (s.source == MpsSource::published) return -s.density / (dt * dt) * excess;
-  if (near.below_surface[i]) excess = std::max(excess, 0.0);
+  if (near.surface[i])
+    excess = std::max(excess, 0.0);
+  else if (near.below_surface[i] && excess < 0)
+    excess = std::min(0.0, excess + model.surface_lack);
   return s.density / dt * divergence(model, particles, near, i) -
          s.compensation * s.density / (dt * compensation_time) * excess;
 }
@@ -202,7 +211,8 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
   if (work.enclosed) balance_sources(work, n);
   double square = 0;
   for (std::size_t i = 0; i < n; ++i) square += work.source[i] * work.source[i];
-  work.pressure_scale = std::sqrt(square);
+  const double weight = model.settings().density * model.gravity.norm() * model.settings().spacing;
+  work.pressure_scale = std::max(std::sqrt(square), least_source * weight * std::sqrt(double(n)));
   const SolveReport report = solve(model, work);
   const double least = work.enclosed ? *std::min_element(work.pressure.begin(),
                                                          work.pressure.begin() + std::ptrdiff_t(n))

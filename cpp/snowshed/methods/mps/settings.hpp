@@ -14,6 +14,9 @@ enum class MpsSource { published, compensated };
 enum class MpsGradient { published, conservative, corrected };
 /// Whether viscosity acts before the pressure, or after it and then the pressure once more.
 enum class MpsSplitting { viscosity_first, pressure_first };
+/// When pressure and viscosity of a step are found together: never, where the plastic viscosity is
+/// stiff, or always. Only where the pressure acts first.
+enum class MpsCoupling { none, stiff, always };
 /// Where the pressure is zero: at particles of low number density, or half a spacing above them.
 enum class MpsSurface { published, mirrored };
 /// When particles move: before the pressure is solved, or once at the end of the step.
@@ -57,6 +60,7 @@ struct MpsSettings {
   double compensation = 0.1;  // share of the density's error that a step takes away
   MpsGradient gradient = MpsGradient::corrected;
   MpsSplitting splitting = MpsSplitting::pressure_first;
+  MpsCoupling coupling = MpsCoupling::stiff;
   MpsSurface surface = MpsSurface::mirrored;
   double surface_ratio = 0.97;  // beta, of number densities
   MpsOrder order = MpsOrder::single_move;

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 #include "snowshed/particles/id_order.hpp"
 
@@ -27,6 +28,22 @@ constexpr double pressure_courant = 0.5;
 /// of 1e4 Pa s at rest was 1.4 % too low (ours).
 constexpr double expected_shear = 0.5;
 
+/// Of number densities below the surface, over n0, which need not be a lattice's.
+constexpr double surface_tolerance = 0.002;
+
+/// Pressure and viscosity are found together where a step's plastic viscosity over rho l0^2/dt is
+/// at least this, and the fluid creeps. Its root mean square of speeds u, over that of a fall that
+/// viscosity slows down within l0, rho g l0^2/eta, is more than this: in a stiff fluid at rest
+/// errors of the gradients would ask for large pressures, since these hardly move it. And
+/// rho u^3/(eta g), the square of the Reynolds number of a body so high that it flows at u, is less
+/// than this: fast flows lose no volume to viscosity, and need not pay, however small l0 is.
+constexpr double least_stiffness = 2, least_fall = 2, most_inertia = 1e-3;
+/// That iteration begins with this share of the last step's viscous force, so that errors of the
+/// pressure die out; ends when the force changes by less than this part of gravity; and stops where
+/// it does not, since any number of its iterations is better than one.
+constexpr double first_shear = 0.9, coupling_tolerance = 3e-3;
+constexpr int most_couplings = 20;
+
 std::string in_words(double value) {
   std::ostringstream text;
   text << value;
@@ -39,6 +56,11 @@ void require_converged(const SolveReport& report, const char* what, int most) {
       std::string("the ") + what + " equation has not converged: " + in_words(report.residual) +
       " of its right-hand side is left after " + std::to_string(report.iterations) +
       " iterations; allowed: " + std::to_string(most));
+}
+
+/// The last of several solves, with the iterations of all.
+void add_solve(const SolveReport& one, SolveReport& all) {
+  all = {all.iterations + one.iterations, one.residual, one.converged};
 }
 
 }  // namespace
@@ -59,6 +81,7 @@ MpsModel<D>::MpsModel(MpsOptions o)
       gravity(section<D>(options.gravity)),
       kernel(kernel_constants(D, options.settings.radius)),
       second_layer(second_layer_share(D, kernel)),
+      surface_lack(second_layer_lack(D, kernel) + surface_tolerance),
       rheology(Rheology::from(options.settings)),
       threads(threads_to_use(options.settings.threads)) {}
 
@@ -133,23 +156,72 @@ void MpsSolver<D>::act_viscosity(double dt, MpsState<D>& next) {
   for (std::size_t i = 0; i < p.size(); ++i) work_.viscous_change[i] = p.velocity[i] - before[i];
 }
 
+/// Whether pressure and viscosity of a step are found together.
+template <int D>
+bool MpsSolver<D>::couples(double dt) const {
+  const MpsSettings& s = model_.settings();
+  if (s.coupling != MpsCoupling::stiff) return s.coupling == MpsCoupling::always;
+  const double per_speed = s.viscosity / (s.density * s.spacing * s.spacing);  // 1/s
+  if (dt * per_speed < least_stiffness) return false;
+  double square = 0;
+  for (const VecD<D>& u : work_.before) square += u.squaredNorm();
+  const double speed = std::sqrt(square / double(work_.before.size()));
+  const double g = model_.gravity.norm();
+  return per_speed * speed > least_fall * g &&
+         s.density * speed * speed * speed < most_inertia * s.viscosity * g;
+}
+
 /// The pressure balances what it can before viscosity acts, so that snow that does not yield stays
-/// where it is. What viscosity compresses, the pressure of the next step takes away. Ours.
+/// where it is. It expects a viscous force where snow flows: a share of the last step's. What
+/// viscosity compresses nevertheless, the pressure of the next step takes away; or, where they are
+/// coupled, both act anew until the force is the expected one, accelerated. Ours.
 template <int D>
 void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
-  const int most = model_.settings().max_iterations;
   MpsParticles<D>& p = next.particles;
+  const std::size_t n = p.size();
+  const int threads = model_.threads_for(n);
+  const bool coupled = couples(dt);
   prepare_pressure(model_, p, work_);
-  const auto add_shear = [&](double factor) {
-    for_each_particle(p.size(), model_.threads_for(p.size()), [&](std::size_t i) {
-      if (p.moves(i) && model_.rheology.flows(p.rate[i])) p.velocity[i] += factor * dt * p.shear[i];
+  work_.falling = p.velocity;
+  work_.flowing.resize(n);
+  work_.expected.resize(n);
+  for_each_particle(n, threads, [&](std::size_t i) {
+    work_.flowing[i] = p.moves(i) && model_.rheology.flows(p.rate[i]);
+    work_.expected[i] = (coupled ? first_shear : expected_shear) * p.shear[i];
+  });
+  AndersonMixing<D> mixing;
+  SolveReport pressure, viscosity;
+  for (int k = 0;; ++k) {
+    for_each_particle(n, threads, [&](std::size_t i) {
+      if (!work_.flowing[i]) work_.expected[i].setZero();
+      p.velocity[i] = work_.falling[i] + dt * work_.expected[i];
     });
-  };
-  add_shear(expected_shear);
+    act_with_expected_shear(dt, next);
+    add_solve(next.solves.pressure, pressure);
+    add_solve(next.solves.viscosity, viscosity);
+    if (!coupled || k + 1 == most_couplings) break;
+    work_.found = p.shear;
+    double square = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!work_.flowing[i]) work_.found[i].setZero();
+      square += (work_.found[i] - work_.expected[i]).squaredNorm();
+    }
+    const double limit = coupling_tolerance * model_.gravity.norm();
+    if (square <= limit * limit * double(n)) break;
+    mixing.mix(work_.expected, work_.found);
+    std::swap(work_.expected, work_.found);
+  }
+  next.solves = {pressure, viscosity};
+}
+
+template <int D>
+void MpsSolver<D>::act_with_expected_shear(double dt, MpsState<D>& next) {
+  MpsParticles<D>& p = next.particles;
   next.solves.pressure = solve_pressure(model_, dt, p, work_);
-  require_converged(next.solves.pressure, "pressure", most);
+  require_converged(next.solves.pressure, "pressure", model_.settings().max_iterations);
   apply_pressure(model_, dt, p, work_);
-  add_shear(-expected_shear);
+  for_each_particle(p.size(), model_.threads_for(p.size()),
+                    [&](std::size_t i) { p.velocity[i] = work_.falling[i] + work_.change[i]; });
   act_viscosity(dt, next);
 }
 

@@ -47,7 +47,9 @@ class MpsSolver final : public MpsMethod {
   void accept(MpsState<D>);
   void attempt(double dt, MpsState<D>& next);
   void act_viscosity(double dt, MpsState<D>& next);
+  bool couples(double dt) const;
   void act_after_pressure(double dt, MpsState<D>& next);
+  void act_with_expected_shear(double dt, MpsState<D>& next);
   void act_before_pressure(double dt, MpsState<D>& next);
   void move(double dt, MpsParticles<D>&) const;
   void book_energy(MpsState<D>& next, double dt) const;

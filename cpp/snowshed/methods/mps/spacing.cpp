@@ -73,7 +73,8 @@ VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const MpsNeighbourhood<D
   return sum.stableNormalized();
 }
 
-/// Towards where there are fewer particles; at the surface only along it. Also snow at rest is
+/// Towards where there are fewer particles; at the surface only along it, and below it not towards
+/// it: the surface would rise. Also snow at rest is
 /// shifted, at the speed of a fall over l0: the corrected gradient does not keep its particles
 /// apart (ours).
 template <int D>
@@ -92,7 +93,8 @@ void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsW
     VecD<D> gradient = work.concentration[i];
     if (near.below_surface[i]) {
       const VecD<D> normal = inward<D>(work.concentration, near, i);
-      gradient -= gradient.dot(normal) * normal;
+      const double outwards = gradient.dot(normal);
+      gradient -= (near.surface[i] ? outwards : std::max(outwards, 0.0)) * normal;
     }
     const double travelled = (particles.velocity[i].norm() + fall) * dt / l0;
     VecD<D> way = -shift_factor * std::min(1.0, 10 * travelled) * l0 * l0 * gradient;

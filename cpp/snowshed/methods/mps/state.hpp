@@ -44,6 +44,7 @@ struct MpsModel {
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
   double second_layer;  // see second_layer_share
+  double surface_lack;  // of number density below a surface, over n0, see second_layer_lack
   Rheology rheology;
   const MpsKernels<D>& kernels = mps_kernels<D>();
   int threads;
@@ -125,9 +126,13 @@ struct MpsWork {
   MpsNeighbourhood<D> near;
   AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
   AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
+  AlignedVector<VecD<D>> falling;                     // what gravity alone makes of them, m/s
+  AlignedVector<VecD<D>> expected, found;             // viscous force over mass, m/s2
+  AlignedVector<std::uint8_t> flowing;                // whether it is expected of a particle
   AlignedVector<VecD<D>> viscous_change;              // of velocities by viscosity, m/s
   AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
   AlignedVector<double> drag;                         // of each contact with a wall, 1/s
+  AlignedVector<double> share, hold;                  // of walls' friction, see find_shares
   AlignedVector<VecD<D>> concentration;               // its gradient, 1/m, for shifting
   AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;

@@ -21,17 +21,61 @@ double share_of_mirror(double distance, double second) {
   return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
 }
 
-/// The same share with the wall particles that are there.
+/// How much of a wall particle's friction a particle takes that touches its obstacle, m; none where
+/// the wall particle is not of the layer at the surface.
 template <int D>
-double share_of_particles(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                          const MpsNeighbourhood<D>& near, std::size_t i, const WallContact<D>& c) {
+double hold(const MpsModel<D>& model, float weight, const VecD<D>& to_wall,
+            const WallContact<D>& c) {
+  const double below = -to_wall.dot(c.normal);
+  const bool at_surface = below - c.distance < model.settings().spacing;
+  return at_surface ? double(weight) * std::max(0.0, below) : 0.0;
+}
+
+/// What the particles that touch a wall particle's obstacle take of its friction together, but not
+/// less than most of what they do on a lattice: a wall particle beside the snow has less friction.
+template <int D>
+double hold_of_all(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                   const MpsNeighbourhood<D>& near, std::size_t wall) {
   double sum = 0;
-  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-    const std::size_t j = near.lists.neighbour(e);
-    if (particles.is_wall(j) && particles.event[j] == c.obstacle)
-      sum += double(near.weight[e]) * std::max(0.0, -near.way(e).dot(c.normal));
+  for (std::uint32_t e = near.lists.begin(wall); e < near.lists.end(wall); ++e) {
+    const std::size_t i = near.lists.neighbour(e);
+    const WallContact<D>* c =
+        particles.is_wall(i) ? nullptr : near.contact_with(i, particles.event[wall]);
+    if (c) sum += hold(model, near.weight[e], VecD<D>(-near.way(e)), *c);
   }
-  return model.laplacian() * model.settings().spacing * sum;
+  constexpr double touched = 0.8;
+  const double whole = (1 - model.second_layer) / (model.laplacian() * model.settings().spacing);
+  return std::max(sum, touched * whole);
+}
+
+/// The share of each contact with a wall in the wall's shear stress. That of a wall particle acts
+/// on the particles around it, and is theirs wholly.
+template <int D>
+void find_shares(const MpsModel<D>& model, const MpsParticles<D>& particles, MpsWork<D>& work) {
+  const MpsNeighbourhood<D>& near = work.near;
+  const int threads = model.threads_for(particles.size());
+  work.share.resize(near.contacts.all().size());
+  if (!model.has_wall_particles()) {
+    for (std::size_t k = 0; k < work.share.size(); ++k)
+      work.share[k] = share_of_mirror(near.contacts.all()[k].distance / model.settings().spacing,
+                                      model.second_layer);
+    return;
+  }
+  work.hold.resize(particles.size());
+  for_each_particle(particles.size(), threads, [&](std::size_t j) {
+    if (particles.is_wall(j)) work.hold[j] = hold_of_all(model, particles, near, j);
+  });
+  for_each_particle(particles.size(), threads, [&](std::size_t i) {
+    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
+      double sum = 0;
+      for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+        const std::size_t j = near.lists.neighbour(e);
+        if (particles.is_wall(j) && particles.event[j] == c->obstacle)
+          sum += hold(model, near.weight[e], near.way(e), *c) / work.hold[j];
+      }
+      work.share[near.contacts.place(c)] = sum;
+    }
+  });
 }
 
 /// The coupling of the velocities of each pair, from the viscosity between them: that of the shear
@@ -101,13 +145,10 @@ constexpr double sweep_damping = 0.9;
 /// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
 /// obstacle is not sticky, it is at most the obstacle's own friction.
 template <int D>
-double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                 const MpsNeighbourhood<D>& near, std::size_t i, const WallContact<D>& c) {
+double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, double share,
+                 std::size_t i, const WallContact<D>& c) {
   const MpsSettings& s = model.settings();
   const double height = std::max(c.distance, nearest_friction * s.spacing);
-  const double share = model.has_wall_particles()
-                           ? share_of_particles(model, particles, near, i, c)
-                           : share_of_mirror(c.distance / s.spacing, model.second_layer);
   if (share == 0) return 0;
   const VecD<D> relative = particles.velocity[i] - c.velocity;
   const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
@@ -182,7 +223,7 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
     if (moves)
       for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
         double& drag = work.drag[near.contacts.place(c)];
-        drag = wall_drag(model, particles, near, i, *c);
+        drag = wall_drag(model, particles, work.share[near.contacts.place(c)], i, *c);
         const Matrix along = dt * drag * (Matrix::Identity() - c->normal * c->normal.transpose());
         block += along;
         right += along * c->velocity;
@@ -264,6 +305,7 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
     for (std::size_t i = 0; i < start.size(); ++i)
       particles.velocity[i] = work.before[i] + first_guess * (start[i] - work.before[i]);
   const double scale = velocity_scale(model, dt, particles);
+  find_shares(model, particles, work);
   if (!newtonian) {
     prepare_rates(model, particles, work);
     work.near.lists.find_mirrors(model.threads_for(particles.size()));

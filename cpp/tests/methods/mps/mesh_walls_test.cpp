@@ -1,0 +1,125 @@
+// Walls by particles on what is no plane: terrain and an obstacle of triangles, in 3D.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "geometry/mesh_testing.hpp"
+#include "mps_testing.hpp"
+#include "snowshed/geometry/mesh_level_set.hpp"
+
+namespace snowshed {
+namespace {
+
+using geometry_testing::sphere_mesh;
+
+constexpr double bump = 0.01;  // m, by which the ground is higher and lower than zero
+
+/// Ground with bumps, 0.2 m long along both axes, from -0.1 to `edge` + 0.1 m.
+TriangleMesh bumpy_ground(double edge) {
+  constexpr std::uint32_t cells = 12;
+  constexpr double wave = 2 * 3.14159265358979 / 0.2;
+  TriangleMesh mesh;
+  const std::uint32_t side = cells + 1, layer = side * side;
+  for (const bool top : {false, true})
+    for (std::uint32_t j = 0; j < side; ++j)
+      for (std::uint32_t i = 0; i < side; ++i) {
+        const double x = -0.1 + (edge + 0.2) * i / cells, y = -0.1 + (edge + 0.2) * j / cells;
+        mesh.vertices.emplace_back(x, y,
+                                   top ? bump * std::sin(wave * x) * std::sin(wave * y) : -0.2);
+      }
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  for (std::uint32_t j = 0; j < cells; ++j)
+    for (std::uint32_t i = 0; i < cells; ++i) {
+      const std::uint32_t a = j * side + i;
+      quad(layer + a, layer + a + 1, layer + a + side + 1, layer + a + side);
+      quad(a, a + side, a + side + 1, a + 1);
+    }
+  for (std::uint32_t k = 0; k < cells; ++k) {
+    const std::uint32_t last = cells * side, right = cells;
+    quad(k, k + 1, layer + k + 1, layer + k);
+    quad(last + k + 1, last + k, layer + last + k, layer + last + k + 1);
+    quad((k + 1) * side, k * side, layer + k * side, layer + (k + 1) * side);
+    quad(k * side + right, (k + 1) * side + right, layer + (k + 1) * side + right,
+         layer + k * side + right);
+  }
+  return mesh;
+}
+
+Obstacle of_mesh(const char* name, TriangleMesh mesh) {
+  require_solid(mesh, name);
+  return {name, make_mesh(std::move(mesh)), {Condition::sticky, 0.0}, std::nullopt};
+}
+
+/// A tank with bumpy ground.
+MpsOptions bumpy_tank(double width) {
+  MpsOptions o = tank(3, width, 0.02);
+  o.settings.walls = MpsWalls::particles;
+  o.obstacles.front() = of_mesh("ground", bumpy_ground(width));
+  return o;
+}
+
+/// A block of which no particle is nearer to the obstacles than half a spacing.
+ParticleBatch block_outside(const MpsOptions& o, const Vec3& low, const Vec3& high) {
+  ParticleBatch batch = block_of(o, low, high);
+  const auto inside = [&](const Vec3& x) {
+    return std::any_of(o.obstacles.begin(), o.obstacles.end(), [&](const Obstacle& one) {
+      return one.shape->distance(x) < 0.5 * o.settings.spacing - 1e-9;
+    });
+  };
+  batch.positions.erase(std::remove_if(batch.positions.begin(), batch.positions.end(), inside),
+                        batch.positions.end());
+  return batch;
+}
+
+/// The least distance of a particle from an obstacle, m.
+double least_distance(const Method& method, const MpsOptions& o) {
+  double least = HUGE_VAL;
+  for (const Vec3& x : method.state().positions)
+    for (const Obstacle& one : o.obstacles) least = std::min(least, one.shape->distance(x));
+  return least;
+}
+
+// Its volume, over the ground's mean height of zero, says how high it stands.
+TEST(MpsMeshWalls, HoldWaterAtRestOnBumpyGround) {
+  constexpr double edge = 0.2;
+  MpsOptions o = bumpy_tank(edge);
+  o.settings.viscosity = 1;
+  const auto mps = make_mps(o);
+  mps->add(block_outside(o, {0, 0, -0.02}, {edge, edge, 0.16}));
+  const std::size_t count = mps->size();
+  while (mps->time() < 0.5) mps->step();
+  double height = 0;
+  for (const Vec3& x : mps->state().positions) height += x.z() / double(count);
+  const double depth = double(count) * std::pow(o.settings.spacing, 3) / (edge * edge);
+  EXPECT_NEAR(height, 0.5 * (depth - 0.25 * bump * bump / depth), 0.02 * depth);
+  EXPECT_LT(mps->motion(0).rms_speed, 0.02 * std::sqrt(9.81 * depth));
+  EXPECT_GT(least_distance(*mps, o), 0);
+  EXPECT_EQ(mps->size(), count);
+}
+
+TEST(MpsMeshWalls, LetNoSnowThrough) {
+  MpsOptions o = bumpy_tank(0.4);
+  o.settings.rheology = MpsRheology::bingham_dilatant;
+  o.settings.density = 200;
+  o.settings.viscosity = 0.012;
+  TriangleMesh ball = sphere_mesh(0.06, 6);
+  for (Vec3& x : ball.vertices) x += Vec3(0.22, 0.2, 0.05);
+  o.obstacles.push_back(of_mesh("ball", ball));
+  const auto mps = make_mps(o);
+  ParticleBatch snow = block_outside(o, {0, 0.1, 0}, {0.14, 0.3, 0.2});
+  snow.velocity = {2, 0, 0};
+  mps->add({snow});
+  double least = HUGE_VAL;
+  while (mps->time() < 0.15) {
+    mps->step();
+    least = std::min(least, least_distance(*mps, o));
+  }
+  EXPECT_GT(least, 0);
+  EXPECT_EQ(mps->size(), snow.positions.size());
+}
+
+}  // namespace
+}  // namespace snowshed
