@@ -2,6 +2,7 @@
 // written and read.
 #include "fuzzing.hpp"
 #include "snowshed/run/cost_estimate.hpp"
+#include "snowshed/run/mps_cost.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -14,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const InputError& error) {
       throw std::logic_error(std::string("a scene is refused once it is written: ") + error.what());
     }
-    estimate_cost(scene);
+    if (scene.uses<MpmSettings>()) estimate_cost(scene);
+    if (scene.uses<MpsSettings>()) estimate_mps_cost(scene, {100});
   });
   return 0;
 }
