@@ -108,14 +108,13 @@ def _used(measurements: Sequence[Measurement], quantities: Sequence[str]) -> lis
     return used
 
 
-#: What an evaluation takes beyond what snowshed always has.
-LIBRARIES = ("sklearn.gaussian_process", "emcee", "xarray", "arviz", "corner")
-
-
 def check_libraries() -> None:
     """Raise InputError if a library that `evaluate` needs is missing, before runs are computed."""
-    for library in LIBRARIES:
-        require(library, EXTRA, "calibration")
+    require("sklearn.gaussian_process", EXTRA, "calibration")
+    require("emcee", EXTRA, "calibration")
+    require("xarray", EXTRA, "calibration")
+    require("arviz", EXTRA, "calibration")
+    require("corner", EXTRA, "calibration")
 
 
 def evaluate(
