@@ -17,10 +17,10 @@ const std::vector<Quantity>& quantities() {
       {"coordination", "1", "Number of grains that a grain touches", 1, 1.0},
       {"thickness", "m", "Thickness of the snow, normal to the ground", 1, 0.005},
       {"pressure", "Pa", "Kirchhoff pressure, positive in compression", 1, 100.0},
-      {"deviatoric_stress", "Pa", "Deviatoric stress, von Mises equivalent of Kirchhoff's", 1,
-       100.0},
+      // Without a step, as below: a film does not keep them, which would be larger by half.
+      {"deviatoric_stress", "Pa", "Deviatoric stress, von Mises equivalent of Kirchhoff's"},
       {"preconsolidation_pressure", "Pa",
-       "Preconsolidation pressure, hardened or softened; 0: none, or elastic snow", 1, 100.0},
+       "Preconsolidation pressure, hardened or softened; 0: none, or elastic snow"},
       {"number_density", "1", "Number density of particles over that of a lattice", 1, 0.01},
       {"shear_rate", "1/s", "Shear rate, the root of 2 D:D"},
       {"apparent_viscosity", "Pa s", "Shear stress over shear rate"},
