@@ -49,6 +49,12 @@ def test_frames_agree_with_snapshots_of_the_same_times(snapped):
     assert film.time.attrs["units"] == "s" and film.density.attrs["units"] == "kg/m3"
 
 
+def test_a_film_keeps_few_quantities(snapped):
+    """Each takes half a byte of a particle in a frame; the demo's page must stay below 5 MB."""
+    kept = {one.name for one in snapped.film.quantities}
+    assert kept == {"speed", "density", "pressure", "volumetric_plastic_strain"}
+
+
 def test_a_film_that_was_cut_while_it_was_written_goes_on_to_the_same_bytes(tmp_path, tiny):
     halted = []
 
