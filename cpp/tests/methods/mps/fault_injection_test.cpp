@@ -1,12 +1,9 @@
 // What becomes of a fluid of particles when memory is short: every allocation of a run with
 // erosion, both kinds of walls and a checkpoint fails once. Each failed call must leave the snow as
 // it was, and the run must end with the same bits.
-#include <gtest/gtest.h>
-
-#include "core/allocation_fault.hpp"
 #include "io/temporary_folder.hpp"
+#include "methods/fault_story.hpp"
 #include "methods/mps/mps_testing.hpp"
-#include "snowshed/io/binary_archive.hpp"
 
 namespace snowshed {
 namespace {
@@ -24,38 +21,22 @@ MpsOptions eroding_tank(int dimension, MpsWalls walls) {
   return o;
 }
 
-class MpsStory {
- public:
+struct MpsStory : FaultStory<MpsMethod> {
   MpsStory(const MpsOptions& o, std::filesystem::path file)
-      : mps(make_mps(o)), file_(std::move(file)) {
+      : FaultStory(make_mps(o), std::move(file)) {
     const ParticleBatch low = block_of(o, Vec3::Zero(), {0.2, 0.1, 0.05});
     ParticleBatch column = block_of(o, {0, 0, 0.05}, {0.1, 0.1, 0.15});
     column.velocity = {1, 0, -0.5};
-    calls = {[this, low, column] { mps->add({low, column}); }};
+    call([low, column](MpsMethod& m) { m.add({low, column}); });
     take_steps(4);
-    calls.push_back([this] { save(); });
-    calls.push_back([this] { mps->add_velocity(std::vector<Vec3>(mps->size(), Vec3(0.1, 0, 0))); });
+    save();
+    call([](MpsMethod& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(0.1, 0, 0))); });
     take_steps(3);
-    calls.push_back([this] { mps->load(BinaryReader::load(file_)); });
+    load();
     take_steps(2);
-    calls.push_back([this, column] { mps->replace({column}); });
+    call([column](MpsMethod& m) { m.replace({column}); });
     take_steps(2);
   }
-
-  std::unique_ptr<MpsMethod> mps;
-  std::vector<std::function<void()>> calls;
-
- private:
-  void take_steps(int count) {
-    for (int i = 0; i < count; ++i) calls.push_back([this] { mps->step(); });
-  }
-  void save() const {
-    BinaryWriter out;
-    mps->save(out);
-    out.save(file_);
-  }
-
-  std::filesystem::path file_;
 };
 
 void expect_same_snow(const MpsMethod& now, const MpsMethod& wanted) {
@@ -78,20 +59,8 @@ TEST_P(MpsFaults, leave_no_trace) {
   for (const int dimension : {2, 3}) {
     const MpsOptions o = eroding_tank(dimension, GetParam());
     MpsStory whole(o, path("whole")), faulty(o, path("faulty"));
-    for (std::size_t k = 0; k < whole.calls.size(); ++k) {
-      for (std::int64_t n = 1;; ++n) {
-        const FaultOutcome outcome = with_allocation_fault(n, faulty.calls[k]);
-        if (outcome == FaultOutcome::no_fault) break;
-        ++faults;
-        SCOPED_TRACE("call " + std::to_string(k) + ", allocation " + std::to_string(n));
-        // Streams do without some memory; what reads or writes a file may be done again.
-        if (outcome == FaultOutcome::done_without) whole.calls[k]();
-        expect_same_snow(*faulty.mps, *whole.mps);
-        if (HasFailure()) return;
-      }
-      whole.calls[k]();
-    }
-    expect_same_snow(*faulty.mps, *whole.mps);
+    faults += fail_every_allocation(whole, faulty, expect_same_snow, [](const MpsMethod&) {});
+    if (HasFailure()) return;
   }
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 500);

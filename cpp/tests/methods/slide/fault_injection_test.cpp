@@ -1,47 +1,30 @@
 // What becomes of a slide when memory is short: every allocation of a run that entrains snow and
 // loses some over the edge of the terrain fails once. Each failed call must leave the snow as it
 // was, and the run must end with the same bits.
-#include <gtest/gtest.h>
-
-#include "core/allocation_fault.hpp"
 #include "io/temporary_folder.hpp"
+#include "methods/fault_story.hpp"
 #include "methods/slide/slide_testing.hpp"
-#include "snowshed/io/binary_archive.hpp"
 
 namespace snowshed {
 namespace {
 
-class SlideStory {
- public:
-  explicit SlideStory(std::filesystem::path file) : file_(std::move(file)) {
-    SlideOptions o = slide_on(inclined(38, 45, 25), rectangle(56.3, 18.3, 84.3, 32.3));
-    o.areas.entrainment = {rectangle(60, 6, 86, 42, 0.3)};
-    o.areas.resistance = {rectangle(70, 10, 80, 20)};
-    slide = make_slide(o);
-    calls = {[this] { slide->add(slide->seed()); }};
+std::unique_ptr<SlideMethod> eroding_slide() {
+  SlideOptions o = slide_on(inclined(38, 45, 25), rectangle(56.3, 18.3, 84.3, 32.3));
+  o.areas.entrainment = {rectangle(60, 6, 86, 42, 0.3)};
+  o.areas.resistance = {rectangle(70, 10, 80, 20)};
+  return make_slide(o);
+}
+
+struct SlideStory : FaultStory<SlideMethod> {
+  explicit SlideStory(std::filesystem::path file) : FaultStory(eroding_slide(), std::move(file)) {
+    call([](SlideMethod& m) { m.add(m.seed()); });
     take_steps(60);
-    calls.push_back([this] { save(); });
-    calls.push_back(
-        [this] { slide->add_velocity(std::vector<Vec3>(slide->size(), Vec3(12, 0, -9))); });
+    save();
+    call([](SlideMethod& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(12, 0, -9))); });
     take_steps(150);  // until snow has left the terrain
-    calls.push_back([this] { slide->load(BinaryReader::load(file_)); });
+    load();
     take_steps(60);
   }
-
-  std::unique_ptr<SlideMethod> slide;
-  std::vector<std::function<void()>> calls;
-
- private:
-  void take_steps(int count) {
-    for (int i = 0; i < count; ++i) calls.push_back([this] { slide->step(); });
-  }
-  void save() const {
-    BinaryWriter out;
-    slide->save(out);
-    out.save(file_);
-  }
-
-  std::filesystem::path file_;
 };
 
 /// All that can be seen of a slide. Where the particles are stored may change.
@@ -63,24 +46,12 @@ class SlideFaults : public TemporaryFolder {};
 
 TEST_F(SlideFaults, leave_no_trace) {
   SlideStory whole(path("whole")), faulty(path("faulty"));
-  int faults = 0;
   double most_left = 0;
-  for (std::size_t k = 0; k < whole.calls.size(); ++k) {
-    for (std::int64_t n = 1;; ++n) {
-      const FaultOutcome outcome = with_allocation_fault(n, faulty.calls[k]);
-      if (outcome == FaultOutcome::no_fault) break;
-      ++faults;
-      SCOPED_TRACE("call " + std::to_string(k) + ", allocation " + std::to_string(n));
-      // Streams do without some memory; what reads or writes a file may be done again.
-      if (outcome == FaultOutcome::done_without) whole.calls[k]();
-      expect_same_slide(*faulty.slide, *whole.slide);
-      if (HasFailure()) return;
-    }
-    whole.calls[k]();
-    most_left = std::max(most_left, whole.slide->mass_balance().left);
-  }
-  expect_same_slide(*faulty.slide, *whole.slide);
-  EXPECT_GT(whole.slide->mass_balance().entrained, 0);
+  const int faults = fail_every_allocation(
+      whole, faulty, expect_same_slide,
+      [&](const SlideMethod& m) { most_left = std::max(most_left, m.mass_balance().left); });
+  if (HasFailure()) return;
+  EXPECT_GT(whole.method->mass_balance().entrained, 0);
   EXPECT_GT(most_left, 0);
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 500);
