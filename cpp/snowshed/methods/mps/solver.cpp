@@ -187,13 +187,13 @@ void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
   work_.expected.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
     work_.flowing[i] = p.moves(i) && model_.rheology.flows(p.rate[i]);
-    work_.expected[i] = (coupled ? first_shear : expected_shear) * p.shear[i];
+    work_.expected[i].setZero();
+    if (work_.flowing[i]) work_.expected[i] = (coupled ? first_shear : expected_shear) * p.shear[i];
   });
   AndersonMixing<D> mixing;
   SolveReport pressure, viscosity;
   for (int k = 0;; ++k) {
     for_each_particle(n, threads, [&](std::size_t i) {
-      if (!work_.flowing[i]) work_.expected[i].setZero();
       p.velocity[i] = work_.falling[i] + dt * work_.expected[i];
     });
     act_with_expected_shear(dt, next);
