@@ -1,6 +1,7 @@
 """Scenes small enough to run within a second or two."""
 
 import importlib
+import signal
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -13,6 +14,12 @@ from snowshed.io.vdb import available
 
 # What writes and reads OpenVDB files, where snowshed was built without it.
 collect_ignore = [] if available() else ["io/vdb/test_vdb_files.py"]
+
+# A shell in the background has them ignored, which the commands under test would keep.
+for _signal in (signal.SIGINT, signal.SIGHUP):
+    if signal.getsignal(_signal) is signal.SIG_IGN:
+        _heard = signal.default_int_handler if _signal == signal.SIGINT else signal.SIG_DFL
+        signal.signal(_signal, _heard)
 
 
 def tiny_scene(**values: object) -> Scene:
