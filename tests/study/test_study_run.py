@@ -229,9 +229,11 @@ def test_no_worker_outlives_a_killed_study(tmp_path, whole):
     wait_for(lambda: not any(Path(f"/proc/{child}").exists() for child in children))
 
 
-def test_ctrl_c_says_how_to_go_on_and_the_rest_is_computed(tmp_path, whole):
-    folder = tmp_path / "store"
-    command = snowshed_command("study", "run", whole[0], "-o", folder, *COMPUTE)
+def test_ctrl_c_says_how_to_go_on_and_the_rest_is_computed(tmp_path):
+    study, folder = tmp_path / "study.toml", tmp_path / "store"
+    longer = KILLABLE.replace("events = 2", "events = 4").replace("dx = 0.02", "dx = 0.01")
+    study.write_text(longer.replace("seeds = 2", "seeds = 1"))  # none ends before it is stopped
+    command = snowshed_command("study", "run", study, "-o", folder, *COMPUTE)
     wait_for(lambda: list(folder.glob("running/*/results/scene.json")))
     command.send_signal(signal.SIGINT)
     out, err = command.communicate(timeout=120)
