@@ -31,14 +31,16 @@ class FaultStory {
     for (int i = 0; i < count; ++i) call([](M& m) { m.step(); });
   }
   void save() {
-    call([this](M& m) {
-      BinaryWriter out;
-      m.save(out);
-      out.save(file_);
-    });
+    call([this](M&) { save_now(); });
   }
   void load() {
     call([this](M& m) { m.load(BinaryReader::load(file_)); });
+  }
+
+  void save_now() const {
+    BinaryWriter out;
+    method->save(out);
+    out.save(file_);
   }
 
   std::unique_ptr<M> method;

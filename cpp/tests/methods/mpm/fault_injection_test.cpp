@@ -1,17 +1,14 @@
 // What becomes of the solver when a call fails. Where memory is short, at every allocation of a run
 // with everything in it, the call must leave the state as it was, and the run must end with the
 // same bits.
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <csignal>
-#include <functional>
 
-#include "core/allocation_fault.hpp"
 #include "io/temporary_folder.hpp"
+#include "methods/fault_story.hpp"
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
-#include "snowshed/io/binary_archive.hpp"
 
 namespace snowshed {
 namespace {
@@ -64,67 +61,53 @@ struct Case {
   bool moving;     // whether an obstacle moves, which takes memory in each step
 };
 
+std::unique_ptr<Method> rough_floor(const Case& c) {
+  MpmOptions o = options_for({2, Precision::float32}, dx);
+  o.snows[0].youngs_modulus = 1e5;
+  o.numerics.threads = c.threads;
+  o.numerics.sleep_speed = 0.1;
+  o.numerics.sleep_time = 0.005;
+  o.energy = true;
+  std::vector<Obstacle> obstacles{
+      fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.4)};
+  if (c.moving) {
+    Obstacle paddle = fixed(make_box(Vec3(-0.1, 0, 0.05), Vec3(0.0, 1, 0.08)), Condition::sticky);
+    MotionSpec motion;
+    motion.velocity = Vec3(0.5, 0, 0);
+    paddle.motion.emplace(motion);
+    obstacles.push_back(paddle);
+  }
+  return make_mpm(o, std::move(obstacles));
+}
+
 /// Snow that lies on a rough floor, is hit by more, settles, is kicked, replaced and restored.
-class Story {
- public:
-  Story(const Case& c, const std::filesystem::path& file) : file_(file) {
-    MpmOptions o = options_for({2, Precision::float32}, dx);
-    o.snows[0].youngs_modulus = 1e5;
-    o.numerics.threads = c.threads;
-    o.numerics.sleep_speed = 0.1;
-    o.numerics.sleep_time = 0.005;
-    o.energy = true;
-    std::vector<Obstacle> obstacles{
-        fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.4)};
-    if (c.moving) {
-      Obstacle paddle = fixed(make_box(Vec3(-0.1, 0, 0.05), Vec3(0.0, 1, 0.08)), Condition::sticky);
-      MotionSpec motion;
-      motion.velocity = Vec3(0.5, 0, 0);
-      paddle.motion.emplace(motion);
-      obstacles.push_back(paddle);
-    }
-    solver = make_mpm(o, std::move(obstacles));
+struct Story : FaultStory<Method> {
+  Story(const Case& c, std::filesystem::path file) : FaultStory(rough_floor(c), std::move(file)) {
     const ParticleBatch wall = filled_box(2, Vec3(0, 0, 0), Vec3(0.24, 0, 0.08), c.spacing);
     ParticleBatch lump = filled_box(2, Vec3(0.3, 0, 0.005), Vec3(0.4, 0, 0.05), c.spacing);
     lump.velocity = Vec3(-3, 0, -1);
-    calls = {[=] { solver->add({wall}); }};
-    step(c.steps);
-    calls.push_back([=] { solver->add({lump, lump_above(lump)}); });
-    step(10);
-    calls.push_back([=] { save(); });
-    calls.push_back([=] {
-      solver->settle(std::vector<double>(solver->size(), 1e-3),
-                     std::vector<double>(solver->size(), -0.01));
+    call([=](Method& m) { m.add({wall}); });
+    take_steps(c.steps);
+    call([=](Method& m) { m.add({lump, lump_above(lump)}); });
+    take_steps(10);
+    save();
+    call([](Method& m) {
+      m.settle(std::vector<double>(m.size(), 1e-3), std::vector<double>(m.size(), -0.01));
     });
-    step(3);
-    calls.push_back(
-        [=] { solver->add_velocity(std::vector<Vec3>(solver->size(), Vec3(-0.2, 0, 0))); });
-    step(3);
-    calls.push_back([=] { solver->replace({lump, wall}); });
-    step(3);
-    calls.push_back([=] { solver->load(BinaryReader::load(file_)); });
-    step(10);
+    take_steps(3);
+    call([](Method& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(-0.2, 0, 0))); });
+    take_steps(3);
+    call([=](Method& m) { m.replace({lump, wall}); });
+    take_steps(3);
+    load();
+    take_steps(10);
   }
-
-  void save() const {
-    BinaryWriter out;
-    solver->save(out);
-    out.save(file_);
-  }
-
-  std::unique_ptr<Method> solver;
-  std::vector<std::function<void()>> calls;
 
  private:
   static ParticleBatch lump_above(ParticleBatch lump) {
     for (Vec3& x : lump.positions) x.z() += 0.06;
     return lump;
   }
-  void step(int count) {
-    for (int i = 0; i < count; ++i) calls.push_back([this] { solver->step(); });
-  }
-
-  std::filesystem::path file_;
 };
 
 class AllocationFaults : public TemporaryFolder {
@@ -135,31 +118,14 @@ class AllocationFaults : public TemporaryFolder {
 };
 
 int AllocationFaults::try_all(const Case& c) {
-  Story whole(c, path("whole"));
-  std::vector<Seen> before;  // each call
-  for (const auto& call : whole.calls) {
-    before.emplace_back(*whole.solver);
-    call();
-  }
-  const Seen end(*whole.solver);
+  Story whole(c, path("whole")), faulty(c, path("faulty"));
+  const int faults = fail_every_allocation(
+      whole, faulty,
+      [](const Method& now, const Method& wanted) { expect_same(Seen(now), Seen(wanted)); },
+      [](const Method&) {});
+  if (HasFailure()) return faults;
+  const Seen now(*faulty.method), end(*whole.method);
   EXPECT_EQ(end.counters.slept_updates > 0, c.steps > 64);
-
-  int faults = 0;
-  Story faulty(c, path("faulty"));
-  for (std::size_t k = 0; k < faulty.calls.size(); ++k) {
-    Seen expected = before[k];
-    for (std::int64_t n = 1;; ++n) {
-      const FaultOutcome outcome = with_allocation_fault(n, faulty.calls[k]);
-      if (outcome == FaultOutcome::no_fault) break;
-      ++faults;
-      SCOPED_TRACE("call " + std::to_string(k) + ", allocation " + std::to_string(n));
-      // Streams do without some memory; what reads or writes a file may be done again.
-      if (outcome == FaultOutcome::done_without) expected = Seen(*faulty.solver);
-      expect_same(Seen(*faulty.solver), expected);
-      if (HasFailure()) return faults;
-    }
-  }
-  const Seen now(*faulty.solver);
   expect_same_bits(now.particles, end.particles);
   expect_same_counters(now.counters, end.counters);
   EXPECT_EQ(now.energy.residual(), end.energy.residual());
@@ -193,20 +159,20 @@ TEST_F(AllocationFaults, AFullDiskLeavesTheLastCheckpointAsItWas) {
   std::signal(SIGXFSZ, SIG_IGN);  // else it ends the process instead of failing the write
   Story story({1, 0.0025, 12, false}, path("checkpoint"));
   for (std::size_t k = 0; k < 4; ++k) story.calls[k]();
-  story.save();
+  story.save_now();
   const std::string good = content(path("checkpoint"));
-  story.solver->step();
+  story.method->step();
   int faults = 0;
   for (std::size_t bytes = 0; bytes < good.size(); bytes += good.size() / 20) {
     const FullDisk disk(bytes);
-    EXPECT_THROW(story.save(), FileError) << bytes;
+    EXPECT_THROW(story.save_now(), FileError) << bytes;
     ++faults;
   }
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 20);
   EXPECT_EQ(number_of_files(), 1u);
   EXPECT_EQ(content(path("checkpoint")), good);
-  story.save();
+  story.save_now();
   EXPECT_NE(content(path("checkpoint")), good);
 }
 
