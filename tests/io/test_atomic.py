@@ -2,11 +2,14 @@
 
 import errno
 import os
+import signal
+import subprocess
+import sys
 
 import pytest
 
 from snowshed import InputError
-from snowshed.io.atomic import remove_leftovers, replacing, write_text
+from snowshed.io.atomic import remove_leftovers, replacing, replacing_folder, write_text
 
 
 def test_what_is_no_file_is_refused_and_stays(tmp_path):
@@ -54,3 +57,26 @@ def test_leftovers_are_removed_where_the_folder_is_ours(tmp_path):
     assert [path.parent.name for path in tmp_path.rglob(leftover)] == ["elsewhere"]
     assert len([*tmp_path.rglob(".partial-of-the-user")]) == 3
     remove_leftovers(tmp_path / "none", deep=True)
+
+
+def test_a_folder_that_a_killed_process_left_is_removed_and_one_of_a_living_process_stays(tmp_path):
+    target, other = tmp_path / "new", tmp_path / ".partial-0123456789abcdef-another"
+    other.mkdir()
+    fill = (
+        "import os, signal, sys\n"
+        "from snowshed.io.atomic import replacing_folder\n"
+        "with replacing_folder(sys.argv[1]) as beside:\n"
+        "    (beside / 'a').write_text('half')\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    died = subprocess.run([sys.executable, "-c", fill, target], check=False)
+    assert died.returncode == -signal.SIGKILL
+    [abandoned] = tmp_path.glob(".partial-*-new")
+    with replacing_folder(target) as beside:
+        assert not abandoned.exists()
+        with pytest.raises(ZeroDivisionError), replacing_folder(target):
+            assert beside.is_dir()
+            raise ZeroDivisionError
+        (beside / "a").write_text("whole")
+    assert {path.name for path in tmp_path.iterdir()} == {"new", other.name}
+    assert (target / "a").read_text() == "whole"

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import errno
+import fcntl
 import os
 import re
 import secrets
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Union
 
@@ -46,9 +47,7 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     path = Path(os.path.realpath(path))
     if path.is_symlink():
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
-    # Nobody can guess the name, so nobody can plant a link there; the core removes what a killed
-    # process leaves in a results folder by this name.
-    beside = path.with_name(f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}")
+    beside = path.with_name(_partial(path))
     try:
         os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield beside
@@ -67,6 +66,8 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
 def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """Yield a new folder beside `path`; it takes the place of `path`, if empty, on success.
 
+    What killed processes left of such a folder is removed.
+
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
@@ -78,14 +79,38 @@ def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """
     path = Path(os.path.realpath(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}")
+    _remove_abandoned_folders(path)
+    beside = path.with_name(_partial(path))
     try:
         beside.mkdir()
-        yield beside
-        beside.replace(path)
+        with _locked(beside):
+            yield beside
+            beside.replace(path)
         _flush(path.parent)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
+
+
+def _remove_abandoned_folders(path: Path) -> None:
+    """Remove what dead processes left of folders that were to become `path`."""
+    for other in path.parent.iterdir():
+        leftover = LEFTOVER.match(other.name)
+        if not leftover or other.name[leftover.end() :] != _end_of(path.name):
+            continue
+        # It is no folder, it is a link, or a living process holds its lock.
+        with suppress(OSError), _locked(other):
+            shutil.rmtree(other, ignore_errors=True)
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder, which the system releases when the process dies."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def remove_leftovers(folder: Path, *, deep: bool = False) -> None:
@@ -99,6 +124,15 @@ def remove_leftovers(folder: Path, *, deep: bool = False) -> None:
         for path in map(Path(inside).joinpath, names):
             if LEFTOVER.match(path.name) and path.is_file() and not path.is_symlink():
                 path.unlink(missing_ok=True)
+
+
+def _partial(path: Path) -> str:
+    """Return a name for what becomes `path`.
+
+    Nobody can guess it, so nobody can plant a link there. The core removes files of such names from
+    results folders.
+    """
+    return f".partial-{secrets.token_hex(8)}-{_end_of(path.name)}"
 
 
 def _end_of(name: str) -> str:
