@@ -123,8 +123,9 @@ def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) 
     if limit > 0.0:
         axes.axvspan(0.0, unit[1] * limit, color=PHASES[0], lw=0, zorder=0)
         axes.text(
-            0.5 * unit[1] * limit, 0.97, "elastic", ha="center", va="top", color=INK,
+            0.5 * unit[1] * limit, 0.02, "elastic", ha="center", va="bottom", color=INK,
             fontsize=8.5, transform=axes.get_xaxis_transform(),
+            bbox={"facecolor": PHASES[0], "edgecolor": "none", "pad": 1.5},
         )  # fmt: skip
     axes.set(xlabel=f"strain of the first stage{unit[0]}", ylabel="stress, kPa")
     axes.set_title(title)
