@@ -45,6 +45,22 @@ void weigh_pairs(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int thread
   });
 }
 
+/// Walls are at the surface only where snow is: else disorder of the snow beside a wall would let
+/// all pressure out through it.
+template <int D>
+void leave_walls_within(const MpsParticles<D>& particles, MpsNeighbourhood<D>& near, int threads) {
+  const auto is_snow_at_surface = [&](std::size_t j) {
+    return !particles.is_wall(j) && near.surface[j];
+  };
+  for_each_particle(particles.size(), threads, [&](std::size_t i) {
+    if (!near.surface[i] || !particles.is_wall(i)) return;
+    bool beside = false;
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i) && !beside; ++e)
+      beside = is_snow_at_surface(near.lists.neighbour(e));
+    near.surface[i] = beside;
+  });
+}
+
 /// Equation (7), with the images of the neighbours, and equation (19).
 template <int D>
 void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
@@ -69,6 +85,7 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
     }
     near.surface[i] = surface;
   });
+  if (model.has_wall_particles() && !published) leave_walls_within(particles, near, threads);
   near.below_surface.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     bool below = near.surface[i];
