@@ -39,9 +39,11 @@ void weigh_pairs(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int thread
   near.weight.resize(near.lists.pairs());
   near.slope.resize(near.lists.pairs());
   near.weight_sum.resize(near.lists.size());
+  near.filling_sum.resize(near.lists.size());
   for_each_piece(near.lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.weigh(near.rows(), near.offsets().data(), float(model.reach()),
-                        near.weight.data(), near.slope.data(), near.weight_sum.data(), begin, end);
+                        near.weight.data(), near.slope.data(), near.weight_sum.data(),
+                        near.filling_sum.data(), begin, end);
   });
 }
 
@@ -68,12 +70,16 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
   const double n0 = model.kernel.number_density, ratio = model.settings().surface_ratio;
   const bool published = model.settings().surface == MpsSurface::published;
   near.density.resize(particles.size());
+  near.filling.resize(particles.size());
   near.surface.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
-    double n = double(near.weight_sum[i]);
-    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
+    double n = double(near.weight_sum[i]), filling = 1 + double(near.filling_sum[i]);
+    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
       n += double(m->weight);
+      filling += filling_weight(double(m->weight));
+    }
     near.density[i] = n;
+    near.filling[i] = filling / model.kernel.filling;
     bool surface = particles.kind[i] != MpsKind::dummy_wall && n < ratio * n0;
     if (surface && !published && n >= sparse * n0) {
       VecD<D> side = VecD<D>::Zero();
