@@ -24,10 +24,10 @@ struct RowMoments {
 
 template <int D>
 struct MpsKernels {
-  /// Weights r_e/r - 1, weights over r^2, and the sum of the weights of each row. `offset`: of each
-  /// pair, by axes.
+  /// Weights r_e/r - 1, weights over r^2, and the sums of the weights and of filling_weight of each
+  /// row. `offset`: of each pair, by axes.
   void (*weigh)(const PairRows&, const float* const* offset, float reach, float* weight,
-                float* slope, float* sum, std::ptrdiff_t begin, std::ptrdiff_t end);
+                float* slope, float* sum, float* filling, std::ptrdiff_t begin, std::ptrdiff_t end);
   void (*sum_moments)(const PairRows&, const float* const* offset, const float* weight,
                       const float* slope, RowMoments<D>*, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// q = diagonal p - sum of weight p; a row whose diagonal is zero is left out.

@@ -11,16 +11,27 @@ struct KernelConstants {
   double radius;          // r_e
   double number_density;  // n0, equation (7)
   double lambda;          // equation (6)
+  double filling;         // sum of filling_weight, with the particle's own
 };
 
 /// w(r) = r_e/r - 1 within r_e, equation (3) of Saito and others (2012).
 inline double kernel_weight(double r, double radius) { return r < radius ? radius / r - 1 : 0.0; }
 
+/// Wendland's function (1995, doi:10.1007/BF02123482) of w(r) as above; 1 at r = 0. Its sum over a
+/// particle and its neighbours says how much of the room around is filled, however they lie: in
+/// hexagons it is 1.0005 times that of squares that fill as much, and in disorder 1.001 to 1.01
+/// times. The sum of w, which is the more curved, is 0.993 times it, or 1.003 to 1.025 times (2D,
+/// radius 2.1): snow of which that is n0 takes up more room than on its lattice.
+inline double filling_weight(double w) {
+  const double q = 1 / (1 + w), rest = (1 - q) * (1 - q);
+  return rest * rest * (1 + 4 * q);
+}
+
 /// n0 and lambda of a particle within a square or cubic lattice of spacing 1. A neighbour exactly
 /// at the radius weighs nothing.
 inline KernelConstants kernel_constants(int dimension, double radius) {
   const int reach = int(std::ceil(radius));
-  double n = 0, moment = 0;
+  double n = 0, moment = 0, filling = 1;
   for (int z = -reach; z <= reach; ++z)
     for (int y = dimension == 3 ? -reach : 0; y <= (dimension == 3 ? reach : 0); ++y)
       for (int x = -reach; x <= reach; ++x) {
@@ -29,8 +40,9 @@ inline KernelConstants kernel_constants(int dimension, double radius) {
         const double w = kernel_weight(std::sqrt(r2), radius);
         n += w;
         moment += w * r2;
+        filling += filling_weight(w);
       }
-  return {radius, n, moment / n};
+  return {radius, n, moment / n, filling};
 }
 
 /// Calls visit(w, z) for what the second layer of a lattice would see beyond the layer next to it,
@@ -52,11 +64,17 @@ inline double second_layer_share(int dimension, const KernelConstants& k) {
   return 2 * dimension / (k.lambda * k.number_density) * sum;
 }
 
-/// The part of n0 that the second layer of a lattice below a surface lacks.
-inline double second_layer_lack(int dimension, const KernelConstants& k) {
-  double sum = 0;
-  visit_beyond_second_layer(dimension, k, [&](double w, int) { sum += w; });
-  return sum / k.number_density;
+/// The part of n0 and of the filling that the second layer of a lattice below a surface lacks.
+struct SurfaceLack {
+  double number, filling;
+};
+inline SurfaceLack second_layer_lack(int dimension, const KernelConstants& k) {
+  SurfaceLack sum{};
+  visit_beyond_second_layer(dimension, k, [&](double w, int) {
+    sum.number += w / k.number_density;
+    sum.filling += filling_weight(w) / k.filling;
+  });
+  return sum;
 }
 
 }  // namespace snowshed

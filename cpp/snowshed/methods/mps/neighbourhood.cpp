@@ -39,9 +39,27 @@ void weigh_pairs(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int thread
   near.weight.resize(near.lists.pairs());
   near.slope.resize(near.lists.pairs());
   near.weight_sum.resize(near.lists.size());
+  near.filling_sum.resize(near.lists.size());
   for_each_piece(near.lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.weigh(near.rows(), near.offsets().data(), float(model.reach()),
-                        near.weight.data(), near.slope.data(), near.weight_sum.data(), begin, end);
+                        near.weight.data(), near.slope.data(), near.weight_sum.data(),
+                        near.filling_sum.data(), begin, end);
+  });
+}
+
+/// Walls are at the surface only where snow is: else disorder of the snow beside a wall would let
+/// all pressure out through it.
+template <int D>
+void leave_walls_within(const MpsParticles<D>& particles, MpsNeighbourhood<D>& near, int threads) {
+  const auto is_snow_at_surface = [&](std::size_t j) {
+    return !particles.is_wall(j) && near.surface[j];
+  };
+  for_each_particle(particles.size(), threads, [&](std::size_t i) {
+    if (!near.surface[i] || !particles.is_wall(i)) return;
+    bool beside = false;
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i) && !beside; ++e)
+      beside = is_snow_at_surface(near.lists.neighbour(e));
+    near.surface[i] = beside;
   });
 }
 
@@ -52,12 +70,16 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
   const double n0 = model.kernel.number_density, ratio = model.settings().surface_ratio;
   const bool published = model.settings().surface == MpsSurface::published;
   near.density.resize(particles.size());
+  near.filling.resize(particles.size());
   near.surface.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
-    double n = double(near.weight_sum[i]);
-    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
+    double n = double(near.weight_sum[i]), filling = 1 + double(near.filling_sum[i]);
+    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
       n += double(m->weight);
+      filling += filling_weight(double(m->weight));
+    }
     near.density[i] = n;
+    near.filling[i] = filling / model.kernel.filling;
     bool surface = particles.kind[i] != MpsKind::dummy_wall && n < ratio * n0;
     if (surface && !published && n >= sparse * n0) {
       VecD<D> side = VecD<D>::Zero();
@@ -69,6 +91,7 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
     }
     near.surface[i] = surface;
   });
+  if (model.has_wall_particles() && !published) leave_walls_within(particles, near, threads);
   near.below_surface.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     bool below = near.surface[i];

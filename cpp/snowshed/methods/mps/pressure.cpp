@@ -84,24 +84,40 @@ double compensation_time(const MpsModel<D>& model, double dt, const MpsParticles
 /// equation is solved to a part of them.
 constexpr double least_source = 1e-8;
 
+/// Of densities below the surface, which need not be a lattice's.
+constexpr double surface_tolerance = 0.002;
+
+/// How much denser the snow is than on a lattice, for the compensation (ours): by how its room is
+/// filled; beside wall particles by its number density, which grows faster where particles come
+/// near to the wall. At the surface neighbours are missing, and below it at most as many as below
+/// that of a lattice: what is missing beyond that counts, so that room that is made there does not
+/// stay.
+template <int D>
+double compensated_excess(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                          const MpsNeighbourhood<D>& near, std::size_t i) {
+  const bool beside_walls = model.has_wall_particles() &&
+                            (particles.is_wall(i) || near.contacts.begin(i) < near.contacts.end(i));
+  const double excess =
+      (beside_walls ? near.density[i] / model.kernel.number_density : near.filling[i]) - 1;
+  if (near.surface[i]) return std::max(excess, 0.0);
+  if (!near.below_surface[i] || excess > 0) return excess;
+  const double lack = beside_walls ? model.surface_lack.number : model.surface_lack.filling;
+  return std::min(0.0, excess + lack + surface_tolerance);
+}
+
 /// The right-hand side of lap p = ..., Pa/m2: equation (18), or after Tanaka and Masunaga (2010,
 /// doi:10.1016/j.jcp.2010.02.011) the divergence of the velocities and a share of the density's
 /// error. They weigh the divergence with one less the share, which would take as much from the
-/// pressure of snow at rest; here its weight is one. At the surface neighbours are missing, and
-/// below it at most as many as below that of a lattice: what is missing beyond that is taken away,
-/// too (ours), so that room that is made there does not stay.
+/// pressure of snow at rest; here its weight is one.
 template <int D>
 double source(const MpsModel<D>& model, double dt, double compensation_time,
               const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near, std::size_t i) {
   const MpsSettings& s = model.settings();
-  double excess = near.density[i] / model.kernel.number_density - 1;
-  if (s.source == MpsSource::published) return -s.density / (dt * dt) * excess;
-  if (near.surface[i])
-    excess = std::max(excess, 0.0);
-  else if (near.below_surface[i] && excess < 0)
-    excess = std::min(0.0, excess + model.surface_lack);
+  if (s.source == MpsSource::published)
+    return -s.density / (dt * dt) * (near.density[i] / model.kernel.number_density - 1);
   return s.density / dt * divergence(model, particles, near, i) -
-         s.compensation * s.density / (dt * compensation_time) * excess;
+         s.compensation * s.density / (dt * compensation_time) *
+             compensated_excess(model, particles, near, i);
 }
 
 /// A fluid without a free surface knows its pressure up to a constant: takes the mean from the

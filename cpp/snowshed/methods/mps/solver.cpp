@@ -28,9 +28,6 @@ constexpr double pressure_courant = 0.5;
 /// of 1e4 Pa s at rest was 1.4 % too low (ours).
 constexpr double expected_shear = 0.5;
 
-/// Of number densities below the surface, over n0, which need not be a lattice's.
-constexpr double surface_tolerance = 0.002;
-
 /// Pressure and viscosity are found together where a step's plastic viscosity over rho l0^2/dt is
 /// at least this, and the fluid creeps. Its root mean square of speeds u, over that of a fall that
 /// viscosity slows down within l0, rho g l0^2/eta, is more than this: in a stiff fluid at rest
@@ -81,7 +78,7 @@ MpsModel<D>::MpsModel(MpsOptions o)
       gravity(section<D>(options.gravity)),
       kernel(kernel_constants(D, options.settings.radius)),
       second_layer(second_layer_share(D, kernel)),
-      surface_lack(second_layer_lack(D, kernel) + surface_tolerance),
+      surface_lack(second_layer_lack(D, kernel)),
       rheology(Rheology::from(options.settings)),
       threads(threads_to_use(options.settings.threads)) {}
 

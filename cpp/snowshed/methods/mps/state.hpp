@@ -43,8 +43,8 @@ struct MpsModel {
   MpsOptions options;
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
-  double second_layer;  // see second_layer_share
-  double surface_lack;  // of number density below a surface, over n0, see second_layer_lack
+  double second_layer;       // see second_layer_share
+  SurfaceLack surface_lack;  // below a surface that is no lattice's
   Rheology rheology;
   const MpsKernels<D>& kernels = mps_kernels<D>();
   int threads;
@@ -90,8 +90,10 @@ struct MpsNeighbourhood {
   AlignedVector<float> even_weight;           // w of each pair in Laplacians of velocities
   AlignedVector<float> snow_slope;            // the same, but zero for walls, see slope_without
   AlignedVector<float> weight_sum;            // of each particle's pairs
+  AlignedVector<float> filling_sum;           // of filling_weight of each particle's pairs
   AlignedVector<RowMoments<D>> moments;       // of each particle's pairs
   AlignedVector<double> density;              // number density
+  AlignedVector<double> filling;              // over that of a lattice, see filling_weight
   AlignedVector<std::uint8_t> surface;        // whether a particle lies at the free surface
   AlignedVector<std::uint8_t> below_surface;  // or has such a neighbour
   AlignedVector<Eigen::Matrix<double, D, D>> correction;  // of gradients, see find_corrections

@@ -105,12 +105,14 @@ WallParticles<D>::WallParticles(const std::vector<Obstacle>& obstacles, double s
     if (const auto box = shape.oriented_box()) {
       Vec3 half = box->half;
       if (D == 2) half.y() = 0;
-      lattice = {box->axes, box->center - box->axes * half};
+      lattice.axes = box->axes;
+      lattice.origin = box->center - box->axes * half;
     } else if (!is_bounded(shape.bounds(), D)) {
       const Vec3 normal = shape.normal(Vec3::Zero());
-      lattice = {frame_with(normal, D), -shape.distance(Vec3::Zero()) * normal};
+      lattice.axes = frame_with(normal, D);
+      lattice.origin = -shape.distance(Vec3::Zero()) * normal;
     }
-    lattices_.push_back(lattice);
+    lattices_.push_back(std::move(lattice));
     if (obstacles[k].motion)
       groups_.push_back({{k}, {}, {}});
     else
@@ -147,11 +149,30 @@ void WallParticles<D>::push_apart(const LevelSet& shape, std::vector<VecD<D>>& p
   }
 }
 
+/// Where a point of a lattice goes, if it lies in a layer.
+template <int D>
+typename WallParticles<D>::Placed WallParticles<D>::place(const LevelSet& shape,
+                                                          const Vec3& x) const {
+  const double distance = shape.distance(x), thin = shape.inradius();
+  double target = thin;
+  if (thin >= 0.5 * spacing_) {
+    if (!(distance < 0) || !(distance >= -layers_ * spacing_)) return {};
+    target = (std::min(std::floor(-distance / spacing_), layers_ - 1.0) + 0.5) * spacing_;
+  } else if (!(distance + thin < 0.5 * spacing_)) {
+    return {};
+  }
+  const Vec3 normal = shape.normal(x);
+  if (!(section<D>(normal).squaredNorm() > 1e-12)) return {};
+  const Vec3 moved = x - (distance + target) * normal;
+  if (std::abs(shape.distance(moved) + target) > layer_tolerance * spacing_) return {};
+  return {true, section<D>(moved), target};
+}
+
 /// The particles whose lattice points lie in a cell.
 template <int D>
-void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) const {
+void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) {
   const LevelSet& shape = *(*obstacles_)[number].shape;
-  const Lattice& lattice = lattices_[number];
+  Lattice& lattice = lattices_[number];
   const double thin = shape.inradius();
   VecD<D> corner;
   for (int d = 0; d < D; ++d) corner[d] = cell[std::size_t(d)] * edge_;
@@ -171,20 +192,12 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
     for (int d = 0; d < D; ++d) index[d] = k[std::size_t(d)] + 0.5;
     const Vec3 x = lattice.origin + spacing_ * (lattice.axes * embed(index));
     if ((x - middle).norm() > around) return;
-    const double distance = shape.distance(x);
-    double target = thin;
-    if (thin >= 0.5 * spacing_) {
-      if (!(distance < 0) || !(distance >= -deepest)) return;
-      target = (std::min(std::floor(-distance / spacing_), layers_ - 1.0) + 0.5) * spacing_;
-    } else if (!(distance + thin < 0.5 * spacing_)) {
-      return;
-    }
-    const Vec3 normal = shape.normal(x);
-    if (!(section<D>(normal).squaredNorm() > 1e-12)) return;
-    const Vec3 moved = x - (distance + target) * normal;
-    if (std::abs(shape.distance(moved) + target) > layer_tolerance * spacing_) return;
-    points.push_back(section<D>(moved));
-    depth.push_back(target);
+    const auto [found, is_new] = lattice.placed.try_emplace(k);
+    Placed& placed = found->second;
+    if (is_new) placed = place(shape, x);
+    if (!placed.exists) return;
+    points.push_back(placed.position);
+    depth.push_back(placed.depth);
     own.push_back(cell_of<D>(section<D>(x), edge_) == cell);
   });
   push_apart(shape, points, depth);
@@ -303,6 +316,8 @@ std::size_t WallParticles<D>::bytes() const {
   for (const Group& group : groups_)
     for (const auto& cell : group.made)
       total += sizeof(cell) + cell.second.capacity() * sizeof(Point);
+  for (const Lattice& lattice : lattices_)
+    total += lattice.placed.size() * sizeof(std::pair<const Cell, Placed>);
   return total;
 }
 

@@ -44,10 +44,18 @@ class WallParticles {
     MpsKind kind;
   };
   using Points = std::vector<Point>;
-  /// The lattice from which the particles of an obstacle are made.
+  /// A point of a lattice, moved to the middle of its layer, where it has one.
+  struct Placed {
+    bool exists = false;
+    VecD<D> position;  // m
+    double depth = 0;  // m, of the layer
+  };
+  /// The lattice from which the particles of an obstacle are made. Cells near to each other ask for
+  /// the same points, and each asks a shape that may be of many triangles.
   struct Lattice {
     Mat3 axes = Mat3::Identity();
     Vec3 origin = Vec3::Zero();
+    std::unordered_map<Cell, Placed, Hash> placed{};
   };
   /// Obstacles that do not move against each other, and the particles of cells that have been
   /// asked for.
@@ -59,7 +67,8 @@ class WallParticles {
 
   const Points& points_in(Group&, const Cell&);
   bool is_near_wall(Group&, const Cell&);
-  void make(std::uint32_t obstacle, const Cell&, Points&) const;
+  Placed place(const LevelSet&, const Vec3& lattice_point) const;
+  void make(std::uint32_t obstacle, const Cell&, Points&);
   void push_apart(const LevelSet&, std::vector<VecD<D>>& points,
                   const std::vector<double>& depth) const;
   void append_group(Group&, const RigidPose&, double period, const std::vector<Cell>& snow_cells,

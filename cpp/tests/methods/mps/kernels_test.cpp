@@ -18,7 +18,7 @@ struct Cloud {
   NeighbourLists<D> lists;
   std::array<const float*, D> offset;
   PairRows rows;
-  AlignedVector<float> weight, slope, sum;
+  AlignedVector<float> weight, slope, sum, filling;
 
   explicit Cloud(std::size_t count) : position(count), velocity(count) {
     std::mt19937 random(7);
@@ -40,8 +40,9 @@ struct Cloud {
     weight.resize(lists.pairs());
     slope.resize(lists.pairs());
     sum.resize(count);
+    filling.resize(count);
     mps_kernels<D>().weigh(rows, offset.data(), float(radius), weight.data(), slope.data(),
-                           sum.data(), 0, std::ptrdiff_t(count));
+                           sum.data(), filling.data(), 0, std::ptrdiff_t(count));
   }
   std::ptrdiff_t size() const { return std::ptrdiff_t(position.size()); }
   template <class F>
@@ -63,17 +64,19 @@ TYPED_TEST(MpsKernelsOf, WeighPairsAndSumThem) {
   AlignedVector<RowMoments<D>> moments(150);
   mps_kernels<D>().sum_moments(cloud.rows, cloud.offset.data(), cloud.weight.data(),
                                cloud.slope.data(), moments.data(), 0, cloud.size());
-  std::vector<double> sum(150), last(150), side(150);
+  std::vector<double> sum(150), filling(150), last(150), side(150);
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     const VecD<D> r = cloud.position[j] - cloud.position[i];
     const double w = kernel_weight(std::max(r.norm(), 0.01 * cloud.radius), cloud.radius);
     EXPECT_NEAR(cloud.weight[e], w, 1e-5 * (1 + w));
     sum[i] += w;
+    filling[i] += filling_weight(w);
     last[i] += w / r.squaredNorm() * r[D - 1] * r[D - 1];
     side[i] += w * r[0];
   });
   for (std::size_t i = 0; i < 150; ++i) {
     EXPECT_NEAR(cloud.sum[i], sum[i], 1e-4 * (1 + sum[i]));
+    EXPECT_NEAR(cloud.filling[i], filling[i], 1e-5 * (1 + filling[i]));
     EXPECT_NEAR(moments[i].slope[RowMoments<D>::half - 1], last[i], 1e-3 * (1 + last[i]));
     EXPECT_NEAR(moments[i].side[0], side[i], 1e-4 * (1 + sum[i]));
   }

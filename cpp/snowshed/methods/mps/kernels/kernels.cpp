@@ -9,9 +9,10 @@ namespace {
 template <int D>
 struct Rows {
   static void weigh(const PairRows& rows, const float* const* offset, float reach, float* weight,
-                    float* slope, float* sum, std::ptrdiff_t begin, std::ptrdiff_t end) {
+                    float* slope, float* sum, float* filling, std::ptrdiff_t begin,
+                    std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
-      weigh_row<D>(rows, offset, reach, weight, slope, sum, std::size_t(i));
+      weigh_row<D>(rows, offset, reach, weight, slope, sum[i], filling[i], std::size_t(i));
   }
   static void sum_moments(const PairRows& rows, const float* const* offset, const float* weight,
                           const float* slope, RowMoments<D>* moments, std::ptrdiff_t begin,

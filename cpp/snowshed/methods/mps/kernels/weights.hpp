@@ -7,9 +7,10 @@ SNOWSHED_VARIANT_BEGIN
 
 template <int D>
 SNOWSHED_INLINE void weigh_row(const PairRows& rows, const float* const* offset, float reach,
-                               float* weight, float* slope, float* sum, std::size_t row) {
+                               float* weight, float* slope, float& sum, float& filling,
+                               std::size_t row) {
   using V = SimdPack<float>;
-  V total{};
+  V total{}, filled{};
   for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
     V square{};
     SNOWSHED_UNROLL
@@ -18,12 +19,17 @@ SNOWSHED_INLINE void weigh_row(const PairRows& rows, const float* const* offset,
       square += r * r;
     }
     square = max(square, broadcast<V>(1e-4f * reach * reach));  // particles in the same place
-    const V w = max(V(reach / sqrt(square) - 1.0f), V{});
+    const V distance = sqrt(square);
+    const V w = max(V(reach / distance - 1.0f), V{});
     pack.store(weight, w);
     pack.store(slope, V(w / square));
-    total += select(first_lanes<V>(pack.count), w, V{});
+    const V q = distance / reach, left = max(V(1.0f - q), V{}), rest = left * left;
+    const auto used = first_lanes<V>(pack.count);
+    total += select(used, w, V{});
+    filled += select(used, V(rest * rest * (1.0f + 4.0f * q)), V{});
   });
-  sum[row] = sum_lanes(total);
+  sum = sum_lanes(total);
+  filling = sum_lanes(filled);
 }
 
 template <int D>
