@@ -61,4 +61,8 @@ inline MpsOptions channel(double length, double half_gap, int across, double for
   return o;
 }
 
+inline void flow_until(Method& method, double time) {
+  while (method.time() < time) method.step();
+}
+
 }  // namespace snowshed
