@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mps_testing.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
@@ -73,6 +75,32 @@ TEST(MpsWallParticles, CoverAnInclineEvenly) {
     touched += std::abs(embed(p.position[i]).dot(along)) < 0.1 && depth < 1;
   }
   EXPECT_EQ(touched, 20);
+}
+
+// On curved walls, where points of a lattice are moved onto layers and would crowd there.
+TEST(MpsWallParticles, OfABallStandApartInTheMiddleOfLayers) {
+  constexpr double spacing = 0.01, radius = 0.06;
+  MpsOptions o = tank(3, 1, spacing);
+  o.obstacles = {
+      {"ball", make_sphere(Vec3::Zero(), radius), {Condition::sticky, 0.0}, std::nullopt}};
+  ParticleBatch around = block_of(o, Vec3::Constant(-0.08), Vec3::Constant(0.08));
+  std::vector<Vec3> snow;
+  for (const Vec3& x : around.positions)
+    if (x.norm() > radius + 0.5 * spacing) snow.push_back(x);
+  MpsParticles<3> p = at_rest<3>(snow);
+  WallParticles<3> walls(o.obstacles, spacing, 2.1 * spacing);
+  walls.append_near(0, 0, 1, p);
+  double least = HUGE_VAL;
+  for (std::size_t i = snow.size(); i < p.size(); ++i) {
+    const double depth = (radius - p.position[i].norm()) / spacing;
+    EXPECT_NEAR(depth - std::floor(depth), 0.5, 1e-9);
+    for (std::size_t j = i + 1; j < p.size(); ++j)
+      least = std::min(least, (p.position[i] - p.position[j]).norm());
+  }
+  const double area = 4 * 3.14159265358979 * (radius - 0.5 * spacing) * (radius - 0.5 * spacing);
+  const auto inner = std::count(p.kind.begin(), p.kind.end(), MpsKind::inner_wall);
+  EXPECT_GT(least, 0.7 * spacing);
+  EXPECT_NEAR(double(inner) * spacing * spacing, area, 0.1 * area);
 }
 
 // What is thinner than a particle has a single layer, through which no pressure goes.
