@@ -22,8 +22,8 @@ def write_report(
 ) -> None:
     """Write clearance.html, clearance.csv and clearance.json into a folder.
 
-    Beside them stands a page for each panel on which the slide-offs of its worst winter move. What a
-    killed process left half-written in the folder is removed.
+    Beside them stands a page for each panel on which the slide-offs of its worst winter move. What
+    a killed process left half-written in the folder is removed.
 
     Parameters
     ----------
