@@ -61,6 +61,13 @@ inline MpsOptions channel(double length, double half_gap, int across, double for
   return o;
 }
 
+/// A body from the origin to a corner, at rest.
+inline std::unique_ptr<MpsMethod> body_of(const MpsOptions& o, const Vec3& corner) {
+  std::unique_ptr<MpsMethod> mps = make_mps(o);
+  mps->add(block_of(o, Vec3::Zero(), corner));
+  return mps;
+}
+
 inline void flow_until(Method& method, double time) {
   while (method.time() < time) method.step();
 }

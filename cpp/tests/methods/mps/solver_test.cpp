@@ -80,8 +80,7 @@ TEST(MpsSolver, FirstStepOfAColumnIsHydrostatic) {
   MpsOptions o = tank(2, 0.2, 0.01);
   o.settings.pressure_tolerance = 1e-6;
   o.settings.viscosity = 1e-6;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {0.2, 0, 0.2}));
+  const auto mps = body_of(o, {0.2, 0, 0.2});
   mps->step();
   EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.005);
   EXPECT_LT(mps->motion(0).rms_speed, 0.05 * 9.81 * mps->time_step());
@@ -93,8 +92,7 @@ TEST(MpsSolver, ColumnsOfWaterStayAtRest) {
     const double width = dimension == 2 ? 0.2 : 0.1, spacing = dimension == 2 ? 0.01 : 0.02;
     MpsOptions o = tank(dimension, width, spacing);
     o.settings.viscosity = 1e-3;
-    const auto mps = make_mps(o);
-    mps->add(block_of(o, Vec3::Zero(), {width, width, 0.2}));
+    const auto mps = body_of(o, {width, width, 0.2});
     flow_until(*mps, 1);
     EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01) << dimension;
     EXPECT_LT(mps->motion(0).rms_speed, 0.02 * std::sqrt(9.81 * 0.2)) << dimension;
@@ -113,8 +111,7 @@ double highest(const Method& method) {
 TEST(MpsSolver, AColumnOfWaterDoesNotRise) {
   MpsOptions o = tank(2, 0.2, 0.01);
   o.settings.viscosity = 1e-3;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {0.2, 0, 0.2}));
+  const auto mps = body_of(o, {0.2, 0, 0.2});
   flow_until(*mps, 10);
   EXPECT_NEAR(highest(*mps), 0.195, 0.01 * 0.2);
   EXPECT_LT(mps->motion(0).rms_speed, 0.006);
@@ -127,8 +124,7 @@ TEST(MpsSolver, TheFloorOfWallParticlesBearsTheWaterInEveryStep) {
   MpsOptions o = tank(2, 0.2, 0.01);
   o.settings.walls = MpsWalls::particles;
   o.settings.viscosity = 1e-3;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {0.2, 0, 0.2}));
+  const auto mps = body_of(o, {0.2, 0, 0.2});
   while (mps->time() < 10) {
     mps->step();
     ASSERT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01) << mps->time();
@@ -142,8 +138,7 @@ TEST(MpsSolver, AStiffColumnIsHydrostatic) {
     MpsOptions o = tank(2, 0.2, 0.01);
     o.settings.walls = walls;
     o.settings.viscosity = 1e4;
-    const auto mps = make_mps(o);
-    mps->add(block_of(o, Vec3::Zero(), {0.2, 0, 0.2}));
+    const auto mps = body_of(o, {0.2, 0, 0.2});
     for (int k = 0; k < 20; ++k) {
       mps->step();
       EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01) << int(walls);
@@ -157,8 +152,7 @@ TEST(MpsSolver, ColumnsBetweenWallParticlesStayAtRest) {
     MpsOptions o = tank(dimension, 0.1, dimension == 2 ? 0.01 : 0.02);
     o.settings.walls = MpsWalls::particles;
     o.settings.viscosity = 1e-3;
-    const auto mps = make_mps(o);
-    mps->add(block_of(o, Vec3::Zero(), {0.1, 0.1, 0.2}));
+    const auto mps = body_of(o, {0.1, 0.1, 0.2});
     mps->step();
     EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01) << dimension;
     flow_until(*mps, 0.3);
@@ -173,8 +167,7 @@ TEST(MpsSolver, StiffSnowPressesOnTheFloor) {
   MpsOptions o = tank(3, 0.1, 0.02);
   o.settings.rheology = MpsRheology::bingham;
   o.settings.cohesion = 100;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {0.1, 0.1, 0.2}));
+  const auto mps = body_of(o, {0.1, 0.1, 0.2});
   flow_until(*mps, 0.1);
   EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01);
   EXPECT_LT(mps->motion(0).rms_speed, 1e-6);
@@ -186,8 +179,7 @@ TEST(MpsSolver, AllPreconditionersFindTheSamePressure) {
     MpsOptions o = tank(2, 0.2, 0.01);
     o.settings.pressure_tolerance = 1e-9;
     o.settings.preconditioner = MpsPreconditioner(k);
-    const auto mps = make_mps(o);
-    mps->add(block_of(o, Vec3::Zero(), {0.1, 0, 0.2}));
+    const auto mps = body_of(o, {0.1, 0, 0.2});
     mps->step();
     pressures[k] = mps->state().pressures;
     EXPECT_LE(mps->report().pressure_residual, 1e-9);
@@ -201,8 +193,7 @@ TEST(MpsSolver, AllPreconditionersFindTheSamePressure) {
 TEST(MpsSolver, NothingFallsThroughWalls) {
   MpsOptions o = tank(2, 0.4, 0.01);
   o.settings.viscosity = 1e-3;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {0.1, 0, 0.2}));
+  const auto mps = body_of(o, {0.1, 0, 0.2});
   while (mps->time() < 0.4) mps->step();
   for (const Vec3& x : mps->state().positions) {
     EXPECT_GT(x.x(), 0);
@@ -215,8 +206,7 @@ TEST(MpsSolver, AnUnsolvedEquationLeavesTheStateAsItWas) {
   MpsOptions o = tank(2, 0.2, 0.01);
   o.settings.max_iterations = 1;
   o.settings.pressure_tolerance = 1e-9;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {0.2, 0, 0.2}));
+  const auto mps = body_of(o, {0.2, 0, 0.2});
   EXPECT_THROW(mps->step(), SimulationError);
   EXPECT_EQ(mps->time(), 0);
   EXPECT_EQ(mps->motion(0).rms_speed, 0);
@@ -232,8 +222,7 @@ TEST_F(MpsCheckpoint, SameBitsOnAnyThreadsAndAfterResuming) {
     o.settings.threads = threads;
     o.settings.rheology = MpsRheology::bingham_dilatant;
     o.settings.yield_iterations = 2;  // enough for the same bits
-    auto mps = make_mps(o);
-    mps->add(block_of(o, Vec3::Zero(), {1.0, 0, 1.0}));
+    auto mps = body_of(o, {1.0, 0, 1.0});
     for (int k = 0; k < 6; ++k) {
       if (resume && k == 3) {
         BinaryWriter out;
@@ -286,8 +275,7 @@ TEST(MpsSolver, SlabOnAnInclineAcceleratesByCoulombsFriction) {
     for (const double degrees : {35.0, 45.0}) {
       MpsOptions o = incline(degrees, 0, 0.01);
       o.settings.walls = walls;
-      const auto mps = make_mps(o);
-      mps->add(block_of(o, Vec3::Zero(), {o.period, 0, 0.1}));
+      const auto mps = body_of(o, {o.period, 0, 0.1});
       flow_until(*mps, 0.3);
       const double expected = frictional_acceleration(o) * mps->time();
       EXPECT_NEAR(mean_speed(*mps), expected, 0.02 * expected) << degrees << ' ' << int(walls);
@@ -320,8 +308,7 @@ TEST(MpsSolver, FlowsBetweenWallParticlesWithoutASurface) {
   MpsOptions o = channel(0.2, 0.1, 10, 100);
   o.settings.walls = MpsWalls::particles;
   o.settings.cohesion = 5;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {0.2, 0, 0.2}));
+  const auto mps = body_of(o, {0.2, 0, 0.2});
   EXPECT_NO_THROW(flow_until(*mps, 0.1));
   EXPECT_GT(mean_speed(*mps), 0);
 }
@@ -336,8 +323,7 @@ FlowErrors bingham_poiseuille(int across, double length) {
   o.settings.cohesion = yield;
   o.settings.density = 100;
   o.gravity = {force / o.settings.density, 0, 0};
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {length, 0, 2 * half_gap}));
+  const auto mps = body_of(o, {length, 0, 2 * half_gap});
   flow_until(*mps, 1.5);
   const double plug = yield / force;
   const double expected = force * (half_gap - plug) * (half_gap - plug) / 2;
@@ -370,8 +356,7 @@ TEST(MpsSolver, BinghamSlumpComesToRest) {
   o.settings.cohesion = 100;
   o.settings.friction_angle = 0;
   o.settings.viscosity = 5;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {0.3, 0, 0.2}));
+  const auto mps = body_of(o, {0.3, 0, 0.2});
   flow_until(*mps, 2);
   const double scale = 2 * 100 / (1000 * 9.81), area = 0.3 * 0.2;
   const double front = std::pow(1.5 * area / std::sqrt(scale), 2.0 / 3);
@@ -393,8 +378,7 @@ TEST(MpsSolver, DamBreakKeepsItsEnergy) {
   const double width = 0.05715;
   MpsOptions o = tank(2, 6 * width, width / 20);  // half as wide particles lose half as much
   o.settings.viscosity = 1e-3;
-  const auto mps = make_mps(o);
-  mps->add(block_of(o, Vec3::Zero(), {width, 0, 2 * width}));
+  const auto mps = body_of(o, {width, 0, 2 * width});
   const auto energy = [&] {
     const ParticleState s = mps->state();
     double sum = 0;

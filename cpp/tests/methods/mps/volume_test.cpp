@@ -30,8 +30,7 @@ TEST(MpsVolume, AStiffSlumpKeepsItsVolume) {
     MpsOptions o = tank(2, 10, 0.02);
     o.settings.walls = walls;
     o.settings.viscosity = 1e4;
-    const auto mps = make_mps(o);
-    mps->add(block_of(o, Vec3::Zero(), {0.3, 0, 0.2}));
+    const auto mps = body_of(o, {0.3, 0, 0.2});
     double largest = 0;
     while (mps->time() < 2) {
       mps->step();
@@ -83,8 +82,7 @@ TEST(MpsVolume, ABinghamHeapKeepsItsVolume) {
     o.settings.cohesion = 100;
     o.settings.friction_angle = 0;
     o.settings.viscosity = 5;
-    const auto mps = make_mps(o);
-    mps->add(block_of(o, Vec3::Zero(), {0.3, 0, 0.2}));
+    const auto mps = body_of(o, {0.3, 0, 0.2});
     flow_until(*mps, 0.5);  // still fast, and most disordered
     EXPECT_NEAR(mean_room(*mps, 0.01), 1, 0.015) << int(walls);
     for (const double time : {1.0, 2.0}) {
