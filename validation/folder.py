@@ -55,7 +55,7 @@ class SuiteFolder:
     def reopen(cls, path: Path) -> SuiteFolder:
         """Open the folder of an earlier suite; raises InputError if it is not one."""
         folder = cls(path)
-        remove_leftovers(path, deep=True)
+        remove_leftovers(path)
         if not folder.measurements.path.is_file():
             raise InputError(f"{path}: nothing to resume; it holds no measurements.jsonl")
         return folder

@@ -52,31 +52,69 @@ def test_leftovers_are_removed_where_the_folder_is_ours(tmp_path):
             (folder / name).touch()
     (ours / "link").symlink_to(elsewhere)
     remove_leftovers(ours)
-    assert {path.parent.name for path in tmp_path.rglob(leftover)} == {"elsewhere", "deeper"}
-    remove_leftovers(ours, deep=True)
     assert [path.parent.name for path in tmp_path.rglob(leftover)] == ["elsewhere"]
     assert len([*tmp_path.rglob(".partial-of-the-user")]) == 3
-    remove_leftovers(tmp_path / "none", deep=True)
+    remove_leftovers(tmp_path / "none")
 
 
-def test_a_folder_that_a_killed_process_left_is_removed_and_one_of_a_living_process_stays(tmp_path):
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_what_a_killed_process_left_is_removed_and_what_a_living_one_writes_stays(kind, tmp_path):
     target, other = tmp_path / "new", tmp_path / ".partial-0123456789abcdef-another"
     other.mkdir()
+    writing = replacing_folder if kind == "folder" else replacing
     fill = (
         "import os, signal, sys\n"
-        "from snowshed.io.atomic import replacing_folder\n"
-        "with replacing_folder(sys.argv[1]) as beside:\n"
-        "    (beside / 'a').write_text('half')\n"
+        f"from snowshed.io.atomic import {writing.__name__}\n"
+        f"with {writing.__name__}(sys.argv[1]) as beside:\n"
         "    os.kill(os.getpid(), signal.SIGKILL)\n"
     )
     died = subprocess.run([sys.executable, "-c", fill, target], check=False)
     assert died.returncode == -signal.SIGKILL
     [abandoned] = tmp_path.glob(".partial-*-new")
-    with replacing_folder(target) as beside:
+    with writing(target) as beside:
         assert not abandoned.exists()
-        with pytest.raises(ZeroDivisionError), replacing_folder(target):
-            assert beside.is_dir()
+        with pytest.raises(ZeroDivisionError), writing(target):
+            assert beside.exists()
             raise ZeroDivisionError
-        (beside / "a").write_text("whole")
+        whole = beside / "a" if kind == "folder" else beside
+        whole.write_text("whole")
     assert {path.name for path in tmp_path.iterdir()} == {"new", other.name}
-    assert (target / "a").read_text() == "whole"
+    assert (target / "a" if kind == "folder" else target).read_text() == "whole"
+
+
+def test_a_link_and_a_pipe_in_place_of_what_was_left_harm_nothing(tmp_path):
+    victim = tmp_path / "victim"
+    victim.write_text("precious")
+    link = tmp_path / ".partial-0123456789abcdef-new"
+    link.symlink_to(victim)
+    os.mkfifo(tmp_path / ".partial-0123456789abcdee-new")
+    write_text(tmp_path / "new", "x")
+    assert link.is_symlink()
+    assert victim.read_text() == "precious"
+    assert (tmp_path / "new").read_text() == "x"
+
+
+def test_a_file_that_is_taken_for_abandoned_before_it_is_locked_is_made_again(
+    tmp_path, monkeypatch
+):
+    def remove_once(descriptor, _):
+        monkeypatch.undo()
+        [new] = tmp_path.iterdir()
+        new.unlink()
+
+    monkeypatch.setattr("snowshed.io.atomic.fcntl.flock", remove_once)
+    with replacing(tmp_path / "new") as beside:
+        assert beside.exists()
+
+
+def test_many_processes_that_write_one_file_remove_nothing_of_each_other(tmp_path):
+    write = (
+        "import sys\n"
+        "from snowshed.io.atomic import write_text\n"
+        "for _ in range(300):\n"
+        "    write_text(sys.argv[1], 'whole')\n"
+    )
+    words = [sys.executable, "-c", write, tmp_path / "new"]
+    writers = [subprocess.Popen(words, stderr=subprocess.PIPE, text=True) for _ in range(3)]
+    assert [writer.communicate()[1] for writer in writers] == ["", "", ""]
+    assert [path.name for path in tmp_path.iterdir()] == ["new"]

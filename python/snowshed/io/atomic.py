@@ -8,7 +8,7 @@ import os
 import re
 import secrets
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Union
@@ -19,13 +19,16 @@ from snowshed._core import InputError
 LEFTOVER = re.compile(r"\.partial-[0-9a-f]{16}-")
 #: Errors of file systems that flush nothing.
 CANNOT_FLUSH = (errno.EINVAL, errno.ENOTSUP, errno.EROFS)
+#: How a file is opened that may be a link, which is refused, or a pipe that nobody writes to.
+WITHOUT_WAITING = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
 
 
 @contextmanager
 def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """Yield a path to write to, in the same folder; it takes the place of `path` on success.
 
-    Of a link, the file that it names is replaced.
+    Of a link, the file that it names is replaced. What killed processes left of such a file is
+    removed.
 
     Raises
     ------
@@ -47,12 +50,13 @@ def replacing(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     path = Path(os.path.realpath(path))
     if path.is_symlink():
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
+    _remove_abandoned(path)
     beside = path.with_name(_partial(path))
     try:
-        os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
-        yield beside
-        _flush(beside)
-        beside.replace(path)
+        with _held(beside, _new_file):
+            yield beside
+            _flush(beside)
+            beside.replace(path)
         _flush(path.parent)
     except OSError as error:
         if error.filename in (None, str(beside)):  # the user knows the file by its own name
@@ -79,11 +83,10 @@ def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
     """
     path = Path(os.path.realpath(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    _remove_abandoned_folders(path)
+    _remove_abandoned(path)
     beside = path.with_name(_partial(path))
     try:
-        beside.mkdir()
-        with _locked(beside):
+        with _held(beside, Path.mkdir):
             yield beside
             beside.replace(path)
         _flush(path.parent)
@@ -91,36 +94,64 @@ def replacing_folder(path: Union[str, os.PathLike[str]]) -> Iterator[Path]:
         shutil.rmtree(beside, ignore_errors=True)
 
 
-def _remove_abandoned_folders(path: Path) -> None:
-    """Remove what dead processes left of folders that were to become `path`."""
-    for other in path.parent.iterdir():
-        leftover = LEFTOVER.match(other.name)
-        if not leftover or other.name[leftover.end() :] != _end_of(path.name):
-            continue
-        # It is no folder, it is a link, or a living process holds its lock.
-        with suppress(OSError), _locked(other):
-            shutil.rmtree(other, ignore_errors=True)
+def _remove_abandoned(path: Path) -> None:
+    """Remove what dead processes left of files and folders that were to become `path`."""
+    with suppress(OSError):  # of a folder that cannot be read
+        for other in path.parent.iterdir():
+            leftover = LEFTOVER.match(other.name)
+            if leftover and other.name[leftover.end() :] == _end_of(path.name):
+                _remove_unless_held(other)
+
+
+def _remove_unless_held(path: Path) -> None:
+    """Remove a file or a folder whose lock no living process holds."""
+    with suppress(OSError), _closing(os.open(path, WITHOUT_WAITING)) as descriptor:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        elif path.is_file():
+            path.unlink()
 
 
 @contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder, which the system releases when the process dies."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+def _held(path: Path, make: Callable[[Path], None]) -> Iterator[None]:
+    """Make a file or a folder and hold its lock; the system releases it when the process dies."""
+    with _closing(_made_and_locked(path, make)):
         yield
+
+
+def _made_and_locked(path: Path, make: Callable[[Path], None]) -> int:
+    """Make a file or a folder; return a descriptor of it that holds its lock."""
+    while True:
+        make(path)
+        with suppress(FileNotFoundError):
+            descriptor = os.open(path, WITHOUT_WAITING)
+            with suppress(OSError):  # of file systems without locks
+                fcntl.flock(descriptor, fcntl.LOCK_EX)
+            if path.exists():
+                return descriptor
+            os.close(descriptor)  # another process removed it before it was locked
+
+
+@contextmanager
+def _closing(descriptor: int) -> Iterator[int]:
+    try:
+        yield descriptor
     finally:
         os.close(descriptor)
 
 
-def remove_leftovers(folder: Path, *, deep: bool = False) -> None:
-    """Remove what killed processes left half-written in a folder, and if `deep` in those below it.
+def _new_file(path: Path) -> None:
+    """Make an empty file that was not there."""
+    os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove what killed processes left half-written in a folder and those below it.
 
     Folders that are links are not entered.
     """
-    for inside, folders, names in os.walk(folder):
-        if not deep:
-            folders.clear()
+    for inside, _, names in os.walk(folder):
         for path in map(Path(inside).joinpath, names):
             if LEFTOVER.match(path.name) and path.is_file() and not path.is_symlink():
                 path.unlink(missing_ok=True)

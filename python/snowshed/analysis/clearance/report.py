@@ -11,7 +11,7 @@ from snowshed.analysis.clearance import words
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import Ranges
 from snowshed.analysis.clearance.statistics import burial_interval
-from snowshed.io.atomic import remove_leftovers, write_text
+from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
 from snowshed.plot.html_page import Grid, Picture, template
@@ -22,8 +22,7 @@ def write_report(
 ) -> None:
     """Write clearance.html, clearance.csv and clearance.json into a folder.
 
-    Beside them stands a page for each panel on which the slide-offs of its worst winter move. What
-    a killed process left half-written in the folder is removed.
+    Beside them stands a page for each panel on which the slide-offs of its worst winter move.
 
     Parameters
     ----------
@@ -38,7 +37,6 @@ def write_report(
     """
     import pandas as pd
 
-    remove_leftovers(folder)
     table = pd.concat([answer.table() for answer in answers], ignore_index=True)
     write_csv(table, folder / "clearance.csv", float_format="%.6g")
     write_text(folder / "clearance.json", json.dumps(summary(answers, ranges), indent=2) + "\n")

@@ -89,7 +89,7 @@ def cross_validate(
     missing = [task for task, result in results.items() if result is None]
     tracker = _Tracker(missing, len(tasks), kinds, progress)
     with holding(folder, _make), deferred_interrupts() as request:
-        remove_leftovers(folder, deep=True)
+        remove_leftovers(folder)
         for task in _computed(missing, rows, scheme, folder, jobs, request):
             results[task] = FoldResult.load(folder / task.file, points)
             tracker.advance(task)
@@ -195,7 +195,7 @@ def _outcome(ended: Ended[Task, None]) -> Task:
 def _end(pool: Pool[Task, None], folder: Path) -> None:
     """End the processes, whatever they do, and remove what they have half written."""
     pool.close()
-    remove_leftovers(folder, deep=True)
+    remove_leftovers(folder)
 
 
 def _work(

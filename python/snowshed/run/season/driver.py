@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
-from snowshed.io.atomic import remove_leftovers, write_text
+from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv, write_csv
 from snowshed.methods.registry import resolution_of
 from snowshed.run.events import run_events
@@ -135,7 +135,6 @@ def run_season(
             pictures=pictures,
         )
     folder.folder.mkdir(parents=True, exist_ok=True)
-    remove_leftovers(folder.folder)
     result = _result(slides or ready, days, settings, folder, of_reading)
     _write(result, slides or ready, settings, folder, pictures=pictures)
     return result
