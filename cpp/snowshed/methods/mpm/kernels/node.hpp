@@ -45,11 +45,16 @@ struct Node {
   using Part = typename NodeTypes<T>::part;
   static constexpr int parts = node_values * int(sizeof(T)) / int(sizeof(Part));
   static constexpr int part_values = node_values / parts;
+  static constexpr int first_parts = parts == 1 ? 1 : parts / 2;  // that hold the first half
   Part part[parts];
 
+  /// All values, or those of the first half.
+  template <Halves halves = Halves::both>
   static SNOWSHED_INLINE Node load(const T* values) {
+    static_assert(halves != Halves::second);
     Node n;
-    for (int i = 0; i < parts; ++i) std::memcpy(&n.part[i], values + i * part_values, sizeof(Part));
+    for (int i = 0; i < (halves == Halves::first ? first_parts : parts); ++i)
+      std::memcpy(&n.part[i], values + i * part_values, sizeof(Part));
     return n;
   }
   /// All values, or those of the first half.
@@ -59,7 +64,7 @@ struct Node {
     if constexpr (halves == Halves::first && parts == 1)
       store_half(values, NodeHalf<T>(__builtin_shufflevector(part[0], part[0], 0, 1, 2, 3)));
     else
-      for (int i = 0; i < (halves == Halves::first ? parts / 2 : parts); ++i)
+      for (int i = 0; i < (halves == Halves::first ? first_parts : parts); ++i)
         std::memcpy(values + i * part_values, &part[i], sizeof(Part));
   }
 
@@ -91,10 +96,9 @@ struct Node {
 
 template <class T, Halves halves>
 inline constexpr int first_part =
-    halves == Halves::second && Node<T>::parts > 1 ? Node<T>::parts / 2 : 0;
+    halves == Halves::second && Node<T>::parts > 1 ? Node<T>::first_parts : 0;
 template <class T, Halves halves>
-inline constexpr int end_part =
-    halves == Halves::first && Node<T>::parts > 1 ? Node<T>::parts / 2 : Node<T>::parts;
+inline constexpr int end_part = halves == Halves::first ? Node<T>::first_parts : Node<T>::parts;
 
 /// sum += weight * node, in the registers of some halves; the weight is a number, or one for each
 /// value.
@@ -107,6 +111,12 @@ template <Halves halves = Halves::both, class T>
 SNOWSHED_INLINE void add_scaled(Node<T>& sum, const Node<T>& weight, const Node<T>& node) {
   for (int i = first_part<T, halves>; i < end_part<T, halves>; ++i)
     sum.part[i] += weight.part[i] * node.part[i];
+}
+/// sum += weight * node, where either half of the node is its first one.
+template <class T>
+SNOWSHED_INLINE void add_scaled_first(Node<T>& sum, const Node<T>& weight, const Node<T>& node) {
+  for (int i = 0; i < Node<T>::parts; ++i)
+    sum.part[i] += weight.part[i] * node.part[i % Node<T>::first_parts];
 }
 /// a - b, in the registers of some halves; nothing is said of the others.
 template <Halves halves = Halves::both, class T>

@@ -45,13 +45,14 @@ template <class Rule, class T, int D, Basis basis>
 SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolation& weights,
                                                  int lane, const T* nodes) {
   constexpr int S = support(basis), N = tile_edge<D>(basis);
-  using Values = Line<T, S, Halves::both>;
+  using Values = Line<T, S, Rule::taken>;
   using Derivatives = Line<T, S, Rule::interpolated>;
   nodes = in_register(nodes);
   Node<T> value[S], along[D][S];  // of the lines, planes beyond each node along the first direction
   const auto along_last = [&](const T* row, Node<T>& a, Node<T>& b) SNOWSHED_INLINE_LAMBDA {
     Node<T> node[S];
-    for (int k = 0; k < S; ++k) node[k] = Node<T>::load(row + k * node_values);
+    for (int k = 0; k < S; ++k)
+      node[k] = Node<T>::template load<Rule::taken>(row + k * node_values);
     const Values line(node);
     a = line.value(weights.value, D - 1, lane);
     b = weights.derivative(line, D - 1, lane);

@@ -106,7 +106,7 @@ struct ParticleKernels {
     alignas(64) T rows[W][whole_packs(row)];
     for (int l = 0; l < n; ++l) {
       const auto sums = interpolate_nodes<Rule, T, D, basis>(weights, l, tile + stencil.address[l]);
-      sums.value.store(rows[l]);
+      sums.value.template store<Rule::taken>(rows[l]);
       for (int j = 0; j < D; ++j)
         sums.along[j].template store<Rule::interpolated>(rows[l] + node_values + j * derived);
     }

@@ -19,6 +19,8 @@ template <class T, int D, Basis basis>
 struct FlipRule {
   using V = SimdPack<T>;
   static constexpr int S = support(basis);
+  /// The halves of nodes that particles take.
+  static constexpr Halves taken = Halves::both;
   /// The halves that count of the sums with a weight's derivative.
   static constexpr Halves interpolated = Halves::first;  // the gradient of the velocity
   static constexpr Halves scattered = Halves::second;    // force
@@ -109,6 +111,7 @@ struct ApicRule {
   using V = SimdPack<T>;
   static constexpr int S = support(basis);
   static constexpr T inverse_inertia = T(apic_inverse_inertia(basis));
+  static constexpr Halves taken = Halves::first;  // the second one is the same
   static constexpr Halves interpolated = Halves::both;
   static constexpr Halves scattered = Halves::both;
   static constexpr int derived_values = node_values;
@@ -145,7 +148,8 @@ struct ApicRule {
     SNOWSHED_INLINE Node<T> derivative(const Nodes& line, int d, int lane) const {
       Node<T> sum{};
       for (int k = 0; k < S - 1; ++k)
-        add_scaled(sum, Node<T>::of_halves(slope(d, k, lane), moment(d, k, lane)), line.step[k]);
+        add_scaled_first(sum, Node<T>::of_halves(slope(d, k, lane), moment(d, k, lane)),
+                         line.step[k]);
       return sum;
     }
   };
