@@ -97,7 +97,6 @@ SNOWSHED_INLINE void scatter_along(const typename Rule::Scattering& weights, int
   } else {
     constexpr int stride = node_values * power(tile_edge<D>(basis), D - 1 - d);
     NodeSums<T, D> rest = sums;
-    SNOWSHED_UNROLL
     for (int k = 0; k + 1 < support(basis); ++k) {
       const T w = weights.value(d, k, lane);
       NodeSums<T, D> share;
