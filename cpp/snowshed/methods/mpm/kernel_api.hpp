@@ -88,6 +88,18 @@ inline constexpr double elastic_strain_limit = 3.0;
 /// Bits of `BlockStats::reach`: nodes below a block, or above it, along a direction.
 constexpr int below(int direction) { return 1 << (2 * direction); }
 constexpr int above(int direction) { return 2 << (2 * direction); }
+template <int D>
+inline constexpr int everywhere = (1 << (2 * D)) - 1;
+
+/// Whether particles with these bits touch nodes of a block's neighbour.
+template <int D>
+constexpr bool reaches(int reach, int neighbour) {
+  for (int d = D - 1; d >= 0; --d, neighbour /= 3) {
+    if (neighbour % 3 == 0 && !(reach & below(d))) return false;
+    if (neighbour % 3 == 2 && !(reach & above(d))) return false;
+  }
+  return true;
+}
 
 /// What a kernel reports of one block of particles.
 struct BlockStats {
@@ -99,6 +111,13 @@ struct BlockStats {
   double elastic_strain = 0;  // of that particle
   double kinetic = 0, elastic = 0, plastic = 0;  // J; with the energy balance only
   double stress_power = 0;  // W, of the new stresses along the motion just made
+
+  /// Of particles of which only this is known.
+  static BlockStats reaching(int reach) {
+    BlockStats stats;
+    stats.reach = reach;
+    return stats;
+  }
 };
 
 /// What a kernel reports of one block of nodes.
@@ -141,10 +160,11 @@ struct Kernels {
   void (*scatter)(const StepParameters<T>&, const ParticleView<T>&, int first, int count, T* tile,
                   BlockStats&);
   /// One step of a block's particles from the velocities of the 3^D blocks around, and their sums
-  /// for the next step.
+  /// for the next step. `BlockStats::reach` says where the particles are, before and after it; the
+  /// tile holds nothing beyond.
   void (*g2p2g)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
                 const T* const* velocities, T* tile, BlockStats&);
-  /// Only the largest |dt grad v| that `g2p2g` would impose.
+  /// Only the largest |dt grad v| that `g2p2g` would impose, of particles in `BlockStats::reach`.
   void (*probe)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
                 const T* const* velocities, BlockStats&);
   /// Adds the tiles of the 3^D particle blocks around (null: none) to a block's node sums.
@@ -152,8 +172,9 @@ struct Kernels {
   /// Node velocities from the sums: forces, gravity, contact.
   void (*update)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
                  int contact_count, const ContactLaw*, NodeStats&);
-  /// What the 3^D blocks of nodes around (null: at rest) would do to the snow on a tile.
-  void (*carried_motion)(const T* tile, const T* const* sums, const T* const* velocities,
+  /// What the 3^D blocks of nodes around (null: at rest) would do to the snow on a tile, as far as
+  /// its particles reach.
+  void (*carried_motion)(const T* tile, int reach, const T* const* sums, const T* const* velocities,
                          CarriedMotion&);
 };
 

@@ -51,7 +51,8 @@ typename Sleep<D>::BlockProbe MpmSolver<T, D>::block_probe() {
       velocities[k] = moves ? work_.grid.velocity(g) : nullptr;
     }
     CarriedMotion motion;
-    model_.kernels.carried_motion(work_.grid.tile(b), sums, velocities, motion);
+    model_.kernels.carried_motion(work_.grid.tile(b), work_.grid.block_stats[b].reach, sums,
+                                  velocities, motion);
     return motion;
   };
   block_probe.obstacle_moves = [this](std::int32_t b) {

@@ -19,16 +19,6 @@ namespace {
 /// 11 %. Less than half charges the pushes of a chunk that vibrates before the pulls have come.
 constexpr double friction_reach = 0.5;
 
-/// Whether the particles of a block reach the nodes of the one that sees them as its neighbour k.
-template <int D>
-bool reaches_into(int reach, int k) {
-  for (int d = D - 1; d >= 0; --d, k /= 3) {
-    if (k % 3 == 0 && !(reach & above(d))) return false;
-    if (k % 3 == 2 && !(reach & below(d))) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 template <class T, int D>
@@ -161,9 +151,10 @@ void MpmSolver<T, D>::gather_and_update(double dt) {
     bool touched = false;
     for (int k = 0; k < neighbour_count<D>; ++k) {
       const std::int32_t block = state_.layout.around_nodes[g][k];
-      const bool reaches = block >= 0 && reaches_into<D>(work_.grid.block_stats[block].reach, k);
-      tiles[k] = reaches ? work_.grid.tile(block) : nullptr;
-      touched = touched || reaches;
+      constexpr int last = neighbour_count<D> - 1;  // the block is its neighbour last - k
+      const bool reached = block >= 0 && reaches<D>(work_.grid.block_stats[block].reach, last - k);
+      tiles[k] = reached ? work_.grid.tile(block) : nullptr;
+      touched = touched || reached;
     }
     work_.grid.touched[g] = touched;
     if (touched) model_.kernels.gather(tiles, work_.grid.sum(g));
@@ -273,7 +264,7 @@ void MpmSolver<T, D>::g2p2g(double dt) {
     const std::int32_t b = awake[i];
     const T* velocities[neighbour_count<D>];
     velocities_around(b, velocities);
-    work_.grid.block_stats[b] = {};
+    work_.grid.block_stats[b] = BlockStats::reaching(work_.grid.block_stats[b].reach);
     model_.kernels.g2p2g(step, view, state_.layout.first[b],
                          state_.layout.first[b + 1] - state_.layout.first[b], velocities,
                          work_.grid.tile(b), work_.grid.block_stats[b]);
@@ -319,7 +310,7 @@ BlockStats MpmSolver<T, D>::probe(const StepParameters<T>& step, const ParticleV
                                   std::int32_t b) {
   const T* velocities[neighbour_count<D>];
   velocities_around(b, velocities);
-  BlockStats stats;
+  BlockStats stats = BlockStats::reaching(work_.grid.block_stats[b].reach);
   model_.kernels.probe(step, view, state_.layout.first[b],
                        state_.layout.first[b + 1] - state_.layout.first[b], velocities, stats);
   return stats;

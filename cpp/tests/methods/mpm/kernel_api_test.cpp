@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
+#include <vector>
 
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
@@ -17,9 +21,63 @@ namespace {
 template <class T>
 constexpr T all_pushing[] = {1, 1, 1, 1};
 
-/// Particles of one block with random state, and their scattered sums.
+/// Where a block's particles are, in cells, along each direction.
+struct Spread {
+  double low[3], high[3];
+};
+
+/// Anywhere in the tile, in the block's first cell, and in all of the block along one direction.
+template <int D>
+std::vector<Spread> spreads() {
+  constexpr double edge = block_edge<D>;
+  return {{{-1, -1, -1}, {edge + 1, edge + 1, edge + 1}},
+          {{0, 0, 0}, {1, 1, 1}},
+          {{0, 0, 0}, {edge, 1, 1}},
+          {{-1, 0, -1}, {1, edge + 1, 1}},
+          {{edge, -1, 0}, {edge + 1, 1, edge}}};
+}
+
+/// Sums of all nodes, and the mass's first moment about the tile's first node.
+template <int D>
+struct GridSums {
+  double sums[7] = {}, absolute[7] = {}, moment[D] = {};
+
+  template <class T>
+  void add(const T* node, const int (&cell)[D]) {
+    for (int c = 0; c < 7; ++c) {
+      sums[c] += node[c];
+      absolute[c] += std::abs(node[c]);
+    }
+    for (int d = 0; d < D; ++d) moment[d] += double(node[0]) * cell[d];
+  }
+};
+
+/// What the blocks around gather of one tile, those to which its particles reach.
 template <class T, int D>
-void expect_exact_sums(const Way& way) {
+GridSums<D> gathered(const Kernels<T>& kernels, const T* tile, int reach) {
+  GridSums<D> result;
+  for (int block = 0; block < neighbour_count<D>; ++block) {
+    if (!reaches<D>(reach, block)) continue;
+    const T* tiles[neighbour_count<D>] = {};
+    tiles[neighbour_count<D> - 1 - block] = tile;                            // as the block sees it
+    AlignedVector<T> sums(std::size_t(block_nodes<D>) * node_values, T(7));  // must be cleared
+    kernels.gather(tiles, sums.data());
+    for (int k = 0; k < block_nodes<D>; ++k) {
+      int cell[D];
+      for (int d = D - 1, node = k, around = block; d >= 0; --d) {
+        cell[d] = node % block_edge<D> + (around % 3 - 1) * block_edge<D> + 1;
+        node /= block_edge<D>;
+        around /= 3;
+      }
+      result.add(&sums[std::size_t(k) * node_values], cell);
+    }
+  }
+  return result;
+}
+
+/// Particles of one block with random state, scattered to a tile that the blocks around gather.
+template <class T, int D>
+void expect_exact_sums(const Way& way, const Spread& spread) {
   constexpr int n = 37;  // not a multiple of any register's lanes
   Random random(5);
   const auto uniform = [&](double low, double high) {
@@ -38,7 +96,8 @@ void expect_exact_sums(const Way& way) {
       for (auto& c : particles.affine) c[i] = uniform(-10, 10);
     mass += particles.mass[i];
     for (int d = 0; d < D; ++d) {
-      particles.cell[d][i] = uniform(-1, block_edge<D> + 1);  // a cell beyond the block, too
+      const T low = T(spread.low[d]), end = std::nextafter(T(spread.high[d]), T(0));
+      particles.cell[d][i] = i == 0 ? low : i == 1 ? end : std::min(uniform(low, end), end);
       particles.velocity[d][i] = uniform(-1, 1);
       momentum[d] += double(particles.mass[i]) * particles.velocity[d][i];
       first_moment[d] +=
@@ -47,43 +106,41 @@ void expect_exact_sums(const Way& way) {
   }
   const Kernels<T> kernels =
       select_kernels<T>({D, way.transfer, way.basis, SnowModel::cam_clay, false});
-  const int nodes = tile_nodes<D>(way.basis), edge = tile_edge<D>(way.basis);
-  AlignedVector<T> tile(std::size_t(nodes) * node_values, T(7));  // scatter must clear it
+  constexpr T unset = std::numeric_limits<T>::quiet_NaN();  // nothing that is not cleared is read
+  AlignedVector<T> tile(std::size_t(tile_nodes<D>(way.basis)) * node_values, unset);
   const auto snow = material_constants<T>(Snow(), D);
   const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99),
                                T(0.02), T(0),    &snow,   all_pushing<T>};
   BlockStats stats;
   kernels.scatter(step, particles.view(), 0, n, tile.data(), stats);
   ASSERT_FALSE(stats.escaped);
+  for (int d = 0; d < D; ++d) EXPECT_EQ((stats.reach & below(d)) != 0, spread.low[d] < 0);
 
-  double sums[7] = {}, absolute[7] = {}, moment[D] = {};
-  for (int k = 0; k < nodes; ++k) {
-    const T* node = &tile[std::size_t(k) * node_values];
-    for (int c = 0; c < 7; ++c) {
-      sums[c] += node[c];
-      absolute[c] += std::abs(node[c]);
-    }
-    for (int d = D - 1, rest = k; d >= 0; --d, rest /= edge)
-      moment[d] += double(node[0]) * (rest % edge);
-  }
+  const GridSums<D> grid = gathered<T, D>(kernels, tile.data(), stats.reach);
   const double eps = way.epsilon();
-  EXPECT_NEAR(sums[0], mass, 16 * eps * mass);  // of some hundred nodes
+  EXPECT_NEAR(grid.sums[0], mass, 16 * eps * mass);  // of some hundred nodes
   for (int d = 0; d < D; ++d) {
-    EXPECT_NEAR(sums[1 + d], momentum[d], 8 * eps * absolute[1 + d]);
-    EXPECT_NEAR(sums[4 + d], 0.0, 8 * eps * absolute[4 + d]);  // internal forces
-    EXPECT_GT(absolute[4 + d], 1.0);
-    EXPECT_NEAR(moment[d], first_moment[d], 8 * eps * mass * edge);
+    EXPECT_NEAR(grid.sums[1 + d], momentum[d], 8 * eps * grid.absolute[1 + d]);
+    EXPECT_NEAR(grid.sums[4 + d], 0.0, 8 * eps * grid.absolute[4 + d]);  // internal forces
+    EXPECT_GT(grid.absolute[4 + d], 1.0);
+    EXPECT_NEAR(grid.moment[d], first_moment[d], 8 * eps * mass * tile_edge<D>(way.basis));
+  }
+}
+
+template <int D>
+void expect_exact_sums_wherever_particles_are(const Way& way) {
+  for (const Spread& spread : spreads<D>()) {
+    SCOPED_TRACE(testing::PrintToString(spread.low) + testing::PrintToString(spread.high));
+    way.precision == Precision::float32 ? expect_exact_sums<float, D>(way, spread)
+                                        : expect_exact_sums<double, D>(way, spread);
   }
 }
 
 TEST(Scatter, GivesTheGridExactlyTheParticlesMassMomentumAndCentre) {
   for (const Way& way : all_ways()) {
     SCOPED_TRACE(way.name());
-    const bool single = way.precision == Precision::float32;
-    if (way.dimension == 2)
-      single ? expect_exact_sums<float, 2>(way) : expect_exact_sums<double, 2>(way);
-    else
-      single ? expect_exact_sums<float, 3>(way) : expect_exact_sums<double, 3>(way);
+    way.dimension == 2 ? expect_exact_sums_wherever_particles_are<2>(way)
+                       : expect_exact_sums_wherever_particles_are<3>(way);
   }
 }
 

@@ -18,6 +18,7 @@ struct ParticleKernels {
   using V = SimdPack<T>;
   using Tensor = Sym<V, D>;
   using Rule = TransferRule<T, D, transfer, basis>;
+  using Tile = TileSums<T, D, basis>;
   static constexpr int W = simd_width<T>;
 
   const StepParameters<T>& step;
@@ -280,26 +281,31 @@ struct ParticleKernels {
       f(at, first + count - at < W ? first + count - at : W);
   }
 
-  void scatter_block(int first, int count, T* tile) const {
+  /// Makes room for a chunk in the tile; true if its nodes lie there.
+  SNOWSHED_INLINE bool make_room(const Stencil<T, D, basis>& stencil, SimdMask<T>& reach,
+                                 Tile& tile) const {
+    reach |= stencil.reach;
+    if (any((stencil.reach & ~tile.cleared()) != 0)) tile.extend(int(bits_in(stencil.reach)));
+    if (!stencil.inside) stats.escaped = true;
+    return stencil.inside;
+  }
+
+  void scatter_block(int first, int count, Tile& tile) const {
     SimdMask<T> reach{};
     for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
       State s;
       read(s, at, n);
       const Stencil<T, D, basis> stencil(s.cell);
-      if (!stencil.inside) {
-        stats.escaped = true;
-        return;
-      }
+      if (!make_room(stencil, reach, tile)) return;
       const Snow& snow = snows.of(p, at, n);
       const Tensor tau = stress(s, snow, n, true).tau;
-      scatter_chunk(stencil, s, tau, snow, n, tile);
-      reach |= stencil.reach;
+      scatter_chunk(stencil, s, tau, snow, n, tile.values());
       if constexpr (energy) record_kinetic_energy(s, n);
     });
     stats.reach = int(bits_in(reach));
   }
 
-  void g2p2g_block(int first, int count, const T* velocities, T* tile) const {
+  void g2p2g_block(int first, int count, const T* velocities, Tile& tile) const {
     V speed = broadcast<V>(T(0));
     SimdMask<T> reach{};
     for_each_chunk(first, count, [&](int at, int n) SNOWSHED_INLINE_LAMBDA {
@@ -324,11 +330,7 @@ struct ParticleKernels {
       if constexpr (energy) record_kinetic_energy(s, n);
 
       const Stencil<T, D, basis> stencil(s.cell);
-      reach |= stencil.reach;
-      if (stencil.inside)
-        scatter_chunk(stencil, s, tau, snow, n, tile);
-      else
-        stats.escaped = true;
+      if (make_room(stencil, reach, tile)) scatter_chunk(stencil, s, tau, snow, n, tile.values());
     });
     stats.reach = int(bits_in(reach));
     stats.speed_squared = double(largest(speed));
@@ -350,29 +352,30 @@ struct ParticleKernels {
 
   static constexpr int tile_size = tile_nodes<D>(basis) * node_values;
 
-  static void load_velocities(const T* const* blocks, T* tile) {
-    for_each_shared_row<D, basis>([&](int neighbour, int from, int to, auto length) {
+  static void load_velocities(const T* const* blocks, int reach, T* tile) {
+    const auto touched = [&](int neighbour) { return reaches<D>(reach, neighbour); };
+    for_each_shared_row<D, basis>(touched, [&](int neighbour, int from, int to, auto length) {
       std::memcpy(tile + to * node_values, blocks[neighbour] + from * node_values,
                   length * node_values * sizeof(T));
     });
   }
 
   static void scatter(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
-                      T* tile, BlockStats& stats) {
-    std::memset(tile, 0, tile_size * sizeof(T));
+                      T* values, BlockStats& stats) {
+    Tile tile(values, 0);
     ParticleKernels(step, p, stats).scatter_block(first, count, tile);
   }
   static void g2p2g(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
-                    const T* const* velocities, T* tile, BlockStats& stats) {
+                    const T* const* velocities, T* values, BlockStats& stats) {
     alignas(64) T around[tile_size];
-    load_velocities(velocities, around);
-    std::memset(tile, 0, tile_size * sizeof(T));
+    load_velocities(velocities, stats.reach, around);
+    Tile tile(values, stats.reach);
     ParticleKernels(step, p, stats).g2p2g_block(first, count, around, tile);
   }
   static void probe(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
                     const T* const* velocities, BlockStats& stats) {
     alignas(64) T around[tile_size];
-    load_velocities(velocities, around);
+    load_velocities(velocities, stats.reach, around);
     ParticleKernels(step, p, stats).probe_block(first, count, around);
   }
 };

@@ -2,6 +2,7 @@
 // 3^D blocks around it. Written once for two and three dimensions.
 #pragma once
 
+#include <cstring>
 #include <type_traits>
 
 #include "snowshed/core/variant.hpp"
@@ -18,38 +19,78 @@ struct Overlap {
       : begin(offset < 0 ? block_edge<D> - 1 : 0),
         end(offset > 0 ? support(basis) : block_edge<D>),
         shift(offset * block_edge<D> + 1) {}
+  /// Of a direction that there is not.
+  static constexpr Overlap none() { return Overlap(0, 1, 0); }
+
+ private:
+  constexpr Overlap(int first, int past_last, int by) : begin(first), end(past_last), shift(by) {}
 };
 
-/// Calls row(neighbour, block_node, tile_node, length) for each run of consecutive nodes; the
-/// length is a compile-time constant, so that copying a row is a few vector moves.
-template <int D, Basis basis, class Row>
-SNOWSHED_INLINE void for_each_shared_row(Row row) {
+/// Calls row(neighbour, block_node, tile_node, length) for each run of consecutive nodes that the
+/// tile shares with the neighbours for which wanted(neighbour) holds; the length is a compile-time
+/// constant, so that copying a row is a few vector moves.
+template <int D, Basis basis, class Wanted, class Row>
+SNOWSHED_INLINE void for_each_shared_row(Wanted wanted, Row row) {
+  using Range = Overlap<D, basis>;
   constexpr int B = block_edge<D>, N = tile_edge<D>(basis);
-  int neighbour = 0;
-  const auto along_last = [&](int block_base, int tile_base) {
-    const auto run = [&](auto offset) {
-      constexpr Overlap<D, basis> z(decltype(offset)::value);
-      row(neighbour + decltype(offset)::value + 1, block_base + z.begin,
-          tile_base + z.begin + z.shift, std::integral_constant<int, z.end - z.begin>{});
-    };
-    run(std::integral_constant<int, -1>{});
-    run(std::integral_constant<int, 0>{});
-    run(std::integral_constant<int, 1>{});
-  };
-  for (int ox = -1; ox <= 1; ++ox) {
-    const Overlap<D, basis> x(ox);
-    if constexpr (D == 3) {
-      for (int oy = -1; oy <= 1; ++oy, neighbour += 3) {
-        const Overlap<D, basis> y(oy);
-        for (int i = x.begin; i < x.end; ++i)
-          for (int j = y.begin; j < y.end; ++j)
-            along_last((i * B + j) * B, ((i + x.shift) * N + j + y.shift) * N);
+  const auto rows = [&](int neighbour, const Range& x, const Range& y, auto offset) {
+    constexpr Range z(decltype(offset)::value);
+    if (!wanted(neighbour)) return;
+    for (int i = x.begin; i < x.end; ++i)
+      for (int j = y.begin; j < y.end; ++j) {
+        const int line = D == 3 ? i * B + j : i;
+        const int tile_line = D == 3 ? (i + x.shift) * N + j + y.shift : i + x.shift;
+        row(neighbour, line * B + z.begin, tile_line * N + z.begin + z.shift,
+            std::integral_constant<int, z.end - z.begin>{});
       }
-    } else {
-      for (int i = x.begin; i < x.end; ++i) along_last(i * B, (i + x.shift) * N);
-      neighbour += 3;
-    }
-  }
+  };
+  int neighbour = 0;
+  const auto along_last = [&](const Range& x, const Range& y) {
+    rows(neighbour++, x, y, std::integral_constant<int, -1>{});
+    rows(neighbour++, x, y, std::integral_constant<int, 0>{});
+    rows(neighbour++, x, y, std::integral_constant<int, 1>{});
+  };
+  for (int x = -1; x <= 1; ++x)
+    if constexpr (D == 3)
+      for (int y = -1; y <= 1; ++y) along_last(Range(x), Range(y));
+    else
+      along_last(Range(x), Range::none());
 }
+
+/// A tile that is cleared only as far as particles reach.
+template <class T, int D, Basis basis>
+class TileSums {
+ public:
+  TileSums(T* values, int reach) : values_(values), cleared_(reach) {
+    if (cleared_ == everywhere<D>)
+      std::memset(values_, 0, tile_nodes<D>(basis) * node_values * sizeof(T));
+    else
+      clear([&](int neighbour) { return reaches<D>(cleared_, neighbour); });
+  }
+
+  T* values() const { return values_; }
+  /// The bits of `BlockStats::reach` of the nodes that are cleared.
+  int cleared() const { return cleared_; }
+
+  /// Clears what particles touch, too, that set these bits.
+  void extend(int reach) {
+    const int before = cleared_;
+    cleared_ |= reach;
+    clear([&](int neighbour) {
+      return reaches<D>(cleared_, neighbour) && !reaches<D>(before, neighbour);
+    });
+  }
+
+ private:
+  template <class Wanted>
+  void clear(Wanted wanted) {
+    for_each_shared_row<D, basis>(wanted, [&](int, int, int node, auto length) {
+      std::memset(values_ + node * node_values, 0, length * node_values * sizeof(T));
+    });
+  }
+
+  T* values_;
+  int cleared_;
+};
 
 SNOWSHED_VARIANT_END
