@@ -45,9 +45,6 @@ struct BSpline<Basis::cubic> {
   }
 };
 
-/// The nodes of a line but for the second, in their order.
-constexpr int other_than_second(int k) { return k == 0 ? 0 : k + 1; }
-
 /// Weights of the steps from each node's value to the next one's that make the sum over the values
 /// with weights w: sum_k w_k n_k = (sum_k w_k) n_1 + sum_k r_k (n_{k+1} - n_k), by parts.
 template <class V, int S>

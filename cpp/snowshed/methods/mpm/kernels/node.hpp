@@ -118,10 +118,6 @@ SNOWSHED_INLINE void add_scaled_first(Node<T>& sum, const Node<T>& weight, const
   for (int i = 0; i < Node<T>::parts; ++i)
     sum.part[i] += weight.part[i] * node.part[i % Node<T>::first_parts];
 }
-template <class T>
-SNOWSHED_INLINE void add(Node<T>& sum, const Node<T>& node) {
-  for (int i = 0; i < Node<T>::parts; ++i) sum.part[i] += node.part[i];
-}
 /// a - b, in the registers of some halves; nothing is said of the others.
 template <Halves halves = Halves::both, class T>
 SNOWSHED_INLINE Node<T> difference(const Node<T>& a, const Node<T>& b) {

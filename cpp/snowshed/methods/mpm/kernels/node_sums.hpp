@@ -13,10 +13,6 @@ SNOWSHED_INLINE P* in_register(P* address) {
   return address;
 }
 
-constexpr int power(int base, int exponent) {
-  return exponent == 0 ? 1 : base * power(base, exponent - 1);
-}
-
 /// Sums over a particle's nodes: of the values with the weights, and with their derivative along
 /// each direction.
 template <class T, int D>
@@ -81,44 +77,41 @@ SNOWSHED_INLINE NodeSums<T, D> interpolate_nodes(const typename Rule::Interpolat
   return sums;
 }
 
-/// Adds to the nodes along direction d and those after it, of the particle in a lane, their shares
-/// of `sums`: the value times the weight, and what is along a direction times the weight's
-/// derivative there. Outside the halves that the rule scatters, along[d] is zero. As the weights of
-/// a line add up to one, and their derivatives to nothing, the second node's share is what the
-/// others leave.
-template <int d, class Rule, class T, int D, Basis basis>
-SNOWSHED_INLINE void scatter_along(const typename Rule::Scattering& weights, int lane,
-                                   const NodeSums<T, D>& sums, T* nodes) {
-  constexpr Halves derived = Rule::scattered;
-  if constexpr (d == D) {
-    Node<T> node = Node<T>::load(nodes);
-    add(node, sums.value);
-    node.store(nodes);
-  } else {
-    constexpr int stride = node_values * power(tile_edge<D>(basis), D - 1 - d);
-    NodeSums<T, D> rest = sums;
-    for (int k = 0; k + 1 < support(basis); ++k) {
-      const T w = weights.value(d, k, lane);
-      NodeSums<T, D> share;
-      share.value = scaled(w, sums.value);
-      add_scaled<derived>(share.value, weights.derived(d, k, lane), sums.along[d]);
-      rest.value = difference(rest.value, share.value);
-      for (int e = d + 1; e < D; ++e) {
-        share.along[e] = scaled<derived>(w, sums.along[e]);
-        rest.along[e] = difference<derived>(rest.along[e], share.along[e]);
-      }
-      scatter_along<d + 1, Rule, T, D, basis>(weights, lane, share,
-                                              nodes + other_than_second(k) * stride);
-    }
-    scatter_along<d + 1, Rule, T, D, basis>(weights, lane, rest, nodes + stride);
-  }
-}
-
-/// Adds to each node of the particle in a lane, whose lowest node stands at `nodes`, its share.
+/// Adds to each node of the particle in a lane its share of `sums`: the value times the weight, and
+/// what is along a direction times the weight's derivative there. Outside the halves that the rule
+/// scatters, along[d] is zero.
 template <class Rule, class T, int D, Basis basis>
 SNOWSHED_INLINE void scatter_nodes(const typename Rule::Scattering& weights, int lane,
                                    const NodeSums<T, D>& sums, T* nodes) {
-  scatter_along<0, Rule, T, D, basis>(weights, lane, sums, in_register(nodes));
+  constexpr int S = support(basis), N = tile_edge<D>(basis);
+  constexpr Halves derived = Rule::scattered;
+  nodes = in_register(nodes);
+  const auto along_last = [&](T* row, const Node<T>& value,
+                              const Node<T>& along_z) SNOWSHED_INLINE_LAMBDA {
+    for (int k = 0; k < S; ++k) {
+      Node<T> node = Node<T>::load(row + k * node_values);
+      add_scaled(node, weights.value(D - 1, k, lane), value);
+      add_scaled<derived>(node, weights.derived(D - 1, k, lane), along_z);
+      node.store(row + k * node_values);
+    }
+  };
+  for (int i = 0; i < S; ++i) {
+    const T wi = weights.value(0, i, lane);
+    Node<T> value_i = scaled(wi, sums.value);
+    add_scaled<derived>(value_i, weights.derived(0, i, lane), sums.along[0]);
+    if constexpr (D == 2) {
+      along_last(nodes + i * N * node_values, value_i, scaled<derived>(wi, sums.along[1]));
+    } else {
+      const Node<T> along_y = scaled<derived>(wi, sums.along[1]);
+      const Node<T> along_z = scaled<derived>(wi, sums.along[2]);
+      for (int j = 0; j < S; ++j) {
+        const T wj = weights.value(1, j, lane);
+        Node<T> value_ij = scaled(wj, value_i);
+        add_scaled<derived>(value_ij, weights.derived(1, j, lane), along_y);
+        along_last(nodes + (i * N + j) * N * node_values, value_ij, scaled<derived>(wj, along_z));
+      }
+    }
+  }
 }
 
 SNOWSHED_VARIANT_END

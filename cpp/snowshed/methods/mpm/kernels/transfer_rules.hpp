@@ -55,9 +55,9 @@ struct FlipRule {
     }
   };
 
-  /// Weights of the nodes but for the second of a line.
+  /// Weights of the nodes.
   struct Scattering {
-    LaneWeights<T, D, S - 1> value, slope;
+    LaneWeights<T, D, S> value, slope;
 
     SNOWSHED_INLINE explicit Scattering(const Stencil<T, D, basis>& stencil) {
       SNOWSHED_UNROLL
@@ -65,9 +65,9 @@ struct FlipRule {
         V w[S], g[S];
         BSpline<basis>::evaluate(stencil.fraction[d], w, g);
         SNOWSHED_UNROLL
-        for (int k = 0; k < S - 1; ++k) {
-          value.set(d, k, w[other_than_second(k)]);
-          slope.set(d, k, g[other_than_second(k)]);
+        for (int k = 0; k < S; ++k) {
+          value.set(d, k, w[k]);
+          slope.set(d, k, g[k]);
         }
       }
     }
@@ -155,7 +155,7 @@ struct ApicRule {
   };
 
   struct Scattering {
-    LaneWeights<T, D, S - 1> value, slope, moment;
+    LaneWeights<T, D, S> value, slope, moment;
 
     SNOWSHED_INLINE explicit Scattering(const Stencil<T, D, basis>& stencil) {
       SNOWSHED_UNROLL
@@ -164,10 +164,10 @@ struct ApicRule {
         BSpline<basis>::evaluate(stencil.fraction[d], w, g);
         moments(stencil.fraction[d], w, c);
         SNOWSHED_UNROLL
-        for (int k = 0; k < S - 1; ++k) {
-          value.set(d, k, w[other_than_second(k)]);
-          slope.set(d, k, g[other_than_second(k)]);
-          moment.set(d, k, c[other_than_second(k)]);
+        for (int k = 0; k < S; ++k) {
+          value.set(d, k, w[k]);
+          slope.set(d, k, g[k]);
+          moment.set(d, k, c[k]);
         }
       }
     }
