@@ -1,6 +1,7 @@
 """A browser without a screen, where one is installed."""
 
 import contextlib
+import os
 import shutil
 from pathlib import Path
 
@@ -21,7 +22,9 @@ def open_page(file, *, width=900, height=700, **context):
     interface = pytest.importorskip("playwright.sync_api")
     told = []
     with interface.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=OPTIONS)
+        browser = playwright.chromium.launch(
+            executable_path=program, args=OPTIONS, env=_without_preloads()
+        )
         page = browser.new_page(viewport={"width": width, "height": height}, **context)
         page.on("console", lambda message: told.append(f"{message.type}: {message.text}"))
         page.on("pageerror", lambda error: told.append(f"error: {error}"))
@@ -29,6 +32,11 @@ def open_page(file, *, width=900, height=700, **context):
         page.goto(file.as_uri())
         yield page, told
         browser.close()
+
+
+def _without_preloads():
+    """Return the environment without the libraries of sanitizers, which browsers do not bear."""
+    return {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
 
 
 def faults_of(file, *, width=900, scheme="light"):
