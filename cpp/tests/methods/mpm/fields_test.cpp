@@ -59,7 +59,7 @@ TEST_P(Fields, StressesAreThoseOfTheLaw) {
   shake(10.0);  // so that snow yields
   const ParticleState state = solver_->state();
   const int dimension = GetParam().dimension;
-  const Snow& snow = options_for(GetParam()).snows.front();
+  const Snow snow = options_for(GetParam()).snows.front();
   const auto law =
       CamClay<double>::from(snow.youngs_modulus, snow.poissons_ratio, snow.critical_state_slope,
                             snow.cohesion, snow.hardening_factor, dimension);
