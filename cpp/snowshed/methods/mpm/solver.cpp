@@ -151,7 +151,7 @@ void MpmSolver<T, D>::gather_and_update(double dt) {
     bool touched = false;
     for (int k = 0; k < neighbour_count<D>; ++k) {
       const std::int32_t block = state_.layout.around_nodes[g][k];
-      constexpr int last = neighbour_count<D> - 1;  // the block is its neighbour last - k
+      constexpr int last = neighbour_count<D> - 1;  // seen from there, the neighbour opposite
       const bool reached = block >= 0 && reaches<D>(work_.grid.block_stats[block].reach, last - k);
       tiles[k] = reached ? work_.grid.tile(block) : nullptr;
       touched = touched || reached;
