@@ -18,12 +18,12 @@ struct NodeKernels {
     std::memset(sums, 0, block_nodes<D> * node_values * sizeof(T));
     // Seen from the particle block this block is the neighbour on the opposite side.
     const auto tile_of = [&](int neighbour) { return tiles[neighbour_count<D> - 1 - neighbour]; };
-    for_each_shared_row<D, basis>(tile_of,
-                                  [&](int neighbour, int node, int tile_node, auto length) {
-                                    T* out = sums + node * node_values;
-                                    const T* in = tile_of(neighbour) + tile_node * node_values;
-                                    for (int k = 0; k < length * node_values; ++k) out[k] += in[k];
-                                  });
+    const auto add = [&](int neighbour, int node, int tile_node, auto length) {
+      T* out = sums + node * node_values;
+      const T* in = tile_of(neighbour) + tile_node * node_values;
+      for (int k = 0; k < length * node_values; ++k) out[k] += in[k];
+    };
+    for_each_shared_row<D, basis>(tile_of, add);
   }
 
   static void update(const StepParameters<T>& step, const T* sums, T* velocities,
@@ -68,23 +68,22 @@ struct NodeKernels {
   static void carried_motion(const T* tile, int reach, const T* const* sums,
                              const T* const* velocities, CarriedMotion& motion) {
     double mass = 0, change[D] = {}, squared = 0;
-    const auto touched = [&](int neighbour) { return reaches<D>(reach, neighbour); };
-    for_each_shared_row<D, basis>(
-        touched, [&](int neighbour, int node, int tile_node, auto length) {
-          for (int k = 0; k < length; ++k) {
-            const double m = double(tile[(tile_node + k) * node_values]);
-            mass += m;
-            if (!sums[neighbour] || m == 0) continue;
-            const T* sum = sums[neighbour] + (node + k) * node_values;
-            const T* now = velocities[neighbour] + (node + k) * node_values;
-            if (!(sum[0] > least_mass)) continue;
-            const Half before = velocity(sum);
-            for (int d = 0; d < D; ++d) {
-              squared += m * double(now[d]) * double(now[d]);
-              change[d] += m * (double(now[d]) - double(before[d]));
-            }
-          }
-        });
+    const auto add = [&](int neighbour, int node, int tile_node, auto length) {
+      for (int k = 0; k < length; ++k) {
+        const double m = double(tile[(tile_node + k) * node_values]);
+        mass += m;
+        if (!sums[neighbour] || m == 0) continue;
+        const T* sum = sums[neighbour] + (node + k) * node_values;
+        const T* now = velocities[neighbour] + (node + k) * node_values;
+        if (!(sum[0] > least_mass)) continue;
+        const Half before = velocity(sum);
+        for (int d = 0; d < D; ++d) {
+          squared += m * double(now[d]) * double(now[d]);
+          change[d] += m * (double(now[d]) - double(before[d]));
+        }
+      }
+    };
+    for_each_shared_row<D, basis>(touched_by<D>(reach), add);
     motion.speed_squared = squared / mass;
     for (int d = 0; d < D; ++d) motion.change[d] = change[d] / mass;
   }

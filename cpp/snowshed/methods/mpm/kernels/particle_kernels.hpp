@@ -353,11 +353,11 @@ struct ParticleKernels {
   static constexpr int tile_size = tile_nodes<D>(basis) * node_values;
 
   static void load_velocities(const T* const* blocks, int reach, T* tile) {
-    const auto touched = [&](int neighbour) { return reaches<D>(reach, neighbour); };
-    for_each_shared_row<D, basis>(touched, [&](int neighbour, int from, int to, auto length) {
+    const auto copy = [&](int neighbour, int from, int to, auto length) {
       std::memcpy(tile + to * node_values, blocks[neighbour] + from * node_values,
                   length * node_values * sizeof(T));
-    });
+    };
+    for_each_shared_row<D, basis>(touched_by<D>(reach), copy);
   }
 
   static void scatter(const StepParameters<T>& step, const ParticleView<T>& p, int first, int count,
