@@ -34,9 +34,11 @@ std::int64_t sample_of(const Surroundings& surroundings) {
 
 void check_file(const BinaryReader& in, const std::string& file, std::int64_t then,
                 std::int64_t now) {
-  if (then != now)
-    throw InputError(file, "has changed since the checkpoint " + in.path().string() +
-                               " was made; bring back the file, or start anew");
+  if (then == now) return;
+  if (file.empty())
+    throw InputError(in.path().string(), "holds the mark of a file that its scene does not name");
+  throw InputError(file, "has changed since the checkpoint " + in.path().string() +
+                             " was made; bring back the file, or start anew");
 }
 
 /// Throws InputError where a file is another than when the checkpoint was made.
