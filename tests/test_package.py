@@ -27,6 +27,15 @@ def test_every_requirement_has_its_module_here():
     assert own.union(*extras.values()) == MODULES_OF.keys() | {"numpy"}
 
 
+def test_running_a_scene_does_not_import_what_reads_images_of_snow():
+    code = (
+        "import sys, snowshed.cli.commands.run, snowshed.run.events; "
+        "print([m for m in sys.modules if m.startswith(('scipy.ndimage', 'skimage', 'rasterio'))])"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert shown.stdout.strip() == "[]"
+
+
 @pytest.mark.parametrize(
     ("module", "allowed"), [("snowshed", set()), ("snowshed.cli.main", {"click"})]
 )

@@ -12,8 +12,6 @@ from snowshed._core import InputError
 from snowshed.io.atomic import replacing
 from snowshed.io.paths import PathLike
 from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
-from snowshed.methods.grains.image.segmentation import known_grains
-from snowshed.methods.grains.image.sphere_snow import sphere_snow
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.components import Events
 from snowshed.scene.loading import Cone, LoadingStage, Sample
@@ -106,6 +104,10 @@ def example_grains(folder: PathLike) -> Scene:
     >>> scene.loading[0].kind
     'compress'
     """
+    # Here, as scipy's images take a third of a second that other scenes do not need.
+    from snowshed.methods.grains.image.segmentation import known_grains
+    from snowshed.methods.grains.image.sphere_snow import sphere_snow
+
     file = Path(folder) / LABELS
     file.parent.mkdir(parents=True, exist_ok=True)
     snow = sphere_snow(
