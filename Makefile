@@ -199,8 +199,9 @@ $(VENV)/.cpp-tools: $(VENV)/.created
 	$(PIP) --quiet "clang-format==$(CLANG_FORMAT)" clang-tidy
 	touch $@
 
-$(VENV)/.docs-tools: $(VENV)/.created docs/conf.py
-	$(PIP) --quiet sphinx myst-nb ipykernel furo sphinx-mathjax-offline
+# The pages name estimators, which are classes of scikit-learn.
+$(VENV)/.docs-tools: $(VENV)/.installed docs/conf.py
+	$(PIP) --quiet "snowshed[regression]" sphinx myst-nb ipykernel furo sphinx-mathjax-offline
 	touch $@
 
 clean:
