@@ -1,4 +1,4 @@
-"""Commands in processes of their own, which tests interrupt and kill."""
+"""Commands in processes of their own, which tests interrupt and kill, or ask what they import."""
 
 import os
 import signal
@@ -18,6 +18,13 @@ def snowshed_command(*arguments: object, **options) -> subprocess.Popen:
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         **options,
     )
+
+
+def modules_after(code: str) -> set[str]:
+    """Return the modules that a new Python knows after it has run some code."""
+    code += "; import sys; print(); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(done.stdout.splitlines()[-1].split())
 
 
 def children_of(pid: int) -> list[int]:

@@ -1,7 +1,6 @@
 """Settings that decide how accurate a run is."""
 
-import subprocess
-import sys
+from processes import modules_after
 
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.schema import scene_parameters
@@ -19,9 +18,5 @@ def test_former_names_lead_to_those_of_today():
 
 
 def test_knowing_them_needs_no_heavy_library():
-    code = (
-        "import sys, snowshed.scene.accuracy_settings; "
-        "print({'matplotlib', 'pandas', 'scipy', 'sqlite3'} & set(sys.modules))"
-    )
-    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert shown.stdout.strip() == "set()"
+    modules = modules_after("import snowshed.scene.accuracy_settings")
+    assert {"matplotlib", "pandas", "scipy", "sqlite3"} & modules == set()

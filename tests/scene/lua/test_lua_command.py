@@ -1,10 +1,9 @@
 """The command ``snowshed lua``, and what happens where Lua is missing."""
 
 import json
-import subprocess
-import sys
 
 import pytest
+from processes import modules_after
 
 from snowshed import Scene, read_events
 from snowshed.cli.main import main
@@ -102,7 +101,6 @@ def test_without_lupa_the_error_says_what_to_install(scripts, capsys, hide):
 
 
 def test_nothing_of_lua_is_imported_by_the_other_commands():
-    command = "import sys, snowshed.cli.main; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True)
-    assert "snowshed.cli.main" in done.stdout.split()
-    assert not [m for m in done.stdout.split() if m.startswith(("lupa", "snowshed.scene.lua"))]
+    modules = modules_after("import snowshed.cli.main")
+    assert "snowshed.cli.main" in modules
+    assert not [m for m in modules if m.startswith(("lupa", "snowshed.scene.lua"))]
