@@ -18,18 +18,15 @@ constexpr std::ptrdiff_t points_in_part = 256;
 
 template <int D>
 void NeighbourLists<D>::Part::make_room(std::size_t more) {
-  if (index.size() >= size + more) return;
-  const std::size_t room = 2 * (size + more);
-  for (auto& axis : offset) axis.resize(room);
-  index.resize(room);  // last: its size says what all have room for, also where memory is short
+  const std::size_t needed = size + more + SearchedPoints<D>::spare;
+  if (index.size() < needed) index.resize(2 * needed);
 }
 
-/// Appends what the points of some cells find; `first_` gets the lengths of their lists.
+/// What the points of some cells find; `first_` gets the lengths of their lists.
 template <int D>
-void NeighbourLists<D>::find(const AlignedVector<VecD<D>>& points, const CellOrder<D>& cells,
-                             double radius, double period, std::size_t first_cell,
+void NeighbourLists<D>::find(const SearchedPoints<D>& points, const CellOrder<D>& cells,
+                             NeighbourSearch<D> search, std::size_t first_cell,
                              std::size_t last_cell, Part& part) {
-  const double reach2 = radius * radius;
   part.size = 0;
   typename CellOrder<D>::Range rows[CellOrder<D>::most_rows];
   for (std::size_t cell = first_cell; cell < last_cell; ++cell) {
@@ -39,40 +36,49 @@ void NeighbourLists<D>::find(const AlignedVector<VecD<D>>& points, const CellOrd
     for (std::uint32_t i = cells.begin(cell); i < cells.end(cell); ++i) {
       part.make_room(candidates);
       const std::size_t before = part.size;
-      std::size_t n = before;
-      std::uint32_t* const index = part.index.data();
       for (int r = 0; r < count; ++r)
-        for (std::uint32_t j = rows[r].begin; j < rows[r].end; ++j) {
-          double way[D], distance2 = 0;
-          for (int d = 0; d < D; ++d) {
-            way[d] = coordinate_[d][j] - points[i][d];
-            if (d == 0 && period > 0) way[0] -= period * std::nearbyint(way[0] / period);
-            distance2 += way[d] * way[d];
-          }
-          index[n] = j;
-          for (int d = 0; d < D; ++d) part.offset[d][n] = float(way[d]);
-          n += std::size_t((distance2 < reach2) & (j != i));
-        }
-      part.size = n;
-      first_[i + 1] = std::uint32_t(n - before);
+        part.size += search(points, i, rows[r].begin, rows[r].end, part.index.data() + part.size);
+      first_[i + 1] = std::uint32_t(part.size - before);
     }
   }
 }
 
+/// Puts what the points of some cells have found where it belongs, with the ways there.
+template <int D>
+void NeighbourLists<D>::keep(const SearchedPoints<D>& points, const CellOrder<D>& cells,
+                             std::size_t first_cell, std::size_t last_cell, const Part& part) {
+  const std::uint32_t first = cells.begin(first_cell), last = cells.end(last_cell - 1);
+  std::copy_n(part.index.data(), part.size, index_.data() + first_[first]);
+  for (int d = 0; d < D; ++d)
+    for (std::uint32_t i = first; i < last; ++i)
+      for (std::uint32_t e = first_[i]; e < first_[i + 1]; ++e) {
+        double way = coordinate_[d][index_[e]] - coordinate_[d][i];
+        if (d == 0 && points.period > 0) way -= points.period * std::nearbyint(way / points.period);
+        offset_[d][e] = float(way);
+      }
+}
+
 template <int D>
 void NeighbourLists<D>::update(const AlignedVector<VecD<D>>& points, const CellOrder<D>& cells,
-                               double radius, double period, int threads) {
+                               double radius, double period, NeighbourSearch<D> search,
+                               int threads) {
   const std::size_t n = points.size(), parts = (cells.cells() + cells_in_part - 1) / cells_in_part;
+  SearchedPoints<D> searched{{}, radius, period};
   for (int d = 0; d < D; ++d) {
-    coordinate_[d].resize(n);
+    coordinate_[d].resize(n + SearchedPoints<D>::spare);
     for (std::size_t i = 0; i < n; ++i) coordinate_[d][i] = points[i][d];
+    searched.coordinate[d] = coordinate_[d].data();
   }
   first_.assign(n + 1, 0);
   parts_.resize(std::max(parts, parts_.size()));
-  parallel_for(std::ptrdiff_t(parts), threads, 1, [&](std::ptrdiff_t p) {
-    const std::size_t begin = std::size_t(p) * cells_in_part;
-    find(points, cells, radius, period, begin, std::min(cells.cells(), begin + cells_in_part),
-         parts_[std::size_t(p)]);
+  const auto for_each_part = [&](const auto& act) {
+    parallel_for(std::ptrdiff_t(parts), threads, 1, [&](std::ptrdiff_t p) {
+      const std::size_t begin = std::size_t(p) * cells_in_part;
+      act(begin, std::min(cells.cells(), begin + cells_in_part), parts_[std::size_t(p)]);
+    });
+  };
+  for_each_part([&](std::size_t begin, std::size_t end, Part& part) {
+    find(searched, cells, search, begin, end, part);
   });
   std::size_t total = 0;
   for (std::size_t p = 0; p < parts; ++p) total += parts_[p].size;
@@ -81,12 +87,8 @@ void NeighbourLists<D>::update(const AlignedVector<VecD<D>>& points, const CellO
   for (std::size_t i = 0; i < n; ++i) first_[i + 1] += first_[i];
   index_.resize(total);
   for (auto& axis : offset_) axis.resize(total);
-  parallel_for(std::ptrdiff_t(parts), threads, 1, [&](std::ptrdiff_t p) {
-    const Part& part = parts_[std::size_t(p)];
-    const std::size_t to = first_[cells.begin(std::size_t(p) * cells_in_part)];
-    std::copy_n(part.index.data(), part.size, index_.data() + to);
-    for (int d = 0; d < D; ++d)
-      std::copy_n(part.offset[d].data(), part.size, offset_[d].data() + to);
+  for_each_part([&](std::size_t begin, std::size_t end, const Part& part) {
+    keep(searched, cells, begin, end, part);
   });
 }
 
@@ -111,7 +113,7 @@ std::size_t NeighbourLists<D>::bytes() const {
                       (index_.capacity() + mirror_.capacity()) * sizeof(std::uint32_t);
   for (int d = 0; d < D; ++d)
     total += offset_[d].capacity() * sizeof(float) + coordinate_[d].capacity() * sizeof(double);
-  for (const Part& part : parts_) total += part.index.capacity() * 4 * (D + 1);
+  for (const Part& part : parts_) total += part.index.capacity() * sizeof(std::uint32_t);
   return total;
 }
 

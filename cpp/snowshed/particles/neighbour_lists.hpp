@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "snowshed/particles/cell_order.hpp"
+#include "snowshed/particles/neighbour_search.hpp"
 
 namespace snowshed {
 
@@ -18,7 +19,7 @@ class NeighbourLists {
   /// the identity), within `radius`, which must not be longer than the cells' edges, m. `period` is
   /// that of the cells. Throws SimulationError where there are too many pairs to be numbered.
   void update(const AlignedVector<VecD<D>>& points, const CellOrder<D>& cells, double radius,
-              double period, int threads);
+              double period, NeighbourSearch<D> search, int threads);
 
   std::size_t size() const { return first_.size() - 1; }
   std::size_t pairs() const { return index_.size(); }
@@ -50,12 +51,13 @@ class NeighbourLists {
   /// What a part of the points finds, before it is known where it stands in the whole.
   struct Part {
     std::vector<std::uint32_t> index;
-    std::array<std::vector<float>, D> offset;
     std::size_t size = 0;
     void make_room(std::size_t more);
   };
-  void find(const AlignedVector<VecD<D>>& points, const CellOrder<D>& cells, double radius,
-            double period, std::size_t first_cell, std::size_t last_cell, Part& part);
+  void find(const SearchedPoints<D>& points, const CellOrder<D>& cells, NeighbourSearch<D> search,
+            std::size_t first_cell, std::size_t last_cell, Part& part);
+  void keep(const SearchedPoints<D>& points, const CellOrder<D>& cells, std::size_t first_cell,
+            std::size_t last_cell, const Part& part);
 
   std::vector<std::uint32_t> first_{0};
   AlignedVector<std::uint32_t> index_, mirror_;

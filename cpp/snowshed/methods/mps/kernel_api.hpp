@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "snowshed/particles/neighbour_search.hpp"
+
 namespace snowshed {
 
 /// The pairs of all particles, in compressed rows.
@@ -24,12 +26,17 @@ struct RowMoments {
 
 template <int D>
 struct MpsKernels {
+  NeighbourSearch<D> search;
   /// Weights r_e/r - 1, weights over r^2, and the sums of the weights and of filling_weight of each
   /// row. `offset`: of each pair, by axes.
   void (*weigh)(const PairRows&, const float* const* offset, float reach, float* weight,
                 float* slope, float* sum, float* filling, std::ptrdiff_t begin, std::ptrdiff_t end);
   void (*sum_moments)(const PairRows&, const float* const* offset, const float* weight,
                       const float* slope, RowMoments<D>*, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// The weight times e.B e of each pair, 0.5 to 2; e is the direction of the way and B the mean of
+  /// both particles' `spread`, upper halves by rows.
+  void (*even_weights)(const PairRows&, const float* const* offset, const float* weight,
+                       const float* spread, float* even, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// q = diagonal p - sum of weight p; a row whose diagonal is zero is left out.
   void (*apply)(const PairRows&, const float* weight, const double* diagonal, const double* p,
                 double* q, std::ptrdiff_t begin, std::ptrdiff_t end);

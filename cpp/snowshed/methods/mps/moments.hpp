@@ -1,6 +1,8 @@
 // Symmetric matrices of which one half is stored.
 #pragma once
 
+#include <array>
+
 #include "snowshed/core/vec.hpp"
 
 namespace snowshed {
@@ -12,6 +14,16 @@ Eigen::Matrix<double, D, D> symmetric(const float* half) {
   for (int a = 0; a < D; ++a)
     for (int b = a; b < D; ++b) m(a, b) = m(b, a) = double(*half++);
   return m;
+}
+
+/// The upper half of a symmetric matrix by rows.
+template <int D>
+std::array<float, D*(D + 1) / 2> upper_half(const Eigen::Matrix<double, D, D>& m) {
+  std::array<float, D*(D + 1) / 2> half;
+  std::size_t k = 0;
+  for (int a = 0; a < D; ++a)
+    for (int b = a; b < D; ++b) half[k++] = float(m(a, b));
+  return half;
 }
 
 }  // namespace snowshed

@@ -124,7 +124,7 @@ void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles
   });
   for_each_particle(n, threads, [&](std::size_t i) {
     near.asymmetry[i].setZero();
-    near.spread[i].setIdentity();
+    near.spread[i] = upper_half<D>(Matrix::Identity());
     near.correction[i].setIdentity();
     if (particles.is_wall(i)) return;
     Matrix moment = symmetric<D>(near.moments[i].slope);
@@ -138,7 +138,8 @@ void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles
     }
     if (!near.below_surface[i]) {
       const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
-      near.spread[i] += 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity());
+      near.spread[i] = upper_half<D>(
+          Matrix::Identity() + 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity()));
       near.asymmetry[i] = side;
     }
     moment *= model.gradient();
@@ -148,21 +149,11 @@ void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles
 
 /// The weights of pairs in the Laplacians of velocities, see find_corrections.
 template <int D>
-void find_even_weights(MpsNeighbourhood<D>& near, int threads) {
+void find_even_weights(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int threads) {
   near.even_weight.resize(near.lists.pairs());
-  for_each_particle(near.lists.size(), threads, [&](std::size_t i) {
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-      const Eigen::Matrix<double, D, D>& other = near.spread[near.lists.neighbour(e)];
-      float r[D], r2 = 0, sum = 0;
-      for (int d = 0; d < D; ++d) {
-        r[d] = near.lists.offset(d)[e];
-        r2 += r[d] * r[d];
-      }
-      for (int a = 0; a < D; ++a)
-        for (int b = a; b < D; ++b)
-          sum += (a == b ? 0.5f : 1.0f) * float(near.spread[i](a, b) + other(a, b)) * r[a] * r[b];
-      near.even_weight[e] = near.weight[e] * std::clamp(sum / std::max(r2, 1e-30f), 0.5f, 2.0f);
-    }
+  for_each_piece(near.lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.even_weights(near.rows(), near.offsets().data(), near.weight.data(),
+                               near.spread.data()->data(), near.even_weight.data(), begin, end);
   });
 }
 
@@ -226,7 +217,7 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
     sort_particles(near.cells, particles, work.spare, threads);
     near.cells.update(particles.position, reach, period);
   }
-  near.lists.update(particles.position, near.cells, reach, period, threads);
+  near.lists.update(particles.position, near.cells, reach, period, model.kernels.search, threads);
   find_contacts(model.options.obstacles, reach, particles, time, threads, near.contacts);
   weigh_pairs(model, near, threads);
   if (model.has_wall_particles()) {
@@ -241,7 +232,7 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
   if (model.has_wall_particles()) guess_wall_pressures(model, particles, near);
   if (model.settings().gradient == MpsGradient::corrected) {
     find_corrections(model, particles, near, threads);
-    find_even_weights(near, threads);
+    find_even_weights(model, near, threads);
   } else {
     near.even_weight = near.weight;
   }

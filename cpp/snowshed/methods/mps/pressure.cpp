@@ -29,29 +29,50 @@ void find_slip(const MpsModel<D>& model, const MpsParticles<D>& particles,
   });
 }
 
-/// The divergence of the velocity, 1/s. Behind a wall, images move along it as the particles do.
-/// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
-/// cancel at rest.
+/// The gradients of velocities before they are corrected. Beside walls of particles they are not
+/// what divergences need, see slip_divergence.
 template <int D>
-double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                  const MpsNeighbourhood<D>& near, std::size_t i) {
-  const VecD<D>& own = model.has_wall_particles() ? near.slip[i] : particles.velocity[i];
-  const bool corrected = model.settings().gradient == MpsGradient::corrected && !near.surface[i];
-  const auto part = [&](const VecD<D>& way, double slope, const VecD<D>& change) {
-    return slope * (corrected ? VecD<D>(near.correction[i] * way) : way).dot(change);
-  };
+void find_gradients(const MpsModel<D>& model, const MpsParticles<D>& particles, MpsWork<D>& work) {
+  const MpsNeighbourhood<D>& near = work.near;
+  work.velocity_gradient.resize(particles.size());
+  for_each_piece(particles.size(), model.threads_for(particles.size()),
+                 [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                   model.kernels.sum_gradients(near.rows(), near.offsets().data(),
+                                               near.slope.data(), particles.velocity.data()->data(),
+                                               work.velocity_gradient.data()->data(), begin, end);
+                 });
+}
+
+/// The divergence beside walls of particles, 1/s, in which inner walls move as `slip` says, and
+/// dummies tell what flows into the wall.
+template <int D>
+double slip_divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                       const MpsNeighbourhood<D>& near,
+                       const Eigen::Matrix<double, D, D>& correction, std::size_t i) {
   double sum = 0, flow = 0;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
+    const VecD<D> way = near.way(e);
     if (particles.kind[j] == MpsKind::dummy_wall) {
       const VecD<D>& normal = particles.push[j];
-      flow -= double(near.weight[e]) * near.way(e).dot(normal) *
-              (own - particles.velocity[j]).dot(normal);
-      continue;
+      flow -= double(near.weight[e]) * way.dot(normal) *
+              (near.slip[i] - particles.velocity[j]).dot(normal);
+    } else {
+      sum += double(near.slope[e]) * (correction * way).dot(near.slip[j] - near.slip[i]);
     }
-    const VecD<D>& other = model.has_wall_particles() ? near.slip[j] : particles.velocity[j];
-    sum += part(near.way(e), double(near.slope[e]), other - own);
   }
+  return model.gradient() * sum + model.laplacian() * flow;
+}
+
+/// The share of walls' images in the divergence, 1/s. They move along the wall as the particles do.
+/// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
+/// cancel at rest.
+template <int D>
+double image_divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                        const MpsNeighbourhood<D>& near,
+                        const Eigen::Matrix<double, D, D>& correction, std::size_t i) {
+  const VecD<D>& own = particles.velocity[i];
+  double sum = 0, flow = 0;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     VecD<D> along = particles.velocity[m->of] - own;
     for (const int k : {0, 1}) {
@@ -60,9 +81,22 @@ double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
       along -= along.dot(wall.normal) * wall.normal;
       flow += double(m->weight) * m->rise[k] * (own - wall.velocity).dot(wall.normal);
     }
-    sum += part(m->way, double(m->slope), along);
+    sum += double(m->slope) * (correction * m->way).dot(along);
   }
   return model.gradient() * sum + model.laplacian() * flow;
+}
+
+/// The divergence of the velocity, 1/s.
+template <int D>
+double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                  const MpsWork<D>& work, std::size_t i) {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const MpsNeighbourhood<D>& near = work.near;
+  const bool corrected = model.settings().gradient == MpsGradient::corrected && !near.surface[i];
+  const Matrix correction = corrected ? near.correction[i] : Matrix(Matrix::Identity());
+  if (model.has_wall_particles()) return slip_divergence(model, particles, near, correction, i);
+  return model.gradient() * correction.cwiseProduct(work.velocity_gradient[i]).sum() +
+         image_divergence(model, particles, near, correction, i);
 }
 
 /// The time in which the density's error is taken away by the share `compensation`, s: the step, or
@@ -111,11 +145,12 @@ double compensated_excess(const MpsModel<D>& model, const MpsParticles<D>& parti
 /// pressure of snow at rest; here its weight is one.
 template <int D>
 double source(const MpsModel<D>& model, double dt, double compensation_time,
-              const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near, std::size_t i) {
+              const MpsParticles<D>& particles, const MpsWork<D>& work, std::size_t i) {
   const MpsSettings& s = model.settings();
+  const MpsNeighbourhood<D>& near = work.near;
   if (s.source == MpsSource::published)
     return -s.density / (dt * dt) * (near.density[i] / model.kernel.number_density - 1);
-  return s.density / dt * divergence(model, particles, near, i) -
+  return s.density / dt * divergence(model, particles, work, i) -
          s.compensation * s.density / (dt * compensation_time) *
              compensated_excess(model, particles, near, i);
 }
@@ -209,7 +244,10 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
                            MpsWork<D>& work) {
   MpsNeighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
-  if (model.has_wall_particles()) find_slip(model, particles, near);
+  if (model.has_wall_particles())
+    find_slip(model, particles, near);
+  else
+    find_gradients(model, particles, work);
   const double relaxation = compensation_time(model, dt, particles);
   // What the Laplacian would make of a linear pressure, since neighbours do not lie evenly around.
   const bool corrected = model.settings().gradient == MpsGradient::corrected;
@@ -219,7 +257,7 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
     work.pressure[i] = work.fixed[i] ? 0 : particles.pressure[i];
     work.source[i] = 0;
     if (work.fixed[i]) return;
-    double value = -source(model, dt, relaxation, particles, near, i) / model.laplacian();
+    double value = -source(model, dt, relaxation, particles, work, i) / model.laplacian();
     if (corrected) value -= model.settings().density * near.asymmetry[i].dot(particles.push[i]);
     if (near.surface[i]) value = std::max(value, 0.0);  // snow does not hang together there
     work.source[i] = value;

@@ -100,7 +100,7 @@ struct MpsNeighbourhood {
   AlignedVector<std::uint8_t> dry;                        // inner walls that no snow touches
   AlignedVector<VecD<D>> slip;                            // m/s, with wall particles, see find_slip
   AlignedVector<VecD<D>> asymmetry;                       // sum of w r, 0 at the surface, m
-  AlignedVector<Eigen::Matrix<double, D, D>> spread;      // of Laplacians, see find_corrections
+  AlignedVector<std::array<float, RowMoments<D>::half>> spread;  // of Laplacians, upper halves
 
   /// A particle's contact with an obstacle, or null.
   const WallContact<D>* contact_with(std::size_t i, std::uint32_t obstacle) const {

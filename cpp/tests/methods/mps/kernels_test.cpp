@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "snowshed/methods/mps/kernel_api.hpp"
 #include "snowshed/methods/mps/kernel_function.hpp"
+#include "snowshed/methods/mps/moments.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
 namespace snowshed {
@@ -15,12 +19,14 @@ template <int D>
 struct Cloud {
   static constexpr double radius = 2.1;
   AlignedVector<VecD<D>> position, velocity;
+  double period;  // along x; 0: none
   NeighbourLists<D> lists;
   std::array<const float*, D> offset;
   PairRows rows;
   AlignedVector<float> weight, slope, sum, filling;
 
-  explicit Cloud(std::size_t count) : position(count), velocity(count) {
+  explicit Cloud(std::size_t count, double repeated = 0)
+      : position(count), velocity(count), period(repeated) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> place(0, 8), speed(-1, 1);
     for (std::size_t i = 0; i < count; ++i)
@@ -29,11 +35,11 @@ struct Cloud {
         velocity[i][d] = speed(random);
       }
     CellOrder<D> cells;
-    cells.update(position, radius);
+    cells.update(position, radius, period);
     const AlignedVector<VecD<D>> unsorted = position;
     for (std::size_t k = 0; k < count; ++k) position[k] = unsorted[cells.order()[k]];
-    cells.update(position, radius);
-    lists.update(position, cells, radius, 0, 1);
+    cells.update(position, radius, period);
+    lists.update(position, cells, radius, period, mps_kernels<D>().search, 1);
     lists.find_mirrors(1);
     for (int d = 0; d < D; ++d) offset[std::size_t(d)] = lists.offset(d);
     rows = {lists.first(), lists.index()};
@@ -45,6 +51,11 @@ struct Cloud {
                            sum.data(), filling.data(), 0, std::ptrdiff_t(count));
   }
   std::ptrdiff_t size() const { return std::ptrdiff_t(position.size()); }
+  VecD<D> way(std::size_t i, std::size_t j) const {
+    VecD<D> r = position[j] - position[i];
+    if (period > 0) r[0] -= period * std::round(r[0] / period);
+    return r;
+  }
   template <class F>
   void for_each_pair(const F& f) const {
     for (std::size_t i = 0; i < position.size(); ++i)
@@ -57,6 +68,48 @@ template <class T>
 class MpsKernelsOf : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(MpsKernelsOf, Dimensions);
+
+TYPED_TEST(MpsKernelsOf, FindTheNeighboursThatAllPairsHave) {
+  constexpr int D = TypeParam::value;
+  for (const double period : {0.0, 8.0}) {
+    const Cloud<D> cloud(150, period);
+    for (std::size_t i = 0; i < 150; ++i) {
+      std::set<std::size_t> near, found;
+      for (std::size_t j = 0; j < 150; ++j)
+        if (j != i && cloud.way(i, j).norm() < cloud.radius) near.insert(j);
+      for (std::uint32_t e = cloud.lists.begin(i); e < cloud.lists.end(i); ++e) {
+        const std::size_t j = cloud.lists.neighbour(e);
+        EXPECT_TRUE(found.insert(j).second);
+        EXPECT_LT((cloud.lists.way(e) - cloud.way(i, j)).norm(), 1e-6);
+      }
+      EXPECT_EQ(found, near);
+    }
+  }
+}
+
+TYPED_TEST(MpsKernelsOf, WeighPairsByTheirDirection) {
+  constexpr int D = TypeParam::value;
+  constexpr std::size_t half = RowMoments<D>::half;
+  const Cloud<D> cloud(150);
+  AlignedVector<std::array<float, half>> spread(150);
+  for (std::size_t i = 0; i < 150; ++i)
+    for (std::size_t k = 0; k < half; ++k)
+      spread[i][k] = 0.4f + 0.01f * float((7 * i + 13 * k) % 60);
+  AlignedVector<float> even(cloud.lists.pairs());
+  mps_kernels<D>().even_weights(cloud.rows, cloud.offset.data(), cloud.weight.data(),
+                                spread.data()->data(), even.data(), 0, cloud.size());
+  std::array<int, 3> within{};  // factors at the lower limit, between, at the upper one
+  cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
+    const VecD<D> way = cloud.way(i, j).normalized();
+    const double factor =
+        0.5 * way.dot((symmetric<D>(spread[i].data()) + symmetric<D>(spread[j].data())) * way);
+    ++within[factor < 0.5 ? 0 : factor < 2 ? 1 : 2];
+    EXPECT_NEAR(even[e], double(cloud.weight[e]) * std::clamp(factor, 0.5, 2.0),
+                1e-4 * (1 + double(cloud.weight[e])));
+  });
+  EXPECT_GT(within[0], 10);
+  EXPECT_GT(within[1], 10);
+}
 
 TYPED_TEST(MpsKernelsOf, WeighPairsAndSumThem) {
   constexpr int D = TypeParam::value;

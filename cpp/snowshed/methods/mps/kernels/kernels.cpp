@@ -1,6 +1,7 @@
 // The kernels of MPS for one instruction set.
 #include "snowshed/methods/mps/kernels/products.hpp"
 #include "snowshed/methods/mps/kernels/rates.hpp"
+#include "snowshed/methods/mps/kernels/search.hpp"
 #include "snowshed/methods/mps/kernels/weights.hpp"
 
 SNOWSHED_VARIANT_BEGIN
@@ -8,6 +9,10 @@ namespace {
 
 template <int D>
 struct Rows {
+  static std::size_t search(const SearchedPoints<D>& points, std::uint32_t i, std::uint32_t begin,
+                            std::uint32_t end, std::uint32_t* found) {
+    return find_near<D>(points, i, begin, end, found);
+  }
   static void weigh(const PairRows& rows, const float* const* offset, float reach, float* weight,
                     float* slope, float* sum, float* filling, std::ptrdiff_t begin,
                     std::ptrdiff_t end) {
@@ -19,6 +24,12 @@ struct Rows {
                           std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       sum_row_moments<D>(rows, offset, weight, slope, moments[i], std::size_t(i));
+  }
+  static void even_weights(const PairRows& rows, const float* const* offset, const float* weight,
+                           const float* spread, float* even, std::ptrdiff_t begin,
+                           std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      find_even_weights<D>(rows, offset, weight, spread, even, std::size_t(i));
   }
   static void apply(const PairRows& rows, const float* weight, const double* diagonal,
                     const double* p, double* q, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -51,8 +62,9 @@ struct Rows {
       find_pair_rates<D>(rows, offset, velocity, gradient, rate, std::size_t(i));
   }
 
-  static constexpr MpsKernels<D> table{
-      &weigh, &sum_moments, &apply, &residual, &apply_to_velocities, &sum_gradients, &pair_rates};
+  static constexpr MpsKernels<D> table{&search,    &weigh,    &sum_moments,         &even_weights,
+                                       &apply,     &residual, &apply_to_velocities, &sum_gradients,
+                                       &pair_rates};
 };
 
 }  // namespace

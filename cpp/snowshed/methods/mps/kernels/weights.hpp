@@ -65,4 +65,30 @@ SNOWSHED_INLINE void sum_row_moments(const PairRows& rows, const float* const* o
   for (int d = 0; d < D; ++d) moments.side[d] = sum_lanes(side[d]);
 }
 
+template <int D>
+SNOWSHED_INLINE void find_even_weights(const PairRows& rows, const float* const* offset,
+                                       const float* weight, const float* spread, float* even,
+                                       std::size_t row) {
+  using V = SimdPack<float>;
+  constexpr int half = RowMoments<D>::half;
+  for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
+    const IndexPack<V> at = pack.load_index(rows.index) * half;
+    V r[D], square{}, sum{};
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) {
+      r[d] = pack.load(offset[d]);
+      square += r[d] * r[d];
+    }
+    int k = 0;
+    SNOWSHED_UNROLL
+    for (int a = 0; a < D; ++a) SNOWSHED_UNROLL
+    for (int b = a; b < D; ++b, ++k) {
+      const V both = gather<V>(spread + k, at) + spread[row * half + std::size_t(k)];
+      sum += (a == b ? 0.5f : 1.0f) * both * r[a] * r[b];
+    }
+    const V ratio = sum / max(square, broadcast<V>(1e-30f));
+    pack.store(even, V(pack.load(weight) * clamp(ratio, broadcast<V>(0.5f), broadcast<V>(2.0f))));
+  });
+}
+
 SNOWSHED_VARIANT_END

@@ -1,0 +1,258 @@
+"""Compare the speed of fluids of particles with MPS-Basic, side by side in one run.
+
+Usage: python benchmarks/beside_mps_basic.py PROGRAM [--radius 2.1 3.1]
+[--particles2d 1458 9800] [--particles3d 19652] [--threads 1 2]
+
+PROGRAM is that of MPS-Basic (Koshizuka and Shibata laboratory, MIT licence), compiled with
+optimisation and OpenMP. Both let a column of water collapse that is twice as high as wide, in a
+basin twice as long as it, with the same distance between particles and the same radius of the
+pressure's weights. A step of a particle of water is the unit, and the best of three runs counts.
+MPS-Basic's walls are particles, too, and ours are mirrors: its speed with its walls among the
+particles is told as well. Writes benchmarks/results/DATE-mps.json. Nothing else should run on the
+machine meanwhile.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import itertools
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from snowshed.methods.mps import MpsSettings  # noqa: E402
+from snowshed.run.machine import cpu_name  # noqa: E402
+from snowshed.run.simulation import Simulation  # noqa: E402
+from snowshed.scene.components import Body, Events, Obstacle  # noqa: E402
+from snowshed.scene.scene import Scene  # noqa: E402
+from snowshed.scene.shape import Shape  # noqa: E402
+
+SPACING = 0.01  # m
+GRADIENT_RADIUS = 2.1  # of MPS-Basic, in spacings, as it comes
+BASIN = 2  # its length, in widths of the column
+LAYERS = 4  # of its wall: two whose pressure is known, and two behind them
+STEP = 4e-4  # s, of MPS-Basic, in its own proportion to the spacing
+FIRST_STEPS, STEPS = 5, 30  # of MPS-Basic: those before count starts, and those that count
+OUR_STEPS = 400
+REPETITIONS = 3
+FLUID, WALL, DUMMY = 1, 2, 3
+SETTINGS = """
+dim: {dimension}
+particleDistance: {spacing}
+dt: {step}
+endTime: {end}
+outputPeriod: 1000.0
+cflCondition: 0.3
+numPhysicalCores: 1
+domainMin: [{low}, {low}, {low}]
+domainMax: [{right}, {top}, {back}]
+defaultDensity: 1000.0
+kinematicViscosity: 1.0e-06
+xyz-input: true
+gravity: [0.0, -9.81, 0.0]
+gravity-norm: 9.81
+gravity-angle: 0
+surfaceDetection-numberDensity-threshold: 0.97
+surfaceDetection-particleDistribution: true
+surfaceDetection-particleDistribution-threshold: 1.0
+pressureCalculationMethod: Implicit
+compressibility: 0.45e-09
+relaxationCoefficientForPressure: 0.2
+soundSpeed: 17.1
+collisionDistanceRatio: 0.5
+coefficientOfRestitution: 0.2
+radiusRatioForNumberDensity: {radius}
+radiusRatioForGradient: {gradient_radius}
+radiusRatioForLaplacian: {radius}
+particlesPath: ./input.prof
+outputVtkInBinary: true
+"""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of water in a basin.
+
+    Attributes
+    ----------
+    dimension
+        2 or 3.
+    across
+        Particles along its width. It is twice as high, and as deep as wide.
+    radius
+        Of the weights, in spacings.
+    """
+
+    dimension: int
+    across: int
+    radius: float
+
+    @classmethod
+    def of(cls, dimension: int, particles: int, radius: float) -> Column:
+        """Return the column with about so many particles."""
+        return cls(dimension, round((particles / 2) ** (1 / dimension)), radius)
+
+    @property
+    def particles(self) -> int:
+        """How many there are, without walls."""
+        return 2 * self.across**self.dimension
+
+    @property
+    def width(self) -> float:
+        """Of the column, m."""
+        return self.across * SPACING
+
+
+def our_scene(column: Column, threads: int) -> Scene:
+    """Return the collapse of a column as a scene."""
+    width, upright = column.width, column.dimension == 2
+    faces = [((0, 0, 0), (0, 0, 1)), ((0, 0, 0), (1, 0, 0)), ((BASIN * width, 0, 0), (-1, 0, 0))]
+    if not upright:
+        faces += [((0, 0, 0), (0, 1, 0)), ((0, width, 0), (0, -1, 0))]
+    kept = [0, 2] if upright else [0, 1, 2]
+    walls = [Shape.plane(*([vector[d] for d in kept] for vector in face)) for face in faces]
+    size = (width, 2 * width) if upright else (width, width, 2 * width)
+    return Scene(
+        dimension=column.dimension,
+        method="mps",
+        numerics=MpsSettings(
+            spacing=SPACING,
+            radius=column.radius,
+            density=1000.0,
+            viscosity=1e-3,
+            rheology="newtonian",
+            threads=threads,
+        ),
+        obstacles=[
+            Obstacle(name=f"wall {k}", shape=wall, condition="sticky")
+            for k, wall in enumerate(walls, start=1)
+        ],
+        bodies=[Body(shape=Shape.box(tuple(0.5 * length for length in size), size))],
+        events=Events(count=1, max_time=1000.0, between="carry"),
+    )
+
+
+def our_speed(column: Column, threads: int) -> tuple[float, float]:
+    """Return particle steps a second of ours, and the mean step, s."""
+    simulation = Simulation(our_scene(column, threads))
+    simulation.begin_event()
+    simulation.step(10)
+    start, begin = simulation.time, time.perf_counter()
+    simulation.step(OUR_STEPS)
+    seconds = time.perf_counter() - begin
+    return column.particles * OUR_STEPS / seconds, (simulation.time - start) / OUR_STEPS
+
+
+def write_basin(column: Column, folder: Path) -> int:
+    """Write MPS-Basic's particles; return how many there are, with walls."""
+    across, inside = column.across, [BASIN * column.across, 2 * column.across + 10]
+    if column.dimension == 3:
+        inside.append(across)
+    ranges = [range(-LAYERS, inside[0] + LAYERS), range(-LAYERS, inside[1])]
+    if column.dimension == 3:
+        ranges.append(range(-LAYERS, inside[2] + LAYERS))
+    lines = []
+    for place in itertools.product(*ranges):
+        behind = [max(-k, k - n + 1, 0) for k, n in zip(place, inside)]
+        kind = DUMMY if max(behind) > LAYERS // 2 else WALL
+        if max(behind) == 0:
+            if place[0] >= across or place[1] >= 2 * across:
+                continue
+            kind = FLUID
+        where = [SPACING * (k + 0.5) for k in place] + [0.0] * (3 - len(place))
+        lines.append(f"{kind} {where[0]} {where[1]} {where[2]} 0 0 0")
+    text = "\n".join(["0", str(len(lines)), *lines]) + "\n"
+    (folder / "input.prof").write_text(text, encoding="ascii")
+    return len(lines)
+
+
+def their_seconds(program: Path, column: Column, steps: int, threads: int, folder: Path) -> float:
+    """Return the time MPS-Basic takes for so many steps, with its start, s."""
+    far = (BASIN + 1) * column.width + 2 * LAYERS * SPACING
+    text = SETTINGS.format(
+        dimension=column.dimension,
+        spacing=SPACING,
+        radius=column.radius,
+        gradient_radius=GRADIENT_RADIUS,
+        step=STEP,
+        end=(steps - 0.5) * STEP,
+        low=-2 * LAYERS * SPACING,
+        right=far,
+        top=far,
+        back=far,
+    )
+    (folder / "settings.yml").write_text(text, encoding="ascii")
+    output = tempfile.mkdtemp(dir=folder)
+    begin = time.perf_counter()
+    subprocess.run(
+        [program, "--setting", folder / "settings.yml", "--output", output],
+        check=True,
+        capture_output=True,
+        env={**os.environ, "OMP_NUM_THREADS": str(threads)},
+    )
+    return time.perf_counter() - begin
+
+
+def compare(program: Path, column: Column, threads: int) -> dict[str, float]:
+    """Let a column collapse with both in turn, and print a line."""
+    ours, theirs, step = [], [], 0.0
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        all_particles = write_basin(column, folder)
+        for _ in range(REPETITIONS):
+            speed, step = our_speed(column, threads)
+            ours.append(speed)
+            first, last = (
+                their_seconds(program, column, steps, threads, folder)
+                for steps in (FIRST_STEPS, FIRST_STEPS + STEPS)
+            )
+            theirs.append(STEPS / (last - first))
+    case = {
+        "dimension": column.dimension,
+        "radius": column.radius,
+        "threads": threads,
+        "particles": column.particles,
+        "mps_basic_particles": all_particles,
+        "snowshed_per_s": max(ours),
+        "mps_basic_per_s": max(theirs) * column.particles,
+        "mps_basic_with_walls_per_s": max(theirs) * all_particles,
+        "ratio": max(ours) / max(theirs) / column.particles,
+        "ratio_with_walls": max(ours) / max(theirs) / all_particles,
+        "snowshed_step_s": step,
+        "mps_basic_step_s": STEP,
+    }
+    print(" ".join(f"{value:>9.3g}" for value in case.values()), flush=True)
+    return case
+
+
+def main() -> None:
+    """Print a table of speeds and their ratios, and keep it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("program", type=Path, help="that of MPS-Basic")
+    parser.add_argument("--radius", type=float, nargs="*", default=[2.1, 3.1])
+    parser.add_argument("--particles2d", type=int, nargs="*", default=[1458, 9800])
+    parser.add_argument("--particles3d", type=int, nargs="*", default=[19652])
+    parser.add_argument("--threads", type=int, nargs="*", default=[1, 2])
+    options = parser.parse_args()
+    sizes = [(2, one) for one in options.particles2d] + [(3, one) for one in options.particles3d]
+    columns = [Column.of(*size, radius) for size in sizes for radius in options.radius]
+    heads = ("", "radius", "threads", "water", "+ walls", "ours/s", "its/s", "+ walls/s")
+    print(*(f"{head:>9}" for head in (*heads, "ratio", "+ walls", "our step", "its step")))
+    cases = [compare(options.program, one, n) for one in columns for n in options.threads]
+    date = datetime.date.today().isoformat()
+    record = {"date": date, "cpu": cpu_name(), "cases": cases}
+    file = ROOT / "benchmarks" / "results" / f"{date}-mps.json"
+    file.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

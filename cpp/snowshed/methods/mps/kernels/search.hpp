@@ -1,0 +1,65 @@
+// The search for neighbours.
+#pragma once
+
+#include "snowshed/core/simd_pack.hpp"
+#include "snowshed/particles/neighbour_search.hpp"
+
+SNOWSHED_VARIANT_BEGIN
+
+/// Which lanes of a mask of doubles are set, the first one lowest.
+SNOWSHED_INLINE unsigned lane_bits(const SimdMask<double>& mask) {
+#if defined(__AVX512DQ__)
+  return _mm512_movepi64_mask((__m512i)mask);
+#elif defined(__AVX2__)
+  return unsigned(_mm256_movemask_pd((__m256d)mask));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < simd_width<double>; ++k) bits |= unsigned(mask[k] & 1) << k;
+  return bits;
+#endif
+}
+
+/// Writes `from` plus the places of set bits, in order; returns how many. What stands behind them
+/// may change.
+SNOWSHED_INLINE std::size_t write_places(unsigned bits, std::uint32_t from, std::uint32_t* to) {
+#if defined(__AVX512VL__)
+  const __m256i all =
+      _mm256_add_epi32(_mm256_set1_epi32(int(from)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                      _mm256_maskz_compress_epi32(__mmask8(bits), all));
+  return std::size_t(__builtin_popcount(bits));
+#else
+  std::size_t n = 0;
+  for (; bits != 0; bits &= bits - 1) to[n++] = from + std::uint32_t(__builtin_ctz(bits));
+  return n;
+#endif
+}
+
+template <int D>
+SNOWSHED_INLINE std::size_t find_near(const SearchedPoints<D>& points, std::uint32_t i,
+                                      std::uint32_t begin, std::uint32_t end,
+                                      std::uint32_t* found) {
+  using V = SimdPack<double>;
+  constexpr std::uint32_t lanes = simd_width<double>;
+  static_assert(lanes <= SearchedPoints<D>::spare);
+  const double radius2 = points.radius * points.radius, period = points.period;
+  std::size_t n = 0;
+  for (std::uint32_t j = begin; j < end; j += lanes) {
+    V square{};
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) {
+      V way;
+      std::memcpy(&way, points.coordinate[d] + j, sizeof way);
+      way -= points.coordinate[d][i];
+      if (d == 0 && period > 0) way = min(abs(way), V(period - abs(way)));
+      square += way * way;
+    }
+    unsigned bits = lane_bits(square < radius2);
+    if (end - j < lanes) bits &= (1u << (end - j)) - 1;
+    if (i - j < lanes) bits &= ~(1u << (i - j));
+    n += write_places(bits, j, found + n);
+  }
+  return n;
+}
+
+SNOWSHED_VARIANT_END

@@ -1,0 +1,26 @@
+// What neighbour lists and the kernel that searches for them agree on: nothing here depends on an
+// instruction set.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace snowshed {
+
+/// Points by axes, in the order of their cells, m. Kernels read and write some values at a time:
+/// behind the last point, and behind what is found, there is room for `spare` more.
+template <int D>
+struct SearchedPoints {
+  static constexpr std::size_t spare = 16;
+  const double* coordinate[D];
+  double radius, period;  // m; period 0: nothing is repeated along x
+};
+
+/// Writes which of the points [begin, end) are nearer to point i than the radius, without i itself,
+/// in their order; returns how many.
+template <int D>
+using NeighbourSearch = std::size_t (*)(const SearchedPoints<D>&, std::uint32_t i,
+                                        std::uint32_t begin, std::uint32_t end,
+                                        std::uint32_t* found);
+
+}  // namespace snowshed
