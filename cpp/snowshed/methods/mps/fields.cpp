@@ -119,8 +119,9 @@ std::size_t MpsSolver<D>::bytes() const {
   count(work_.near.asymmetry);
   count(work_.near.slip);
   count(work_.concentration);
-  for (const auto* vector : {&work_.diagonal, &work_.source, &work_.pressure, &work_.cg.r,
-                             &work_.cg.z, &work_.cg.p, &work_.cg.q})
+  count(work_.pressure_sum);
+  for (const auto* vector : {&work_.yielding, &work_.base_pressure, &work_.diagonal, &work_.source,
+                             &work_.pressure, &work_.cg.r, &work_.cg.z, &work_.cg.p, &work_.cg.q})
     count(*vector);
   return total;
 }

@@ -43,20 +43,49 @@ double base_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
   return -least_pressure(particles, near, i);
 }
 
-/// The gradient of the pressure, Pa/m: the sum of (p_j + base) w r/r^2 over the neighbours.
 template <int D>
-VecD<D> gradient_among_snow(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
-                            std::size_t i, double base, bool conservative) {
-  VecD<D> sum = VecD<D>::Zero();
-  const double own = particles.pressure[i];
-  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-    const std::size_t j = near.lists.neighbour(e);
-    const bool dummy = particles.kind[j] == MpsKind::dummy_wall;
-    if (dummy && !conservative) continue;
-    const double other = dummy ? own : particles.pressure[j];
-    sum += (other + base) * double(near.slope[e]) * near.way(e);
-  }
-  return sum;
+void find_base_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                         MpsWork<D>& work) {
+  work.base_pressure.resize(particles.size());
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    work.base_pressure[i] = base_pressure(model, particles, work.near, i);
+  });
+}
+
+/// The sum of (p_j + base) w r/r^2 over the neighbours, which include particles of walls: dummies
+/// have the pressure of the particle itself where pairs are to have equal and opposite forces, and
+/// else no part.
+template <int D>
+void sum_beside_wall_particles(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                               MpsWork<D>& work) {
+  const MpsNeighbourhood<D>& near = work.near;
+  const bool conservative = model.settings().gradient == MpsGradient::conservative;
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    VecD<D>& sum = work.pressure_sum[i];
+    sum.setZero();
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const std::size_t j = near.lists.neighbour(e);
+      const bool dummy = particles.kind[j] == MpsKind::dummy_wall;
+      if (dummy && !conservative) continue;
+      const double other = dummy ? particles.pressure[i] : particles.pressure[j];
+      sum += (other + work.base_pressure[i]) * double(near.slope[e]) * near.way(e);
+    }
+  });
+}
+
+/// The part of the neighbours in gradients of the pressure, Pa/m over the factor of gradients.
+template <int D>
+void sum_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles, MpsWork<D>& work) {
+  const MpsNeighbourhood<D>& near = work.near;
+  const std::size_t n = particles.size();
+  find_base_pressures(model, particles, work);
+  work.pressure_sum.resize(n);
+  if (model.has_wall_particles()) return sum_beside_wall_particles(model, particles, work);
+  for_each_piece(n, model.threads_for(n), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.sum_ways(near.rows(), near.offsets().data(), near.slope.data(),
+                           particles.pressure.data(), work.base_pressure.data(),
+                           work.pressure_sum.data()->data(), begin, end);
+  });
 }
 
 /// The part of the images behind walls. Their pressure grows along the normal as it must to stop
@@ -105,17 +134,16 @@ void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& partic
                     MpsWork<D>& work) {
   const MpsSettings& s = model.settings();
   const MpsNeighbourhood<D>& near = work.near;
-  const bool conservative = s.gradient == MpsGradient::conservative;
   const bool corrected = s.gradient == MpsGradient::corrected;
+  sum_pressures(model, particles, work);
   work.change.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
     if (particles.is_wall(i)) return;
     particles.push[i].setZero();
     if (!particles.moves(i)) return;
-    const double base = base_pressure(model, particles, near, i);
-    VecD<D> gradient = gradient_among_snow(particles, near, i, base, conservative) +
-                       gradient_at_walls(model, particles, near, i, base, dt);
+    VecD<D> gradient = work.pressure_sum[i] +
+                       gradient_at_walls(model, particles, near, i, work.base_pressure[i], dt);
     if (corrected && !near.surface[i]) gradient = near.correction[i] * gradient;
     particles.push[i] = model.gradient() / s.density * gradient;
     const VecD<D> before = particles.velocity[i];

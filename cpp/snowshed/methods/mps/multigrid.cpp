@@ -103,7 +103,7 @@ void Multigrid<D, C>::fill(Level& level, const Visit& visit) {
     float* const value = &level.value[c * stencil];
     std::int32_t* const column = &level.column[c * stencil];
     std::fill_n(value, stencil, 0.0f);
-    std::fill_n(column, stencil, -1);
+    std::fill_n(column, stencil, std::int32_t(c));
     float own = 0;
     visit(
         c, [&](float diagonal) { own += diagonal; },
@@ -152,7 +152,7 @@ void Multigrid<D, C>::fill_next(const Level& below, Level& level) {
       const std::size_t row = std::size_t(level.child[k]);
       add_diagonal(below.diagonal[row]);
       for (std::size_t s = row * stencil; s < (row + 1) * stencil; ++s)
-        if (below.column[s] >= 0) add(below.parent[std::size_t(below.column[s])], below.value[s]);
+        add(below.parent[std::size_t(below.column[s])], below.value[s]);
     }
   });
 }
@@ -167,8 +167,8 @@ void Multigrid<D, C>::factor_coarsest() {
     const float d = level.diagonal[std::size_t(i)];
     a(i, i) += d > 0 ? d * 1.0001f : 1.0f;
     for (int s = 0; s < stencil; ++s) {
-      const std::int32_t j = level.column[std::size_t(i) * stencil + std::size_t(s)];
-      if (j >= 0) a(i, j) -= level.value[std::size_t(i) * stencil + std::size_t(s)];
+      const std::size_t k = std::size_t(i) * stencil + std::size_t(s);
+      a(i, level.column[k]) -= level.value[k];
     }
   }
   coarsest_.compute(a);
@@ -212,10 +212,8 @@ template <int D, int C>
 void Multigrid<D, C>::residual(Level& level) {
   for_each_row(level.size(), threads_, [&](std::size_t i) {
     Value sum = level.b[i] - level.diagonal[i] * level.x[i];
-    for (int s = 0; s < stencil; ++s) {
-      const std::int32_t j = level.column[i * stencil + std::size_t(s)];
-      if (j >= 0) sum += level.value[i * stencil + std::size_t(s)] * level.x[std::size_t(j)];
-    }
+    for (std::size_t k = i * stencil; k < (i + 1) * stencil; ++k)
+      sum += level.value[k] * level.x[std::size_t(level.column[k])];
     level.r[i] = sum;
   });
 }

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "snowshed/methods/mps/forces.hpp"
-#include "snowshed/methods/mps/kernel_function.hpp"
 
 namespace snowshed {
 namespace {
@@ -28,37 +27,37 @@ template <int D>
 void collide(const MpsModel<D>& model, const Collision& law, MpsParticles<D>& particles,
              MpsWork<D>& work) {
   const MpsNeighbourhood<D>& near = work.near;
-  const double limit = law.distance * model.settings().spacing;
-  // Pairs farther apart weigh less; a little room for rounding, since most need no root then.
-  const float least_weight = 0.999f * float(kernel_weight(limit, model.reach()));
-  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    work.change[i].setZero();
-    if (!particles.moves(i)) return;
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-      if (near.weight[e] < least_weight) continue;
-      const VecD<D> r = near.way(e);
-      const double distance = model.reach() / double(1 + near.weight[e]);
-      if (!(distance < limit)) continue;
-      const std::size_t j = near.lists.neighbour(e);
-      const double approach = (particles.velocity[i] - particles.velocity[j]).dot(r) / distance;
-      const double share = particles.moves(j) ? 0.5 : 1.0;
-      if (approach > 0) work.change[i] -= share * (1 + law.restitution) * approach / distance * r;
-    }
+  const std::size_t n = particles.size();
+  const int threads = model.threads_for(n);
+  work.yielding.resize(n);
+  work.change.resize(n);
+  for_each_particle(n, threads,
+                    [&](std::size_t i) { work.yielding[i] = particles.moves(i) ? 0.5 : 1.0; });
+  for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.sum_approaches(
+        near.rows(), near.offsets().data(), particles.velocity.data()->data(), work.yielding.data(),
+        law.distance * model.settings().spacing, work.change.data()->data(), begin, end);
   });
-  for_each_particle(particles.size(), model.threads_for(particles.size()),
-                    [&](std::size_t i) { particles.velocity[i] += work.change[i]; });
+  for_each_particle(n, threads, [&](std::size_t i) {
+    if (particles.moves(i)) particles.velocity[i] -= (1 + law.restitution) * work.change[i];
+  });
 }
 
 /// d/n0 times the sum of w r/r^2: from where there are fewer particles, 1/m.
 template <int D>
-VecD<D> concentration_gradient(const MpsModel<D>& model, const MpsNeighbourhood<D>& near,
-                               std::size_t i) {
-  VecD<D> gradient = VecD<D>::Zero();
-  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-    gradient += double(near.slope[e]) * near.way(e);
-  for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
-    gradient += double(m->slope) * m->way;
-  return model.gradient() * gradient;
+void find_concentration_gradients(const MpsModel<D>& model, std::size_t n, MpsWork<D>& work) {
+  const MpsNeighbourhood<D>& near = work.near;
+  work.concentration.resize(n);
+  for_each_piece(n, model.threads_for(n), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.sum_ways(near.rows(), near.offsets().data(), near.slope.data(), nullptr, nullptr,
+                           work.concentration.data()->data(), begin, end);
+  });
+  for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
+    VecD<D>& gradient = work.concentration[i];
+    for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m)
+      gradient += double(m->slope) * m->way;
+    gradient *= model.gradient();
+  });
 }
 
 /// The direction into the snow at its surface: that of the gradients of a particle and of its
@@ -83,10 +82,7 @@ void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsW
   const double l0 = model.settings().spacing;
   const double fall = std::sqrt(model.gravity.norm() * l0);
   const int threads = model.threads_for(particles.size());
-  work.concentration.resize(particles.size());
-  for_each_particle(particles.size(), threads, [&](std::size_t i) {
-    work.concentration[i] = concentration_gradient(model, near, i);
-  });
+  find_concentration_gradients(model, particles.size(), work);
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     work.change[i].setZero();
     if (!particles.moves(i)) return;

@@ -134,6 +134,9 @@ struct MpsWork {
   AlignedVector<VecD<D>> viscous_change;              // of velocities by viscosity, m/s
   AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
   AlignedVector<double> drag;                         // of each contact with a wall, 1/s
+  AlignedVector<double> yielding;                     // share of a collision that the other takes
+  AlignedVector<double> base_pressure;                // Pa, see find_base_pressures
+  AlignedVector<VecD<D>> pressure_sum;                // over the neighbours, of their pressures
   AlignedVector<double> share, hold;                  // of walls' friction, see find_shares
   AlignedVector<VecD<D>> concentration;               // its gradient, 1/m, for shifting
   AlignedVector<VecD<D>> change;                      // of velocities by the pressure, m/s

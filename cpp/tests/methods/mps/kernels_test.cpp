@@ -167,6 +167,49 @@ TYPED_TEST(MpsKernelsOf, MultiplyRows) {
   }
 }
 
+TYPED_TEST(MpsKernelsOf, SumWaysAndApproaches) {
+  constexpr int D = TypeParam::value;
+  const Cloud<D> cloud(150);
+  constexpr double limit = 1.3;
+  AlignedVector<double> value(150), base(150), share(150);
+  for (std::size_t i = 0; i < 150; ++i) {
+    value[i] = cloud.velocity[i][0];
+    base[i] = cloud.velocity[i][1];
+    share[i] = i % 3 == 0 ? 1.0 : 0.5;
+  }
+  AlignedVector<VecD<D>> ways(150), weighted(150), approaches(150);
+  const auto sum_ways = [&](const double* values, AlignedVector<VecD<D>>& sums) {
+    mps_kernels<D>().sum_ways(cloud.rows, cloud.offset.data(), cloud.slope.data(), values,
+                              base.data(), sums.data()->data(), 0, cloud.size());
+  };
+  sum_ways(nullptr, ways);
+  sum_ways(value.data(), weighted);
+  mps_kernels<D>().sum_approaches(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
+                                  share.data(), limit, approaches.data()->data(), 0, cloud.size());
+  AlignedVector<VecD<D>> expected(150, VecD<D>::Zero()), expected_weighted = expected,
+                                                         expected_approaches = expected;
+  AlignedVector<double> sizes(150, 0.0);
+  int apart = 0, receding = 0;
+  cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
+    const VecD<D> r = cloud.way(i, j), change = cloud.velocity[j] - cloud.velocity[i];
+    expected[i] += double(cloud.slope[e]) * r;
+    expected_weighted[i] += double(cloud.slope[e]) * (value[j] + base[i]) * r;
+    sizes[i] += double(cloud.slope[e]) * r.norm();
+    const double approach = -change.dot(r.normalized());
+    apart += r.norm() >= limit;
+    receding += approach < 0;
+    if (r.norm() < limit && approach > 0)
+      expected_approaches[i] += share[j] * approach * r.normalized();
+  });
+  for (std::size_t i = 0; i < 150; ++i) {
+    EXPECT_LT((ways[i] - expected[i]).norm(), 1e-6 * (1 + sizes[i]));
+    EXPECT_LT((weighted[i] - expected_weighted[i]).norm(), 1e-6 * (1 + sizes[i]));
+    EXPECT_LT((approaches[i] - expected_approaches[i]).norm(), 1e-5);
+  }
+  EXPECT_GT(apart, 100);
+  EXPECT_GT(receding, 100);
+}
+
 /// The velocity of a linear field has the same shear rate midway of all pairs.
 TYPED_TEST(MpsKernelsOf, FindTheShearRateOfALinearField) {
   constexpr int D = TypeParam::value;

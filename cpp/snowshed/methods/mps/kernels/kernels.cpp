@@ -55,6 +55,21 @@ struct Rows {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       sum_row_gradients<D>(rows, offset, slope, velocity, gradient, std::size_t(i));
   }
+  static void sum_ways(const PairRows& rows, const float* const* offset, const float* slope,
+                       const double* value, const double* base, double* sum, std::ptrdiff_t begin,
+                       std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      if (value)
+        sum_row_ways<D, true>(rows, offset, slope, value, base[i], sum, std::size_t(i));
+      else
+        sum_row_ways<D, false>(rows, offset, slope, value, 0.0, sum, std::size_t(i));
+  }
+  static void sum_approaches(const PairRows& rows, const float* const* offset,
+                             const double* velocity, const double* share, double limit, double* sum,
+                             std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      sum_row_approaches<D>(rows, offset, velocity, share, limit, sum, std::size_t(i));
+  }
   static void pair_rates(const PairRows& rows, const float* const* offset, const double* velocity,
                          const double* gradient, float* rate, std::ptrdiff_t begin,
                          std::ptrdiff_t end) {
@@ -62,9 +77,10 @@ struct Rows {
       find_pair_rates<D>(rows, offset, velocity, gradient, rate, std::size_t(i));
   }
 
-  static constexpr MpsKernels<D> table{&search,    &weigh,    &sum_moments,         &even_weights,
-                                       &apply,     &residual, &apply_to_velocities, &sum_gradients,
-                                       &pair_rates};
+  static constexpr MpsKernels<D> table{
+      &search,   &weigh,          &sum_moments,         &even_weights,
+      &apply,    &residual,       &apply_to_velocities, &sum_gradients,
+      &sum_ways, &sum_approaches, &pair_rates};
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Gradients of velocities, and shear rates midway between particles.
+// Gradients of pressures and velocities, approaches, and shear rates midway between particles.
 #pragma once
 
 #include "snowshed/methods/mps/kernels/row_packs.hpp"
@@ -42,6 +42,46 @@ SNOWSHED_INLINE void sum_row_gradients(const PairRows& rows, const float* const*
   });
   SNOWSHED_UNROLL
   for (int k = 0; k < D * D; ++k) gradient[row * D * D + k] = sum_lanes(sum[k]);
+}
+
+template <int D, bool with_values>
+SNOWSHED_INLINE void sum_row_ways(const PairRows& rows, const float* const* offset,
+                                  const float* slope, const double* value, double base, double* sum,
+                                  std::size_t row) {
+  using V = SimdPack<double>;
+  V total[D] = {};
+  for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
+    V factor = pack.load(slope);
+    if constexpr (with_values) factor *= gather<V>(value, pack.load_index(rows.index)) + base;
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) total[d] += factor * pack.load(offset[d]);
+  });
+  SNOWSHED_UNROLL
+  for (int d = 0; d < D; ++d) sum[row * D + std::size_t(d)] = sum_lanes(total[d]);
+}
+
+template <int D>
+SNOWSHED_INLINE void sum_row_approaches(const PairRows& rows, const float* const* offset,
+                                        const double* velocity, const double* share, double limit,
+                                        double* sum, std::size_t row) {
+  using V = SimdPack<double>;
+  V total[D] = {};
+  for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
+    const PairMotion<D> pair(rows, offset, velocity, row, pack);
+    V square{}, along{};
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) {
+      square += pair.way[d] * pair.way[d];
+      along -= pair.change[d] * pair.way[d];
+    }
+    // Lanes beyond the row have no way, and approach no one.
+    const V none{}, approaching = select(square < limit * limit, max(along, none), none);
+    const V factor = gather<V>(share, pair.index) * approaching / max(square, broadcast<V>(1e-30));
+    SNOWSHED_UNROLL
+    for (int d = 0; d < D; ++d) total[d] += factor * pair.way[d];
+  });
+  SNOWSHED_UNROLL
+  for (int d = 0; d < D; ++d) sum[row * D + std::size_t(d)] = sum_lanes(total[d]);
 }
 
 template <int D>
