@@ -18,10 +18,10 @@ PATH = click.Path(path_type=Path)
 )
 @click.option(
     "--quick", "size", flag_value="quick", default=True,
-    help="Some 90 grains a sample: half an hour on two cores (default).",
+    help="Some 90 grains a sample: minutes on two cores (default).",
 )  # fmt: skip
 @click.option(
-    "--full", "size", flag_value="full", help="1000 grains and more: some five hours on two cores."
+    "--full", "size", flag_value="full", help="1000 grains and more: some two hours on two cores."
 )
 @click.option(
     "--stage", "names", multiple=True, metavar="NAME",

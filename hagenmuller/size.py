@@ -27,6 +27,6 @@ class Size:
 
 #: 2.4 mm and some 90 grains, as the sample that Yade loaded; below a representative volume.
 QUICK = Size("quick", 48, 4)
-#: 5.4 mm and more than 1000 grains.
-FULL = Size("full", 108, 3)
+#: 5.6 mm and more than 1000 grains.
+FULL = Size("full", 112, 3)
 SIZES: Mapping[str, Size] = {size.name: size for size in (QUICK, FULL)}

@@ -1,0 +1,87 @@
+"""Compress samples with Yade and with snowshed, and compare their stresses.
+
+Usage: python benchmarks/strength_beside_yade.py FOLDER/samples/field-318-*-coarser2.npy
+[--strain 0.15]
+
+The files are those of `snowshed reproduce hagenmuller --quick -o FOLDER`: labels on voxels of
+100 um. Both engines press the same clumps, bonds and plates with the same law. Ice has its own
+density, and the plate is so fast that density times speed squared is that of the reproduction.
+Prints the peak below 5 % of strain and the means from 5 to 10 and from 10 to 15 %, kPa, and writes
+benchmarks/results/DATE-yade-strength.json. Yade takes some five minutes a sample.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.engines.press import Press  # noqa: E402
+from benchmarks.engines.run import press_with_yade, yade_program  # noqa: E402
+from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
+
+from snowshed import GrainsSettings, LoadingStage  # noqa: E402
+from snowshed.run.grains import run_grains  # noqa: E402
+from snowshed.run.machine import cpu_name  # noqa: E402
+from snowshed.scene.builders import grains_scene  # noqa: E402
+
+VOXEL = 1e-4  # m
+SPEED = 0.02 * 10**0.5  # m/s, with ice of its own density
+YADE_STEP = 2.3e-8  # s
+RANGES = ((0.05, 0.10), (0.10, 0.15))
+
+
+def ours(file: Path, strain: float) -> list[float]:
+    """Return the peak and the means that snowshed finds, kPa."""
+    stage = LoadingStage(kind="compress", speed=SPEED, strain=strain)
+    scene = grains_scene(file, VOXEL, [stage], settings=GrainsSettings(damping=0.2, threads=1))
+    with tempfile.TemporaryDirectory() as name:
+        found = run_grains(scene.update({"gravity": 0}), Path(name) / "out", pictures=False)
+    stresses = (found.strength_pa, found.mean_stress_5_10_pa, found.mean_stress_10_15_pa)
+    return [float("nan") if one is None else one / 1e3 for one in stresses]
+
+
+def theirs(file: Path, strain: float) -> list[float]:
+    """Return the peak and the means that Yade finds, kPa."""
+    sample = VoxelSample.of_labels(np.load(file), VOXEL)
+    press = Press(YADE_STEP, SPEED, strain, friction=0.2, damping=0.2, every=200)
+    with tempfile.TemporaryDirectory() as name:
+        record = press_with_yade(sample, press, Path(name))
+    strains = record.time * SPEED / sample.height
+    stress = np.abs(record.force) / (sample.box[0] * sample.box[1]) / 1e3
+    within = [stress[(strains > low) & (strains <= high)] for low, high in RANGES]
+    means = [float(one.mean()) if len(one) else float("nan") for one in within]
+    return [float(stress[strains <= RANGES[0][0]].max()), *means]
+
+
+def main() -> None:
+    """Compare, print, and keep the numbers."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("samples", type=Path, nargs="+")
+    parser.add_argument("--strain", type=float, default=0.15)
+    options = parser.parse_args()
+    if yade_program() is None:
+        raise SystemExit("error: this benchmark needs Yade (apt-get install yade)")
+    cases = []
+    print(f"{'kPa':>30} {'peak':>8} {'5-10 %':>8} {'10-15 %':>8}")
+    for file in options.samples:
+        for engine, press in (("snowshed", ours), ("Yade", theirs)):
+            stresses = press(file, options.strain)
+            print(f"{file.stem[-20:]:>20} {engine:>9}", *(f"{one:>8.3g}" for one in stresses))
+            cases.append({"sample": file.stem, "engine": engine, "kpa": stresses})
+    date = datetime.date.today().isoformat()
+    record = {"date": date, "cpu": cpu_name(), "cases": cases}
+    target = ROOT / "benchmarks" / "results" / f"{date}-yade-strength.json"
+    target.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
