@@ -61,13 +61,17 @@ def reaches_the_foot(data: Courses) -> Finding:
     return between(share, 0.5, 0.8, words)
 
 
+def kept(obstacle: str, data: Courses) -> tuple[float, str]:
+    """Return which share of the snow lies above an obstacle that would not without it, in words."""
+    course, without = data.wooden(obstacle), data.wooden(NONE)
+    held, free = course.held(course.at(4)), without.held(without.at(4))
+    return held - free, f"{100 * held:.1f} % lie above it at 4 s, {100 * free:.1f} % without it"
+
+
 def holds(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds snow back that would pass without it."""
-    course = data.wooden(obstacle)
-    held, without = course.held(course.at(4)), data.wooden(NONE)
-    free = without.held(without.at(4))
-    words = f"{100 * held:.1f} % lie above it at 4 s, {100 * free:.1f} % without it"
-    return between(held - free, HARDLY, MUCH, words)
+    share, words = kept(obstacle, data)
+    return between(share, HARDLY, MUCH, words)
 
 
 def leaks(obstacle: str, data: Courses) -> Finding:
@@ -79,10 +83,9 @@ def leaks(obstacle: str, data: Courses) -> Finding:
 
 
 def keeps_none(obstacle: str, data: Courses) -> Finding:
-    """Test whether hardly any snow remains on an obstacle."""
-    course = data.wooden(obstacle)
-    held = course.held(course.at(4))
-    return between(-held, -MUCH, -HARDLY, f"{100 * held:.1f} % lie above it at 4 s")
+    """Test whether an obstacle holds back hardly any snow."""
+    share, words = kept(obstacle, data)
+    return between(-share, -MUCH, -HARDLY, words)
 
 
 def leaks_at_edges(data: Courses) -> Finding:
@@ -155,7 +158,8 @@ CLAIMS: list[Claim[Courses]] = [
     Claim(
         "experiments, fig. 16",
         "Stakes 0.04 m apart keep almost no snow.",
-        f"less than {HARDLY:.0%} lie above them at 4 s; contradicted above {MUCH:.0%}",
+        f"at 4 s less than {HARDLY:.0%} more lie above them than without; contradicted above "
+        f"{MUCH:.0%}",
         lambda data: keeps_none(WIDE, data),
     ),
     Claim(

@@ -35,31 +35,20 @@ NOISE = (
 )
 WOODEN_TIMES = (1.0, 2.0, 3.0, 4.0)
 SLOPE_TIMES = (2.0, 5.0, 10.0, 20.0)
+WOODEN = [f"wooden slope, {name}" for name in OBSTACLES]
+SLOPES = [f"slope {n}, {model}" for n in (1, 2) for model in (BINGHAM, COMBINED)]
 
 
 def write_report(found: Reproduction) -> list[Judged]:
     """Write the report from what is there; return the claims with their findings."""
     courses = found.courses()
-    missing = [
-        f"{stage.case.name}: {stage.state().in_words()} {stage.failure()}".rstrip()
-        for stage in found.stages.values()
-        if stage.case.name not in courses.known
-    ]
-    wooden = _known(courses, [f"wooden slope, {name}" for name in OBSTACLES])
-    slopes = _known(
-        courses, [f"slope {n}, {model}" for n in (1, 2) for model in (BINGHAM, COMBINED)]
-    )
+    judged = judge(CLAIMS, courses)
+    of_slopes = [one for one in judged if one.source.startswith("slope")]
+    of_wood = [one for one in judged if one not in of_slopes]
     sections = [
-        Section("paper", "What the paper says", claims=judge(CLAIMS, courses), missing=missing),
-        Section(
-            "wooden", "The wooden slope", (), _tables(wooden, WOODEN_TIMES),
-            _pictures(wooden, WOODEN_TIMES, "wooden"),
-        ),
-        Section(
-            "slopes", "Slopes 1 and 2", (), _tables(slopes, SLOPE_TIMES),
-            _pictures(slopes, SLOPE_TIMES, "slopes"),
-        ),
-    ]  # fmt: skip
+        _section(found, courses, "wooden", "The wooden slope", of_wood, WOODEN, WOODEN_TIMES),
+        _section(found, courses, "slopes", "Slopes 1 and 2", of_slopes, SLOPES, SLOPE_TIMES),
+    ]
     texts = Texts(
         "Avalanches as a fluid of particles, reproduced", "the paper", ABOUT,
         QUICK if found.size.name == "quick" else "", NOISE,
@@ -75,8 +64,25 @@ def report_file(folder: Path) -> Path:
     return folder / "saito.html"
 
 
-def _known(courses: Courses, names: Sequence[str]) -> list[Course]:
-    return [courses.known[name] for name in names if name in courses.known]
+def _section(
+    found: Reproduction,
+    courses: Courses,
+    name: str,
+    title: str,
+    claims: Sequence[Judged],
+    cases: Sequence[str],
+    times: Sequence[float],
+) -> Section:
+    """Return the section on some cases, with the claims on them."""
+    known = [courses.known[one] for one in cases if one in courses.known]
+    missing = [
+        f"{stage.case.name}: {stage.state().in_words()} {stage.failure()}".rstrip()
+        for stage in found.stages.values()
+        if stage.case.name in cases and stage.case.name not in courses.known
+    ]
+    return Section(
+        name, title, (), _tables(known, times), _pictures(known, times, name), claims, missing
+    )
 
 
 def _pictures(courses: Sequence[Course], times: Sequence[float], name: str) -> list[Picture]:
