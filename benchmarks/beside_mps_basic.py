@@ -15,9 +15,7 @@ machine meanwhile.
 from __future__ import annotations
 
 import argparse
-import datetime
 import itertools
-import json
 import os
 import subprocess
 import sys
@@ -29,8 +27,9 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
+from benchmarks.keeping import keep_cases  # noqa: E402
+
 from snowshed.methods.mps import MpsSettings  # noqa: E402
-from snowshed.run.machine import cpu_name  # noqa: E402
 from snowshed.run.simulation import Simulation  # noqa: E402
 from snowshed.scene.components import Body, Events, Obstacle  # noqa: E402
 from snowshed.scene.scene import Scene  # noqa: E402
@@ -114,13 +113,13 @@ class Column:
 
 def our_scene(column: Column, threads: int) -> Scene:
     """Return the collapse of a column as a scene."""
-    width, upright = column.width, column.dimension == 2
+    width, plane = column.width, column.dimension == 2
     faces = [((0, 0, 0), (0, 0, 1)), ((0, 0, 0), (1, 0, 0)), ((BASIN * width, 0, 0), (-1, 0, 0))]
-    if not upright:
+    if not plane:
         faces += [((0, 0, 0), (0, 1, 0)), ((0, width, 0), (0, -1, 0))]
-    kept = [0, 2] if upright else [0, 1, 2]
+    kept = [0, 2] if plane else [0, 1, 2]
     walls = [Shape.plane(*([vector[d] for d in kept] for vector in face)) for face in faces]
-    size = (width, 2 * width) if upright else (width, width, 2 * width)
+    size = (width, 2 * width) if plane else (width, width, 2 * width)
     return Scene(
         dimension=column.dimension,
         method="mps",
@@ -248,10 +247,7 @@ def main() -> None:
     heads = ("", "radius", "threads", "water", "+ walls", "ours/s", "its/s", "+ walls/s")
     print(*(f"{head:>9}" for head in (*heads, "ratio", "+ walls", "our step", "its step")))
     cases = [compare(options.program, one, n) for one in columns for n in options.threads]
-    date = datetime.date.today().isoformat()
-    record = {"date": date, "cpu": cpu_name(), "cases": cases}
-    file = ROOT / "benchmarks" / "results" / f"{date}-mps.json"
-    file.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+    keep_cases(cases, "mps")
 
 
 if __name__ == "__main__":

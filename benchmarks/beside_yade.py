@@ -11,8 +11,6 @@ machine meanwhile.
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
 import sys
 import tempfile
 import time
@@ -27,9 +25,9 @@ from benchmarks.engines.press import Press  # noqa: E402
 from benchmarks.engines.random_snow import random_snow  # noqa: E402
 from benchmarks.engines.run import press_with_yade, yade_program  # noqa: E402
 from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
+from benchmarks.keeping import keep_cases  # noqa: E402
 
 from snowshed import GrainsSettings, LoadingStage  # noqa: E402
-from snowshed.run.machine import cpu_name  # noqa: E402
 from snowshed.run.simulation import Simulation  # noqa: E402
 from snowshed.scene.builders import grains_scene  # noqa: E402
 
@@ -91,10 +89,7 @@ def main() -> None:
                 f"{threads} threads, {spheres} spheres: snowshed {max(ours) / 1e6:.1f} M, "
                 f"Yade {max(theirs) / 1e6:.2f} M sphere steps a second, ratio {case['ratio']:.1f}"
             )
-    date = datetime.date.today().isoformat()
-    record = {"date": date, "cpu": cpu_name(), "cases": cases}
-    file = ROOT / "benchmarks" / "results" / f"{date}-grains.json"
-    file.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+    keep_cases(cases, "grains")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ docs/performance.md shows. Nothing else should run on the machine meanwhile.
 
 from __future__ import annotations
 
-import datetime
 import json
 import resource
 import subprocess
@@ -18,13 +17,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from keeping import keep_cases
 from tables import print_tables
 
 from snowshed.run.events import run_events
 from snowshed.run.machine import cpu_name
 from snowshed.scene.scene import Scene
-
-RESULTS = Path(__file__).parent / "results"
 
 Case = dict[str, Any]
 
@@ -120,7 +118,6 @@ def sleeping(name: str, make: Callable[..., Scene], seeds: int, **more: float) -
 
 def main() -> None:
     """Measure everything, write the file and print the tables."""
-    date = datetime.date.today().isoformat()
     program = sys.argv[1]
     seeds = int(sys.argv[2]) if len(sys.argv) > 2 else 1
     cases = [
@@ -130,10 +127,7 @@ def main() -> None:
         whole_run("lab_3d_five_events", lab(3)),
         *sleeping("geometry_2d", geometry, seeds),
     ]
-    RESULTS.mkdir(exist_ok=True)
-    record = {"date": date, "cpu": cpu_name(), "cases": cases}
-    (RESULTS / f"{date}.json").write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
-    print(f"{date}, {cpu_name()}\n")
+    print(f"{keep_cases(cases)}, {cpu_name()}\n")
     print_tables(cases)
 
 

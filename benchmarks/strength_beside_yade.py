@@ -13,8 +13,6 @@ benchmarks/results/DATE-yade-strength.json. Yade takes some five minutes a sampl
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
 import sys
 import tempfile
 from pathlib import Path
@@ -27,10 +25,10 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.engines.press import Press  # noqa: E402
 from benchmarks.engines.run import press_with_yade, yade_program  # noqa: E402
 from benchmarks.engines.voxel_sample import VoxelSample  # noqa: E402
+from benchmarks.keeping import keep_cases  # noqa: E402
 
 from snowshed import GrainsSettings, LoadingStage  # noqa: E402
 from snowshed.run.grains import run_grains  # noqa: E402
-from snowshed.run.machine import cpu_name  # noqa: E402
 from snowshed.scene.builders import grains_scene  # noqa: E402
 
 VOXEL = 1e-4  # m
@@ -77,10 +75,7 @@ def main() -> None:
             stresses = press(file, options.strain)
             print(f"{file.stem[-20:]:>20} {engine:>9}", *(f"{one:>8.3g}" for one in stresses))
             cases.append({"sample": file.stem, "engine": engine, "kpa": stresses})
-    date = datetime.date.today().isoformat()
-    record = {"date": date, "cpu": cpu_name(), "cases": cases}
-    target = ROOT / "benchmarks" / "results" / f"{date}-yade-strength.json"
-    target.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+    keep_cases(cases, "yade-strength")
 
 
 if __name__ == "__main__":

@@ -30,11 +30,11 @@ from snowshed.scene.loading import LoadingStage
 from snowshed.scene.scene import Scene
 
 #: 20 mm/s up to 30 %, with ice ten times as dense: inertia up to which stresses were seen to stay.
-#: Steps are three times the default: peaks of four samples stayed within 5 %, and energies balanced
-#: within 2e-4 of the work.
 STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.3)
 #: What is said of the brittle phase alone needs a sixth of it.
 BRITTLE_STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.05)
+#: Steps are three times the default: peaks of four samples stayed within 5 %, and energies balanced
+#: within 2e-4 of the work.
 SETTINGS = GrainsSettings(density_scaling=10.0, courant_factor=0.9)
 #: Loading within the elastic phase, and back: slow, so that waves are small.
 ELASTIC_STRAIN, ELASTIC_SPEED = 1e-4, 5e-4

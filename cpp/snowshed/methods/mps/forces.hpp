@@ -32,6 +32,11 @@ double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
 template <int D>
 void prepare_rates(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
 
+/// The sums of slope (u_j - u_i) r^T over each particle's neighbours, left in `velocity_gradient`.
+template <int D>
+void sum_velocity_gradients(const MpsModel<D>&, const MpsParticles<D>&, const float* slope,
+                            MpsWork<D>&);
+
 /// The velocity gradients and shear rates of the present velocities.
 template <int D>
 void find_rates(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);

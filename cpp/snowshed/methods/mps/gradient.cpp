@@ -48,7 +48,8 @@ void find_base_pressures(const MpsModel<D>& model, const MpsParticles<D>& partic
                          MpsWork<D>& work) {
   work.base_pressure.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    work.base_pressure[i] = base_pressure(model, particles, work.near, i);
+    work.base_pressure[i] =
+        particles.moves(i) ? base_pressure(model, particles, work.near, i) : 0.0;
   });
 }
 
@@ -63,6 +64,7 @@ void sum_beside_wall_particles(const MpsModel<D>& model, const MpsParticles<D>& 
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     VecD<D>& sum = work.pressure_sum[i];
     sum.setZero();
+    if (!particles.moves(i)) return;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
       const bool dummy = particles.kind[j] == MpsKind::dummy_wall;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "snowshed/core/vec.hpp"
+#include "snowshed/methods/mps/kernel_api.hpp"
 
 namespace snowshed {
 
@@ -18,8 +19,8 @@ Eigen::Matrix<double, D, D> symmetric(const float* half) {
 
 /// The upper half of a symmetric matrix by rows.
 template <int D>
-std::array<float, D*(D + 1) / 2> upper_half(const Eigen::Matrix<double, D, D>& m) {
-  std::array<float, D*(D + 1) / 2> half;
+std::array<float, RowMoments<D>::half> upper_half(const Eigen::Matrix<double, D, D>& m) {
+  std::array<float, RowMoments<D>::half> half;
   std::size_t k = 0;
   for (int a = 0; a < D; ++a)
     for (int b = a; b < D; ++b) half[k++] = float(m(a, b));

@@ -29,20 +29,6 @@ void find_slip(const MpsModel<D>& model, const MpsParticles<D>& particles,
   });
 }
 
-/// The gradients of velocities before they are corrected. Beside walls of particles they are not
-/// what divergences need, see slip_divergence.
-template <int D>
-void find_gradients(const MpsModel<D>& model, const MpsParticles<D>& particles, MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
-  work.velocity_gradient.resize(particles.size());
-  for_each_piece(particles.size(), model.threads_for(particles.size()),
-                 [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                   model.kernels.sum_gradients(near.rows(), near.offsets().data(),
-                                               near.slope.data(), particles.velocity.data()->data(),
-                                               work.velocity_gradient.data()->data(), begin, end);
-                 });
-}
-
 /// The divergence beside walls of particles, 1/s, in which inner walls move as `slip` says, and
 /// dummies tell what flows into the wall.
 template <int D>
@@ -97,6 +83,17 @@ double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
   if (model.has_wall_particles()) return slip_divergence(model, particles, near, correction, i);
   return model.gradient() * correction.cwiseProduct(work.velocity_gradient[i]).sum() +
          image_divergence(model, particles, near, correction, i);
+}
+
+/// What `divergence` needs of the present velocities; the published source has none.
+template <int D>
+void prepare_divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                        MpsWork<D>& work) {
+  if (model.settings().source == MpsSource::published) return;
+  if (model.has_wall_particles())
+    find_slip(model, particles, work.near);
+  else
+    sum_velocity_gradients(model, particles, work.near.slope.data(), work);
 }
 
 /// The time in which the density's error is taken away by the share `compensation`, s: the step, or
@@ -244,10 +241,7 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
                            MpsWork<D>& work) {
   MpsNeighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
-  if (model.has_wall_particles())
-    find_slip(model, particles, near);
-  else
-    find_gradients(model, particles, work);
+  prepare_divergence(model, particles, work);
   const double relaxation = compensation_time(model, dt, particles);
   // What the Laplacian would make of a linear pressure, since neighbours do not lie evenly around.
   const bool corrected = model.settings().gradient == MpsGradient::corrected;

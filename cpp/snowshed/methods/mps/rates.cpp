@@ -121,16 +121,24 @@ void prepare_rates(const MpsModel<D>& model, const MpsParticles<D>& particles, M
 }
 
 template <int D>
+void sum_velocity_gradients(const MpsModel<D>& model, const MpsParticles<D>& particles,
+                            const float* slope, MpsWork<D>& work) {
+  const MpsNeighbourhood<D>& near = work.near;
+  work.velocity_gradient.resize(particles.size());
+  for_each_piece(particles.size(), model.threads_for(particles.size()),
+                 [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                   model.kernels.sum_gradients(near.rows(), near.offsets().data(), slope,
+                                               particles.velocity.data()->data(),
+                                               work.velocity_gradient.data()->data(), begin, end);
+                 });
+}
+
+template <int D>
 void find_rates(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const MpsNeighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
-  work.velocity_gradient.resize(particles.size());
-  for_each_piece(particles.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    model.kernels.sum_gradients(near.rows(), near.offsets().data(), work.snow_slope,
-                                particles.velocity.data()->data(),
-                                work.velocity_gradient.data()->data(), begin, end);
-  });
+  sum_velocity_gradients(model, particles, work.snow_slope, work);
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     Matrix& gradient = work.velocity_gradient[i];
     if (particles.is_wall(i)) {
@@ -160,6 +168,10 @@ template void smooth_pressures(const MpsModel<2>&, const MpsParticles<2>&, MpsWo
 template void smooth_pressures(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
 template void prepare_rates(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
 template void prepare_rates(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
+template void sum_velocity_gradients(const MpsModel<2>&, const MpsParticles<2>&, const float*,
+                                     MpsWork<2>&);
+template void sum_velocity_gradients(const MpsModel<3>&, const MpsParticles<3>&, const float*,
+                                     MpsWork<3>&);
 template void find_rates(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
 template void find_rates(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
 template void find_viscosities(const MpsModel<2>&, MpsParticles<2>&, const MpsWork<2>&);
