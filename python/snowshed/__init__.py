@@ -26,6 +26,7 @@ if _TYPE_CHECKING:
     from snowshed._core import version as __version__
     from snowshed.analysis import photovoltaics as pv
     from snowshed.analysis.dimension_ratio import dimension_ratio
+    from snowshed.io.notes import SnowshedNote
     from snowshed.methods.grains.settings import GrainsSettings
     from snowshed.methods.mpm import MpmSettings
     from snowshed.methods.mps import MpsSettings
@@ -88,6 +89,7 @@ __all__ = [
     "Slab",
     "SlideSettings",
     "Snow",
+    "SnowshedNote",
     "StackMeasure",
     "Terrain",
     "__version__",
@@ -132,6 +134,7 @@ _MODULES = {
     "Slab": "snowshed.scene.components",
     "SlideSettings": "snowshed.methods.slide",
     "Snow": "snowshed.scene.components",
+    "SnowshedNote": "snowshed.io.notes",
     "StackMeasure": "snowshed.snow.stack.measure",
     "Terrain": "snowshed.scene.components",
     "dimension_ratio": "snowshed.analysis.dimension_ratio",

@@ -25,6 +25,7 @@ import snowshed._core as _core
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_GO_ON, INTERRUPTED
 from snowshed.io.messages import shortened
+from snowshed.io.notes import SnowshedNote
 from snowshed.io.printable import printable
 
 #: What is wrong with files as the user named them.
@@ -142,7 +143,7 @@ def _note(
     line: Optional[str] = None,
 ) -> None:
     """Print a warning; one for users needs no place in the code."""
-    if issubclass(category, FutureWarning):
+    if issubclass(category, (FutureWarning, SnowshedNote)):
         text = f"note: {message}\n"
     else:
         text = warnings.formatwarning(message, category, filename, lineno, line)

@@ -13,8 +13,8 @@ from typing import Any, Optional
 from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
+from snowshed.io.limits import COORDINATE_SYSTEM
 
-LARGEST = 1 << 16  # bytes of a description
 DEGREES = ("EPSG:4326", "OGC:CRS84")
 
 
@@ -29,7 +29,7 @@ def read_prj(raster: Path) -> str:
     file = next((f for f in map(raster.with_suffix, (".prj", ".PRJ")) if f.is_file()), None)
     if file is None:
         return ""
-    text = read_input(file, LARGEST).decode("utf-8", errors="replace").strip()
+    text = read_input(file, COORDINATE_SYSTEM).decode("utf-8", errors="replace").strip()
     if not text:
         return ""
     system = _system(text)

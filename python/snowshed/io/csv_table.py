@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
 from snowshed.io.atomic import write_text
-from snowshed.io.input_file import LARGEST, LARGEST_TABLE, read_input
+from snowshed.io.input_file import read_input
+from snowshed.io.limits import COLUMNS, TABLE, TEXT
 from snowshed.io.messages import quoted
 from snowshed.io.number_text import number_in
 from snowshed.io.paths import PathLike
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 WHOLE = re.compile("[0-9]{1,9}")
-MOST_COLUMNS = 1000  # pandas takes minutes for a line of a hundred thousand names
 
 
 class Table:
@@ -89,7 +89,7 @@ class Table:
         return total
 
     def _read(self) -> list[dict[str, str]]:
-        records = _records(self.path, _decoded(self.path, LARGEST_TABLE))
+        records = _records(self.path, _decoded(self.path, TABLE))
         _, names = next(records, (0, []))
         rows = [dict(zip(names, cells)) for _, cells in records]
         for row in rows:
@@ -188,7 +188,7 @@ def read_text_table(
     OSError
         If it cannot be read.
     """
-    records = _records(path, _decoded(path, LARGEST), comment="#")
+    records = _records(path, _decoded(path, TEXT), comment="#")
     head = next(records, None)
     if head is None:
         raise InputError(f"{path}: empty; {hint}")
@@ -285,7 +285,7 @@ def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     OSError
         If it cannot be read.
     """
-    return parse_csv(_decoded(path, LARGEST_TABLE), path, as_text=as_text)
+    return parse_csv(_decoded(path, TABLE), path, as_text=as_text)
 
 
 def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.DataFrame:
@@ -346,9 +346,9 @@ def _numbered(text: str, comment: str, pulled: list[int]) -> Iterator[str]:
 
 
 def _check_names(names: Sequence[str], where: str) -> None:
-    if len(names) > MOST_COLUMNS:
+    if len(names) > COLUMNS:
         raise InputError(
-            f"{where}: not a table: {len(names)} columns; at most {MOST_COLUMNS} are allowed"
+            f"{where}: not a table: {len(names)} columns; at most {COLUMNS} are allowed"
         )
     for number, name in enumerate(names):
         if name in names[:number]:

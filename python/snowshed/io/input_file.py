@@ -8,10 +8,7 @@ import stat
 from pathlib import Path
 
 from snowshed._core import InputError
-
-MB = 1 << 20
-#: What people write, scenes and studies and lists, is nowhere near as long; tables may be.
-LARGEST, LARGEST_TABLE = 64 * MB, 1024 * MB
+from snowshed.io.limits import MB, TEXT
 
 
 def read_regular(path: Path) -> bytes:
@@ -52,7 +49,7 @@ def _memory() -> int:
     return machine if limit == resource.RLIM_INFINITY else min(machine, limit)
 
 
-def read_input(path: Path, largest: int = LARGEST) -> bytes:
+def read_input(path: Path, largest: int = TEXT) -> bytes:
     """Return the content of a file; devices without end are read no farther than `largest` bytes.
 
     Raises

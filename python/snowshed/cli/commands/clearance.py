@@ -9,6 +9,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say
 from snowshed.io.formatting import about
 
@@ -43,7 +44,7 @@ PATH = click.Path(path_type=Path)
 @click.option("--jobs", type=int, help="Processes at once.  [default: cores]")
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="Results folder.")
 @click.option("--dry-run", is_flag=True, help="Say how long it takes, and end.")
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@quiet_option
 def clearance(
     weather: Path,
     slope_length: str,

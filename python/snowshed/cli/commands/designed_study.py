@@ -13,6 +13,7 @@ from typing import Any, Optional, TypeVar
 import click
 
 from snowshed.cli.commands.study import compute_study, print_plan
+from snowshed.cli.quiet import quiet_option
 from snowshed.snow.stack.quantities import MEASURES
 from snowshed.study.definition import Study
 
@@ -36,7 +37,7 @@ def measure_help() -> str:
 def design_options(command: Command) -> Command:
     """Add the options of commands that design a study and evaluate it."""
     for option in (
-        click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
+        quiet_option,
         click.option("--jobs", type=int, help="Runs at once.  [default: the number of cores]"),
         click.option(
             "--measure",

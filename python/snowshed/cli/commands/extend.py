@@ -8,6 +8,7 @@ from typing import Optional
 import click
 
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.quiet import quiet_option
 
 PATH = click.Path(path_type=Path)
 
@@ -20,7 +21,7 @@ PATH = click.Path(path_type=Path)
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
 )
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@quiet_option
 def extend(
     results: Path,
     events: int,

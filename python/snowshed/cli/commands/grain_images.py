@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 import click
 
 from snowshed._core import InputError
+from snowshed.cli.quiet import quiet_option
 from snowshed.io.messages import quoted
 from snowshed.methods.grains.image.segmentation import SegmentationSettings
 
@@ -37,7 +38,7 @@ HELP = {
 def output_options(command: Command) -> Command:
     """Add the options of commands that write a folder of grains."""
     for option in (
-        click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
+        quiet_option,
         click.option(
             "-o", "--output", "folder", type=PATH, required=True, help="Folder, new or empty."
         ),

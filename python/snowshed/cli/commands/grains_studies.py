@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 import click
 
 from snowshed.cli.commands.grain_images import VOXEL
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.settings_options import settings_options
 from snowshed.cli.terminal import say
 
@@ -36,7 +37,7 @@ def study_options(command: Command) -> Command:
         click.option("--jobs", type=int, help="Tests at once.  [default: the number of cores]"),
         click.option("--plan", "plan_only", is_flag=True,
                      help="Only say how many tests there are, and how long they take."),
-        click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
+        quiet_option,
         click.option("-o", "--output", "folder", type=PATH, required=True,
                      help="Results folder, old or new."),
     ):  # fmt: skip

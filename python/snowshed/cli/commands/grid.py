@@ -7,6 +7,7 @@ from typing import Optional
 
 import click
 
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say
 
 PATH = click.Path(path_type=Path)
@@ -21,7 +22,7 @@ PATH = click.Path(path_type=Path)
     help="Folder for the files; default: grid in the results folder.",
 )
 @click.option("--snapshots", is_flag=True, help="The snapshots instead of the ends of events.")
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@quiet_option
 def grid(results: Path, output: Optional[Path], snapshots: bool, quiet: bool) -> None:
     """Write mass, velocity and density at the nodes of the grid as VTK images (.vti).
 

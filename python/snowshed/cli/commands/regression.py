@@ -14,6 +14,7 @@ from snowshed.analysis.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say, write_out
 
 PATH = click.Path(path_type=Path)
@@ -149,7 +150,7 @@ def geometry(
 @click.option(
     "--title", help="What the data are; predict shows it.  [default: the table's name and its rows]"
 )
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@quiet_option
 def regress(
     table: Path,
     folder: Path,

@@ -10,6 +10,7 @@ import click
 
 from snowshed.cli.accuracy import accuracy_option
 from snowshed.cli.commands.scene import resolve_options
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.scene_options import scene_options
 from snowshed.scene.scene import ResolvedScene
@@ -22,7 +23,7 @@ PATH = click.Path(path_type=Path)
 def run_options(command: Command, *, required: bool = True) -> Command:
     """Add the options of commands that run a scene; `required` says whether -o must be given."""
     for option in (
-        click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
+        quiet_option,
         click.option("--resume", is_flag=True, help="Go on from the checkpoint in the folder."),
         click.option(
             "-o",

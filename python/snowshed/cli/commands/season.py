@@ -9,6 +9,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.scene_options import (
     in_terms_of_options,
     path_of,
@@ -101,7 +102,7 @@ DECIDED = {"slab.thickness": 0.1}
     help="Natural snow cover below the stack: weather (from the file), none, or a depth in m.",
 )
 @click.option("--resume", is_flag=True, help="Go on with an interrupted season.")
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@quiet_option
 @scene_options
 def season(
     season_file: Path,

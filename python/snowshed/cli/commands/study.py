@@ -11,6 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Failed, Stopped
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import PlainConsole, say, write_out
 from snowshed.io.atomic import write_text
 from snowshed.io.formatting import about
@@ -29,7 +30,7 @@ LISTED = 5  # failed runs that an error names; the output has them all
 def _computing_options(command: Command) -> Command:
     """Add the options of the commands that compute."""
     for option in (
-        click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors."),
+        quiet_option,
         click.option("--retry-failed", is_flag=True, help="Compute failed runs again."),
         click.option(
             "--scheduler",

@@ -7,6 +7,7 @@ from typing import Optional
 
 import click
 
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say
 
 
@@ -20,7 +21,7 @@ from snowshed.cli.terminal import say
 )
 @click.option("--snapshots", is_flag=True, help="The snapshots instead of the stack after events.")
 @click.option("--width", type=float, help="Of 2D results: width of the strip, m.")
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@quiet_option
 def vdb(
     results: Path, output: Optional[Path], snapshots: bool, width: Optional[float], quiet: bool
 ) -> None:

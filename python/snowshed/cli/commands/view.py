@@ -8,6 +8,7 @@ from typing import Optional
 import click
 
 from snowshed.cli.progress import progress_bar
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say
 
 PATH = click.Path(path_type=Path)
@@ -20,7 +21,7 @@ PATH = click.Path(path_type=Path)
 @click.option("--seconds", type=float, help="How long the video is; default: 12 at most.")
 @click.option("--width", type=int, default=960, show_default=True, help="Of the video, pixels.")
 @click.option("--colour", help="What colours the video's snow, such as event or speed.")
-@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@quiet_option
 def view(
     results: Path,
     page: Optional[Path],

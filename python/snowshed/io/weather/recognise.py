@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import InputError
-from snowshed.io.input_file import LARGEST, MB, read_input
+from snowshed.io.input_file import read_input
+from snowshed.io.limits import MB, TEXT
 from snowshed.io.weather import american, energy, ncei, smet, swiss
 from snowshed.io.weather.observation import Station
 
@@ -49,7 +50,7 @@ def read_station(path: Path) -> Optional[Station]:
     OSError
         If it cannot be read.
     """
-    lines = re.split("\r\n|\n|\r", _text(_unpacked(read_input(path, LARGEST), path)).rstrip("\r\n"))
+    lines = re.split("\r\n|\n|\r", _text(_unpacked(read_input(path, TEXT), path)).rstrip("\r\n"))
     form = next((one for one in FORMATS.values() if one.recognises(lines)), None)
     if form is None:
         return None
@@ -77,11 +78,11 @@ def _unpacked(content: bytes, path: Path) -> bytes:
     while content:  # members one after another
         member = zlib.decompressobj(16 + zlib.MAX_WBITS)
         try:
-            unpacked += member.decompress(content, LARGEST + 1 - len(unpacked))
+            unpacked += member.decompress(content, TEXT + 1 - len(unpacked))
         except zlib.error as error:
             raise InputError(f"{path}: damaged: gzip: {error}") from None
-        if len(unpacked) > LARGEST:
-            raise InputError(f"{path}: longer than {LARGEST // MB} MB when unpacked")
+        if len(unpacked) > TEXT:
+            raise InputError(f"{path}: longer than {TEXT // MB} MB when unpacked")
         if not member.eof:
             raise InputError(f"{path}: damaged: gzip: it ends too early")
         content = member.unused_data.lstrip(b"\0")

@@ -1,0 +1,21 @@
+"""The option `--quiet`, the same for every command."""
+
+from __future__ import annotations
+
+import warnings
+
+import click
+
+from snowshed.io.notes import SnowshedNote
+
+
+def _silence(context: click.Context, parameter: click.Parameter, quiet: bool) -> bool:
+    """Drop notes, too; `main` restores the filters of warnings when the command ends."""
+    if quiet:
+        warnings.simplefilter("ignore", SnowshedNote)
+    return quiet
+
+
+quiet_option = click.option(
+    "-q", "--quiet", is_flag=True, callback=_silence, help="Print nothing but errors."
+)

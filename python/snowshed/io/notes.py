@@ -1,0 +1,53 @@
+"""What a reader assumed, filled, left out or changed, said where the answer stands.
+
+A note is a Python warning of its own class, so that scripts can filter it, turn it into an error or
+record it. The command line prints it as "note: …". What is stored with results is recorded by
+`recorded`.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+class SnowshedNote(UserWarning):
+    """Something that the reader of a result should know; nothing is wrong with the program."""
+
+
+def tell(text: str, stacklevel: int = 2) -> None:
+    """Say a note.
+
+    Parameters
+    ----------
+    text
+        A sentence without its full stop.
+    stacklevel
+        As of `warnings.warn`, seen from the caller.
+
+    Examples
+    --------
+    >>> with recorded() as notes:
+    ...     tell("the raster has feet; they were turned into metres")
+    >>> notes
+    ['the raster has feet; they were turned into metres']
+    """
+    warnings.warn(text, SnowshedNote, stacklevel + 1)
+
+
+@contextmanager
+def recorded() -> Iterator[list[str]]:
+    """Collect the notes that are said within the block, each once, and say them after it again."""
+    notes: list[str] = []
+    said: list[warnings.WarningMessage] = []
+    try:
+        with warnings.catch_warnings(record=True) as log:
+            said = log
+            warnings.simplefilter("always")
+            yield notes
+    finally:
+        texts = [str(note.message) for note in said if issubclass(note.category, SnowshedNote)]
+        notes += dict.fromkeys(texts)
+        for note in said:
+            warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)
