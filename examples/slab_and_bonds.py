@@ -32,7 +32,7 @@ def main(folder: Path, seconds: float) -> None:
     ground = slide_terrain(scene)
     outlines = [area.outline for area in scene.terrain.release]
     slabs = {
-        name: slide_states(scene.set("numerics.max_strain", strain), times)
+        name: slide_states(scene.with_({"numerics.max_strain": strain}), times)
         for name, strain in STRAINS.items()
     }
     for name, states in slabs.items():

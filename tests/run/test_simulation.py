@@ -157,7 +157,7 @@ def test_run_to_rest_ends_the_event(tiny):
     assert simulation.run() in ("rest", "time_limit")
     assert not simulation.event_running
     with pytest.raises(SimulationError, match="begin_event first"):
-        simulation.run()
+        simulation.step()
 
 
 def test_run_until_a_time_stops_at_the_step_that_reaches_it(falling):

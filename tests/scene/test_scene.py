@@ -116,7 +116,7 @@ def test_the_method_decides_what_the_settings_are(tiny):
     ):
         tiny.set("method", "mpmm")
     with pytest.raises(
-        InputError, match=r"^/method: 'slide' takes SlideSettings, and the scene has"
+        InputError, match=r"^/method: the method 'slide' takes SlideSettings, and these are Mpm"
     ):
         tiny.set("method", "slide")
     assert isinstance(Scene(method="slide").set("numerics.friction", 0.3).numerics, SlideSettings)
@@ -132,15 +132,13 @@ def test_the_former_name_of_the_courant_factor_is_read(tmp_path, tiny):
     assert tiny.set("numerics.step_factor", 0.4).numerics.courant_factor == 0.4
 
 
-def test_former_names_warn_and_give_what_they_stood_for(tiny):
+def test_former_names_warn_and_give_what_they_stood_for():
     import snowshed
 
     with pytest.warns(DeprecationWarning, match="InitialisedScene is now ResolvedScene"):
         assert snowshed.InitialisedScene is ResolvedScene
     with pytest.warns(DeprecationWarning, match="Numerics is now MpmSettings"):
         assert snowshed.scene.Numerics is snowshed.MpmSettings
-    with pytest.warns(DeprecationWarning, match=r"is now Scene\.resolve"):
-        assert tiny.initialise() == tiny.resolve()
 
 
 def test_errors_of_the_core_name_the_path(tiny):

@@ -1,11 +1,12 @@
 """Records: dataclasses that mirror JSON objects. A field that is None was not given.
 
 A record knows its fields: a name that is none of them, and a value that its field does not take,
-are errors at once, wherever they are used.
+are errors at once, wherever they are used. It keeps copies of the records that it is given.
 """
 
 from __future__ import annotations
 
+import copy
 import typing
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields
@@ -71,6 +72,8 @@ class Record(metaclass=_RecordClass):
     --------
     >>> from snowshed.scene.components import Panel
     >>> panel = Panel(tilt=40)
+    >>> panel
+    Panel(tilt=40)
     >>> panel.tlit = 50
     Traceback (most recent call last):
     snowshed.io.record.UnknownFieldError: Panel.tlit: Panel has no such field; did you mean tilt?
@@ -79,6 +82,17 @@ class Record(metaclass=_RecordClass):
     #: Fields, and those in whose place they stand: of the two one is given, and setting one of
     #: them unsets the other.
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {}
+
+    def __init_subclass__(cls) -> None:
+        """Give subclasses this text, which `dataclass` would replace by one of all fields."""
+        if "__repr__" not in vars(cls):
+            cls.__repr__ = Record.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        """Return the fields that were given, as the call that makes the record."""
+        given = {name: getattr(self, name) for name in self.keys().values()}
+        texts = {name: repr(value) for name, value in given.items() if value is not None}
+        return call_text(type(self), texts)
 
     @classmethod
     def keys(cls) -> dict[str, str]:
@@ -152,7 +166,7 @@ class Record(metaclass=_RecordClass):
         return _record_type(_hints(type(self))[self.field_of(key)])
 
     def _keep(self, name: str, value: object, where: str) -> None:
-        converted = convert(value, _hints(type(self))[name], where)
+        converted = _own(convert(value, _hints(type(self))[name], where))
         object.__setattr__(self, name, converted)
         if converted is not None:
             for pair in self.INSTEAD_OF.items():
@@ -179,6 +193,17 @@ class Record(metaclass=_RecordClass):
                 object.__setattr__(self, name, value)
             else:
                 raise self._unknown(name)
+
+
+def call_text(kind: type, arguments: Mapping[str, str]) -> str:
+    """Return the text of a call with keywords.
+
+    Examples
+    --------
+    >>> call_text(dict, {"tilt": "40"})
+    'dict(tilt=40)'
+    """
+    return f"{kind.__name__}({', '.join(f'{name}={text}' for name, text in arguments.items())})"
 
 
 def check_once(fields_of: Mapping[str, str], where: str) -> None:
@@ -218,6 +243,13 @@ def _hints(record: type[Record]) -> dict[str, object]:
     """Return the type of every field; the annotations are evaluated once, which is slow."""
     hints = typing.get_type_hints(record)
     return {f.name: hints[f.name] for f in fields(record)}
+
+
+def _own(value: object) -> object:
+    """Return a value that holds no record of somebody else, who may change it later."""
+    if isinstance(value, Record) or (isinstance(value, list) and value):
+        return copy.deepcopy(value)
+    return value
 
 
 def _record_type(hint: object) -> Optional[type[Record]]:

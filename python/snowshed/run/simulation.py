@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import snowshed._core as _core
-from snowshed._core import InputError
+from snowshed._core import InputError, SimulationError
 from snowshed.io.array_arguments import finite, points, positive, whole_number
 from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
 from snowshed.run.fields import Fields
@@ -35,7 +35,8 @@ CHECK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to r
 class Simulation:
     """A scene being simulated, in memory.
 
-    It is driven event by event: `begin_event` seeds the snow, `run` or `step` moves it. Methods
+    It is driven event by event: `run` seeds the snow of the next one and moves it until it rests;
+    `begin_event` and `step` do so one after the other. Methods
     such as `positions` return the particles ordered by id, which they keep; `fields` shows their
     memory in the order of storage.
 
@@ -59,7 +60,6 @@ class Simulation:
     >>> from snowshed import Scene
     >>> scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
     >>> simulation = Simulation(scene)
-    >>> simulation.begin_event()
     >>> simulation.run(until=0.05)
     'reached'
     >>> simulation.positions().shape == (simulation.particle_count, 3)
@@ -138,6 +138,8 @@ class Simulation:
     ) -> Ended:
         """Take steps of the present event until something is the case.
 
+        Where no event runs, the next one begins first.
+
         Parameters
         ----------
         until
@@ -157,21 +159,32 @@ class Simulation:
         InputError
             If `until` or `every` is none of these.
         SimulationError
-            If no event runs, or the simulation cannot go on.
+            If all events have ended, or the simulation cannot go on.
         """
         steps = whole_number("every", every, lowest=1)
+        if isinstance(until, str) and until != "rest":
+            raise InputError(f'until: {until!r}; allowed: "rest", a time in s, a function')
+        end = finite("until", until) if not (isinstance(until, str) or callable(until)) else None
+        self._begin_where_none_runs()
         if isinstance(until, str):
-            if until != "rest":
-                raise InputError(f'until: {until!r}; allowed: "rest", a time in s, a function')
             return cast(Ended, self._core.run(lambda report: True, CHECK_INTERVAL))
         if callable(until):
             return self._run_until(until, steps)
-        end = finite("until", until)
+        assert end is not None
         while self.time < end:
             # Half of what is left at the present time step: the step may grow on the way.
             left = 0.5 * (end - self.time) / self._core.time_step_s if self.time else 1
             self._core.step(max(1, min(MOST_STEPS, int(left))))
         return "reached"
+
+    def _begin_where_none_runs(self) -> None:
+        if self.event_running:
+            return
+        if self.event >= self._core.event_count:
+            raise SimulationError(
+                f"all {self.event} events of the scene have ended; begin_event lays more snow"
+            )
+        self.begin_event()
 
     def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:
         longest = float(self._data["events"]["max_time"])

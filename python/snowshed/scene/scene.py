@@ -10,15 +10,13 @@ import copy
 import json
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Optional, Union
+from typing import Any, List, Optional, Union
 
-from snowshed._core import InputError, load_scene, parse_scene
+from snowshed._core import InputError
 from snowshed._core import preset as preset_text
-from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import JsonObject, JsonValue
 from snowshed.io.paths import PathLike
@@ -26,7 +24,8 @@ from snowshed.io.record import DEEPEST, Record, check_instead, check_once
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.methods.mpm import MpmSettings
 from snowshed.methods.mps import MpsSettings
-from snowshed.methods.registry import NAME_KEY, SETTINGS_KEY, MethodName, settings_class
+from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, MethodName, settings_class
+from snowshed.methods.settings import MethodSettings
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.components import (
     Body,
@@ -42,10 +41,15 @@ from snowshed.scene.components import (
 )
 from snowshed.scene.loading import Cone, LoadingStage, Sample
 from snowshed.scene.output import Output
+from snowshed.scene.resolved import ResolvedScene
+from snowshed.scene.scene_paths import locate
+from snowshed.scene.scene_repr import scene_repr
 
 __all__ = ["PathLike", "ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 
-Holder = Union[Record, List[Record]]
+#: Parts that every scene has: empty where nothing in them was given.
+ALWAYS = ("snow", "seeding", SETTINGS_KEY, "events", "output")
+NOT_GIVEN: Any = None
 
 SLIP_CHANGED = (
     'condition "slip" lets no snow leave the surface but over its edge; '
@@ -107,13 +111,29 @@ class Scene(Record):
     0.4
     >>> scene.resolve().data["snow"]["density"]
     250.0
+
+    `set`, `update` and `append` change the scene; `with_` and `copy` return another one.
+
+    >>> weak = scene.with_({"snow.cohesion": 0.05})
+    >>> scene.snow.cohesion, weak.snow.cohesion
+    (0.2, 0.05)
+    >>> scene
+    Scene(
+        title='Laboratory experiment, Tables 2.3.1 and 4.1.1, calibrated snow',
+        snow=Snow(density=250),
+        panel=Panel(height=0.33, length=0.245, width=0.213, tilt=50, friction=0.4),
+        slab=Slab(thickness=0.02, width=0.142),
+        ground=Ground(),
+        numerics=MpmSettings(dx=0.02),
+        events=Events(count=3),
+    )
     """
 
     snowshed: Optional[int] = 2
     dimension: Optional[int] = None
     title: Optional[str] = None
     gravity: Optional[float] = None
-    snow: Optional[Snow] = None
+    snow: Snow = NOT_GIVEN
     panel: Optional[Panel] = None
     slab: Optional[Slab] = None
     ground: Optional[Ground] = None
@@ -124,11 +144,11 @@ class Scene(Record):
     obstacles: Optional[List[Obstacle]] = None
     bodies: Optional[List[Body]] = None
     domain: Optional[Domain] = None
-    seeding: Optional[Seeding] = None
+    seeding: Seeding = NOT_GIVEN
     method: Optional[MethodName] = None
-    numerics: Optional[Union[MpmSettings, SlideSettings, GrainsSettings, MpsSettings]] = None
-    events: Optional[Events] = None
-    output: Optional[Output] = None
+    numerics: Union[MpmSettings, SlideSettings, GrainsSettings, MpsSettings] = NOT_GIVEN
+    events: Events = NOT_GIVEN
+    output: Output = NOT_GIVEN
 
     _base_dir = "."  # no field: where the files a scene names are found
 
@@ -172,6 +192,17 @@ class Scene(Record):
             data = {NAME_KEY: data[NAME_KEY], **data}
         return super().from_data(data, path)
 
+    def to_data(self, path: str = "", depth: int = 0) -> JsonObject:
+        """Return the values that were given, as the JSON object of a scene file.
+
+        Raises
+        ------
+        InputError
+            At a value that its field does not take.
+        """
+        data = super().to_data(path, depth)
+        return {key: value for key, value in data.items() if key not in ALWAYS or value != {}}
+
     def assign(self, key: str, value: object, path: str = "") -> None:
         """Set one field by its JSON key; settings become those of the scene's method.
 
@@ -182,14 +213,30 @@ class Scene(Record):
         """
         if key == SETTINGS_KEY and isinstance(value, Mapping):
             value = settings_class(self.method).from_data(value, f"{path}/{key}")
-        if key == NAME_KEY and isinstance(value, str) and self.numerics is not None:
-            kind = settings_class(value)
-            if not isinstance(self.numerics, kind):
-                raise InputError(
-                    f"{path}/{key}: {value!r} takes {kind.__name__}, and the scene has "
-                    f"{type(self.numerics).__name__}; set {SETTINGS_KEY} to None first"
-                )
         super().assign(key, value, path)
+
+    def _keep(self, name: str, value: object, where: str) -> None:
+        """Set a field; a part that every scene has becomes empty, and settings fit the method."""
+        if name in ALWAYS and value is None:
+            kind = self.record_type(name)
+            value = kind() if kind is not None else None
+        if name == SETTINGS_KEY:
+            self._require_settings(value, self.method, where)
+        if name == NAME_KEY and (value is None or isinstance(value, str)):
+            held = vars(self).get(SETTINGS_KEY)  # none while a scene is made
+            if isinstance(held, MethodSettings) and held.to_data():
+                self._require_settings(held, value, where)
+            else:
+                object.__setattr__(self, SETTINGS_KEY, settings_class(value)())
+        super()._keep(name, value, where)
+
+    def _require_settings(self, settings: object, method: Optional[str], where: str) -> None:
+        kind = settings_class(method)
+        if isinstance(settings, MethodSettings) and not isinstance(settings, kind):
+            raise InputError(
+                f"{where}: the method {method or DEFAULT!r} takes {kind.__name__}, and these are "
+                f"{type(settings).__name__}; set {SETTINGS_KEY} to None, then {NAME_KEY}"
+            )
 
     @classmethod
     def preset(cls, name: str) -> Scene:
@@ -202,10 +249,49 @@ class Scene(Record):
         """
         return cls.from_data(json.loads(preset_text(name)))
 
+    def copy(self) -> Scene:
+        """Return a scene with the same values, which shares nothing with this one.
+
+        Examples
+        --------
+        >>> scene = Scene.preset("lab-50")
+        >>> scene.copy().set("panel.tilt", 30) == scene
+        False
+        """
+        return copy.deepcopy(self)
+
+    def with_(self, values: Optional[Mapping[str, object]] = None, **parts: object) -> Scene:
+        """Return a copy with other values; this scene stays as it is.
+
+        Parameters
+        ----------
+        values
+            As of `update`: dotted paths, and nested mappings.
+        **parts
+            The same for names without a dot, such as ``panel={"tilt": 30}``.
+
+        Raises
+        ------
+        InputError
+            As of `update`.
+
+        Examples
+        --------
+        >>> base = Scene.preset("lab-50")
+        >>> [base.with_({"panel.tilt": tilt}).panel.tilt for tilt in (30, 40)], base.panel.tilt
+        ([30, 40], 50.0)
+        """
+        return self.copy().update({**(values or {}), **parts})
+
+    def __repr__(self) -> str:
+        """Return the values that differ from the defaults, as calls that make them."""
+        return scene_repr(self, ALWAYS)
+
     def set(self, path: str, value: object) -> Scene:
         """Set the value at a dotted path such as ``"snow.density"`` or ``"obstacles.0.friction"``.
 
-        Objects on the way that were not given are created. Returns the scene itself.
+        Objects on the way that were not given are created. Returns the scene itself, which is
+        changed; `with_` returns a changed copy.
 
         Raises
         ------
@@ -213,7 +299,7 @@ class Scene(Record):
             If the path names nothing a scene has, or what is there takes no such value. The scene
             is then as it was.
         """
-        with self._locate(path) as (record, key, where):
+        with locate(self, path) as (record, key, where):
             record.assign(key, value, where)
         return self
 
@@ -226,7 +312,7 @@ class Scene(Record):
             If the path names nothing a scene has, or something that is no list, or if the list
             takes no such value. The scene is then as it was.
         """
-        with self._locate(path) as (record, key, where):
+        with locate(self, path) as (record, key, where):
             held = getattr(record, record.field_of(key, where))
             if not isinstance(held, (list, tuple, type(None))):
                 raise InputError(f"{where}/{key}: nothing can be appended to what is no list")
@@ -250,7 +336,7 @@ class Scene(Record):
     ) -> None:
         """Set values; `names` collects the fields that were set, by record and name."""
         for path, value in values.items():
-            with self._locate(prefix + path) as (record, key, where):
+            with locate(self, prefix + path) as (record, key, where):
                 field = record.field_of(key, where)
                 if isinstance(value, Mapping) and record.record_type(key):
                     self._update(value, names, f"{prefix}{path}.")
@@ -279,41 +365,11 @@ class Scene(Record):
         if self.snowshed != 1 and any(part and part.condition == "slip" for part in parts):
             warnings.warn(SLIP_CHANGED, FutureWarning, stacklevel=3)
 
-    def initialise(self) -> ResolvedScene:
-        """Do what `resolve` does, which is the name to use.
-
-        .. deprecated:: 0.1
-        """
-        warnings.warn("Scene.initialise is now Scene.resolve", DeprecationWarning, stacklevel=2)
-        return self.resolve()
-
     def record_type(self, key: str) -> Optional[type[Record]]:
         """Return the class of records under a key; that of the settings depends on the method."""
         if key == SETTINGS_KEY:
             return settings_class(self.method)
         return super().record_type(key)
-
-    @contextmanager
-    def _locate(self, path: str) -> Iterator[tuple[Record, str, str]]:
-        """Yield the record that holds the last part of `path`, that part, and where it is.
-
-        A record on the way that was not given is created, and dropped again on an error.
-        """
-        *parents, key = path.split(".")
-        holder: Holder = self
-        where = ""
-        created: list[tuple[Record, str]] = []
-        try:
-            for parent in parents:
-                holder = _enter(holder, parent, where, created)
-                where = f"{where}/{parent}"
-            if isinstance(holder, list):
-                raise InputError(f"{where}/{key}: set a key of the item, or the whole list")
-            yield holder, key, where
-        except BaseException:
-            for record, name in created:
-                setattr(record, name, None)
-            raise
 
 
 def _without_duplicates(pairs: list[tuple[str, JsonValue]]) -> JsonObject:
@@ -336,67 +392,6 @@ def _refuse_null(data: JsonValue, where: str) -> None:
     inner: Iterable[tuple[object, JsonValue]] = data.items() if isinstance(data, dict) else items
     for key, value in inner:
         _refuse_null(value, f"{where}/{key}")
-
-
-def _enter(holder: Holder, key: str, where: str, created: list[tuple[Record, str]]) -> Holder:
-    """Return the record or list under `key`; a record that was not given is created."""
-    if isinstance(holder, list):
-        return _item(holder, key, where)
-    name = holder.field_of(key, where)
-    kind = holder.record_type(key)
-    if kind is None:
-        raise InputError(f"{where}/{key}: a value, not an object")
-    if getattr(holder, name) is None:
-        setattr(holder, name, kind())
-        created.append((holder, name))
-    held: Holder = getattr(holder, name)
-    return held
-
-
-def _item(items: list[Record], key: str, where: str) -> Record:
-    try:
-        item = items[int(key)]
-    except (ValueError, IndexError):
-        raise InputError(f"{where}/{key}: no such item; the list has {len(items)}") from None
-    if not isinstance(item, Record):
-        raise InputError(f"{where}/{key}: {item!r} is not an object")
-    return item
-
-
-@dataclass(frozen=True)
-class ResolvedScene:
-    """A scene the core has validated and completed.
-
-    Attributes
-    ----------
-    json
-        The complete scene as JSON text.
-    base_dir
-        The folder from which the files it names are found.
-    """
-
-    json: str
-    base_dir: str = "."
-
-    @classmethod
-    def parse(cls, text: str, base_dir: PathLike = ".") -> ResolvedScene:
-        """Validate JSON text; raises InputError."""
-        return cls(parse_scene(text, os.fspath(base_dir)), os.fspath(base_dir))
-
-    @classmethod
-    def load(cls, path: PathLike) -> ResolvedScene:
-        """Read and validate a scene file; raises InputError."""
-        return cls(load_scene(os.fspath(path)), os.fspath(Path(path).parent))
-
-    @property
-    def data(self) -> JsonObject:
-        """The complete scene as JSON data (a fresh copy)."""
-        data: JsonObject = json.loads(self.json)
-        return data
-
-    def save(self, path: PathLike) -> None:
-        """Write the scene to a file."""
-        write_text(path, self.json.rstrip() + "\n")
 
 
 SceneLike = Union[Scene, ResolvedScene, Mapping[str, JsonValue], PathLike]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import copy
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -37,7 +36,8 @@ class Study:
     Parameters
     ----------
     scene
-        The scene that all runs have in common. It may lack values that a factor sets.
+        The scene that all runs have in common. It may lack values that a factor sets. The study
+        keeps a copy: what happens to the scene later does not change the study.
     parts
         Each part is a sequence of factors and stands for their product. The study is the union of
         its parts. A run that is in several parts is one run.
@@ -153,6 +153,7 @@ class Study:
         write_text(file, self.to_toml())
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "scene", self.scene.copy())
         if not self.name or not self.name.isprintable():
             raise InputError(f"name: {self.name!r} is not a name of printable characters")
         if not self.parts:
@@ -312,7 +313,7 @@ class Study:
                 yield {path: value for point in points for path, value in point.items()}
 
     def _run(self, point: Mapping[str, object]) -> Run:
-        scene = copy.deepcopy(self.scene)
+        scene = self.scene.copy()
         try:
             for path, value in point.items():
                 scene.set(path, value)
@@ -333,7 +334,7 @@ class Study:
                 raise InputError(f"{path}: cannot be varied; the season decides it")
         if self.seeds is not None and SEED in paths:
             raise InputError(f"{SEED}: varied by a factor and by the study's seeds")
-        scene = copy.deepcopy(self.scene)
+        scene = self.scene.copy()
         for factor in part:
             for path, values in factor.columns.items():
                 _try_to_set(scene, path, values[0])

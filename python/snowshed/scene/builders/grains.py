@@ -83,9 +83,9 @@ def grains_scene(
         sample=Sample(file=file.resolve(), voxel_size=size),
         loading=list(loading),
         cone=cone,
-        numerics=settings,
+        numerics=settings or GrainsSettings(),
         events=Events(max_time=MAX_TIME),
-        output=output,
+        output=output or Output(),
     )
 
 

@@ -110,7 +110,7 @@ def slide_scene(
             ]
             or None,
         ),
-        numerics=settings,
+        numerics=settings or SlideSettings(),
         events=Events(max_time=MAX_TIME),
     )
 

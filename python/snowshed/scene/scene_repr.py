@@ -1,0 +1,63 @@
+"""A scene as text: the values that differ from the defaults, as calls that make them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from snowshed.io.json_file import JsonObject
+from snowshed.io.record import Record, call_text
+from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
+
+if TYPE_CHECKING:
+    from snowshed.scene.scene import Scene
+
+
+def scene_repr(scene: Scene, always: Collection[str]) -> str:
+    """Return what differs from the defaults, a line for each part of the scene.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    always
+        Parts that every scene has, which are left out where nothing in them was given; others are
+        shown even then.
+    """
+    schema = schema_of_method(scene.method or "mpm")
+    nodes = properties(schema, schema)
+    lines = []
+    for key, name in scene.keys().items():
+        value = getattr(scene, name)
+        if key in always and isinstance(value, Record) and not _given(value, nodes.get(key, {})):
+            continue
+        if key != "snowshed" and not _is_default(value, nodes.get(key, {})):
+            lines.append(f"    {name}={_text(value, nodes.get(key, {}))},\n")
+    return f"Scene(\n{''.join(lines)})" if lines else "Scene()"
+
+
+def _text(value: object, node: JsonObject) -> str:
+    if isinstance(value, Record):
+        return call_text(type(value), _given(value, node))
+    if isinstance(value, (list, tuple)):
+        items = resolve(scene_schema(), node).get("items")
+        of_items = items if isinstance(items, dict) else {}
+        inner = ", ".join(_text(item, of_items) for item in value)
+        return f"[{inner}]" if isinstance(value, list) else f"({inner})"
+    return f"{value:g}" if isinstance(value, float) else repr(value)
+
+
+def _given(record: Record, node: JsonObject) -> dict[str, str]:
+    """Return the fields that differ from the defaults, as texts."""
+    nodes = properties(scene_schema(), node)
+    return {
+        name: _text(getattr(record, name), nodes.get(key, {}))
+        for key, name in record.keys().items()
+        if not _is_default(getattr(record, name), nodes.get(key, {}))
+    }
+
+
+def _is_default(value: object, node: JsonObject) -> bool:
+    if value is None or value == []:
+        return True
+    return not isinstance(value, Record) and value == resolve(scene_schema(), node).get("default")

@@ -1,0 +1,117 @@
+"""A scene keeps what it was given, changes only where it is told to, and shows what is in it."""
+
+import pytest
+
+from snowshed import (
+    InputError,
+    MpmSettings,
+    Obstacle,
+    Panel,
+    Scene,
+    Shape,
+    Simulation,
+    SimulationError,
+    Slab,
+    SlideSettings,
+)
+from snowshed.study import Study
+
+
+def test_a_copy_with_other_values_leaves_the_scene_as_it_is():
+    base = Scene.preset("lab-50")
+    before = base.copy()
+    runs = [base.with_({"panel.tilt": tilt}, snow={"density": 250}) for tilt in (30, 40)]
+    assert [run.panel.tilt for run in runs] == [30, 40]
+    assert runs[0].snow.density == 250
+    assert base == before
+    with pytest.raises(InputError, match="/panel/tlit: unknown key"):
+        base.with_({"panel.tlit": 1})
+
+
+def test_a_copy_finds_the_files_that_the_scene_names(tmp_path):
+    (tmp_path / "scene.json").write_text('{"dimension": 2}')
+    assert Scene.load(tmp_path / "scene.json").with_(dimension=3)._base_dir == str(tmp_path)
+
+
+def test_two_studies_of_a_scene_that_is_changed_between_them_keep_their_own():
+    base = Scene.preset("lab-50").update({"dimension": 2})
+    weak = Study.product(base.set("snow.cohesion", 0.05), {"panel.tilt": [40]})
+    strong = Study.product(base.set("snow.cohesion", 0.3), {"panel.tilt": [40]})
+    assert weak.scene.snow.cohesion == 0.05
+    assert weak.runs()[0].hash != strong.runs()[0].hash
+
+
+def test_scenes_share_no_parts():
+    panel, shelf = Panel(height=1.0, length=1.0), Obstacle(shape=Shape.box((0, 0), (1, 1)))
+    first, second = Scene(panel=panel, obstacles=[shelf]), Scene(panel=panel)
+    second.append("obstacles", shelf)
+    panel.tilt = first.panel.tilt = 60
+    first.obstacles[0].friction = 0.9
+    assert second.panel.tilt is None
+    assert shelf.friction is None
+    assert second.obstacles[0].friction is None
+
+
+def test_every_scene_has_snow_seeding_settings_events_and_output():
+    scene = Scene(panel=Panel(height=1.0, length=1.0))
+    scene.snow.density = 250
+    scene.numerics.dx = 0.02
+    assert scene.to_data()["snow"] == {"density": 250}
+    assert "events" not in scene.to_data()
+    assert Scene().to_data() == {"snowshed": 2}
+    assert Scene.from_data({"snow": {}}) == Scene()
+    scene.snow = None
+    assert scene.snow.density is None
+    assert isinstance(Scene(method="slide").numerics, SlideSettings)
+
+
+def test_settings_are_those_of_the_method():
+    with pytest.raises(InputError, match="'mpm' takes MpmSettings, and these are SlideSettings"):
+        Scene.preset("lab-50").set("numerics", SlideSettings(friction=0.2))
+    with pytest.raises(InputError, match="'mpm' takes MpmSettings, and these are SlideSettings"):
+        Scene(numerics=SlideSettings())
+    scene = Scene(numerics=MpmSettings(dx=0.02))
+    with pytest.raises(InputError, match=r"Scene\.method: .* set numerics to None, then method"):
+        scene.method = "slide"
+    scene.numerics = None
+    scene.method = "slide"
+    assert isinstance(scene.numerics, SlideSettings)
+
+
+def test_a_scene_is_shown_by_what_differs_from_the_defaults():
+    scene = Scene(
+        dimension=2, panel=Panel(height=1.5, length=4.0), slab=Slab(thickness=0.2, layers=[])
+    )
+    scene.snow.cohesion = 0.2  # the default
+    assert repr(scene) == (
+        "Scene(\n    dimension=2,\n    panel=Panel(height=1.5, length=4),\n"
+        "    slab=Slab(thickness=0.2),\n)"
+    )
+    assert repr(Scene()) == "Scene()"
+    assert repr(Panel(tilt=40)) == "Panel(tilt=40)"
+
+
+def test_a_shown_scene_makes_the_same_scene_again():
+    import snowshed
+
+    scene = Scene.preset("lab-50").with_(dimension=2)
+    scene.append("obstacles", Obstacle(name="post", shape=Shape.box((0.5, 0.1), (0.1, 0.2))))
+    again = eval(repr(scene), {name: getattr(snowshed, name) for name in snowshed.__all__})
+    assert again.resolve() == scene.resolve()
+
+
+def test_run_begins_the_next_event():
+    scene = Scene.preset("lab-50").update(
+        {
+            "dimension": 2,
+            "numerics.dx": 0.02,
+            "events": {"count": 2, "max_time": 0.02, "rest_time": 0.02},
+        }
+    )
+    simulation = Simulation(scene)
+    assert simulation.run(until=0.005) == "reached"
+    assert simulation.event == 1
+    assert [simulation.run(), simulation.run()] == ["time_limit", "time_limit"]
+    assert simulation.event == 2
+    with pytest.raises(SimulationError, match="all 2 events of the scene have ended"):
+        simulation.run()
