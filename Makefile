@@ -33,7 +33,7 @@ CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS = $(wildcard python validation reproduction thesis hagenmuller saito tests tools examples benchmarks lua_compat)
 
 .PHONY: help build demo verify thesis test test-cpp test-py test-slow sanitize sanitize-address \
-  sanitize-thread fuzz mutants bench docs format lint tidy clean
+  sanitize-thread fuzz mutants bench docs components format lint tidy clean
 .NOTPARALLEL:
 
 help:
@@ -47,6 +47,7 @@ help:
 	@echo "make mutants   inject faults and see which the tests catch, an hour or two"
 	@echo "make bench     speed of the solver and of the laboratory events, kept in benchmarks/results"
 	@echo "make docs      the documentation as HTML"
+	@echo "make components the scene's components in Python, from the core's description"
 	@echo "make format    format all sources"
 	@echo "make lint      check format, style and types (tidy: clang-tidy, slow)"
 	@echo "make clean     remove $(VENV) and build"
@@ -170,6 +171,11 @@ bench: build
 docs: build $(VENV)/.docs-tools
 	$(BIN)/sphinx-build -W --keep-going -b html docs build/docs
 	@echo "Open build/docs/index.html"
+
+# The fields of the scene's components in Python, from the core's description of a scene.
+components: build $(VENV)/.dev-tools
+	$(BIN)/python -m tools.components
+	$(BIN)/ruff format --quiet python/snowshed/scene python/snowshed/methods
 
 format: $(VENV)/.cpp-tools $(VENV)/.dev-tools
 	$(BIN)/clang-format -i $(CPP_FILES)

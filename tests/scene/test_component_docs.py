@@ -1,45 +1,58 @@
-"""Docstrings of components say what the core's schema says."""
+"""The components of a scene are what `make components` writes from the core's description."""
 
+import subprocess
+import sys
 import typing
 
 import pytest
-from component_docs import attributes_section
+from paths import ROOT
+from tools.components import components, written
 
-from snowshed import Scene
 from snowshed.io.field_type import alternatives_of
-from snowshed.methods.registry import METHODS
-from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
+from snowshed.scene.schema import properties, resolve, scene_schema
+
+NODES = components()
 
 
-def mirrored(record, node, found):
-    """Collect every class of records with the schema's node that it mirrors."""
-    found[record] = node
-    for key, child in properties(scene_schema(), node).items():
-        kind = record().record_type(key)
-        if kind is not None and kind not in found:
-            full = resolve(scene_schema(), child)
-            mirrored(kind, resolve(scene_schema(), full.get("items", full)), found)
-    return found
+def test_the_sources_are_those_that_are_written():
+    command = [sys.executable, "-m", "tools.components", "--check"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
-def all_nodes():
-    """Return the records of every method's scenes; those of the whole scene by the whole schema."""
-    found = {}
-    for method, settings in METHODS.items():
-        schema = schema_of_method(method)
-        mirrored(Scene, schema, found)
-        found[settings] = resolve(schema, schema["properties"]["numerics"])
-    found[Scene] = scene_schema()
-    return found
+SOURCE = """@dataclass
+class Panel(Record):
+    \"\"\"A panel.
+
+    Attributes
+    ----------
+    height : float
+        Something else.
+
+    Notes
+    -----
+    By hand.
+    \"\"\"
+
+    height: Optional[float] = None
+    removed: Optional[int] = None
+
+    lower_edge_height = Alias("height")
+
+    def area(self):
+        return 1
+"""
 
 
-NODES = all_nodes()
-
-
-@pytest.mark.parametrize("record", NODES, ids=lambda record: record.__name__)
-def test_attributes_are_those_of_the_schema(record):
-    section = attributes_section(record, scene_schema(), NODES[record])
-    assert section in record.__doc__, f"write in the docstring of {record.__name__}:\n{section}"
+def test_fields_are_added_removed_and_explained_and_all_else_stays():
+    panel = next(record for record in NODES if record.__name__ == "Panel")
+    new = written(SOURCE, {"Panel": (panel, NODES[panel])})
+    assert "removed" not in new
+    assert "    tilt: Optional[float] = None\n" in new
+    assert "        Tilt from the horizontal [degrees]. 0 <= value < 90; default 40" in new
+    assert "    By hand.\n" in new
+    assert new.endswith(SOURCE[SOURCE.index("    lower_edge_height") :])
+    assert written(new, {"Panel": (panel, NODES[panel])}) == new
 
 
 @pytest.mark.parametrize("record", NODES, ids=lambda record: record.__name__)

@@ -113,5 +113,5 @@ def test_run_begins_the_next_event():
     assert simulation.event == 1
     assert [simulation.run(), simulation.run()] == ["time_limit", "time_limit"]
     assert simulation.event == 2
-    with pytest.raises(SimulationError, match="all 2 events of the scene have ended"):
+    with pytest.raises(SimulationError, match="all 2 events have ended"):
         simulation.run()

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 Order = Literal["id", "storage"]
 Ended = Literal["rest", "time_limit", "reached"]
+Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 
 MOST_STEPS = 64  # most steps at a time: between them Python checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time; the same where the core itself runs to rest
@@ -130,15 +131,8 @@ class Simulation:
             self._core.step(taken)
             left -= taken
 
-    def run(
-        self,
-        until: Union[Literal["rest"], float, Callable[[Simulation], bool]] = "rest",
-        *,
-        every: int = 16,
-    ) -> Ended:
-        """Take steps of the present event until something is the case.
-
-        Where no event runs, the next one begins first.
+    def run(self, until: Until = "rest", *, every: int = 16) -> Ended:
+        """Take steps of the present event, or of the next one, until something is the case.
 
         Parameters
         ----------
@@ -164,16 +158,16 @@ class Simulation:
         steps = whole_number("every", every, lowest=1)
         if isinstance(until, str) and until != "rest":
             raise InputError(f'until: {until!r}; allowed: "rest", a time in s, a function')
-        end = finite("until", until) if not (isinstance(until, str) or callable(until)) else None
+        if not (isinstance(until, str) or callable(until)):
+            until = finite("until", until)
         self._begin_where_none_runs()
         if isinstance(until, str):
             return cast(Ended, self._core.run(lambda report: True, CHECK_INTERVAL))
         if callable(until):
             return self._run_until(until, steps)
-        assert end is not None
-        while self.time < end:
+        while self.time < until:
             # Half of what is left at the present time step: the step may grow on the way.
-            left = 0.5 * (end - self.time) / self._core.time_step_s if self.time else 1
+            left = 0.5 * (until - self.time) / self._core.time_step_s if self.time else 1
             self._core.step(max(1, min(MOST_STEPS, int(left))))
         return "reached"
 
@@ -181,9 +175,7 @@ class Simulation:
         if self.event_running:
             return
         if self.event >= self._core.event_count:
-            raise SimulationError(
-                f"all {self.event} events of the scene have ended; begin_event lays more snow"
-            )
+            raise SimulationError(f"all {self.event} events have ended; begin_event adds another")
         self.begin_event()
 
     def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:

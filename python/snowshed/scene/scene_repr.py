@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 from snowshed.io.json_file import JsonObject
 from snowshed.io.record import Record, call_text
+from snowshed.methods.registry import DEFAULT, NAME_KEY
 from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
 
-if TYPE_CHECKING:
-    from snowshed.scene.scene import Scene
 
-
-def scene_repr(scene: Scene, always: Collection[str]) -> str:
+def scene_repr(scene: Record, always: Collection[str]) -> str:
     """Return what differs from the defaults, a line for each part of the scene.
 
     Parameters
@@ -24,7 +21,7 @@ def scene_repr(scene: Scene, always: Collection[str]) -> str:
         Parts that every scene has, which are left out where nothing in them was given; others are
         shown even then.
     """
-    schema = schema_of_method(scene.method or "mpm")
+    schema = schema_of_method(getattr(scene, NAME_KEY) or DEFAULT)
     nodes = properties(schema, schema)
     lines = []
     for key, name in scene.keys().items():

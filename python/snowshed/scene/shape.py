@@ -38,16 +38,16 @@ class Shape(Record):
         Kind of solid; it decides which other keys are allowed.
     center : sequence of float
         A point on the plane (plane); Centre (box, sphere); Middle of the face (plate) [m].
-    size : sequence of float
-        Edge lengths (box) [m].
     normal : sequence of float
         Outward normal (plane); Outward normal of the face; not along y (plate).
+    size : sequence of float
+        Edge lengths (box) [m].
+    radius : float
+        Radius (sphere, cylinder, capsule) [m].
     from_ : sequence of float
         One end of the axis (cylinder); One end of the segment (capsule) [m].
     to : sequence of float
         The other end (cylinder, capsule) [m].
-    radius : float
-        Radius (sphere, cylinder, capsule) [m].
     length : float
         Length, down the slope (plate) [m].
     width : float
@@ -67,14 +67,14 @@ class Shape(Record):
         Name of the grid; empty: the only one of floats (vdb).
     threshold : float
         Of a fog volume: the solid is where its value is above this (vdb).
-    translate : sequence of float
-        Translation, after the rotation (transform) [m].
+    shapes : list of Shape
+        The parts (union); The body, then what is cut away (difference); The shape (transform).
     axis : sequence of float
         Rotation axis (3D only; +y in 2D) (transform).
     angle : float
         Rotation about the axis (transform) [degrees].
-    shapes : list of Shape
-        The parts (union); The body, then what is cut away (difference); The shape (transform).
+    translate : sequence of float
+        Translation, after the rotation (transform) [m].
 
     Examples
     --------
@@ -85,11 +85,11 @@ class Shape(Record):
 
     type: Optional[ShapeType] = None
     center: Optional[Vector] = None
-    size: Optional[Vector] = None
     normal: Optional[Vector] = None
+    size: Optional[Vector] = None
+    radius: Optional[float] = None
     from_: Optional[Vector] = None
     to: Optional[Vector] = None
-    radius: Optional[float] = None
     length: Optional[float] = None
     width: Optional[float] = None
     thickness: Optional[float] = None
@@ -99,10 +99,10 @@ class Shape(Record):
     spacing: Optional[float] = None
     grid_: Optional[str] = None
     threshold: Optional[float] = None
-    translate: Optional[Vector] = None
+    shapes: Optional[List[Shape]] = None
     axis: Optional[Vector] = None
     angle: Optional[float] = None
-    shapes: Optional[List[Shape]] = None
+    translate: Optional[Vector] = None
 
     @classmethod
     def plane(cls, center: Vector, normal: Vector) -> Shape:

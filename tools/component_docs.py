@@ -17,8 +17,9 @@ TYPES = {"number": "float", "integer": "int", "boolean": "bool", "string": "str"
 def attributes_section(record, schema, node):
     """Return the section for a record that mirrors a node of the schema, indented as in source."""
     lines = ["Attributes", "----------"]
-    for key, field in record.keys().items():
-        child = resolve(schema, properties(schema, node)[key])
+    fields = record.keys()
+    for key, described in properties(schema, node).items():
+        child, field = resolve(schema, described), fields.get(key, key)
         meaning = _in_shapes(schema, node, key) if "oneOf" in node else child["description"]
         unit = f" [{child['x-unit']}]" if child.get("x-unit") else ""
         notes = "" if "oneOf" in node else _notes(child, key in node.get("required", ()))
@@ -29,7 +30,7 @@ def attributes_section(record, schema, node):
 
 
 def _type(record, key, child):
-    held = record().record_type(key)
+    held = record().record_type(key) if key in record.aliases() | record.keys() else None
     if held is not None:
         return f"list of {held.__name__}" if child.get("type") == "array" else held.__name__
     if "enum" in child:

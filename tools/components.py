@@ -1,0 +1,138 @@
+"""Writes the fields of the scene's components, and what their docstrings say of them.
+
+The core describes every field of a scene once (cpp/snowshed/scene/describe.hpp), with its type,
+unit, range, default and meaning. This program brings the dataclasses in python/snowshed to that
+description: it adds and removes fields, orders them, and writes the section "Attributes" of each
+docstring. Methods, other sections and the first line of a docstring are written by hand.
+
+    python -m tools.components            # after a change of the description and `make build`
+    python -m tools.components --check    # say which files differ; exit code 1
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import inspect
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from tools.component_docs import attributes_section
+
+from snowshed import Scene
+from snowshed.io.record import Record
+from snowshed.methods.registry import METHODS
+from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
+
+SECTION = "    Attributes\n    ----------\n"
+TYPES = {"number": "float", "integer": "int", "boolean": "bool", "string": "str"}
+
+
+def components() -> dict[type[Record], dict]:
+    """Return every class of a scene's components with the node of the schema that describes it.
+
+    A part that several methods have is described for each; the whole scene by the whole schema.
+    """
+    nodes: dict[type[Record], dict] = {}
+    for method, settings in METHODS.items():
+        schema = schema_of_method(method)
+        _collect(Scene, schema, nodes)
+        nodes[settings] = resolve(schema, schema["properties"]["numerics"])
+    nodes[Scene] = scene_schema()
+    return nodes
+
+
+def _collect(record: type[Record], node: Mapping, nodes: dict[type[Record], dict]) -> None:
+    nodes[record], fields = node, record.keys()
+    for key, child in properties(scene_schema(), node).items():
+        kind = record().record_type(key) if key in fields else None
+        if kind is not None and kind not in nodes:
+            full = resolve(scene_schema(), child)
+            _collect(kind, resolve(scene_schema(), full.get("items", full)), nodes)
+
+
+def written(source: str, classes: Mapping[str, tuple[type[Record], dict]]) -> str:
+    """Return the source of a module whose classes are brought to their description."""
+    tree = ast.parse(source)
+    lines = source.split("\n")
+    for node in reversed(tree.body):
+        if isinstance(node, ast.ClassDef) and node.name in classes:
+            record, described = classes[node.name]
+            lines[node.lineno - 1 : node.end_lineno] = _class_lines(lines, node, record, described)
+    return "\n".join(lines)
+
+
+def _class_lines(lines: list[str], node: ast.ClassDef, record: type[Record], described: dict):
+    """Return the lines of a class; its fields follow its docstring."""
+    inside = lines[node.lineno - 1 : node.end_lineno]
+    start = node.lineno - 1
+    doc = node.body[0]
+    fields = [one for one in node.body if isinstance(one, ast.AnnAssign) and _is_field(one)]
+    texts = {one.target.id: lines[one.lineno - 1 : one.end_lineno] for one in fields}
+    head = "\n".join(inside[: doc.end_lineno - start])
+    body_start = fields[-1].end_lineno - start if fields else doc.end_lineno - start
+    names = {
+        key: key if key in texts else f"{key}_" for key in properties(scene_schema(), described)
+    }
+    new = [
+        line
+        for key, child in properties(scene_schema(), described).items()
+        for line in texts.get(names[key]) or [f"    {key}: {_annotation(key, child)} = None"]
+    ]
+    return [*_with_section(head, record, described).split("\n"), "", *new, *inside[body_start:]]
+
+
+def _is_field(node: ast.AnnAssign) -> bool:
+    return "ClassVar" not in ast.dump(node.annotation)
+
+
+def _with_section(head: str, record: type[Record], described: dict) -> str:
+    section = attributes_section(record, scene_schema(), described)
+    before, found, rest = head.partition(SECTION)
+    if not found:
+        raise SystemExit(f"{record.__name__}: its docstring has no section Attributes")
+    after = rest.find("\n\n")
+    tail = rest[after:] if after >= 0 else '\n    """'
+    return before + section + tail
+
+
+def _annotation(key: str, child: Mapping) -> str:
+    """Return the type of a field that is new in the description."""
+    full = resolve(scene_schema(), child)
+    if "enum" in full:
+        return f"Optional[Literal[{', '.join(repr(one) for one in full['enum'])}]]".replace(
+            "'", '"'
+        )
+    if full.get("type") in TYPES:
+        return f"Optional[{TYPES[full['type']]}]"
+    raise SystemExit(f"{key}: write this field by hand; it holds {full.get('type')}")
+
+
+def main() -> int:
+    """Write all modules, or say which differ from the description."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument(
+        "--check", action="store_true", help="Change nothing; fail on a difference."
+    )
+    check = parser.parse_args().check
+    modules: dict[Path, dict[str, tuple[type[Record], dict]]] = {}
+    for record, node in components().items():
+        file = Path(inspect.getsourcefile(record) or "")
+        modules.setdefault(file, {})[record.__name__] = (record, node)
+    different = []
+    for file, classes in modules.items():
+        source = file.read_text(encoding="utf-8")
+        new = written(source, classes)
+        if new != source:
+            different.append(file)
+            if not check:
+                file.write_text(new, encoding="utf-8")
+    outcome = "differs from the description; run `make components`" if check else "written"
+    for file in different:
+        print(f"{file}: {outcome}")
+    return int(check and bool(different))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
