@@ -9,7 +9,7 @@ from pathlib import Path
 
 from snowshed._core import load_scene, parse_scene
 from snowshed.io.atomic import write_text
-from snowshed.io.json_file import JsonObject
+from snowshed.io.json_file import JsonValue
 from snowshed.io.paths import PathLike
 
 
@@ -39,9 +39,9 @@ class ResolvedScene:
         return cls(load_scene(os.fspath(path)), os.fspath(Path(path).parent))
 
     @property
-    def data(self) -> JsonObject:
+    def data(self) -> dict[str, JsonValue]:
         """The complete scene as JSON data (a fresh copy)."""
-        data: JsonObject = json.loads(self.json)
+        data: dict[str, JsonValue] = json.loads(self.json)
         return data
 
     def save(self, path: PathLike) -> None:
