@@ -21,6 +21,10 @@ class PlainConsole(Console):
     def __init__(self, **options: Any) -> None:
         super().__init__(highlight=False, markup=False, **options)
 
+    def on_broken_pipe(self) -> None:
+        """Let the command line end, as it does for all that it prints."""
+        raise BrokenPipeError
+
     def render_str(self, text: str, **options: Any) -> Text:
         """Return a text as it is shown."""
         return super().render_str(printable(text), **options)
