@@ -105,7 +105,9 @@ snowshed::EventSequence open(const Options& o) {
   const auto stop = [] { return interrupted != 0; };
   if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder, stop);
   refuse_ageing(o.folder);
-  return snowshed::EventSequence::resume(scene, ".", o.folder);
+  auto sequence = snowshed::EventSequence::resume(scene, ".", o.folder);
+  sequence.give_up_files();
+  return sequence;
 }
 
 /// Returns whether the run came to its end; after an error, the folder says so.

@@ -208,7 +208,14 @@ def study_table(folder: Path) -> Path:
 
 def film(folder: Path) -> Path:
     frames = film_files.falling_film(40, FRAMES, axes="xz")
-    (folder / "film.bin").write_bytes(film_files.film_bytes(frames, axes="xz"))
+    (folder / "film.bin").write_bytes(film_files.film_bytes(frames, axes="xz", closed=True))
+    return folder / "film.bin"
+
+
+def film_of_version_1(folder: Path) -> Path:
+    frames = film_files.falling_film(40, FRAMES, axes="xz")
+    made = film_files.film_bytes(frames, axes="xz", version=1)
+    (folder / "film.bin").write_bytes(made)
     return folder / "film.bin"
 
 
