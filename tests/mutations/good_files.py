@@ -247,6 +247,10 @@ def curve(folder: Path) -> Path:
     return folder / "out" / "curve.csv"
 
 
+def grains_summary(folder: Path) -> Path:
+    return curve(folder).with_name("grains.json")
+
+
 def peaks(folder: Path) -> Path:
     some = np.arange(1, 13, dtype=np.float32).reshape(3, 4)
     (folder / "peaks.npz").write_bytes(PeakMaps(some, 2 * some, 3 * some, 1, 2, (8, 9)).packed())

@@ -86,7 +86,7 @@ def test_a_film_that_was_cut_while_it_was_written_goes_on_to_the_same_bytes(tmp_
 
 
 def halted_in_event_2(folder, tiny):
-    """Return the checkpoint of a run in its second event, into whose folder it has run to its end."""
+    """Run to the end, with the checkpoint of the second event in the folder."""
     halted = []
 
     def halt(progress):

@@ -53,7 +53,11 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   if (scene_.uses<GrainsSettings>()) {
     check_loading_time(scene_, surroundings_.sample.box.z());
     const std::unique_ptr<Method> filled = empty_method();  // its first step is not known before
-    filled->add(grains().seed());
+    try {
+      filled->add(grains().seed());
+    } catch (const SimulationError& error) {  // its step is too short
+      throw InputError("/numerics/courant_factor", error.what());
+    }
     cost_ = estimate_grains_cost(scene_, surroundings_.sample, *filled);
     check_cost();
     curve_ = std::make_unique<LoadingCurve>(

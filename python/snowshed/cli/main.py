@@ -106,6 +106,7 @@ def main(
 
 
 def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) -> int:
+    streams = sys.stdout, sys.stderr
     given = sys.argv[1:] if arguments is None else arguments
     if not given and isinstance(command, click.Group):
         arguments = ["--help"]
@@ -118,12 +119,11 @@ def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) 
             click.echo(error.message)
             return 0
         return _fail(error.format_message(), max(error.exit_code, 2))
-    except SystemExit as error:  # of click, which takes any broken pipe for that of the output
-        if not isinstance(error.__context__, BrokenPipeError):
-            raise
+    except SystemExit:  # of click, where a pipe broke, which it takes for that of the output
+        sys.stdout, sys.stderr = streams
         if output_is_closed():
-            raise error.__context__ from None
-        return _fail(f"{error.__context__.strerror}: a helper program ended", COULD_NOT_GO_ON)
+            raise BrokenPipeError from None
+        return _fail("a helper program ended before it had read all", COULD_NOT_GO_ON)
     except OSError as error:
         said = f"{error.filename}: {error.strerror}" if error.filename else str(error)
         named = not error.errno or error.errno in OF_NAMES

@@ -9,12 +9,13 @@ import sys
 
 
 def output_is_closed() -> bool:
-    """Return whether standard output is a pipe that nobody reads any more."""
+    """Return whether standard output or error is a pipe that nobody reads any more."""
     poll = select.poll()
-    try:
-        poll.register(sys.stdout.fileno(), select.POLLOUT)
-    except (OSError, ValueError):  # a test's own, which is no file
-        return False
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(
+            OSError, ValueError, AttributeError
+        ):  # of a test, no files
+            poll.register(stream.fileno(), select.POLLOUT)
     return any(state & select.POLLERR for _, state in poll.poll(0))
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 from collections.abc import Iterable
 from typing import Any
@@ -23,7 +25,7 @@ class PlainConsole(Console):
 
     def on_broken_pipe(self) -> None:
         """Let the command line end, as it does for all that it prints."""
-        raise BrokenPipeError
+        raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
 
     def render_str(self, text: str, **options: Any) -> Text:
         """Return a text as it is shown."""
