@@ -6,6 +6,7 @@ import zlib
 
 import numpy as np
 
+FRAM, ENDS = 0x4D415246, 0x53444E45
 SPEED = {"name": "speed", "unit": "m/s", "meaning": "Speed", "step": 0.01}
 
 
@@ -33,24 +34,49 @@ def differences(numbers):
     return varints(zigzag(np.diff(numbers, prepend=0)))
 
 
-def record(raw, *, time, event, lists, particles):
-    """Return the bytes of a frame."""
+def record(raw, *, time, event, lists, particles, before=None):
+    """Return the bytes of a frame behind one with the checksum `before`; None: of version 1."""
     packed = zlib.compress(raw, 1)
-    head = struct.pack("<dIIIIII", time, event, lists, particles, len(raw), len(packed), 0)
-    return struct.pack("<II", 0x4D415246, zlib.crc32(head + packed)) + head + packed
+    facts = (time, event, lists, particles, len(raw), len(packed))
+    if before is None:
+        head = struct.pack("<dIIIIII", *facts, 0)
+        return struct.pack("<II", FRAM, zlib.crc32(head + packed)) + head + packed
+    head = struct.pack("<dIIIIII", *facts, zlib.crc32(packed))
+    return struct.pack("<II", FRAM, zlib.crc32(head, before)) + head + packed
 
 
-def header(axes="xyz", quantum=2.0**-10, interval=0.02, share=1.0, quantities=(SPEED,), **others):
+def close(time, event, frames, before):
+    """Return the bytes that end a film."""
+    head = struct.pack("<dIIIIII", time, event, 0, frames, 0, 0, 0)
+    return struct.pack("<II", ENDS, zlib.crc32(head, before)) + head
+
+
+def checksum(head):
+    """Return the checksum at the beginning of a frame."""
+    return struct.unpack_from("<I", head, 4)[0]
+
+
+def header(
+    axes="xyz", quantum=2.0**-10, interval=0.02, share=1.0, quantities=(SPEED,), version=2, **others
+):
     """Return the bytes before the first frame."""
     facts = {"axes": axes, "quantum_m": quantum, "interval_s": interval, "share": share}
     facts = {**facts, "radius": False, "quantities": list(quantities), **others}
     text = json.dumps(facts).encode()
-    return b"SNOWFILM" + struct.pack("<IIII", 1, len(text), zlib.crc32(text), 0) + text
+    fixed = b"SNOWFILM" + struct.pack("<II", version, len(text))
+    return fixed + struct.pack("<II", zlib.crc32(text, header_sum(version, fixed)), 0) + text
 
 
-def film_bytes(frames, **facts):
+def header_sum(version, fixed):
+    """Return the checksum of what comes before the text; version 1 leaves it out."""
+    return 0 if version == 1 else zlib.crc32(fixed)
+
+
+def film_bytes(frames, *, closed=False, **facts):
     """Return a film of frames (time, event, ids, events, places (n, axes), codes (n, q))."""
     out = [header(**facts)]
+    version = facts.get("version", 2)
+    summed = None if version == 1 else struct.unpack_from("<I", out[0], 16)[0]
     known, place, step, code = np.zeros(0, dtype=int), None, None, None
     for time, event, ids, events, places, codes in frames:
         raw = b""
@@ -73,8 +99,26 @@ def film_bytes(frames, **facts):
             if code is not None:
                 expected[before >= 0] = code[before[before >= 0], which]
             raw += varints(zigzag(codes[:, which] - expected))
-        out.append(record(raw, time=time, event=event, lists=lists, particles=len(ids)))
+        made = {"time": time, "event": event, "lists": lists, "particles": len(ids)}
+        out.append(record(raw, before=summed, **made))
+        summed = None if version == 1 else checksum(out[-1])
         known, place, step, code = ids, places, new_step, codes
+    if closed:
+        out.append(close(frames[-1][0], frames[-1][1], len(frames), summed))
+    return b"".join(out)
+
+
+def as_version_1(content):
+    """Return a film of version 2 as version 1 has it."""
+    (length,) = struct.unpack_from("<I", content, 12)
+    text = content[24 : 24 + length]
+    out = [b"SNOWFILM" + struct.pack("<IIII", 1, length, zlib.crc32(text), 0) + text]
+    at = 24 + length
+    while at < len(content) and struct.unpack_from("<I", content, at)[0] == FRAM:
+        end = at + 40 + struct.unpack_from("<I", content, at + 32)[0]
+        rest = content[at + 8 : at + 36] + bytes(4) + content[at + 40 : end]
+        out.append(struct.pack("<II", FRAM, zlib.crc32(rest)) + rest)
+        at = end
     return b"".join(out)
 
 

@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <new>
@@ -32,6 +33,7 @@ struct Options {
 };
 
 volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t setting_up = 0;  // reading files and building, which writes nothing
 
 [[noreturn]] void refuse(const std::string& what) {
   throw snowshed::InputError("", what + "; see snowshed-run --help");
@@ -97,15 +99,21 @@ void refuse_ageing(const std::filesystem::path& folder) {
 }
 
 snowshed::EventSequence open(const Options& o) {
+  setting_up = 1;
   std::vector<std::string> notes;
   const snowshed::Scene scene = snowshed::load_scene(o.scene, &notes);
   for (const std::string& note : notes)
     if (!o.quiet)
       std::fprintf(stderr, "note: %s\n", snowshed::printable(o.scene + ": " + note).c_str());
-  const auto stop = [] { return interrupted != 0; };
+  const auto stop = [] {
+    setting_up = 0;  // asked while snow is seeded, which can stop by itself
+    return interrupted != 0;
+  };
   if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder, stop);
   refuse_ageing(o.folder);
-  return snowshed::EventSequence::resume(scene, ".", o.folder);
+  auto sequence = snowshed::EventSequence::resume(scene, ".", o.folder);
+  sequence.give_up_files();
+  return sequence;
 }
 
 /// Returns whether the run came to its end; after an error, the folder says so.
@@ -119,9 +127,20 @@ bool run_all(snowshed::EventSequence& sequence, bool quiet) try {
   throw;
 }
 
+/// A run goes on to its next safe point; while it is set up, there is nothing to save.
+void on_signal(int) {
+  constexpr char message[] = "error: interrupted; nothing was written\n";
+  interrupted = 1;
+  if (!setting_up) return;
+  if (::write(STDERR_FILENO, message, sizeof message - 1) < 0) {
+    // Nobody reads it.
+  }
+  std::_Exit(130);
+}
+
 /// A signal that is ignored, as nohup has it, stays so.
 void interrupt_on(int signal) {
-  if (std::signal(signal, [](int) { interrupted = 1; }) == SIG_IGN) std::signal(signal, SIG_IGN);
+  if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
 int fail(const std::string& message, int code) {
@@ -132,6 +151,7 @@ int fail(const std::string& message, int code) {
 int run(const Options& o) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) interrupt_on(signal);
   snowshed::EventSequence sequence = open(o);
+  setting_up = 0;
   if (const char* slow = snowshed::slow_kernels_note(); *slow && !o.quiet)
     std::fprintf(stderr, "note: %s\n", slow);
   if (!run_all(sequence, o.quiet)) {

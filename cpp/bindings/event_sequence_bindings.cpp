@@ -116,6 +116,21 @@ void bind_event_sequence(py::module_& m) {
           [](EventSequence& s, decltype(RunRecord::tables) tables) {
             s.record().tables = std::move(tables);
           })
+      .def_property(
+          "files",
+          [](const EventSequence& s) {
+            std::map<std::string, std::pair<std::uint64_t, std::string>> files;
+            for (const auto& [name, mark] : s.record().files)
+              files[name] = {mark.bytes, mark.checksum};
+            return files;
+          },
+          [](EventSequence& s,
+             const std::map<std::string, std::pair<std::uint64_t, std::string>>& files) {
+            s.record().files.clear();
+            for (const auto& [name, mark] : files)
+              s.record().files[name] = {mark.first, mark.second};
+          })
+      .def("rewrite_record", &EventSequence::rewrite_record)
       .def_property_readonly(
           "simulation",
           [](const std::shared_ptr<EventSequence>& s) {  // which the simulation keeps alive

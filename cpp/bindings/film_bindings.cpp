@@ -7,6 +7,7 @@
 #include "bindings.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/geometry/readers/mesh_io.hpp"
+#include "snowshed/io/checksum.hpp"
 #include "snowshed/io/film_file.hpp"
 
 namespace py = pybind11;
@@ -47,6 +48,12 @@ py::dict next_frame(FilmReader& reader) {
   return d;
 }
 
+/// Of the first so many frames, and so of the film until then.
+std::string film_checksum(const FilmReader& reader, std::size_t frames) {
+  if (frames > reader.frames().size()) throw py::index_error("the film has fewer frames");
+  return hexadecimal(reader.checksum(frames));
+}
+
 py::tuple mesh_arrays(const std::filesystem::path& path, double scale) {
   const TriangleMesh mesh = read_mesh(path, scale);
   py::array_t<std::int64_t> triangles({py::ssize_t(mesh.triangles.size()), py::ssize_t(3)});
@@ -63,7 +70,10 @@ void bind_film(py::module_& m) {
   py::class_<FilmReader>(m, "FilmReader")
       .def(py::init<std::filesystem::path>(), "path"_a)
       .def("next", &next_frame)
+      .def("checksum", &film_checksum, "frames"_a)
+      .def_property_readonly("version", &FilmReader::version)
       .def_property_readonly("whole", &FilmReader::whole)
+      .def_property_readonly("closed", &FilmReader::closed)
       .def_property_readonly("axes", [](const FilmReader& r) { return r.header().axes; })
       .def_property_readonly("quantum_m", [](const FilmReader& r) { return r.header().quantum; })
       .def_property_readonly("interval_s", [](const FilmReader& r) { return r.header().interval; })

@@ -19,14 +19,15 @@ void check_frame(const FilmFrame& frame, const FilmHeader& header, std::size_t p
 }
 
 void go_on(const std::filesystem::path& path) {
-  auto writer = FilmWriter::reopen(path, [](const FilmFrameFacts&) { return true; });
-  if (!writer) return;
+  FilmWriter writer = FilmWriter::reopen(path, [](const FilmFrameFacts&) { return true; });
   FilmFrame empty;
-  empty.positions.resize(std::size_t(writer->header().axes));
-  empty.values.resize(writer->header().quantities.size());
-  writer->append(empty);
+  empty.positions.resize(std::size_t(writer.header().axes));
+  empty.values.resize(writer.header().quantities.size());
+  writer.append(empty);
+  writer.close();
   const FilmReader reader(path);
-  require(reader.whole() && reader.frames().size() == writer->frames().size(), "frames are lost");
+  require(reader.whole() && reader.closed(), "the film does not end");
+  require(reader.frames().size() == writer.frames().size(), "frames are lost");
 }
 
 }  // namespace

@@ -49,18 +49,40 @@ FilmParts parts_of(const std::string& bytes) {
   return parts;
 }
 
-/// Returns a film of these parts with matching lengths and checksums.
-std::string film_of(const FilmParts& parts) {
-  std::string bytes = "SNOWFILM" + bytes_of(1) + bytes_of(std::uint32_t(parts.text.size())) +
-                      bytes_of(crc32_of(parts.text.data(), parts.text.size())) + bytes_of(0) +
-                      parts.text;
+/// The header of a version, of which 1 sums the text alone.
+std::string header_of(const std::string& text, std::uint32_t version) {
+  const std::string fixed = "SNOWFILM" + bytes_of(version) + bytes_of(std::uint32_t(text.size()));
+  const std::uint32_t before = version == 1 ? 0 : crc32_of(fixed.data(), fixed.size());
+  return fixed + bytes_of(crc32_of(text.data(), text.size(), before)) + bytes_of(0) + text;
+}
+
+/// A record behind one with the checksum `before`, which becomes its own.
+std::string record_of(const std::string& tag, std::string facts, std::size_t raw,
+                      const std::vector<std::uint8_t>& packed, std::uint32_t& before) {
+  facts += bytes_of(std::uint32_t(raw)) + bytes_of(std::uint32_t(packed.size())) +
+           bytes_of(crc32_of(packed.data(), packed.size()));
+  before = crc32_of(facts.data(), facts.size(), before);
+  return tag + bytes_of(before) + facts + std::string(packed.begin(), packed.end());
+}
+
+std::string record_of_version_1(std::string facts, std::size_t raw,
+                                const std::vector<std::uint8_t>& packed) {
+  facts += bytes_of(std::uint32_t(raw)) + bytes_of(std::uint32_t(packed.size())) + bytes_of(0);
+  facts.append(packed.begin(), packed.end());
+  return "FRAM" + bytes_of(crc32_of(facts.data(), facts.size())) + facts;
+}
+
+/// Returns a film of these parts with matching lengths and checksums; perhaps one that is closed.
+std::string film_of(const FilmParts& parts, std::uint32_t version, bool closed) {
+  std::string bytes = header_of(parts.text, version);
+  auto sum = number_at<std::uint32_t>(bytes, text_at - 8);
   for (const auto& record : parts.records) {
     const auto packed = deflated({record.raw.begin(), record.raw.end()});
-    std::string summed = record.facts + bytes_of(std::uint32_t(record.raw.size())) +
-                         bytes_of(std::uint32_t(packed.size())) + bytes_of(0);
-    summed.append(packed.begin(), packed.end());
-    bytes += "FRAM" + bytes_of(crc32_of(summed.data(), summed.size())) + summed;
+    bytes += version == 1 ? record_of_version_1(record.facts, record.raw.size(), packed)
+                          : record_of("FRAM", record.facts, record.raw.size(), packed, sum);
   }
+  if (closed && version != 1)
+    bytes += record_of("ENDS", std::string(raw_at - facts_at, '\0'), 0, {}, sum);
   return bytes;
 }
 
@@ -99,7 +121,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     FilmParts parts = parts_of(bytes);
     if (parts.text.empty() || random() % 8 == 0) return mutate(bytes, max_size);
     mutate_part(parts, random);
-    return film_of(parts);
+    return film_of(parts, random() % 4 == 0 ? 1 : 2, random() % 2 == 0);
   };
   return replace_data(data, size, max_size, seed, mutated);
 }

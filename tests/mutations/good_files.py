@@ -208,7 +208,14 @@ def study_table(folder: Path) -> Path:
 
 def film(folder: Path) -> Path:
     frames = film_files.falling_film(40, FRAMES, axes="xz")
-    (folder / "film.bin").write_bytes(film_files.film_bytes(frames, axes="xz"))
+    (folder / "film.bin").write_bytes(film_files.film_bytes(frames, axes="xz", closed=True))
+    return folder / "film.bin"
+
+
+def film_of_version_1(folder: Path) -> Path:
+    frames = film_files.falling_film(40, FRAMES, axes="xz")
+    made = film_files.film_bytes(frames, axes="xz", version=1)
+    (folder / "film.bin").write_bytes(made)
     return folder / "film.bin"
 
 
@@ -238,6 +245,10 @@ def curve(folder: Path) -> Path:
     loading = [LoadingStage(kind="compress", speed=0.1, strain=0.001)]
     run_grains(grains_scene(write_labels(folder), 1e-4, loading), folder / "out", pictures=False)
     return folder / "out" / "curve.csv"
+
+
+def grains_summary(folder: Path) -> Path:
+    return curve(folder).with_name("grains.json")
 
 
 def peaks(folder: Path) -> Path:

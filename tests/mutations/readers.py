@@ -13,6 +13,8 @@ import hashlib
 import json
 import pickle
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -38,6 +40,7 @@ from snowshed.io.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.image.sample_folder import find_sample
 from snowshed.methods.peak_maps import PeakMaps
+from snowshed.run.method_runs import runs_of
 
 REFUSED = (InputError, SimulationError, OSError)
 
@@ -108,8 +111,11 @@ def _as_resumed_table(file: Path) -> Any:
     return [read_csv(folder / name).to_csv() for name in ("outline.csv", "energy.csv")]
 
 
-def _as_record(file: Path) -> None:
+def _as_record(file: Path) -> str:
+    """Go on with a finished run whose run.json has changed, unless reading it tells already."""
+    found = Results(file.parent).run
     run_events(file.parent / "scene.json", file.parent, resume=True, pictures=False)
+    return json.dumps(found)
 
 
 def _as_lua(file: Path) -> None:
@@ -176,8 +182,8 @@ def _as_film(file: Path) -> str:
         for one in film
     ]  # fmt: skip
     summary = summarise_film(film)
-    if not film.whole or len(frames) < good.FRAMES:
-        raise InputError("cut off, as a killed run leaves it: a film is good as far as it goes")
+    if film.notes and len(frames) < good.FRAMES:
+        raise InputError("cut off, as a killed run leaves it, which its notes say")
     facts = (film.dimension, film.quantum, film.interval, film.share, film.quantities)
     return _digest([frames, facts, [one.title for one in summary.colourings]])
 
@@ -204,8 +210,52 @@ def _as_snow(file: Path) -> None:
         Snow.from_data(json_object(str(file)))
 
 
-def _as_events(file: Path) -> None:
-    _ = Results(file.parent).events
+def _as_events(file: Path) -> str:
+    return Results(file.parent).events.to_csv()
+
+
+def _as_film_of_run(file: Path) -> str:
+    film = Results(file.parent).film
+    return _digest([(one.time, one.positions.tobytes(), one.codes.tobytes()) for one in film])
+
+
+def _as_scene_of_run(file: Path) -> str:
+    found = Results(file.parent).scene.data
+    found["numerics"].pop("threads")  # changes nothing
+    return json.dumps(found)
+
+
+def _as_outline(file: Path) -> str:
+    return Results(file.parent).outline.to_csv()
+
+
+def _as_energies(file: Path) -> str:
+    return Results(file.parent).energy.to_dataframe().to_csv()
+
+
+def _as_history(file: Path) -> str:
+    return Results(file.parent).energy_history.to_csv()
+
+
+def _as_curve(file: Path) -> str:
+    """Read a curve, and see that `snowshed-run` does not go on with one that has changed."""
+    found = LoadingCurve.read(file).text()
+    folder, scene = str(file.parent), str(file.parent / "scene.json")
+    command = [str(Path(sys.executable).with_name("snowshed-run")), scene, "-o", folder]
+    done = subprocess.run([*command, "--resume", "-q"], capture_output=True, text=True)
+    if done.returncode == 2:
+        raise InputError(done.stderr)
+    assert done.returncode == 0, done.stderr
+    return found
+
+
+def _as_summary(file: Path) -> str:
+    (row,) = runs_of({"method": "grains"}).rows(file.parent)
+    return json.dumps(row)
+
+
+def _as_series(file: Path) -> Any:
+    return [(time, str(path)) for time, path in read_series(file)]
 
 
 def _digest(value: object) -> str:
@@ -232,6 +282,9 @@ READERS = {
         for name, (text, *_) in weather_files.FILES.items()
     },
     "film": Reader(good.film, _as_film, exact=True),
+    "film of version 1": Reader(good.film_of_version_1, _as_film, exact=True, share=0.5),
+    "film of a run": Reader(good.result("film.bin"), _as_film_of_run, exact=True),
+    "scene of a run": Reader(good.result("scene.json"), _as_scene_of_run, exact=True, share=0.5),
     "image npy": Reader(good.image("a.npy", np.save), _as_image),
     "image mha": Reader(good.image("a.mha", save_metaimage), _as_image),
     "image tiff": Reader(good.image("a.tif", save_pages), _as_image),
@@ -239,21 +292,27 @@ READERS = {
     "slice bmp": Reader(good.slice_of("bmp"), _as_slice),
     "slice tiff": Reader(good.slice_of("tif"), _as_slice),
     "sample": Reader(good.sample, _as_sample, share=0.5),
-    "loading curve": Reader(good.curve, LoadingCurve.read),
+    "loading curve": Reader(good.curve, _as_curve, exact=True),
+    "grains.json": Reader(good.grains_summary, _as_summary, exact=True, share=0.5),
     "peak maps": Reader(good.peaks, _as_peaks, exact=True),
     "snow": Reader(good.snow, _as_snow),
-    "events.csv": Reader(good.result("events.csv"), _as_events, share=0.5),
+    "events.csv": Reader(good.result("events.csv"), _as_events, exact=True),
+    "outline.csv, shown": Reader(good.result("outline.csv"), _as_outline, exact=True, share=0.5),
+    "energy.csv, shown": Reader(good.result("energy.csv"), _as_energies, exact=True, share=0.5),
+    "energy_history.csv": Reader(
+        good.result("energy_history.csv"), _as_history, exact=True, share=0.5
+    ),
     "measurements": Reader(good.text("measured.csv", good.MEASURED), _as_measurements),
     "stack table": Reader(good.study_table, _as_stack_table),
     "study": Reader(good.text("study.toml", good.STUDY), _as_study),
     "lua": Reader(good.text("a.lua", good.LUA), _as_lua, share=0.3),
     "vtp": Reader(good.result("particles/event_001.vtp"), _as_particles, exact=True),
-    "pvd": Reader(good.result("particles.pvd"), read_series),
+    "pvd": Reader(good.result("particles.pvd"), _as_series, exact=True),
     "checkpoint": Reader(good.checkpoint, _as_checkpoint, exact=True),
     "checkpoint of grains": Reader(good.grains_checkpoint, _as_checkpoint, exact=True, share=0.5),
     "checkpoint of a slide": Reader(good.slide_checkpoint, _as_checkpoint, exact=True, share=0.5),
     "checkpoint of mps": Reader(good.mps_checkpoint, _as_checkpoint, exact=True, share=0.5),
-    "run.json": Reader(good.result("run.json"), _as_record, share=0.5),
+    "run.json": Reader(good.result("run.json"), _as_record, exact=True, share=0.5),
     "outline.csv": Reader(good.result("outline.csv"), _as_resumed_table, exact=True, share=0.5),
     "energy.csv": Reader(good.result("energy.csv"), _as_resumed_table, exact=True, share=0.5),
     "store": Reader(good.store, _as_store, exact=True),

@@ -1,5 +1,8 @@
 """The film that a run records, beside its particles and its snapshots."""
 
+import struct
+
+import film_files
 import numpy as np
 import pytest
 from conftest import tiny_scene
@@ -11,6 +14,16 @@ from snowshed.run.slides import run_slide
 from snowshed.scene.builders import example_grains, example_slide
 
 HALF_MILLIMETRE = 5e-4
+
+
+def forget_the_film(checkpoint):
+    """Make a checkpoint one of the version before, which says nothing of the film."""
+    content = checkpoint.read_bytes().replace(b"film\0\0\0\0", b"mlif\0\0\0\0")[:-8]
+    state = 0xCBF29CE484222325
+    for (word,) in struct.iter_unpack("<Q", content):
+        state = (state ^ word) * 0x9E3779B97F4A7C15 % 2**64
+        state ^= state >> 32
+    checkpoint.write_bytes(content + struct.pack("<Q", state))
 
 
 @pytest.fixture(scope="module")
@@ -72,20 +85,71 @@ def test_a_film_that_was_cut_while_it_was_written_goes_on_to_the_same_bytes(tmp_
     assert film.read_bytes() == whole
 
 
-@pytest.mark.parametrize("content", [None, b"", b"damaged"])
-def test_a_lost_film_begins_where_the_run_goes_on(tmp_path, tiny, content):
+def halted_in_event_2(folder, tiny):
+    """Run to the end, with the checkpoint of the second event in the folder."""
     halted = []
 
     def halt(progress):
         if progress.event == 2 and not halted:
-            halted.append((tmp_path / "checkpoint.bin").read_bytes())
+            halted.append((folder / "checkpoint.bin").read_bytes())
 
-    run_events(tiny, tmp_path, progress=halt, pictures=False)
-    (tmp_path / "checkpoint.bin").write_bytes(halted[0])
+    run_events(tiny, folder, progress=halt, pictures=False)
+    (folder / "checkpoint.bin").write_bytes(halted[0])
+
+
+def test_a_lost_film_begins_where_the_run_goes_on(tmp_path, tiny):
+    halted_in_event_2(tmp_path, tiny)
     film = tmp_path / "film.bin"
-    film.unlink() if content is None else film.write_bytes(content)
+    film.unlink()
     run_events(tiny, tmp_path, resume=True, pictures=False)
     assert {one.event for one in Film(film).frames} == {2}
+    assert Results(tmp_path).film.closed
+
+
+def test_a_run_goes_on_with_no_other_film_than_its_own(tmp_path, tiny):
+    """With none that is damaged, cut, or of another run, each told by its name."""
+    halted_in_event_2(tmp_path, tiny)
+    film = tmp_path / "film.bin"
+    whole = film.read_bytes()
+    begun = Film(film)
+    first = next(k for k, one in enumerate(begun.frames) if one.event == 2)
+    assert first > 3
+    frames = film_files.falling_film(40, 6)
+    for content in (
+        *(b"", b"damaged", whole[:300], whole[: len(whole) // 3]),
+        *(whole[:at] + bytes([whole[at] ^ 8]) + whole[at + 1 :] for at in range(5, 3000, 211)),
+        film_files.film_bytes(frames, closed=True),
+        film_files.film_bytes(frames, version=1),
+    ):
+        film.write_bytes(content)
+        with pytest.raises(InputError, match=r"film\.bin.*bring back the file, or remove it"):
+            run_events(tiny, tmp_path, resume=True, pictures=False)
+        assert film.read_bytes() == content
+    film.write_bytes(whole)
+    run_events(tiny, tmp_path, resume=True, pictures=False)
+    assert film.read_bytes() == whole
+
+
+def test_what_a_film_holds_beyond_the_checkpoint_is_recorded_anew(tmp_path, tiny):
+    """A power failure leaves anything there."""
+    halted_in_event_2(tmp_path, tiny)
+    film = tmp_path / "film.bin"
+    whole = film.read_bytes()
+    film.write_bytes(whole[:-200] + bytes(200))
+    with pytest.raises(InputError, match="damaged"):
+        _ = Results(tmp_path).film
+    run_events(tiny, tmp_path, resume=True, pictures=False)
+    assert film.read_bytes() == whole
+
+
+def test_a_film_of_the_version_before_is_gone_on_with(tmp_path, tiny):
+    halted_in_event_2(tmp_path, tiny)
+    film = tmp_path / "film.bin"
+    whole = film.read_bytes()
+    film.write_bytes(film_files.as_version_1(whole))
+    forget_the_film(tmp_path / "checkpoint.bin")
+    run_events(tiny, tmp_path, resume=True, pictures=False)
+    assert film.read_bytes() == whole
 
 
 def test_without_a_film_there_is_none(tmp_path, tiny):

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <string>
 
 namespace snowshed {
 
@@ -57,5 +59,12 @@ class Crc32 {
 
   std::uint32_t state_ = 0xffffffffu;
 };
+
+/// A checksum as eight hexadecimal digits.
+inline std::string hexadecimal(std::uint32_t sum) {
+  char text[9];
+  std::snprintf(text, sizeof text, "%08x", sum);
+  return text;
+}
 
 }  // namespace snowshed

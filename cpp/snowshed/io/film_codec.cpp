@@ -221,8 +221,8 @@ std::vector<std::uint8_t> inflated(const std::uint8_t* packed, std::size_t packe
   return bytes;
 }
 
-std::uint32_t crc32_of(const void* data, std::size_t bytes) {
-  return std::uint32_t(crc32_z(0, static_cast<const Bytef*>(data), bytes));
+std::uint32_t crc32_of(const void* data, std::size_t bytes, std::uint32_t before) {
+  return std::uint32_t(crc32_z(before, static_cast<const Bytef*>(data), bytes));
 }
 
 }  // namespace snowshed

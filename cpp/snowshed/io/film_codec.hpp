@@ -53,7 +53,7 @@ bool could_be_deflated(std::size_t packed, std::size_t raw);
 std::vector<std::uint8_t> inflated(const std::uint8_t* packed, std::size_t packed_bytes,
                                    std::size_t raw, const std::string& where);
 
-/// CRC-32 of RFC 1952.
-std::uint32_t crc32_of(const void* data, std::size_t bytes);
+/// CRC-32 of RFC 1952; of bytes that follow others, whose checksum is `before`.
+std::uint32_t crc32_of(const void* data, std::size_t bytes, std::uint32_t before = 0);
 
 }  // namespace snowshed

@@ -17,8 +17,10 @@ namespace {
 constexpr char film_magic[8] = {'S', 'N', 'O', 'W', 'F', 'I', 'L', 'M'};
 constexpr std::size_t film_text_start = 24;  // of the JSON text
 constexpr std::size_t most_header_bytes = 1u << 20;
+constexpr std::size_t header_sum_at = 16;
 constexpr std::uint32_t frame_tag = 0x4d415246;  // "FRAM"
-constexpr std::size_t record_head = 40;
+constexpr std::uint32_t close_tag = 0x53444e45;  // "ENDS"
+constexpr std::size_t record_head = 40, facts_at = 8, content_sum_at = 36;
 // Of a frame; the particles that runs record, with all their quantities, take a twentieth of it.
 constexpr std::size_t most_raw_bytes = std::size_t{1} << 27;
 constexpr std::uint32_t lists_flag = 1;
@@ -40,6 +42,51 @@ std::string header_text(const FilmHeader& h) {
     json["quantities"].push_back(
         {{"name", q.name}, {"unit", q.unit}, {"meaning", q.meaning}, {"step", q.step}});
   return json.dump();
+}
+
+/// The checksum of a header; version 1 sums its text alone.
+std::uint32_t header_sum(std::uint32_t version, const char* text, std::size_t length) {
+  if (version == 1) return crc32_of(text, length);
+  std::vector<std::uint8_t> fixed(film_magic, film_magic + sizeof film_magic);
+  put_bytes(fixed, version);
+  put_bytes(fixed, std::uint32_t(length));
+  return crc32_of(text, length, crc32_of(fixed.data(), fixed.size()));
+}
+
+/// The checksum of the head of a frame, which goes on with that of the frame before.
+std::uint32_t head_sum(const char* head, std::uint32_t before) {
+  return crc32_of(head + facts_at, record_head - facts_at, before);
+}
+
+std::string header_bytes(const FilmHeader& header) {
+  const std::string text = header_text(header);
+  std::vector<std::uint8_t> bytes(film_magic, film_magic + sizeof film_magic);
+  put_bytes(bytes, film_version);
+  put_bytes(bytes, std::uint32_t(text.size()));
+  put_bytes(bytes, header_sum(film_version, text.data(), text.size()));
+  put_bytes(bytes, std::uint32_t(0));
+  return std::string(bytes.begin(), bytes.end()) + text;
+}
+
+/// What the head of a record says beside its checksums.
+struct RecordFacts {
+  double time;
+  std::uint32_t event, flags, particles, raw, packed;
+};
+
+/// The head of a record behind one with the checksum `before`, which becomes its own.
+std::vector<std::uint8_t> record_bytes(std::uint32_t tag, const RecordFacts& facts,
+                                       std::uint32_t content_sum, std::uint32_t& before) {
+  std::vector<std::uint8_t> bytes;
+  put_bytes(bytes, tag);
+  put_bytes(bytes, std::uint32_t(0));
+  put_bytes(bytes, facts.time);
+  for (const std::uint32_t number :
+       {facts.event, facts.flags, facts.particles, facts.raw, facts.packed, content_sum})
+    put_bytes(bytes, number);
+  before = head_sum(reinterpret_cast<const char*>(bytes.data()), before);
+  std::memcpy(bytes.data() + 4, &before, sizeof before);
+  return bytes;
 }
 
 FilmHeader parsed_header(const std::string& text, const std::string& where) {
@@ -73,13 +120,14 @@ FilmHeader parsed_header(const std::string& text, const std::string& where) {
 
 }  // namespace
 
-FilmReader::FilmReader(std::filesystem::path path)
+FilmReader::FilmReader(std::filesystem::path path, std::size_t most_frames)
     : path_(std::move(path)), bytes_(read_bytes(path_)) {
   read_header();
   std::size_t at = end_of_header_;
-  while (read_record(at)) {
+  while (records_.size() < most_frames && read_record(at)) {
   }
-  whole_ = at == bytes_.size();
+  if (records_.size() < most_frames) read_close(at);
+  whole_ = at == bytes_.size() || records_.size() == most_frames;
   codec_ = FilmCodec(header_);
 }
 
@@ -94,44 +142,109 @@ std::string FilmReader::at_byte(std::size_t at) const {
   return path_.string() + ", byte " + std::to_string(at);
 }
 
+void FilmReader::fail(std::size_t at, const std::string& what) const {
+  throw InputError(at_byte(at), "damaged: " + what);
+}
+
 void FilmReader::read_header() {
   if (bytes_.size() < film_text_start ||
       std::memcmp(bytes_.data(), film_magic, sizeof film_magic) != 0)
     throw InputError(path_.string(), "not a film of snowshed");
-  const auto version = read<std::uint32_t>(8);
-  if (version != film_version)
-    throw InputError(path_.string(), "a film of version " + std::to_string(version) +
-                                         "; this program reads version " +
+  version_ = read<std::uint32_t>(8);
+  if (version_ != film_version && version_ != 1)
+    throw InputError(path_.string(), "a film of version " + std::to_string(version_) +
+                                         "; this program reads the versions 1 to " +
                                          std::to_string(film_version));
   const std::size_t length = read<std::uint32_t>(12);
   if (length > most_header_bytes || length > bytes_.size() - film_text_start)
-    throw InputError(at_byte(12), "damaged: its header does not fit into the file");
+    fail(12, "its header does not fit into the file");
   const char* text = bytes_.data() + film_text_start;
-  if (crc32_of(text, length) != read<std::uint32_t>(16))
-    throw InputError(at_byte(16), "damaged: its header has another checksum");
+  header_checksum_ = header_sum(version_, text, length);
+  if (header_checksum_ != read<std::uint32_t>(header_sum_at))
+    fail(header_sum_at, "its header has another checksum");
+  if (read<std::uint32_t>(header_sum_at + 4) != 0) fail(header_sum_at + 4, "this is not zero");
   header_ = parsed_header(std::string(text, length), path_.string());
   end_of_header_ = film_text_start + length;
 }
 
-/// Returns whether there is a whole record at `at`, which is moved behind it.
+/// Whether a killed run may have left the frame at `at`: its beginning is there, and all that is
+/// there is right.
+bool FilmReader::is_cut_off(std::size_t at) const {
+  const std::size_t left = bytes_.size() - at;
+  if (std::memcmp(bytes_.data() + at, &frame_tag, std::min(left, sizeof frame_tag)) == 0)
+    return left < record_head ||
+           read<std::uint32_t>(at + 32) > left - record_head;  // of the packed content
+  return left < record_head &&
+         std::memcmp(bytes_.data() + at, &close_tag, std::min(left, sizeof close_tag)) == 0;
+}
+
+/// Whether there is a sound frame of version 1 anywhere behind `at`: then the one there is damaged.
+bool FilmReader::a_frame_follows(std::size_t at) const {
+  const std::string tag(reinterpret_cast<const char*>(&frame_tag), sizeof frame_tag);
+  for (at = bytes_.find(tag, at + 1); at != std::string::npos; at = bytes_.find(tag, at + 1)) {
+    if (bytes_.size() - at < record_head) return false;
+    const std::size_t packed = read<std::uint32_t>(at + 32);
+    if (packed <= bytes_.size() - at - record_head &&
+        crc32_of(bytes_.data() + at + facts_at, record_head - facts_at + packed) ==
+            read<std::uint32_t>(at + 4))
+      return true;
+  }
+  return false;
+}
+
+/// Returns the checksum of the frame at `at`, which is there as a whole.
+std::uint32_t FilmReader::checked_sum(std::size_t at, std::size_t packed) const {
+  const auto sum = read<std::uint32_t>(at + 4);
+  const char* content = bytes_.data() + at + record_head;
+  const bool sound =
+      version_ == 1
+          ? crc32_of(bytes_.data() + at + facts_at, record_head - facts_at + packed) == sum
+          : crc32_of(content, packed) == read<std::uint32_t>(at + content_sum_at);
+  if (!sound) fail(at, "a frame has another checksum");
+  return sum;
+}
+
+/// Returns whether there is a whole frame at `at`, which is moved behind it.
 bool FilmReader::read_record(std::size_t& at) {
-  if (bytes_.size() - at < record_head || read<std::uint32_t>(at) != frame_tag) return false;
+  if (at == bytes_.size()) return false;
+  const std::size_t left = bytes_.size() - at;
+  const bool cut_off = is_cut_off(at);
+  if (left < record_head && !cut_off) fail(at, "what follows is no frame");
+  if (left < record_head) return false;
+  if (read<std::uint32_t>(at) == close_tag && version_ != 1) return false;
+  if (read<std::uint32_t>(at) != frame_tag) fail(at, "what follows is no frame");
+  if (version_ != 1 &&
+      head_sum(bytes_.data() + at, checksum(records_.size())) != read<std::uint32_t>(at + 4))
+    fail(at, "the head of a frame has another checksum, or the frame before it is missing");
+  if (version_ == 1 && cut_off && a_frame_follows(at)) fail(at, "the length of a frame is wrong");
+  if (cut_off) return false;
+  const std::size_t packed = read<std::uint32_t>(at + 32);
+  add_record(at, checked_sum(at, packed));
+  at += record_head + packed;
+  return true;
+}
+
+void FilmReader::add_record(std::size_t at, std::uint32_t checksum) {
   const FilmFrameFacts facts{read<double>(at + 8), read<std::uint32_t>(at + 16),
                              read<std::uint32_t>(at + 24)};
   const std::size_t raw = read<std::uint32_t>(at + 28), packed = read<std::uint32_t>(at + 32);
-  if (packed > bytes_.size() - at - record_head) return false;
-  const Record record{at + record_head, at + record_head + packed, packed, raw,
-                      (read<std::uint32_t>(at + 20) & lists_flag) != 0};
-  if (crc32_of(bytes_.data() + at + 8, record.end - at - 8) != read<std::uint32_t>(at + 4))
-    return false;
-  const FilmCodec codec(header_);
   if (!std::isfinite(facts.time) || raw > most_raw_bytes || !could_be_deflated(packed, raw) ||
-      codec.least_bytes(facts.particles) > raw)
-    throw InputError(at_byte(at), "damaged: the sizes of a frame do not fit together");
-  records_.push_back(record);
+      FilmCodec(header_).least_bytes(facts.particles) > raw)
+    fail(at, "the sizes of a frame do not fit together");
+  const bool lists = (read<std::uint32_t>(at + 20) & lists_flag) != 0;
+  const std::size_t payload = at + record_head;
+  records_.push_back({payload, payload + packed, packed, raw, lists, checksum});
   facts_.push_back(facts);
-  at = record.end;
-  return true;
+}
+
+/// Reads the record that closes a film, where there is one at `at`, which is moved behind it.
+void FilmReader::read_close(std::size_t& at) {
+  if (bytes_.size() - at < record_head || read<std::uint32_t>(at) != close_tag) return;
+  if (head_sum(bytes_.data() + at, checksum(records_.size())) != read<std::uint32_t>(at + 4))
+    fail(at, "the end has another checksum, or the frame before it is missing");
+  at += record_head;
+  if (at != bytes_.size()) fail(at, "something follows its end");
+  closed_ = true;
 }
 
 FilmFrame FilmReader::next() {
@@ -147,62 +260,95 @@ FilmFrame FilmReader::next() {
   return frame;
 }
 
-FilmWriter::FilmWriter(std::filesystem::path path, const FilmHeader& header)
-    : FilmWriter(std::move(path), header, FilmCodec(header)) {
-  const std::string text = header_text(header);
-  std::vector<std::uint8_t> bytes(film_magic, film_magic + sizeof film_magic);
-  put_bytes(bytes, film_version);
-  put_bytes(bytes, std::uint32_t(text.size()));
-  put_bytes(bytes, crc32_of(text.data(), text.size()));
-  put_bytes(bytes, std::uint32_t(0));
-  bytes.insert(bytes.end(), text.begin(), text.end());
-  write_atomic(path_, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+/// The header and the first frames as the present version has them.
+std::string FilmReader::in_present_version(std::size_t frames) const {
+  std::string bytes = header_bytes(header_);
+  std::uint32_t sum = 0;
+  std::memcpy(&sum, bytes.data() + header_sum_at, sizeof sum);
+  for (std::size_t k = 0; k < frames; ++k) {
+    const Record& r = records_[k];
+    const RecordFacts facts{facts_[k].time,           facts_[k].event,
+                            r.lists ? lists_flag : 0, std::uint32_t(facts_[k].particles),
+                            std::uint32_t(r.raw),     std::uint32_t(r.packed)};
+    const char* content = bytes_.data() + r.payload;
+    const auto head = record_bytes(frame_tag, facts, crc32_of(content, r.packed), sum);
+    bytes.append(head.begin(), head.end()).append(content, r.packed);
+  }
+  return bytes;
 }
 
-std::optional<FilmWriter> FilmWriter::reopen(
-    const std::filesystem::path& path, const std::function<bool(const FilmFrameFacts&)>& keeps) {
-  if (!std::filesystem::is_regular_file(path)) return std::nullopt;
-  try {
-    FilmReader reader(path);
-    std::size_t end = reader.end_of_header();
-    std::vector<FilmFrameFacts> kept;
-    for (const FilmFrameFacts& facts : reader.frames()) {
-      if (!keeps(facts)) break;
-      reader.next();
-      end = reader.end_of(kept.size());
-      kept.push_back(facts);
-    }
-    truncate_file(path, end);
-    const FilmHeader header = reader.header();
-    FilmWriter writer(path, header, std::move(reader).release_codec());
-    writer.facts_ = std::move(kept);
-    return writer;
-  } catch (const InputError&) {
-    return std::nullopt;
+FilmWriter::FilmWriter(std::filesystem::path path, const FilmHeader& header)
+    : FilmWriter(std::move(path), header, FilmCodec(header)) {
+  const std::string bytes = header_bytes(header);
+  write_atomic(path_, bytes);
+  end_ = bytes.size();
+  std::memcpy(&checksum_, bytes.data() + header_sum_at, sizeof checksum_);
+}
+
+FilmWriter FilmWriter::reopen(const std::filesystem::path& path,
+                              const std::function<bool(const FilmFrameFacts&)>& keeps,
+                              const std::optional<FilmMark>& mark) {
+  FilmReader reader = mark ? FilmReader(path, mark->frames) : FilmReader(path);
+  if (mark &&
+      (reader.frames().size() < mark->frames || reader.checksum(mark->frames) != mark->checksum))
+    throw InputError(path.string(), "damaged: its first " + std::to_string(mark->frames) +
+                                        " frames are not those that the run recorded");
+  std::size_t kept = 0;
+  while (kept < reader.frames().size() && keeps(reader.frames()[kept])) {
+    reader.next();
+    ++kept;
   }
+  if (reader.version() != film_version) {
+    write_atomic(path, reader.in_present_version(kept));
+    return reopen(path, [](const FilmFrameFacts&) { return true; });
+  }
+  FilmWriter writer(path, reader.header(), FilmCodec(reader.header()));
+  writer.facts_.assign(reader.frames().begin(), reader.frames().begin() + std::ptrdiff_t(kept));
+  writer.checksum_ = reader.checksum(kept);
+  writer.end_ = reader.end_of(kept);
+  writer.closed_ = reader.closed() && kept == reader.frames().size();
+  writer.more_follows_ = std::filesystem::file_size(path) > writer.end_;
+  writer.codec_ = std::move(reader).release_codec();
+  return writer;
 }
 
 void FilmWriter::append(const FilmFrame& frame) {
   FilmCodec after = codec_;
   const bool lists = codec_.lists_particles(frame);
   const std::vector<std::uint8_t> raw = after.encode(frame), packed = deflated(raw);
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(record_head + packed.size());
-  put_bytes(bytes, frame_tag);
-  put_bytes(bytes, std::uint32_t(0));
-  put_bytes(bytes, frame.time);
-  put_bytes(bytes, frame.event);
-  put_bytes(bytes, std::uint32_t(lists ? lists_flag : 0));
-  put_bytes(bytes, std::uint32_t(frame.ids.size()));
-  put_bytes(bytes, std::uint32_t(raw.size()));
-  put_bytes(bytes, std::uint32_t(packed.size()));
-  put_bytes(bytes, std::uint32_t(0));
+  const RecordFacts facts{frame.time,
+                          frame.event,
+                          lists ? lists_flag : 0,
+                          std::uint32_t(frame.ids.size()),
+                          std::uint32_t(raw.size()),
+                          std::uint32_t(packed.size())};
+  std::uint32_t sum = checksum_;
+  std::vector<std::uint8_t> bytes =
+      record_bytes(frame_tag, facts, crc32_of(packed.data(), packed.size()), sum);
   bytes.insert(bytes.end(), packed.begin(), packed.end());
-  const std::uint32_t sum = crc32_of(bytes.data() + 8, bytes.size() - 8);
-  std::memcpy(bytes.data() + 4, &sum, sizeof sum);
-  append_to_file(path_, bytes.data(), bytes.size());
+  write(bytes);
+  end_ += bytes.size();
+  closed_ = false;
   facts_.push_back({frame.time, frame.event, frame.ids.size()});
   codec_ = std::move(after);
+  checksum_ = sum;
+}
+
+/// Writes behind the frames that are kept.
+void FilmWriter::write(const std::vector<std::uint8_t>& bytes) {
+  if (more_follows_) truncate_file(path_, end_);
+  more_follows_ = false;
+  append_to_file(path_, bytes.data(), bytes.size());
+}
+
+void FilmWriter::close() {
+  if (closed_) return;
+  const FilmFrameFacts last = facts_.empty() ? FilmFrameFacts{} : facts_.back();
+  std::uint32_t sum = checksum_;
+  const auto bytes = record_bytes(
+      close_tag, {last.time, last.event, 0, std::uint32_t(facts_.size()), 0, 0}, 0, sum);
+  write(bytes);
+  closed_ = more_follows_ = true;
 }
 
 }  // namespace snowshed

@@ -14,7 +14,7 @@
 
 namespace snowshed {
 
-inline constexpr std::uint32_t film_version = 1;
+inline constexpr std::uint32_t film_version = 2;  // written; version 1 is read, too
 
 /// What is known of a frame without its particles.
 struct FilmFrameFacts {
@@ -23,21 +23,36 @@ struct FilmFrameFacts {
   std::size_t particles = 0;
 };
 
+/// Names the header and the first frames of a film, whatever follows them.
+struct FilmMark {
+  std::size_t frames = 0;
+  std::uint32_t checksum = 0;  // of the last of them, and so of all before it
+};
+
 /// Reads a film. The file is untrusted: sizes are checked before memory is taken for them, and
 /// every fault is an InputError that names the file and the byte.
 class FilmReader {
  public:
-  /// Reads the header and where the frames are. A last frame that is not whole is left out: the run
-  /// still writes it, or was killed.
-  explicit FilmReader(std::filesystem::path path);
+  /// Reads the header and the first frames, all of them by default, and checks their checksums. A
+  /// last frame that is cut off is left out: the run still writes it, or was killed.
+  explicit FilmReader(std::filesystem::path path, std::size_t most_frames = std::size_t(-1));
 
+  std::uint32_t version() const { return version_; }
   const FilmHeader& header() const { return header_; }
   const std::vector<FilmFrameFacts>& frames() const { return facts_; }
-  bool whole() const { return whole_; }  ///< nothing follows the last frame
+  bool whole() const { return whole_; }    ///< no frame is cut off
+  bool closed() const { return closed_; }  ///< the run came to its end; never of version 1
 
-  /// Where a frame ends, bytes from the start of the file.
-  std::size_t end_of(std::size_t frame) const { return records_[frame].end; }
-  std::size_t end_of_header() const { return end_of_header_; }
+  /// Where the first so many frames end, bytes from the start of the file, and their checksum.
+  std::size_t end_of(std::size_t frames) const {
+    return frames ? records_[frames - 1].end : end_of_header_;
+  }
+  std::uint32_t checksum(std::size_t frames) const {
+    return frames ? records_[frames - 1].checksum : header_checksum_;
+  }
+
+  /// The bytes of the header and the first so many frames, as the present version has them.
+  std::string in_present_version(std::size_t frames) const;
 
   /// Decodes the next frame. Throws InputError where it is damaged.
   FilmFrame next();
@@ -49,20 +64,28 @@ class FilmReader {
   struct Record {
     std::size_t payload, end, packed, raw;  // bytes
     bool lists;
+    std::uint32_t checksum;
   };
   void read_header();
   bool read_record(std::size_t& at);
+  bool is_cut_off(std::size_t at) const;
+  bool a_frame_follows(std::size_t at) const;
+  std::uint32_t checked_sum(std::size_t at, std::size_t packed) const;
+  void add_record(std::size_t at, std::uint32_t checksum);
+  void read_close(std::size_t& at);
   template <class T>
   T read(std::size_t at) const;
+  [[noreturn]] void fail(std::size_t at, const std::string& what) const;
   std::string at_byte(std::size_t at) const;
 
   std::filesystem::path path_;
   std::string bytes_;
+  std::uint32_t version_ = 0, header_checksum_ = 0;
   FilmHeader header_;
   std::size_t end_of_header_ = 0, next_ = 0;
   std::vector<Record> records_;
   std::vector<FilmFrameFacts> facts_;
-  bool whole_ = true;
+  bool whole_ = true, closed_ = false;
   FilmCodec codec_{FilmHeader{}};
 };
 
@@ -74,16 +97,23 @@ class FilmWriter {
   FilmWriter(std::filesystem::path path, const FilmHeader& header);
 
   /// Goes on with a film behind the frames that `keeps` wants, from the first on; the others are
-  /// removed. Empty where there is no sound film to go on with.
-  static std::optional<FilmWriter> reopen(const std::filesystem::path& path,
-                                          const std::function<bool(const FilmFrameFacts&)>& keeps);
+  /// removed with the next change. Where a `mark` is known, only what it names is looked at. A film
+  /// of version 1 becomes one of the present version. Throws InputError where the film is damaged,
+  /// or is not the one that was marked.
+  static FilmWriter reopen(const std::filesystem::path& path,
+                           const std::function<bool(const FilmFrameFacts&)>& keeps,
+                           const std::optional<FilmMark>& mark = {});
 
   const FilmHeader& header() const { return header_; }
   const std::vector<FilmFrameFacts>& frames() const { return facts_; }
+  FilmMark mark() const { return {facts_.size(), checksum_}; }
 
   void append(const FilmFrame&);
+  /// Says that the film is complete. A frame that follows takes this back.
+  void close();
 
  private:
+  void write(const std::vector<std::uint8_t>& bytes);
   FilmWriter(std::filesystem::path path, FilmHeader header, FilmCodec codec)
       : path_(std::move(path)), header_(std::move(header)), codec_(std::move(codec)) {}
 
@@ -91,6 +121,10 @@ class FilmWriter {
   FilmHeader header_;
   FilmCodec codec_;
   std::vector<FilmFrameFacts> facts_;
+  std::uint32_t checksum_ = 0;  // of the last frame, or else of the header
+  std::size_t end_ = 0;         // of the frames that are kept, bytes
+  bool more_follows_ = false;   // behind them in the file
+  bool closed_ = false;
 };
 
 }  // namespace snowshed

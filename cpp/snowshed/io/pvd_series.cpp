@@ -9,6 +9,7 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/checksum.hpp"
 #include "snowshed/io/file_bytes.hpp"
 #include "snowshed/io/xml_text.hpp"
 
@@ -62,12 +63,25 @@ std::optional<PvdSeries::Entry> parse_line(const std::string& line, const std::s
   return PvdSeries::Entry{*seconds, *file};
 }
 
+const std::string comment_begins = "<!-- checksum ";
+
+/// The comment behind a text that tells its checksum.
+std::string comment_of(const std::string& text) {
+  Crc32 sum;
+  sum.update(text.data(), text.size());
+  return comment_begins + hexadecimal(sum.value()) + " -->\n";
+}
+
 }  // namespace
 
 PvdSeries PvdSeries::reopen(std::filesystem::path path, double before) {
   PvdSeries series(std::move(path));
   if (!std::filesystem::exists(series.path_)) return series;
-  std::istringstream lines(read_bytes(series.path_));
+  const std::string text = read_bytes(series.path_);
+  const std::size_t seal = text.find(comment_begins);
+  if (seal != std::string::npos && text.substr(seal) != comment_of(text.substr(0, seal)))
+    throw InputError(series.path_.string(), "damaged: its checksum is not that of its content");
+  std::istringstream lines(text);
   bool closed = false;
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -97,7 +111,7 @@ void PvdSeries::save() const {
     xml += "    <DataSet timestep=\"" + to_text(entry.time) + "\" part=\"0\" file=\"" +
            xml_escape(entry.file) + "\"/>\n";
   xml += "  </Collection>\n</VTKFile>\n";
-  write_atomic(path_, xml);
+  write_atomic(path_, xml + comment_of(xml));
 }
 
 }  // namespace snowshed

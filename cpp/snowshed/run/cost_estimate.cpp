@@ -13,6 +13,8 @@
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 #include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/locator.hpp"
+#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 
@@ -251,6 +253,19 @@ std::string gigabytes(double bytes) {
   return text;
 }
 
+/// What the length of a step follows from.
+std::string path_of_step(const Scene& scene) {
+  if (scene.uses<SlideSettings>())
+    return path_of(scene, std::get<SlideSettings>(scene.numerics).time_step);
+  if (scene.uses<GrainsSettings>())
+    return path_of(scene, std::get<GrainsSettings>(scene.numerics).courant_factor);
+  if (scene.uses<MpmSettings>()) return path_of(scene, scene.mpm().courant_factor);
+  const MpsSettings& mps = std::get<MpsSettings>(scene.numerics);
+  // The Courant factor shortens the steps that max_time_step allows.
+  const bool allowed = mps.max_time_step < mps.courant_factor * mps.spacing;
+  return path_of(scene, allowed ? mps.max_time_step : mps.courant_factor);
+}
+
 }  // namespace
 
 double stable_time_step(const Scene& scene) {
@@ -292,6 +307,25 @@ void check_memory(double bytes, double available) {
   if (bytes > available)
     throw InputError("/", "needs " + gigabytes(bytes) + " of memory, of which there are " +
                               gigabytes(available) + "; give fewer particles or a larger dx");
+}
+
+void check_duration(const Scene& scene, const CostEstimate& cost) {
+  constexpr double most_steps = 1e10, most_records = 1e6;
+  const double steps = cost.event_time / cost.time_step;
+  if (!(steps <= most_steps))
+    throw InputError(path_of_step(scene), "makes steps of " + show_rounded(cost.time_step) +
+                                              " s, of which an event of " +
+                                              show_rounded(cost.event_time) + " s would take " +
+                                              show_rounded(steps) + "; at most 1e10 are allowed");
+  const auto check_interval = [&](const double& interval) {
+    const double records = cost.event_time * scene.events.count / interval;
+    if (interval > 0 && !(records <= most_records))
+      throw InputError(path_of(scene, interval), show(interval) + " s makes " +
+                                                     show_rounded(records) +
+                                                     " records; at most 1e6 are allowed");
+  };
+  check_interval(scene.output.snapshot_interval);
+  check_interval(scene.output.film_interval);
 }
 
 void check_memory(double bytes) {

@@ -36,6 +36,10 @@ CostEstimate estimate_cost(const Scene& scene, std::vector<double> particles);
 /// The first time step of a scene at rest, of its stiffest snow (mpm/time_step.hpp), s.
 double stable_time_step(const Scene& scene);
 
+/// Throws InputError, naming what is to blame, where an event would take more steps than any run
+/// has time for (10^10), or be recorded more than a million times.
+void check_duration(const Scene&, const CostEstimate&);
+
 /// Throws InputError naming both numbers when `bytes` exceeds `available`; by default the memory
 /// of the machine, or of the container where it has less.
 void check_memory(double bytes);

@@ -26,6 +26,7 @@ EventSequence EventSequence::resume(const Scene& scene, const fs::path& base_dir
   auto sim = fs::exists(results.checkpoint()) ? results.load_checkpoint(scene)
                                               : std::make_unique<Simulation>(scene, base_dir);
   record.keep_through(sim->event() - int(sim->event_running()));
+  if (scene.output.film && fs::exists(results.film())) sim->record_film(results.film());
   return {std::move(sim), std::move(results), std::move(record)};
 }
 
@@ -53,7 +54,7 @@ bool EventSequence::is_done() const {
 bool EventSequence::run(EventObserver& observer, double report_interval) {
   const double every = sim_->scene().output.snapshot_interval;
   if (every > 0) sim_->write_snapshots(folder_.snapshots(), every);
-  bool films = false;
+  bool films = sim_->films();
   while (!is_done()) {
     bool stopped = observer.stop_requested();
     if (!stopped) try {
@@ -68,6 +69,7 @@ bool EventSequence::run(EventObserver& observer, double report_interval) {
     if (end == RunEnd::paused) return checkpoint(observer, "interrupted"), false;
     end_event(observer, end);
   }
+  sim_->close_film();
   write_record("finished");
   return true;
 }
@@ -125,7 +127,18 @@ void EventSequence::checkpoint(EventObserver& observer, const std::string& statu
 
 void EventSequence::write_record(const std::string& status, const std::string& error) {
   record_.wall = wall();
+  record_.scene = folder_.scene_checksum();
   record_.write(folder_.record(), *sim_, status, error);
+  status_ = status;
+}
+
+void EventSequence::rewrite_record() {
+  if (!status_.empty()) record_.write(folder_.record(), *sim_, status_);
+}
+
+void EventSequence::give_up_files() {
+  record_.check_files(folder_.path());
+  if (!is_done()) record_.files.clear();
 }
 
 /// Between two events the last checkpoint is of the same snow, before it aged.

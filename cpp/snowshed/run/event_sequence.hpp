@@ -50,6 +50,13 @@ class EventSequence {
   /// the same snow. What is thrown by the simulation or the observer comes through.
   bool run(EventObserver&, double report_interval);
 
+  /// Throws InputError where a file that Python wrote has been changed, and forgets all of them:
+  /// for those who go on without keeping them up.
+  void give_up_files();
+
+  /// Writes run.json again, with what has become of `record` since; as far as the run has come.
+  void rewrite_record();
+
   /// Records in the folder that the run cannot go on, with a checkpoint of its last good state.
   void record_failure(const std::string& error);
 
@@ -77,6 +84,7 @@ class EventSequence {
   std::unique_ptr<Simulation> sim_;
   ResultsFolder folder_;
   RunRecord record_;
+  std::string status_;                 // in run.json, as it was written last
   std::int64_t steps_before_;          // the present event
   double wall_before_, earlier_wall_;  // s, before the present event and before resuming
   Stopwatch clock_, since_checkpoint_;

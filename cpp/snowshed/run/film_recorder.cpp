@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "snowshed/core/errors.hpp"
 #include "snowshed/particles/quantities.hpp"
 #include "snowshed/run/record_times.hpp"
 
@@ -108,6 +109,22 @@ FilmFrame frame_of(const Method& solver, const FilmHeader& header, int event) {
   return frame;
 }
 
+FilmWriter begun_or_reopened(const std::filesystem::path& file, const FilmHeader& header,
+                             const RunPlace& place, const std::optional<FilmMark>& mark) {
+  if (!std::filesystem::exists(file)) return FilmWriter(file, header);
+  const auto keeps = [&place](const FilmFrameFacts& frame) {
+    const int event = int(frame.event);
+    if (event != place.event) return event < place.event;
+    return !place.running || frame.time < place.time;
+  };
+  try {
+    return FilmWriter::reopen(file, keeps, mark);
+  } catch (const InputError& error) {
+    throw InputError(error.what(),
+                     "bring back the file, or remove it: then a film begins where the run goes on");
+  }
+}
+
 }  // namespace
 
 FilmHeader film_header(const Scene& scene, const Method& solver, const CostEstimate& cost) {
@@ -125,15 +142,8 @@ FilmHeader film_header(const Scene& scene, const Method& solver, const CostEstim
 }
 
 FilmRecorder::FilmRecorder(const std::filesystem::path& file, const FilmHeader& header,
-                           const RunPlace& place)
-    : film_([&] {
-        auto earlier = FilmWriter::reopen(file, [&place](const FilmFrameFacts& frame) {
-          const int event = int(frame.event);
-          if (event != place.event) return event < place.event;
-          return !place.running || frame.time < place.time;
-        });
-        return earlier ? std::move(*earlier) : FilmWriter(file, header);
-      }()) {}
+                           const RunPlace& place, const std::optional<FilmMark>& mark)
+    : film_(begun_or_reopened(file, header, place, mark)) {}
 
 bool FilmRecorder::begun(int event) const {
   return !film_.frames().empty() && int(film_.frames().back().event) == event;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "snowshed/io/film_file.hpp"
 #include "snowshed/methods/method.hpp"
@@ -26,14 +27,19 @@ class FilmRecorder {
   static constexpr double most_particles = 40000;
 
   /// Begins a film, or goes on with the frames that a run had recorded when it stood at `place`, so
-  /// that a resumed run makes the same film.
-  FilmRecorder(const std::filesystem::path& file, const FilmHeader& header, const RunPlace& place);
+  /// that a resumed run makes the same film. `mark` is that of the film then, where it is known.
+  /// Throws InputError where the film is damaged.
+  FilmRecorder(const std::filesystem::path& file, const FilmHeader& header, const RunPlace& place,
+               const std::optional<FilmMark>& mark);
 
   /// Whether the first frame of an event is missing, or the next one's time has come.
   bool due(const RunPlace&) const;
   void record(const Method&, int event);
   /// The last frame of an event, unless it is recorded already.
   void record_end(const Method&, int event);
+  /// Says that no frame will follow.
+  void close() { film_.close(); }
+  FilmMark mark() const { return film_.mark(); }
 
  private:
   bool begun(int event) const;

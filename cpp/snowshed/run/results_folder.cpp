@@ -8,6 +8,7 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/file_bytes.hpp"
 #include "snowshed/io/pvd_series.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -17,9 +18,12 @@ namespace fs = std::filesystem;
 namespace snowshed {
 namespace {
 
-/// The JSON paths at which two scenes differ, "/panel/tilt, /snow/density".
+/// The JSON paths at which two scenes differ, "/panel/tilt, /snow/density". The number of threads
+/// does not change what comes of a scene.
 std::string differences(const Scene& one, const Scene& other) {
-  const auto json_of = [](const Scene& s) { return parse_json(write_scene(resolve(s)), "scene"); };
+  const auto json_of = [](const Scene& s) {
+    return parse_json(write_scene(resolve(with_threads(s, 0))), "scene");
+  };
   std::set<std::string> paths;
   for (const auto& change : nlohmann::json::diff(json_of(one), json_of(other)))
     paths.insert(change["path"].get<std::string>());
@@ -85,12 +89,16 @@ ResultsFolder::ResultsFolder(fs::path folder) : folder_(std::move(folder)), lock
 }
 
 std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const Scene& scene) const {
-  auto sim = Simulation::load(checkpoint());
+  auto sim = Simulation::load(checkpoint(), wanted_threads(scene.numerics));
   const std::string paths = differences(sim->scene(), scene);
   if (!paths.empty())
     throw InputError(checkpoint().string(),
                      "made by another scene, which differs from scene.json in " + paths);
   return sim;
+}
+
+std::string ResultsFolder::scene_checksum() const {
+  return snowshed::scene_checksum(read_bytes(folder_ / "scene.json"));
 }
 
 void ResultsFolder::write_particles(const Simulation& sim) const {

@@ -23,6 +23,7 @@ class ResultsFolder {
   /// Throws InputError unless `folder` is new or empty; what a killed run left does not count.
   static void require_empty(const std::filesystem::path& folder);
 
+  const std::filesystem::path& path() const { return folder_; }
   std::filesystem::path checkpoint() const { return folder_ / "checkpoint.bin"; }
   std::filesystem::path record() const { return folder_ / "run.json"; }
   std::filesystem::path film() const { return folder_ / "film.bin"; }
@@ -30,6 +31,9 @@ class ResultsFolder {
 
   /// Reads the checkpoint. Throws InputError where it is damaged, or of another scene.
   std::unique_ptr<Simulation> load_checkpoint(const Scene&) const;
+
+  /// The checksum of its scene.json.
+  std::string scene_checksum() const;
 
   /// Lets another run go on in the folder.
   void unlock() { lock_.release(); }

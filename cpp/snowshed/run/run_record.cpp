@@ -9,6 +9,7 @@
 #include "snowshed/core/compensated_sum.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/io/atomic_file.hpp"
+#include "snowshed/io/checksum.hpp"
 #include "snowshed/io/file_bytes.hpp"
 #include "snowshed/methods/grains/energy.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
@@ -113,6 +114,18 @@ std::map<std::string, std::map<std::string, std::string>> table_checksums(const 
   return tables;
 }
 
+std::map<std::string, FileMark> file_marks(const json& j) {
+  if (!j.is_object()) throw wrong_type("/files", j, "an object");
+  std::map<std::string, FileMark> marks;
+  for (const auto& [name, mark] : j.items()) {
+    const std::string path = pointer("/files", name);
+    const double bytes = to_number(require(mark, "bytes", path), path + "/bytes", "a number");
+    marks[name] = {std::uint64_t(std::clamp(bytes, 0.0, 1e15)),
+                   to_text(require(mark, "checksum", path), path + "/checksum")};
+  }
+  return marks;
+}
+
 }  // namespace
 
 std::optional<double> EventFacts::energy_residual() const {
@@ -132,9 +145,14 @@ std::string name_of(RunEnd end) { return end == RunEnd::rest ? "rest" : "time_li
 RunRecord RunRecord::read(const std::filesystem::path& file) try {
   RunRecord record;
   if (!std::filesystem::is_regular_file(file)) return record;
-  const json j = parse_json(read_bytes(file), "text");
+  const std::string text = read_bytes(file);
+  check_seal(text, "text");
+  const json j = parse_json(text, "text");
+  if (j.contains("files") && !j.contains("checksum"))
+    throw InputError("text", "its checksum is missing");
   record.wall = to_number(require(j, "wall_s", "/"), "/wall_s", "a number");
   if (j.contains("tables")) record.tables = table_checksums(j["tables"]);
+  if (j.contains("files")) record.files = file_marks(j["files"]);
   if (!j.contains("finished_events")) return record;  // of the version before
   const json& events = j["finished_events"];
   if (!events.is_array()) throw wrong_type("/finished_events", events, "an array");
@@ -152,8 +170,8 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
   j["threads"] = sim.threads();
-  const Scene& scene = sim.scene();
-  j["scalar"] = name_of(scene.uses<MpmSettings>() ? scene.mpm().precision : Precision::float64);
+  const Scene& s = sim.scene();
+  j["scalar"] = name_of(s.uses<MpmSettings>() ? s.mpm().precision : Precision::float64);
   j["dimension"] = sim.scene().dimension;
   j["events"] = sim.event() - int(sim.event_running());
   j["particles"] = method.size();
@@ -172,9 +190,28 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
   j["finished_events"] = ordered_json::array();
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
   if (!tables.empty()) j["tables"] = tables;
+  j["files"] = ordered_json::object();
+  for (const auto& [name, mark] : files)
+    j["files"][name] = {{"bytes", mark.bytes}, {"checksum", mark.checksum}};
+  if (!scene.empty()) j["scene_checksum"] = scene;
+  if (const auto film = sim.film_mark())
+    j["film"] = {{"frames", film->frames}, {"checksum", hexadecimal(film->checksum)}};
   j["status"] = status;
   if (!error.empty()) j["error"] = error;
-  write_atomic(file, pretty(j));
+  write_atomic(file, sealed(j));
+}
+
+void RunRecord::check_files(const std::filesystem::path& folder) const {
+  for (const auto& [name, mark] : files) {
+    const std::filesystem::path file = folder / name;
+    if (!std::filesystem::exists(file)) continue;
+    const std::string bytes = read_bytes(file);
+    Crc32 sum;
+    sum.update(bytes.data(), std::min<std::size_t>(bytes.size(), mark.bytes));
+    if (bytes.size() < mark.bytes || hexadecimal(sum.value()) != mark.checksum)
+      throw InputError(file.string(),
+                       "damaged: not as the run wrote it; bring it back, or remove it");
+  }
 }
 
 void RunRecord::keep_through(int event) {

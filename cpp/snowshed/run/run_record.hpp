@@ -30,6 +30,13 @@ struct EventFacts {
   std::optional<double> energy_residual() const;
 };
 
+/// How much of a file a run wrote, and the checksum (CRC-32) of that: a file that grows may have
+/// become longer since.
+struct FileMark {
+  std::uint64_t bytes = 0;
+  std::string checksum;
+};
+
 /// A larger share of the energy that was gained or lost is worth a warning.
 inline constexpr double largest_energy_residual = 0.01;
 
@@ -45,6 +52,9 @@ class RunRecord {
   void write(const std::filesystem::path& file, const Simulation&, const std::string& status,
              const std::string& error = "") const;
 
+  /// Throws InputError where one of `files` is there, and is not as the run wrote it.
+  void check_files(const std::filesystem::path& folder) const;
+
   /// Forgets the events after `event`, which will be run again.
   void keep_through(int event);
 
@@ -52,7 +62,10 @@ class RunRecord {
   std::map<std::string, std::string> machine;  // further facts, by key
   /// Checksums of the tables that Python keeps: by name, of the rows through an event.
   std::map<std::string, std::map<std::string, std::string>> tables;
-  double wall = 0;  // s, of the whole run so far
+  /// What else Python wrote into the folder, by name.
+  std::map<std::string, FileMark> files;
+  std::string scene;  // the checksum of scene.json, see scene_checksum
+  double wall = 0;    // s, of the whole run so far
 };
 
 }  // namespace snowshed

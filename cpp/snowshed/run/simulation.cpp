@@ -21,6 +21,7 @@
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
+#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {
@@ -34,11 +35,11 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
       rest_(scene.events.rest_speed, scene.events.rest_time) {
   if (scene_.uses<MpmSettings>()) {  // told by the scene: before anything is built
     cost_ = estimate_cost(scene_, count_particles(scene_, base_dir));
-    check_memory(cost_.bytes);
+    check_cost();
   }
   if (scene_.uses<MpsSettings>()) {
     cost_ = estimate_mps_cost(scene_, count_lattice_particles(scene_, base_dir));
-    check_memory(cost_.bytes);
+    check_cost();
   }
   shape_prints_ = fingerprints_of_shapes(scene_, base_dir_);
   surroundings_ = build_surroundings(scene_, base_dir_);
@@ -47,14 +48,18 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   if (scene_.uses<SlideSettings>()) {
     cost_ = estimate_slide_cost(scene_, slide().terrain(), surroundings_.areas.release.front(),
                                 slide().count_seeds());
-    check_memory(cost_.bytes);
+    check_cost();
   }
   if (scene_.uses<GrainsSettings>()) {
     check_loading_time(scene_, surroundings_.sample.box.z());
     const std::unique_ptr<Method> filled = empty_method();  // its first step is not known before
-    filled->add(grains().seed());
+    try {
+      filled->add(grains().seed());
+    } catch (const SimulationError& error) {  // its step is too short
+      throw InputError("/numerics/courant_factor", error.what());
+    }
     cost_ = estimate_grains_cost(scene_, surroundings_.sample, *filled);
-    check_memory(cost_.bytes);
+    check_cost();
     curve_ = std::make_unique<LoadingCurve>(
         scene_.loading, surroundings_.sample.box.z(),
         scene_.output.energy ? grains().energy_table() : NamedEnergies{});
@@ -65,6 +70,11 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
 }
 
 Simulation::~Simulation() = default;
+
+void Simulation::check_cost() const {
+  check_memory(cost_.bytes);
+  check_duration(scene_, cost_);
+}
 
 /// The scene's method with its obstacles, before any snow.
 std::unique_ptr<Method> Simulation::empty_method() const {
@@ -123,7 +133,11 @@ SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) con
 
 /// Takes a step of the present event.
 void Simulation::advance() {
+  const double before = solver_->time();
   solver_->step();
+  if (!(solver_->time() > before))
+    throw SimulationError("the time stays at " + show(before) + " s: a step of " +
+                          show(solver_->time_step()) + " s is too short to add to it");
   if (curve_) curve_->record(grains());
 }
 
@@ -207,12 +221,16 @@ void Simulation::record() {
   if (film_ && film_->due({event_, running_, solver_->time()})) film_->record(*solver_, event_);
 }
 
-/// How the event has ended now, if it has.
+/// How the event has ended now, if it has. Its last step is a whole one, which may reach beyond the
+/// time limit; one that misses it by rounding reaches it.
 std::optional<RunEnd> Simulation::event_end() {
+  constexpr double rounding = 1e-6;  // of a step
   const std::optional<bool> own = solver_->at_rest();
-  if (!own && !rest_.due(solver_->time())) return std::nullopt;
-  if (own ? *own : is_at_rest()) return RunEnd::rest;
-  if (event_time() >= scene_.events.max_time) return RunEnd::time_limit;
+  const bool rests = own ? *own : rest_.due(solver_->time()) && is_at_rest();
+  if (event_time() <= 0) return std::nullopt;  // nothing rests by not moving for no time
+  if (rests) return RunEnd::rest;
+  if (event_time() >= scene_.events.max_time - rounding * solver_->time_step())
+    return RunEnd::time_limit;
   return std::nullopt;
 }
 
@@ -247,8 +265,14 @@ void Simulation::write_snapshots(const std::filesystem::path& folder, double int
 
 void Simulation::record_film(const std::filesystem::path& file) {
   film_ = std::make_unique<FilmRecorder>(file, film_header(scene_, *solver_, cost_),
-                                         RunPlace{event_, running_, solver_->time()});
+                                         RunPlace{event_, running_, solver_->time()}, film_mark_);
 }
+
+void Simulation::close_film() {
+  if (film_) film_->close();
+}
+
+std::optional<FilmMark> Simulation::film_mark() const { return film_ ? film_->mark() : film_mark_; }
 
 void Simulation::write_vtp(const std::filesystem::path& file) const {
   write_particles(file, *solver_);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "snowshed/io/film_file.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/obstacle.hpp"
 #include "snowshed/run/body_seeding.hpp"
@@ -83,15 +84,22 @@ class Simulation {
   void write_snapshots(const std::filesystem::path& folder, double interval);
 
   /// Records the particles into a film from now on, or goes on with the film of the run that was
-  /// resumed: what it holds beyond the present state is recorded anew.
+  /// resumed: what it holds beyond the present state is recorded anew. Throws InputError where that
+  /// film is damaged.
   void record_film(const std::filesystem::path& file);
+  bool films() const { return film_ != nullptr; }
+  void close_film();  ///< no frame will follow
+  /// The film as it is now, or was when the checkpoint was made that this was loaded from.
+  std::optional<FilmMark> film_mark() const;
 
   /// Writes a checkpoint, which replaces an older one only once it has been read back. Throws
   /// SimulationError where the state could not be resumed from, FileError where it cannot be
   /// written; the older file stays then.
   void save(const std::filesystem::path& checkpoint) const;
-  /// Throws InputError where the file is not a sound checkpoint.
-  static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint);
+  /// Throws InputError where the file is not a sound checkpoint. The same bits come of any number
+  /// of `threads` (0: all); by default it is that of the checkpoint's scene.
+  static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint,
+                                          std::optional<int> threads = {});
   /// The same in another scene, which lays other snow from the next event on, or has more events:
   /// of the same method and obstacles, with the snows of the checkpoint's scene as the first of its
   /// own. Throws InputError also where an event was running.
@@ -147,6 +155,7 @@ class Simulation {
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
   SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
   void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
+  void check_cost() const;
   void advance();
   void record();
   bool is_at_rest();
@@ -170,6 +179,7 @@ class Simulation {
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
+  std::optional<FilmMark> film_mark_;        // in the checkpoint that was loaded
   std::unique_ptr<LoadingCurve> curve_;      // of grains only
   std::unique_ptr<EnergyHistory> energies_;  // of all others, with output.energy
   RestDetector rest_;

@@ -95,6 +95,8 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   if (scene_.sample) out.add_value("sample", sample_of(surroundings_));
   if (curve_) curve_->save(out);
   if (energies_) energies_->save(out);
+  if (const auto film = film_mark())
+    out.add("film", std::vector<std::uint64_t>{film->frames, film->checksum});
   out.add("event", std::vector<std::int64_t>{event_, running_});
   const RestDetector::State r = rest_.state();
   out.add("run", std::vector<double>{event_start_, event_mass_, r.since, r.speed_at_start, r.speed,
@@ -116,10 +118,12 @@ void Simulation::read_back(const std::filesystem::path& checkpoint) const {
   if (solver_->bytes() < available_memory_bytes()) solver_->check(in);
 }
 
-std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint) {
+std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint,
+                                             std::optional<int> threads) {
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();  // a clock that is not a number would never reach the end of an event
-  return restored(in, parse_scene(in.text("scene"), checkpoint.string()), in.text("base_dir"));
+  const Scene scene = parse_scene(in.text("scene"), checkpoint.string());
+  return restored(in, threads ? with_threads(scene, *threads) : scene, in.text("base_dir"));
 }
 
 std::unique_ptr<Simulation> Simulation::load_into(const Scene& scene,
@@ -155,6 +159,10 @@ std::unique_ptr<Simulation> Simulation::restored(const BinaryReader& in, const S
   sim->laid_height_ = run[6];
   if (sim->curve_) sim->curve_->load(in);
   if (sim->energies_) sim->energies_->load(in);
+  if (in.has("film")) {
+    const auto film = in.get<std::uint64_t>("film", 2);
+    sim->film_mark_ = FilmMark{std::size_t(film[0]), std::uint32_t(film[1])};
+  }
   sim->solver_->load(in);
   return sim;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/io/checksum.hpp"
 #include "snowshed/scene/message_format.hpp"
 
 namespace snowshed {
@@ -58,6 +59,28 @@ std::string with_plain_blanks(std::string text) {
   return text;
 }
 
+/// The line in which a key stands, of so many in a text that is right until there.
+std::size_t line_of_key(const std::string& text, std::size_t number) {
+  std::size_t line = 1, line_of_string = 1;
+  bool quoted = false, behind_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') ++line;
+    if (c == '\\' && quoted) {
+      ++i;
+    } else if (c == '"') {
+      if (!quoted) line_of_string = line;
+      behind_string = quoted;
+      quoted = !quoted;
+    } else if (!quoted && c == ':' && behind_string && --number == 0) {
+      break;
+    } else if (!quoted && c != ' ' && c != '\t' && c != '\n' && c != '\r') {
+      behind_string = false;
+    }
+  }
+  return line_of_string;
+}
+
 /// Receives the parser's events and builds the value. The parser itself does not recurse.
 class ValueBuilder {
  public:
@@ -79,8 +102,11 @@ class ValueBuilder {
   bool end_array() { return close(); }
 
   bool key(std::string& key) {
+    ++keys_read_;
     keys_.back() = std::move(key);
-    if (open_.back()->contains(keys_.back())) throw InputError(path(), "this key appears twice");
+    if (open_.back()->contains(keys_.back()))
+      throw InputError(path(), "this key appears twice, in line " +
+                                   std::to_string(line_of_key(text_, keys_read_)) + " again");
     return true;
   }
 
@@ -140,8 +166,17 @@ class ValueBuilder {
   json root_;
   std::vector<json*> open_;  // from the root to the innermost; a parent never grows meanwhile
   std::vector<std::string> keys_;
-  std::size_t values_ = 0;
+  std::size_t values_ = 0, keys_read_ = 0;
 };
+
+const std::string seal_begins = ",\n  \"checksum\": \"";
+
+/// How an object ends that begins with a text.
+std::string seal_of(const std::string& text) {
+  Crc32 sum;
+  sum.update(text.data(), text.size());
+  return seal_begins + hexadecimal(sum.value()) + "\"\n}\n";
+}
 
 void append(std::string& out, const ordered_json& value, const std::string& indent) {
   const bool plain = std::none_of(value.begin(), value.end(),
@@ -176,6 +211,19 @@ json parse_json(const std::string& text, const std::string& name) {
   if (nul != std::string::npos)
     throw InputError(place(text, nul + 1, name), "not valid JSON: a NUL character");
   return builder.take();
+}
+
+void check_seal(const std::string& text, const std::string& name) {
+  const std::size_t at = text.rfind(seal_begins);
+  if (at == std::string::npos) return;
+  if (text.substr(at) != seal_of(text.substr(0, at)))
+    throw InputError(name, "its checksum is not that of its content");
+}
+
+std::string sealed(const ordered_json& object) {
+  std::string text = pretty(object);
+  text.erase(text.rfind("\n}"));
+  return text + seal_of(text);
 }
 
 std::string pretty(const ordered_json& value) {

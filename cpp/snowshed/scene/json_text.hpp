@@ -14,6 +14,12 @@ inline constexpr std::size_t max_values = 1'000'000;  // else 64 MB of "[[],[],.
 /// keys, on numbers too large for a double and beyond the limits above.
 nlohmann::json parse_json(const std::string& text, const std::string& name);
 
+/// Throws InputError where a text that says its own checksum, as `sealed` gives it, has another.
+void check_seal(const std::string& text, const std::string& name);
+
+/// The indented text of an object, with its checksum (CRC-32) behind its last value.
+std::string sealed(const nlohmann::ordered_json& object);
+
 /// Indented text; arrays of plain values stay on one line.
 std::string pretty(const nlohmann::ordered_json& value);
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "snowshed/io/checksum.hpp"
 #include "snowshed/scene/earlier_version.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/reader.hpp"
@@ -20,6 +22,8 @@ std::string read_text(const std::filesystem::path& file) {
     throw InputError(file.string(), "no such file");
   if (failed) throw InputError(file.string(), "cannot be read: " + failed.message());
   if (std::filesystem::is_directory(status)) throw InputError(file.string(), "is a folder");
+  if (std::filesystem::is_fifo(status) || std::filesystem::is_socket(status))  // they could block
+    throw InputError(file.string(), "not a regular file");
   std::ifstream stream(file, std::ios::binary);
   std::string text;
   char block[1 << 16];
@@ -117,6 +121,21 @@ std::string write_scene(const Scene& scene) {
   validate(scene);
   Scene copy = scene;  // visitors see members they may write to
   return pretty(Writer::write(copy, copy.dimension));
+}
+
+Scene with_threads(Scene scene, int threads) {
+  std::visit([threads](auto& own) { own.threads = threads; }, scene.numerics);
+  return scene;
+}
+
+std::string scene_checksum(const std::string& text) {
+  nlohmann::json json = parse_json(text, "scene");
+  if (json.is_object() && json.contains("numerics") && json["numerics"].is_object())
+    json["numerics"].erase("threads");
+  const std::string values = json.dump();
+  Crc32 sum;
+  sum.update(values.data(), values.size());
+  return hexadecimal(sum.value());
 }
 
 std::string write_snow(const Snow& snow) {

@@ -33,6 +33,13 @@ Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* no
 /// Of a shape only the fields its type uses are written, and in 2D only x and z of a vector.
 std::string write_scene(const Scene& scene);
 
+/// The same scene on another number of threads; 0: all.
+Scene with_threads(Scene scene, int threads);
+
+/// A checksum of the values in the text of a scene, but for the number of threads: whatever the
+/// order of keys, and whatever a later version of the program adds.
+std::string scene_checksum(const std::string& text);
+
 /// The complete JSON of a snow.
 std::string write_snow(const Snow& snow);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <random>
 
@@ -69,10 +70,83 @@ TEST_F(FilmFileTest, GoesOnToTheSameBytes) {
   for (int k = 0; k < 7; ++k) begun.append(some_frame(k));
   auto later = FilmWriter::reopen(path("film.bin"),
                                   [](const FilmFrameFacts& frame) { return frame.time < 0.45; });
-  ASSERT_TRUE(later.has_value());
-  ASSERT_EQ(later->frames().size(), 5u);
-  for (int k = 5; k < 9; ++k) later->append(some_frame(k));
+  ASSERT_EQ(later.frames().size(), 5u);
+  for (int k = 5; k < 9; ++k) later.append(some_frame(k));
   EXPECT_EQ(content(path("film.bin")), content(path("whole.bin")));
+}
+
+bool all(const FilmFrameFacts&) { return true; }
+
+FilmWriter write_film(const std::filesystem::path& file, int frames) {
+  FilmWriter writer(file, small_header());
+  for (int k = 0; k < frames; ++k) writer.append(some_frame(k));
+  return writer;
+}
+
+void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+TEST_F(FilmFileTest, ACompleteFilmIsGoneOnWithAndClosedAgain) {
+  write_film(path("a.bin"), 4).close();
+  const std::string closed = content(path("a.bin"));
+  FilmWriter again = FilmWriter::reopen(path("a.bin"), all);
+  again.close();
+  EXPECT_EQ(content(path("a.bin")), closed);
+  again.append(some_frame(4));
+  again.close();
+  write_film(path("b.bin"), 5).close();
+  EXPECT_EQ(content(path("a.bin")), content(path("b.bin")));
+  EXPECT_TRUE(FilmReader(path("a.bin")).closed());
+}
+
+TEST_F(FilmFileTest, ReopeningChangesNothingUntilAFrameIsWritten) {
+  write_film(path("a.bin"), 4).close();
+  const std::string before = content(path("a.bin"));
+  FilmWriter::reopen(path("a.bin"), [](const FilmFrameFacts&) { return false; });
+  EXPECT_EQ(content(path("a.bin")), before);
+}
+
+TEST_F(FilmFileTest, RefusesAnyByteThatWasChanged) {
+  write_film(path("a.bin"), 3).close();
+  const std::string sound = content(path("a.bin"));
+  for (std::size_t at = 0; at < sound.size(); ++at) {
+    std::string bytes = sound;
+    bytes[at] = char(bytes[at] ^ (1 << at % 8));
+    write_bytes(path("b.bin"), bytes);
+    EXPECT_THROW(FilmReader(path("b.bin")), InputError) << at;
+  }
+}
+
+TEST_F(FilmFileTest, IsNotClosedWhereItIsCutOff) {
+  write_film(path("a.bin"), 2).close();
+  const std::string sound = content(path("a.bin"));
+  for (std::size_t size = FilmReader(path("a.bin")).end_of(0); size < sound.size(); ++size) {
+    write_bytes(path("b.bin"), sound.substr(0, size));
+    const FilmReader reader(path("b.bin"));
+    EXPECT_FALSE(reader.closed());
+    EXPECT_EQ(reader.whole(), reader.end_of(reader.frames().size()) == size) << size;
+  }
+}
+
+TEST_F(FilmFileTest, GoesOnWithTheMarkedFramesOnlyWhateverFollowsThem) {
+  const FilmMark mark = write_film(path("a.bin"), 3).mark();
+  const std::string begun = content(path("a.bin"));
+  write_bytes(path("a.bin"), begun + std::string(500, '\0'));
+  EXPECT_THROW(FilmReader(path("a.bin")), InputError);
+  EXPECT_THROW(FilmWriter::reopen(path("a.bin"), all), InputError);
+  FilmWriter::reopen(path("a.bin"), all, mark).append(some_frame(3));
+  write_film(path("b.bin"), 4);
+  EXPECT_EQ(content(path("a.bin")), content(path("b.bin")));
+}
+
+TEST_F(FilmFileTest, RefusesAFilmThatIsNotTheMarkedOne) {
+  const FilmMark mark = write_film(path("a.bin"), 3).mark();
+  write_film(path("b.bin"), 2);
+  EXPECT_THROW(FilmWriter::reopen(path("b.bin"), all, mark), InputError);
+  FilmWriter other(path("b.bin"), small_header());
+  for (int k = 1; k < 5; ++k) other.append(some_frame(k));
+  EXPECT_THROW(FilmWriter::reopen(path("b.bin"), all, mark), InputError);
 }
 
 TEST_F(FilmFileTest, AFrameThatCannotBeWrittenChangesNothing) {

@@ -24,7 +24,8 @@ TEST_F(PvdSeriesTest, IsWholeAfterEveryAppend) {
             "    <DataSet timestep=\"0\" part=\"0\" file=\"snow_0.vtp\"/>\n"
             "    <DataSet timestep=\"0.1\" part=\"0\" file=\"snow_1.vtp\"/>\n"
             "  </Collection>\n"
-            "</VTKFile>\n");
+            "</VTKFile>\n"
+            "<!-- checksum 81dab004 -->\n");
   EXPECT_EQ(number_of_files(), 1u);
 }
 
@@ -47,6 +48,20 @@ TEST_F(PvdSeriesTest, ReopensWithoutEntriesFromATimeOn) {
   const PvdSeries reopened = PvdSeries::reopen(path("snow.pvd"));
   ASSERT_EQ(reopened.entries().size(), 3u);
   EXPECT_EQ(reopened.entries().back().file, "again.vtp");
+}
+
+TEST_F(PvdSeriesTest, AChangedFileIsRefused) {
+  PvdSeries series(path("snow.pvd"));
+  for (const double time : {0.0, 0.1, 0.2}) series.append(time, "s.vtp");
+  const std::string sound = content(path("snow.pvd"));
+  for (std::size_t at = 0; at < sound.size(); ++at) {
+    std::string bytes = sound;
+    bytes[at] = bytes[at] == '3' ? '4' : '3';
+    std::ofstream(path("snow.pvd")) << bytes;
+    // Where the word is changed that announces the checksum, there is none, as in older files.
+    if (at < sound.find("<!--") || at >= sound.find("checksum ") + 9)
+      EXPECT_THROW(PvdSeries::reopen(path("snow.pvd")), InputError) << at;
+  }
 }
 
 TEST_F(PvdSeriesTest, AnAbsentFileIsAnEmptySeries) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "io/temporary_folder.hpp"
 #include "run/simulation_testing.hpp"
 #include "snowshed/core/errors.hpp"
@@ -72,6 +74,59 @@ TEST_F(EventSequenceTest, GoesOnWhereItWasStopped) {
     EXPECT_EQ(a.laid_height, b.laid_height);
     EXPECT_EQ(a.energy, b.energy);
   }
+}
+
+TEST_F(EventSequenceTest, GoesOnWithAnotherNumberOfThreadsToTheSameBits) {
+  Witness whole, first(20), second;
+  Scene one = two_events(), two = two_events();
+  one.mpm().threads = 1;
+  two.mpm().threads = 2;
+  EventSequence uninterrupted = EventSequence::create(one, ".", path("a"));
+  EXPECT_TRUE(uninterrupted.run(whole, 0));
+  EXPECT_FALSE(EventSequence::create(one, ".", path("b")).run(first, 0));
+  EventSequence resumed = EventSequence::resume(two, ".", path("b"));
+  EXPECT_EQ(resumed.simulation().scene().mpm().threads, 2);
+  EXPECT_TRUE(resumed.run(second, 0));
+  expect_same_bits(resumed.simulation(), uninterrupted.simulation());
+  EXPECT_EQ(content(path("a") / "film.bin"), content(path("b") / "film.bin"));
+}
+
+TEST_F(EventSequenceTest, ACompleteFilmIsClosed) {
+  Witness quiet;
+  EventSequence::create(two_events(), ".", path("a")).run(quiet, never);
+  EXPECT_TRUE(FilmReader(path("a") / "film.bin").closed());
+  const std::string before = content(path("a") / "film.bin");
+  EventSequence::resume(two_events(), ".", path("a")).run(quiet, never);
+  EXPECT_EQ(content(path("a") / "film.bin"), before);
+}
+
+TEST_F(EventSequenceTest, RefusesAChangedRecord) {
+  Witness quiet;
+  EventSequence::create(two_events(), ".", path("a")).run(quiet, never);
+  const std::string sound = content(path("a") / "run.json");
+  for (std::size_t at = 1; at + 4 < sound.size(); at += 7) {
+    std::string bytes = sound;
+    bytes[at] = bytes[at] == '7' ? '8' : '7';
+    std::ofstream(path("a") / "run.json", std::ios::binary) << bytes;
+    EXPECT_THROW(EventSequence::resume(two_events(), ".", path("a")), InputError) << at;
+  }
+}
+
+TEST_F(EventSequenceTest, KnowsTheFilesThatPythonWrote) {
+  Witness first(20);
+  EventSequence begun = EventSequence::create(two_events(), ".", path("a"));
+  begun.record().files["curve.csv"] = {5, "a5fe3a3f"};
+  EXPECT_FALSE(begun.run(first, 0));
+  begun.close();
+  for (const char* text : {"bende", "abcd", "abcdf"}) {
+    std::ofstream(path("a") / "curve.csv") << text;
+    EventSequence resumed = EventSequence::resume(two_events(), ".", path("a"));
+    EXPECT_THROW(resumed.give_up_files(), InputError) << text;
+  }
+  std::filesystem::remove(path("a") / "curve.csv");
+  EventSequence resumed = EventSequence::resume(two_events(), ".", path("a"));
+  EXPECT_NO_THROW(resumed.give_up_files());
+  EXPECT_TRUE(resumed.record().files.empty());
 }
 
 TEST_F(EventSequenceTest, ARecordAheadOfTheCheckpointIsRunAgain) {

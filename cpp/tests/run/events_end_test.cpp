@@ -45,6 +45,56 @@ TEST(EventsEnd, AtTheStatedSpeedAndTime) {
   }
 }
 
+TEST(EventsEnd, ByItsTimeLimitToAStep) {
+  Scene scene = drift({drifting_box(0, 0.1, 1.0, 1), drifting_box(1, 0.1, 0, 2)});
+  scene.events.rest_time = 0.15;  // the speed is looked at ten times as often
+  for (const double limit : {0.16, 0.1601, 0.1777}) {
+    scene.events.max_time = limit;
+    Simulation sim(scene);
+    EXPECT_EQ(end_of_event(sim), RunEnd::time_limit);
+    EXPECT_GE(sim.event_time(), limit - 1e-6 * sim.solver().time_step());
+    EXPECT_LT(sim.event_time(), limit + sim.solver().time_step());
+  }
+}
+
+TEST(EventsEnd, NotBeforeTimeHasPassed) {
+  Scene scene = drift({drifting_box(0, 0.1, 0, 1), drifting_box(1, 0.1, 0, 2)});
+  scene.events.rest_time = 0;
+  Simulation sim(scene);
+  EXPECT_EQ(end_of_event(sim), RunEnd::rest);
+  EXPECT_GT(sim.event_time(), 0);
+}
+
+/// The path that an error of a scene names.
+std::string refused_at(const Scene& scene) {
+  try {
+    Simulation sim(scene);
+    return "";
+  } catch (const InputError& error) {
+    return error.where();
+  }
+}
+
+TEST(EventsEnd, WithinTenThousandMillionSteps) {
+  Scene scene = drift({drifting_box(0, 0.1, 0.01, 1)});
+  EXPECT_EQ(refused_at(scene), "");
+  for (const double factor : {1e-300, 1e-15, 1e-9}) {
+    scene.mpm().courant_factor = factor;
+    EXPECT_EQ(refused_at(scene), "/numerics/courant_factor") << factor;
+  }
+}
+
+TEST(EventsEnd, RecordedAMillionTimesAtMost) {
+  Scene scene = drift({drifting_box(0, 0.1, 0.01, 1)});
+  for (const double interval : {1e-300, 1e-9}) {
+    scene.output.snapshot_interval = interval;
+    EXPECT_EQ(refused_at(scene), "/output/snapshot_interval") << interval;
+  }
+  scene.output.snapshot_interval = 0;
+  scene.output.film_interval = 1e-300;
+  EXPECT_EQ(refused_at(scene), "/output/film_interval");
+}
+
 TEST(EventsEnd, NotBeforeASmallSlabRestsBesideALargeStack) {
   Simulation sim(drift({drifting_box(0, 0.4, 0, 1), drifting_box(1, 0.1, 0.03, 2)}));
   EXPECT_EQ(end_of_event(sim), RunEnd::rest);

@@ -184,10 +184,16 @@ INSTANTIATE_TEST_SUITE_P(
         {R"(, "domain": {"min": [0, 0, 0]})", "/domain/max",
          "missing: an array of 3 numbers (x, y, z; the scene is 3D) is required"},
         {R"(, "snow": {"density": 200, "density": 300})", "/snow/density",
-         "this key appears twice"},
-        {R"(, "snow": {}, "snow": {})", "/snow", "this key appears twice"},
-        {R"(, "obstacles": [{}, {"name": "a", "name": "b"}])", "/obstacles/1/name",
-         "this key appears twice"},
+         "this key appears twice, in line 1 again"},
+        {R"(, "snow": {}, "snow": {})", "/snow", "this key appears twice, in line 1 again"},
+        {","
+         "\n"
+         R"("obstacles": [{}, {"name" : "a:\"",)"
+         "\n"
+         R"("name")"
+         "\n"
+         R"(: "b"}])",
+         "/obstacles/1/name", "this key appears twice, in line 3 again"},
         {R"(, "obstacles": [{}])", "/obstacles/0/shape", "missing: an object is required"}}));
 
 INSTANTIATE_TEST_SUITE_P(

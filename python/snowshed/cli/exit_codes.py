@@ -7,6 +7,7 @@ import click
 BAD_INPUT = 2  # nothing was written
 COULD_NOT_GO_ON = 3  # the simulation, the disk or the memory; what is there can be gone on with
 INTERRUPTED = 130
+PIPE_CLOSED = 141  # who read the output left: as shells report a program that SIGPIPE ended
 
 
 class Stopped(click.ClickException):

@@ -7,8 +7,8 @@ winter, and ``clearance`` many of them, to the height a panel needs.
 treat the data set of panels.
 
 Exit codes: 0 done; 2 bad input, nothing was written; 3 what was begun could not go on, for the
-simulation failed, the disk is full or memory is short; 130 interrupted. Errors are one line on
-stderr.
+simulation failed, the disk is full or memory is short; 130 interrupted; 141 whoever read the output
+left, as `head` does. Errors are one line on stderr.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ import click
 
 import snowshed._core as _core
 from snowshed.cli.deferred import Deferred
-from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_GO_ON, INTERRUPTED
+from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_GO_ON, INTERRUPTED, PIPE_CLOSED
+from snowshed.cli.memory_shortage import memory_message
+from snowshed.cli.output_pipe import drop_output, flush_output, output_is_closed
 from snowshed.io.messages import shortened
 from snowshed.io.notes import SnowshedNote
 from snowshed.io.printable import printable
@@ -94,10 +96,17 @@ def main(
     """
     with warnings.catch_warnings():
         warnings.showwarning = _note
-        return _run(command, arguments, name)
+        try:
+            code = _run(command, arguments, name)
+            flush_output()
+        except BrokenPipeError:  # of stdout, or of stderr with the message
+            drop_output()
+            code = PIPE_CLOSED
+        return code
 
 
 def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) -> int:
+    streams = sys.stdout, sys.stderr
     given = sys.argv[1:] if arguments is None else arguments
     if not given and isinstance(command, click.Group):
         arguments = ["--help"]
@@ -110,6 +119,11 @@ def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) 
             click.echo(error.message)
             return 0
         return _fail(error.format_message(), max(error.exit_code, 2))
+    except SystemExit:  # of click, where a pipe broke, which it takes for that of the output
+        sys.stdout, sys.stderr = streams
+        if output_is_closed():
+            raise BrokenPipeError from None
+        return _fail("a helper program ended before it had read all", COULD_NOT_GO_ON)
     except OSError as error:
         said = f"{error.filename}: {error.strerror}" if error.filename else str(error)
         named = not error.errno or error.errno in OF_NAMES
@@ -118,8 +132,8 @@ def _run(command: click.Command, arguments: Optional[Sequence[str]], name: str) 
         return _fail(str(error), BAD_INPUT)
     except _core.SimulationError as error:
         return _fail(str(error), COULD_NOT_GO_ON)
-    except MemoryError:
-        return _fail("out of memory; give fewer particles or a larger dx", COULD_NOT_GO_ON)
+    except MemoryError as error:
+        return _fail(memory_message(error), COULD_NOT_GO_ON)
     except (KeyboardInterrupt, click.Abort):
         return _fail("interrupted", INTERRUPTED)
     return 0

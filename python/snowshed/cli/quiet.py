@@ -19,3 +19,11 @@ def _silence(context: click.Context, parameter: click.Parameter, quiet: bool) ->
 quiet_option = click.option(
     "-q", "--quiet", is_flag=True, callback=_silence, help="Print nothing but errors."
 )
+#: The same of a command that prints nothing itself, except what it is asked for.
+quiet_notes_option = click.option(
+    *("-q", "--quiet"),
+    is_flag=True,
+    callback=_silence,
+    expose_value=False,
+    help="Print no notes.",
+)

@@ -18,6 +18,7 @@ from click.shell_completion import CompletionItem
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
+from snowshed.io.json_text import loads
 from snowshed.scene.components import Ground, Panel, Slab, Snow
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import Parameter, current_path, scene_parameters
@@ -156,7 +157,7 @@ def json_object(text: str) -> Any:
     try:
         if not text.lstrip().startswith("{"):
             text = read_input(Path(text)).decode("utf-8")
-        return json.loads(text)
+        return loads(text)
     except (OSError, ValueError, RecursionError) as error:
         raise click.BadParameter(f"{error}; give a JSON object, or its file") from None
 

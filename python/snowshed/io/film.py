@@ -99,7 +99,8 @@ class Film:
     Raises
     ------
     InputError
-        If it cannot be read, is no film, or damaged; a last frame that is not whole is left out.
+        If it cannot be read, is no film, or damaged. A last frame that is cut off, as a killed run
+        leaves it, is left out; `whole` is false then, and `notes` say so.
 
     Examples
     --------
@@ -121,12 +122,30 @@ class Film:
         self.quantum = reader.quantum_m
         self.interval = reader.interval_s
         self.share = reader.share
+        self.version = reader.version
         self.whole = reader.whole
+        self.closed = reader.closed
         self.quantities = tuple(
             FilmQuantity(_shown(name), _shown(unit), _shown(meaning), step)
             for name, unit, meaning, step in reader.quantities
         )
         self.frames = tuple(FrameFacts(*one) for one in reader.frames)
+
+    @property
+    def notes(self) -> list[str]:
+        """What should be known of the film as a record of the run."""
+        if not self.whole:
+            return ["the film ends within a frame: its run still goes on, or was killed"]
+        if self.version == 1:
+            return [
+                "the film is of version 1, which knows the checksum of each frame, but not whether "
+                "frames are missing at its end"
+            ]
+        return [] if self.closed else ["the film is not complete: its run has not come to its end"]
+
+    def checksum(self, frames: int) -> str:
+        """Return the checksum of the first so many frames, as run.json holds it."""
+        return _core.FilmReader(self.path).checksum(frames)
 
     def __iter__(self) -> Iterator[FilmFrame]:
         reader = _core.FilmReader(self.path)

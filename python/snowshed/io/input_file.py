@@ -55,7 +55,7 @@ def read_input(path: Path, largest: int = TEXT) -> bytes:
     Raises
     ------
     InputError
-        If it is longer than the limit.
+        If it is longer than the limit, or a pipe or a terminal, which could wait for ever.
     OSError
         If it cannot be read.
 
@@ -66,7 +66,10 @@ def read_input(path: Path, largest: int = TEXT) -> bytes:
     ...
     snowshed._core.InputError: /dev/zero: longer than 64 MB
     """
-    with path.open("rb") as file:
+    with open(path, "rb", opener=_open_at_once) as file:
+        mode = os.fstat(file.fileno()).st_mode
+        if stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode) or file.isatty():
+            raise InputError(f"{path}: not a regular file")
         content = file.read(largest + 1)
     if len(content) > largest:
         limit = f"{largest} bytes" if largest % MB else f"{largest // MB} MB"

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import json
 import sys
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Dict, List, Union
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
+from snowshed.io.json_text import loads
 from snowshed.io.messages import shortened
 
 #: What `json.loads` returns.
 JsonValue = Union[None, bool, int, float, str, List["JsonValue"], Dict[str, "JsonValue"]]
 JsonObject = Dict[str, JsonValue]
+
+#: How the last value of an object begins that says its checksum, as the core writes it.
+SEAL = b',\n  "checksum": "'
 
 #: What the values of a JSON object may have to be, in words.
 KINDS = {dict: "an object", list: "a list", str: "a text", float: "a finite number"}
@@ -26,7 +31,8 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If it holds anything else, naming `where` it is.
+        If it holds anything else, a key twice, or says a checksum that is not its own, naming
+        `where` it is.
 
     Examples
     --------
@@ -34,12 +40,20 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
     {'wall_s': 2.5}
     """
     try:
-        found = json.loads(text)
+        found = loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{where}: damaged: {shortened(str(error), 200)}") from None
     if not isinstance(found, dict):
         raise InputError(f"{where}: damaged: not a JSON object")
+    _check_seal(text if isinstance(text, bytes) else text.encode(), where)
     return found
+
+
+def _check_seal(text: bytes, where: str) -> None:
+    """Raise InputError unless a text that says its checksum has it."""
+    at = text.rfind(SEAL)
+    if at >= 0 and text[at:] != SEAL + b'%08x"\n}\n' % zlib.crc32(text[:at]):
+        raise InputError(f"{where}: damaged: its checksum is not that of its content")
 
 
 def read_object(path: Path) -> dict[str, Any]:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import os
+import zlib
 from pathlib import Path
 from typing import Union
 from xml.etree import ElementTree
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
+
+#: How the comment behind the list begins that says its checksum, as the core writes it.
+SEAL = b"<!-- checksum "
 
 
 def read_series(path: Union[str, os.PathLike[str]]) -> list[tuple[float, Path]]:
@@ -27,7 +31,7 @@ def read_series(path: Union[str, os.PathLike[str]]) -> list[tuple[float, Path]]:
     Raises
     ------
     InputError
-        If it is no such list, or names files elsewhere.
+        If it is no such list, names files elsewhere, or says a checksum that is not its own.
     OSError
         If it cannot be read.
 
@@ -42,8 +46,12 @@ def read_series(path: Union[str, os.PathLike[str]]) -> list[tuple[float, Path]]:
     [(0.5, 'a.vtp')]
     """
     path = Path(path)
+    content = read_input(path)
+    at = content.rfind(SEAL)
+    if at >= 0 and content[at:] != SEAL + b"%08x -->\n" % zlib.crc32(content[:at]):
+        raise InputError(f"{path}: damaged: its checksum is not that of its content")
     try:
-        entries = ElementTree.fromstring(read_input(path)).iterfind("Collection/DataSet")
+        entries = ElementTree.fromstring(content).iterfind("Collection/DataSet")
         return [
             (float(entry.attrib["timestep"]), _inside(path.parent, entry.attrib["file"]))
             for entry in entries

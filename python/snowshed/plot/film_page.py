@@ -152,9 +152,7 @@ def _film_notes(film: Film) -> list[str]:
             f"The film holds one of {1 / film.share:.0f} particles, chosen by their numbers; "
             "the others move between them."
         )
-    if not film.whole:
-        notes.append("The last frame of the film was not whole when this page was made.")
-    return notes
+    return [*notes, *(note[0].upper() + note[1:] + "." for note in film.notes)]
 
 
 def _film_facts(film: Film) -> list[tuple[str, str]]:

@@ -29,7 +29,8 @@ from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
-from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.results_reader import HISTORY
+from snowshed.run.sequence import open_sequence, run_sequence, seal_files
 from snowshed.run.solids_file import write_solids
 from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
@@ -195,6 +196,10 @@ class _Recorder:
         """
         if self.keeps_energy:
             write_energy_history(self.simulation, self.results.folder)
+            seal_files(self.sequence, self.results.folder, HISTORY)
+        self._note_tables()
+
+    def _note_tables(self) -> None:
         event, running = self.simulation.event, self.simulation.event_running
         self.sequence.tables = self.results.checksums(self.sequence.tables, event, running=running)
 
@@ -225,6 +230,7 @@ class _Recorder:
             on_panel = self.simulation.on_panel_at(positions, facts["laid_height_m"])
             masses, density = (particles[name].astype(float) for name in ("mass", "density"))
             self._record(facts, self._measure_of(positions, masses, density, on_panel))
+        self._note_tables()
 
     def draw(self) -> None:
         """Draw the pictures of the stack as it is now."""
@@ -238,8 +244,14 @@ class _Recorder:
         table = read_events(self.results.folder)
         save(growth_figure(table, self.simulation.scene), self.results.growth_picture)
         if self.keeps_energy:
-            write_energy_history(self.simulation, self.results.folder)  # of snowshed-run
+            self._write_history()
             draw_energies(self.results.folder)
+
+    def _write_history(self) -> None:
+        """Write the energies over time again: `snowshed-run` does not."""
+        write_energy_history(self.simulation, self.results.folder)
+        seal_files(self.sequence, self.results.folder, HISTORY)
+        self.sequence.rewrite_record()
 
     def _record(self, facts: Mapping[str, Any], stack: StackMeasure) -> None:
         event = facts["event"]

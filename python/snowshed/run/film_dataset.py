@@ -10,6 +10,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.extras import require
 from snowshed.io.film import Film, FilmFrame
+from snowshed.io.notes import tell
 from snowshed.run.particle_dataset import AXES
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
     library = require("xarray", "study", "a Dataset of a film")
     if not isinstance(every, int) or every < 1:
         raise InputError(f"every: {every!r}; a whole number from 1 is needed")
+    for note in film.notes:
+        tell(f"{film.path}: {note}")
     frames = _chosen(film, every)
     ids, first = np.unique(np.concatenate([one.ids for one in frames]), return_index=True)
     kinds = {

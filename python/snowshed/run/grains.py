@@ -33,10 +33,10 @@ from snowshed.methods.grains.summary import GrainsSummary, summarise
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.sequence import open_sequence, run_sequence, seal_files
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
-CURVE = "curve.csv"
+CURVE, SUMMARY, ENERGY = "curve.csv", "grains.json", "energy.csv"
 WRITE_INTERVAL = 5.0  # s of wall time between two versions of curve.csv
 
 
@@ -110,7 +110,7 @@ def run_grains(
     with sequence, deferred_interrupts() as interrupt:
         sequence.describe_machine(machine_facts())
         simulation = sequence.simulation
-        recorder = _Recorder(simulation, folder, interrupt, progress)
+        recorder = _Recorder(sequence, folder, interrupt, progress)
         try:
             run_sequence(sequence, recorder, folder)
         except Interrupted:
@@ -124,12 +124,15 @@ def run_grains(
             curve, data, ended=facts["ended"], grains=simulation.particle_count,
             spheres=len(contacts.spheres), synthetic=_synthetic(data),
         )  # fmt: skip
-        write_text(folder / "grains.json", json.dumps(asdict(summary), indent=2) + "\n")
+        write_text(folder / SUMMARY, json.dumps(asdict(summary), indent=2) + "\n")
         write_text(folder / "contacts.csv", contacts.text())
         if facts["energy"]:
-            energies = Table(folder / "energy.csv")
+            energies = Table(folder / ENERGY)
             energies.keep_through(0)  # a finished test may be resumed, too
             energies.add([{"event": 1, **facts["energy"]}])
+            seal_files(sequence, folder, ENERGY)
+        seal_files(sequence, folder, CURVE, SUMMARY, "contacts.csv")
+        sequence.rewrite_record()
         if pictures:
             _draw(folder, data, curve, contacts)
     return summary
@@ -140,12 +143,13 @@ class _Recorder:
 
     def __init__(
         self,
-        simulation: _core.Simulation,
+        sequence: _core.EventSequence,
         folder: Path,
         interrupt: InterruptRequest,
         report: Optional[Reporter],
     ) -> None:
-        self.simulation = simulation
+        self.sequence = sequence
+        self.simulation = simulation = sequence.simulation
         self.folder = folder
         self.interrupt = interrupt
         self.report = report
@@ -170,7 +174,9 @@ class _Recorder:
         self._tell({"time_s": facts["sim_time_s"], "progress": 1.0, "updates_per_s": 0.0})
 
     def before_checkpoint(self) -> None:
-        """Do nothing: the checkpoint holds the curve."""
+        """Write the curve, so that run.json knows it as the checkpoint does."""
+        self.write_curve()
+        seal_files(self.sequence, self.folder, CURVE)
 
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""

@@ -14,6 +14,7 @@ from typing import Optional, Protocol, Union
 
 from snowshed._core import InputError
 from snowshed.io.json_file import JsonValue, read_object
+from snowshed.io.run_files import check_run_file
 from snowshed.methods.grains.summary import GrainsSummary
 from snowshed.methods.registry import DEFAULT, NAME_KEY
 from snowshed.run.ageing import Ageing
@@ -110,6 +111,7 @@ def _row_of(folder: Path, file: str, figures: Mapping[str, str]) -> list[dict[st
     """Return the row of a run with one event, whose figures stand in a JSON file."""
     if not (folder / file).is_file():
         return []
+    check_run_file(folder / file)
     found = read_object(folder / file)
     (event,) = RunFolder(folder).read_run()["finished_events"]
     row = {column: found.get(name) for name, column in figures.items()}

@@ -39,6 +39,7 @@ from snowshed.io.arrays import Floats
 from snowshed.io.atomic import LEFTOVER, write_text
 from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.json_file import read_object
+from snowshed.io.run_files import check_run_file
 from snowshed.run.ageing import AGEING_COLUMNS
 from snowshed.run.conversion import CONVERSION_COLUMNS
 from snowshed.scene.scene import PathLike
@@ -141,7 +142,7 @@ class RunFolder:
         if (read_object(self.ageing) if self.ageing.is_file() else None) != ageing:
             raise InputError(f"{self.ageing}: between its events the stack aged in another way")
         if self.events.rows:
-            read_events(self.folder)
+            _parsed_events(self.events.path)
 
     def missing_events(self, done: int) -> range:
         """Return those of the events that are done which the table does not hold yet."""
@@ -166,6 +167,9 @@ class RunFolder:
         found = {name: dict(sums) for name, sums in known.items()}
         for table in self._tables():
             through = done if table in self._of_ended() else event
+            of_table = found.get(table.path.name, {})
+            for later in [at for at in of_table if at.isdecimal() and int(at) > through]:
+                del of_table[later]  # of events that are run again
             if through > 0:
                 found.setdefault(table.path.name, {})[str(through)] = table.checksum(through)
         return found
@@ -232,11 +236,17 @@ def read_events(folder: PathLike) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the folder holds no events.csv, or it is no table of events.
+        If the folder holds no events.csv, it is no table of events, or not the one that the run
+        wrote.
     """
     path = Path(folder) / "events.csv"
     if not path.is_file():
         raise InputError(f"{folder}: no results; it holds no events.csv")
+    check_run_file(path)
+    return _parsed_events(path)
+
+
+def _parsed_events(path: Path) -> pd.DataFrame:
     table = read_csv(path)
     for name in ("event", "height_m"):
         if name not in table:

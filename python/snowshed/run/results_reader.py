@@ -9,18 +9,22 @@ from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.csv_table import read_csv
 from snowshed.io.extras import require
 from snowshed.io.film import FILM, Film
+from snowshed.io.input_file import read_input
 from snowshed.io.json_file import read_object
 from snowshed.io.pvd import read_series
+from snowshed.io.run_files import check_run_file, read_record
 from snowshed.io.units import unit_of_column
 from snowshed.io.vtp import read_particles
 from snowshed.run.film_dataset import film_dataset
 from snowshed.run.grid import grid_dataset, stored_grid
 from snowshed.run.particle_dataset import particle_dataset
 from snowshed.run.results import read_events
+from snowshed.run.run_film import run_film
 from snowshed.scene.scene import PathLike, ResolvedScene
 
 if TYPE_CHECKING:
@@ -69,7 +73,12 @@ class Results:
     @cached_property
     def scene(self) -> ResolvedScene:
         """The complete scene that made the results."""
-        return ResolvedScene.load(self.folder / "scene.json")
+        path = self.folder / "scene.json"
+        scene = ResolvedScene.load(path)
+        known = read_record(self.folder).get("scene_checksum")
+        if known and _core.scene_checksum(read_input(path).decode()) != known:
+            raise InputError(f"{path}: damaged: it is not the scene of the run")
+        return scene
 
     @property
     def run(self) -> dict[str, object]:
@@ -182,7 +191,7 @@ class Results:
         path = self.folder / FILM
         if not path.is_file():
             raise InputError(f"{path}: not there; a run with output.film = true writes it")
-        return Film(path)
+        return run_film(path, read_record(self.folder))
 
     def film_dataset(self, every: int = 1) -> xarray.Dataset:
         """Return the film, or each so-manieth frame of it, as a Dataset.
@@ -197,6 +206,7 @@ class Results:
         path = self.folder / name
         if not path.is_file():
             raise InputError(f"{path}: not there; {writer} writes it")
+        check_run_file(path)
         table = read_csv(path)
         if missing := [column for column in columns if column not in table]:
             raise InputError(f"{path}: no column {', '.join(missing)}")

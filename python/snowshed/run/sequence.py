@@ -6,6 +6,7 @@ from pathlib import Path
 
 import snowshed._core as _core
 from snowshed.io.paths import utf8_path
+from snowshed.io.run_files import file_mark
 from snowshed.run.interrupt import Interrupted
 from snowshed.scene.scene import PathLike, ResolvedScene
 
@@ -22,6 +23,12 @@ def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _c
     """
     open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
     return open_folder(scene.json, scene.base_dir, utf8_path(folder))
+
+
+def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> None:
+    """Let run.json, when it is written next, say the checksums of files in the results folder."""
+    marks = {name: file_mark(Path(folder) / name) for name in names}
+    sequence.files = {**sequence.files, **marks}
 
 
 def run_sequence(

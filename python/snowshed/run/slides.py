@@ -44,13 +44,15 @@ from snowshed.run.energies import draw_energies, write_energy_history
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.results_reader import HISTORY
+from snowshed.run.sequence import open_sequence, run_sequence, seal_files
 from snowshed.scene.components import Outline
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
 if TYPE_CHECKING:
     import pandas as pd
 
+SUMMARY, ENERGY = "slide.json", "energy.csv"
 PACKED = "peaks.npz"  # the peak maps, where no rasters are wanted
 
 
@@ -195,10 +197,13 @@ def run_slide(
         else:
             _write_packed(Path(out_dir), maps, summary)
         if facts["energy"]:
-            energies = Table(Path(out_dir) / "energy.csv")
+            energies = Table(Path(out_dir) / ENERGY)
             energies.keep_through(0)  # a finished slide may be resumed, too
             energies.add([{"event": 1, **facts["energy"]}])
             write_energy_history(sequence.simulation, out_dir)
+            seal_files(sequence, out_dir, ENERGY, HISTORY)
+        seal_files(sequence, out_dir, SUMMARY)
+        sequence.rewrite_record()
         if pictures and facts["energy"]:
             draw_energies(out_dir)
         if pictures:
@@ -385,7 +390,7 @@ def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
     peaks = PeakMaps.cropped(maps.peak_thickness, maps.peak_speed, maps.peak_pressure)
     with replacing(folder / PACKED) as beside:
         beside.write_bytes(peaks.packed())
-    write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")
+    write_text(folder / SUMMARY, json.dumps(asdict(summary), indent=2) + "\n")
 
 
 def _notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
@@ -414,4 +419,4 @@ def _write(folder: Path, maps: SlideMaps, summary: SlideSummary, crs: str) -> No
         file = folder / f"{name}.asc"
         file.parent.mkdir(exist_ok=True)
         write_raster(file, maps.raster(values, crs))
-    write_text(folder / "slide.json", json.dumps(asdict(summary), indent=2) + "\n")
+    write_text(folder / SUMMARY, json.dumps(asdict(summary), indent=2) + "\n")

@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.io.film import FILM, Film
-from snowshed.io.json_file import read_object
+from snowshed.io.run_files import read_record
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.film_page import MeasureLine, ViewContent, write_view_page
 from snowshed.plot.film_summary import summarise_film
@@ -140,8 +140,7 @@ def _facts(scene: ResolvedScene, folder: Path) -> list[tuple[str, str]]:
 
 
 def _notes(results: Results, film: Film) -> list[str]:
-    path = results.folder / "run.json"
-    status = read_object(path).get("status") if path.is_file() else "begun"
+    status = read_record(results.folder).get("status", "begun")
     notes = []
     if status != "finished":
         notes.append(f"The run is not finished ({status}); the view ends where its film ends.")

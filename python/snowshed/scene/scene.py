@@ -19,6 +19,7 @@ from snowshed._core import InputError
 from snowshed._core import preset as preset_text
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import JsonObject, JsonValue
+from snowshed.io.json_text import loads
 from snowshed.io.paths import PathLike
 from snowshed.io.record import DEEPEST, Record, check_instead, check_once
 from snowshed.methods.grains.settings import GrainsSettings
@@ -167,7 +168,7 @@ class Scene(Record):
         """
         content = read_input(Path(path))
         try:
-            data = json.loads(content, object_pairs_hook=_without_duplicates)
+            data = loads(content)
         except (ValueError, RecursionError) as error:
             raise InputError(f"{path}: not JSON: {error}") from None
         try:
@@ -370,16 +371,6 @@ class Scene(Record):
         if key == SETTINGS_KEY:
             return settings_class(self.method)
         return super().record_type(key)
-
-
-def _without_duplicates(pairs: list[tuple[str, JsonValue]]) -> JsonObject:
-    """Return a JSON object; as in the core, a key that is given twice is an error."""
-    found: JsonObject = {}
-    for key, value in pairs:
-        if key in found:
-            raise ValueError(f"the key {key!r} appears twice")
-        found[key] = value
-    return found
 
 
 def _refuse_null(data: JsonValue, where: str) -> None:

@@ -14,7 +14,7 @@ from snowshed.analysis.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
-from snowshed.cli.quiet import quiet_option
+from snowshed.cli.quiet import quiet_notes_option, quiet_option
 from snowshed.cli.terminal import say, write_out
 
 PATH = click.Path(path_type=Path)
@@ -58,6 +58,7 @@ PATH = click.Path(path_type=Path)
 )
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid, which take seconds.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+@quiet_notes_option
 @click.pass_context
 def geometry(
     context: click.Context,

@@ -11,6 +11,7 @@ import click
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.cli.accuracy import accuracy_option, check_alone, choose
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.scene_options import in_terms_of_options, scene_from_options, scene_options
 from snowshed.cli.terminal import say, write_out
 from snowshed.scene.scene import ResolvedScene, Scene
@@ -33,17 +34,19 @@ def plan(scene: Path, accuracy: Optional[float]) -> None:
 
 @click.command()
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+@quiet_option
 @accuracy_option
 @scene_options
 def scene(
     file: Optional[Path],
+    quiet: bool,
     accuracy: Optional[float],
     preset: Optional[str],
     snow_preset: Optional[str],
     **options: Any,
 ) -> None:
     """Write the scene that the same options of ``panel`` would run."""
-    ready = resolve_options(preset, snow_preset, options, accuracy)
+    ready = resolve_options(preset, snow_preset, options, accuracy, quiet=quiet)
     if file is None:
         write_out(ready.json)
     else:

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import inspect
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, Optional, get_args
 
 import click
 
 from snowshed._core import InputError
+from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say
 from snowshed.scene import builders
 from snowshed.scene.components import Condition
@@ -104,10 +105,10 @@ def structure() -> None:
 def _command(name: str, kind: Structure) -> click.Command:
     """Return the command of a kind of structure."""
 
-    def write(file: Path, picture: Optional[Path], **given: Any) -> None:
+    def write(file: Path, picture: Optional[Path], quiet: bool, **given: Any) -> None:
         values = {key: value for key, value in given.items() if value is not None}
         mesh = [values.pop("mesh")] if "mesh" in values else []
-        _write(_built(kind.build, *mesh, **values), file, picture)
+        _tell(_write(_built(kind.build, *mesh, **values), file, picture), quiet)
 
     arguments = inspect.signature(kind.build).parameters
     options: list[click.Parameter] = [
@@ -115,13 +116,14 @@ def _command(name: str, kind: Structure) -> click.Command:
         for argument in arguments.values()
     ]
     summary = str(inspect.getdoc(kind.build)).splitlines()[0].replace("Return", "Write", 1)
-    return click.Command(
+    command = click.Command(
         name,
         callback=write,
         params=[*options, *_outputs()],
         help=f"{summary}\n\n\b\nExample:\n" + _wrapped(f"{name} {kind.example}"),
         short_help=summary,
     )
+    return quiet_option(command)
 
 
 def _wrapped(example: str) -> str:
@@ -133,16 +135,18 @@ def _wrapped(example: str) -> str:
 def _terrain() -> click.Command:
     """Return the command that sets a scene on terrain."""
 
-    def write(scene: Path, raster: Path, file: Path, picture: Optional[Path], **given: Any) -> None:
+    def write(
+        scene: Path, raster: Path, file: Path, picture: Optional[Path], quiet: bool, **given: Any
+    ) -> None:
         values = {key: value for key, value in given.items() if value is not None}
         start = Scene.load(scene)
         distances = file.with_suffix(".npy")
-        _write(_built(builders.on_terrain, start, raster, distances, **values), file, picture)
-        say(distances)
+        built = _built(builders.on_terrain, start, raster, distances, **values)
+        _tell([*_write(built, file, picture), distances], quiet)
 
     arguments = [*inspect.signature(builders.on_terrain).parameters.values()][3:]
     options = [_option(argument) for argument in arguments]
-    return click.Command(
+    command = click.Command(
         "terrain",
         callback=write,
         params=[
@@ -157,6 +161,7 @@ def _terrain() -> click.Command:
         + _wrapped("terrain panel.json hill.asc --origin 2600118 1200215 --azimuth 90 --x -3 8"),
         short_help="Write a scene anew with terrain in place of its ground.",
     )
+    return quiet_option(command)
 
 
 def _outputs() -> list[click.Option]:
@@ -206,8 +211,10 @@ def _built(build: Builder, *given: Any, **values: Any) -> Scene:
         raise
 
 
-def _write(scene: Scene, file: Path, picture: Optional[Path]) -> None:
+def _write(scene: Scene, file: Path, picture: Optional[Path]) -> list[Path]:
+    """Write a scene, and its picture where one is wanted; return the files."""
     ready = scene.resolve()
+    written = []
     if picture is not None:
         if picture.suffix not in PICTURES:
             raise InputError(f"--picture: {picture}; allowed: {', '.join(PICTURES)}")
@@ -215,9 +222,14 @@ def _write(scene: Scene, file: Path, picture: Optional[Path]) -> None:
         from snowshed.plot.scene_picture import scene_figure
 
         save(scene_figure(ready), picture)
-        say(picture)
+        written.append(picture)
     ready.save(file)
-    say(file)
+    return [*written, file]
+
+
+def _tell(written: Sequence[Path], quiet: bool) -> None:
+    for file in written if not quiet else ():
+        say(file)
 
 
 for kind_name, kind_of_structure in STRUCTURES.items():

@@ -11,7 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Failed, Stopped
-from snowshed.cli.quiet import quiet_option
+from snowshed.cli.quiet import quiet_notes_option, quiet_option
 from snowshed.cli.terminal import PlainConsole, say, write_out
 from snowshed.io.atomic import write_text
 from snowshed.io.formatting import about
@@ -59,6 +59,7 @@ def study() -> None:
 
 @study.command()
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+@quiet_notes_option
 def template(file: Optional[Path]) -> None:
     """Write a study file with comments, to start from."""
     from snowshed.study.study_file import TEMPLATE
@@ -132,15 +133,16 @@ def status(folder: Path) -> None:
 )
 @click.option("--study", "name", help="Name of the study, if the folder holds several.")
 @click.option("--timing", is_flag=True, help="Add wall times and what computed the runs.")
+@quiet_option
 def export(
-    folder: Path, file: Path, form: Optional[str], name: Optional[str], timing: bool
+    folder: Path, file: Path, form: Optional[str], name: Optional[str], timing: bool, quiet: bool
 ) -> None:
     """Write a study's table to a file, as far as it is computed."""
     from snowshed.study.formats import export as write
 
     with _outcome_as_exit_code():
         write(folder, file, study=name, form=form, timing=timing)
-        _warn_of_missing(folder, name)
+        _warn_of_missing(folder, name, quiet)
 
 
 @study.command()
@@ -149,11 +151,14 @@ def export(
     "-o", "--output", "file", type=PATH, help="File to write.  [default: study.png in the folder]"
 )
 @click.option("--study", "name", help="Name of the study, if the folder holds several.")
-def picture(folder: Path, file: Optional[Path], name: Optional[str]) -> None:
+@quiet_option
+def picture(folder: Path, file: Optional[Path], name: Optional[str], quiet: bool) -> None:
     """Draw what a study's runs measured over each parameter that varies."""
     with _outcome_as_exit_code():
-        say(_draw(folder, file, name))
-        _warn_of_missing(folder, name)
+        drawn = _draw(folder, file, name)
+        if not quiet:
+            say(drawn)
+        _warn_of_missing(folder, name, quiet)
 
 
 @study.command()
@@ -173,8 +178,9 @@ def picture(folder: Path, file: Optional[Path], name: Optional[str]) -> None:
     help="[default: by the file's ending .csv, .parquet or .nc]",
 )
 @click.option("--study", "name", help="Name of the study, if the folder holds several.")
+@quiet_option
 def remeasure(
-    folder: Path, file: Path, trimming: str, form: Optional[str], name: Optional[str]
+    folder: Path, file: Path, trimming: str, form: Optional[str], name: Optional[str], quiet: bool
 ) -> None:
     """Measure the stacks of a study again, and write its table.
 
@@ -185,13 +191,14 @@ def remeasure(
 
     with _outcome_as_exit_code():
         write_table(lambda: remeasuring.remeasure(folder, name, trimming=trimming), file, form)
-        _warn_of_missing(folder, name)
+        _warn_of_missing(folder, name, quiet)
 
 
 @study.command()
 @click.argument("folder", type=PATH)
 @click.argument("hash_", metavar="HASH")
 @click.option("-o", "--output", "file", type=PATH, help="File to write; else stdout.")
+@quiet_notes_option
 def scene(folder: Path, hash_: str, file: Optional[Path]) -> None:
     """Write the scene of one run, to repeat it alone.
 
@@ -268,7 +275,9 @@ def _finish(folder: Path, names: list[str], quiet: bool) -> None:
         raise Failed(f"{len(failed)} of {len(runs)} runs failed: {listed}")
 
 
-def _warn_of_missing(folder: Path, name: Optional[str]) -> None:
+def _warn_of_missing(folder: Path, name: Optional[str], quiet: bool) -> None:
+    if quiet:
+        return
     with Store.open(folder) as store:
         runs = store.runs(store.named(name))
     missing = sum(run.status == "pending" for run in runs)

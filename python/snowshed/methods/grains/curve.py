@@ -13,6 +13,7 @@ from snowshed._core import InputError
 from snowshed.io.arrays import Floats
 from snowshed.io.csv_table import parse_csv, read_csv
 from snowshed.io.paths import PathLike
+from snowshed.io.run_files import check_run_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -89,10 +90,11 @@ class LoadingCurve:
         Raises
         ------
         InputError
-            If the file is no such table.
+            If the file is no such table, or not the one that the run beside it wrote.
         OSError
             If it cannot be read.
         """
+        check_run_file(Path(path))
         return cls._of(read_csv(Path(path), as_text=True), str(path))  # pandas rounds its numbers
 
     @classmethod

@@ -1,0 +1,75 @@
+"""The text of JSON, with what `json.loads` lets pass: a key that is given twice."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from typing import Any, Union
+
+#: A string, a number or word, or a sign, in a text that `json.loads` takes.
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]:,]|[^\s{}\[\]:,"]+')
+
+
+class _RepeatedKeyError(ValueError):
+    """An object has a key twice."""
+
+
+def loads(text: Union[str, bytes]) -> Any:
+    r"""Return the data in a JSON text.
+
+    Raises
+    ------
+    ValueError
+        If it is no JSON, or a key of an object is given twice: the message says where.
+    RecursionError
+        If it is nested too deep.
+
+    Examples
+    --------
+    >>> loads('{"a": [1, 2]}')
+    {'a': [1, 2]}
+    >>> loads('{"a": {"b": 1,\n"b": 2}}')
+    Traceback (most recent call last):
+    ...
+    ValueError: /a/b: this key appears twice, in line 2 again
+    """
+    try:
+        return json.loads(text, object_pairs_hook=_object)
+    except _RepeatedKeyError:
+        decoded = text if isinstance(text, str) else text.decode(json.detect_encoding(text))
+        path, line = next(_repeated(decoded))
+        said = f"{path}: this key appears twice, in line {line} again"
+    raise ValueError(said)
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise _RepeatedKeyError
+    return found
+
+
+def _repeated(text: str) -> Iterator[tuple[str, int]]:
+    """Yield path and line of the keys that are there for the second time, in a sound text."""
+    names: list[Union[str, int]] = []  # from the root to where the text is
+    seen: list[set[str]] = []  # keys of the objects around, and none of the lists
+    before = ""
+    for token in _TOKEN.finditer(text):
+        sign = token.group()
+        if sign in "{[":
+            seen.append(set())
+            names.append(0 if sign == "[" else "")
+        elif sign in "}]":
+            seen.pop()
+            names.pop()
+        elif sign == "," and isinstance(names[-1], int):
+            names[-1] += 1
+        elif sign == ":":
+            key = str(json.loads(before))
+            names[-1] = key
+            if key in seen[-1]:
+                steps = (str(one).replace("~", "~0").replace("/", "~1") for one in names)
+                yield "/" + "/".join(steps), text.count("\n", 0, token.start()) + 1
+            seen[-1].add(key)
+        before = sign

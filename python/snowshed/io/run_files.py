@@ -1,0 +1,97 @@
+"""Files of a results folder, checked by what its run.json says of them.
+
+A table has a checksum of its rows through an event. Of any other file, run.json has the length and
+the checksum of what the run wrote; one that grows may have become longer while the run goes on.
+Folders of the version before have no such checksums.
+"""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+from typing import Any
+
+from snowshed._core import InputError
+from snowshed.io.csv_table import Table
+from snowshed.io.input_file import read_regular
+from snowshed.io.json_file import read_object
+
+RECORD = "run.json"
+#: Files that `snowshed-run` does not keep up where it goes on with a run.
+OF_PYTHON = ("curve.csv", "energy_history.csv", "grains.json", "slide.json")
+
+
+def read_record(folder: Path) -> dict[str, Any]:
+    """Return what run.json of a results folder says; nothing where there is none.
+
+    Raises
+    ------
+    InputError
+        If it is damaged.
+    """
+    path = folder / RECORD
+    return read_object(path) if path.is_file() else {}
+
+
+def file_mark(path: Path) -> tuple[int, str]:
+    r"""Return the length (bytes) and the checksum (CRC-32) of a file, as run.json holds them.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "a.csv"
+    ...     _ = path.write_text("a\n1\n")
+    ...     file_mark(path)
+    (4, '07b25cbc')
+    """
+    content = read_regular(path)
+    return len(content), _checksum(content)
+
+
+def check_run_file(path: Path) -> None:
+    """Raise InputError unless a file is as the run wrote it whose run.json stands beside it.
+
+    Nothing is checked where there is no run.json, or it is of the version before.
+    """
+    record = read_record(path.parent)
+    tables, files = (record.get(name) for name in ("tables", "files"))
+    finished = record.get("status") == "finished"
+    if isinstance(tables, dict) and tables.get(path.name):
+        _check_table(path, tables[path.name], finished=finished)
+    elif isinstance(files, dict) and (path.name in files or path.name in OF_PYTHON):
+        _check_file(path, files.get(path.name), finished=finished)
+
+
+def _check_table(path: Path, sums: Any, *, finished: bool) -> None:
+    through = max((int(event) for event in sums if str(event).isdecimal()), default=0)
+    table = Table(path)
+    if through and table.checksum(through) != sums[str(through)]:
+        raise _damaged(path, f"its rows through event {through} are not those that the run wrote")
+    if finished and any(int(row["event"]) > through for row in table.rows):
+        raise _damaged(path, f"the run wrote no rows after event {through}")
+
+
+def _check_file(path: Path, mark: Any, *, finished: bool) -> None:
+    if not isinstance(mark, dict):
+        raise InputError(
+            f"{path}: not kept up to the end of the run; {RECORD} does not know it. Write it again "
+            f"with: snowshed run {path.parent / 'scene.json'} -o {path.parent} --resume"
+        )
+    content = read_regular(path)
+    length = mark.get("bytes")
+    if (
+        not isinstance(length, int)
+        or not 0 <= length <= len(content)
+        or (finished and length < len(content))
+        or _checksum(content[:length]) != mark.get("checksum")
+    ):
+        raise _damaged(path, "it is not as the run wrote it")
+
+
+def _checksum(content: bytes) -> str:
+    return f"{zlib.crc32(content):08x}"
+
+
+def _damaged(path: Path, what: str) -> InputError:
+    return InputError(f"{path}: damaged: {what}")

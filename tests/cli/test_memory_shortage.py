@@ -1,0 +1,35 @@
+"""What the command line says where memory is short."""
+
+import pytest
+
+from snowshed.cli.main import main
+from snowshed.io import csv_table
+from snowshed.io.csv_table import read_csv
+
+
+def test_a_file_that_needs_too_much_is_named(tmp_path, monkeypatch, capsys):
+    file = tmp_path / "table.csv"
+    file.write_text("hash,event\n")
+
+    def exhausted(*_):
+        raise MemoryError
+
+    monkeypatch.setattr(csv_table, "_records", exhausted)
+    with pytest.raises(MemoryError):
+        read_csv(file)
+    assert main(["regress", str(file), "-o", str(tmp_path / "out")]) == 3
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: out of memory while {file} was read")
+    assert "particles" not in said
+
+
+def test_a_run_that_needs_too_much_is_told_so(tmp_path, monkeypatch, capsys):
+    from snowshed.run import events
+
+    def exhausted(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(events, "open_sequence", exhausted)
+    out = str(tmp_path / "out")
+    assert main(["panel", "--preset", "lab-50", "--dim", "2", "-q", "-o", out]) == 3
+    assert "fewer particles or a larger dx" in capsys.readouterr().err
