@@ -119,6 +119,7 @@ class _SceneOf:
         assert scene.seeding is not None and scene.bodies is not None
         scene.seeding.pattern = "regular"
         scene.bodies = [*scene.bodies, *scene.bodies]
+        scene.misplaced_snow = "allow"
 
     def _plate(self, scene: Scene) -> None:
         plate = Shape.plate(

@@ -1,13 +1,20 @@
-"""The core's sequence of events in a results folder: opened, and run to its end."""
+"""The core's sequence of events in a results folder: opened, and run to its end.
+
+What readers of the results should know of a run is said here, as a note (`snowshed.io.notes`), and
+written into run.json: whoever runs a scene, hears the same.
+"""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import snowshed._core as _core
+from snowshed.io.notes import tell
 from snowshed.io.paths import utf8_path
 from snowshed.io.run_files import file_mark
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.scene_notes import notes_before
 from snowshed.scene.scene import PathLike, ResolvedScene
 
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
@@ -31,6 +38,20 @@ def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> 
     sequence.files = {**sequence.files, **marks}
 
 
+def say_note(sequence: _core.EventSequence, note: str) -> None:
+    """Say a note on a run and keep it for run.json, which has it once."""
+    sequence.add_note(note)
+    tell(note)
+
+
+class NotePasser:
+    """The part of an observer that passes on what the core notes, which run.json has already."""
+
+    def noted(self, note: str) -> None:
+        """Say a note."""
+        tell(note)
+
+
 def run_sequence(
     sequence: _core.EventSequence,
     observer: _core.EventObserver,
@@ -38,7 +59,8 @@ def run_sequence(
 ) -> None:
     """Run the events that are left; a failure is written down in the folder.
 
-    The observer is told of the progress about twice a second.
+    The observer is told of the progress about twice a second. What is odd about the scene is said
+    first.
 
     Raises
     ------
@@ -47,6 +69,8 @@ def run_sequence(
     Interrupted
         If the observer asked for a stop; a checkpoint holds the state to resume from.
     """
+    for note in notes_before(json.loads(sequence.simulation.scene)):
+        say_note(sequence, note)
     try:
         finished = sequence.run(observer, REPORT_INTERVAL)
     except (_core.SimulationError, _core.InputError) as error:

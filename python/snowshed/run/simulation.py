@@ -14,6 +14,7 @@ import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
 from snowshed.io.array_arguments import finite, points, positive, whole_number
 from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
+from snowshed.io.notes import tell
 from snowshed.run.fields import Fields
 from snowshed.run.grid import grid_dataset, scene_grid
 from snowshed.run.particle_dataset import DATASET, particle_dataset
@@ -106,14 +107,21 @@ class Simulation:
     def begin_event(self) -> None:
         """Lay the snow of the next event.
 
+        What should be known of it, such as particles inside an obstacle, is said as a
+        `snowshed.SnowshedNote`.
+
         Raises
         ------
         InputError
-            If it cannot be seeded.
+            If it cannot be seeded, or more than 1 % of a body lies where snow may not be (unless
+            the scene's ``misplaced_snow`` is "allow").
         SimulationError
             If the present event has not ended, or its stack cannot be seeded afresh.
         """
+        said = len(self._core.notes)
         self._core.begin_event()
+        for note in self._core.notes[said:]:
+            tell(note)
 
     def step(self, count: int = 1) -> None:
         """Take steps of the present event, whether the snow rests or not.
@@ -198,8 +206,9 @@ class Simulation:
     ) -> None:
         """Add particles, which belong to the present event.
 
-        They get the next ids, in their order. Nothing keeps them out of obstacles or of other
-        snow; particles within are pushed out, hard.
+        They get the next ids, in their order. Particles inside an obstacle or surrounded by other
+        snow are pushed out, hard; more than 1 % of them are refused, unless the scene's
+        ``misplaced_snow`` is "allow".
 
         Parameters
         ----------
@@ -216,7 +225,8 @@ class Simulation:
         Raises
         ------
         InputError
-            If an argument has another shape, is not finite, or the snow is none of the scene's.
+            If an argument has another shape, is not finite, the snow is none of the scene's, or
+            the particles lie where snow may not be.
         SimulationError
             If a position lies beyond the addressable grid (10^6 cells to each side, about).
 
@@ -237,7 +247,10 @@ class Simulation:
         places = points("positions", positions, self.dimension)
         speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
         heavy = self._seeded_mass(snows[kind]) if mass is None else positive("mass", mass)
+        said = len(self._core.notes)
         self._core.add_snow(places, heavy, tuple(speed.tolist()), kind)
+        for note in self._core.notes[said:]:
+            tell(note)
 
     def add_velocity(self, changes: ArrayLike) -> None:
         """Add to the velocities of the particles.

@@ -45,7 +45,7 @@ from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results_reader import HISTORY
-from snowshed.run.sequence import open_sequence, run_sequence, seal_files
+from snowshed.run.sequence import NotePasser, open_sequence, run_sequence, seal_files
 from snowshed.scene.components import Outline
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
@@ -191,7 +191,7 @@ def run_slide(
         terrain = json.loads(sequence.simulation.scene)["terrain"]
         depth = thickness_map(terrain, Path(ready.base_dir))
         areas = release_areas(maps.raster(maps.terrain), terrain["release"], depth)
-        summary = _summary(sequence.simulation, facts, maps, areas)
+        summary = _summary(sequence, facts, maps, areas)
         if rasters:
             _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
         else:
@@ -263,7 +263,7 @@ def _particle_table(simulation: _core.Simulation) -> pd.DataFrame:
     )
 
 
-class _Recorder:
+class _Recorder(NotePasser):
     """Passes on how far the run has come."""
 
     def __init__(
@@ -349,11 +349,12 @@ def _draw(
 
 
 def _summary(
-    simulation: _core.Simulation,
+    sequence: _core.EventSequence,
     facts: dict[str, Any],
     maps: SlideMaps,
     areas: Sequence[ReleaseArea],
 ) -> SlideSummary:
+    simulation = sequence.simulation
     slide = simulation.slide_facts()
     corners = np.concatenate(_release_outlines(simulation))
     middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
@@ -383,7 +384,7 @@ def _summary(
     )
     settings = json.loads(simulation.scene)["numerics"]
     left = validity_notes(areas, settings, asdict(summary))
-    return replace(summary, notes=(*summary.notes, *left))
+    return replace(summary, notes=(*sequence.notes, *summary.notes, *left))
 
 
 def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
