@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import date, datetime, timedelta
 from functools import lru_cache
 from typing import Optional
 
@@ -15,6 +15,7 @@ from snowshed.io.messages import quoted
 from snowshed.io.number_text import number_in
 
 ZERO_CELSIUS = 273.15  # K
+DAY = 24.0  # hours
 
 
 @dataclass(frozen=True)
@@ -26,15 +27,23 @@ class Observation:
     line
         In the file, from 1.
     time
-        When it was, or the day.
+        When it was, or the day. It is of one clock throughout a station, without summer time.
     temperature
         Of the air, degrees C.
     precipitation
-        mm of water since the row before, or of the day.
+        mm of water that fell in the last `precipitation_hours`.
     snowfall
-        Depth of new snow, m, of the day.
+        Depth of new snow, m, of the last `snowfall_hours`.
     snow_depth
         m.
+    precipitation_hours, snowfall_hours
+        How long the amounts gathered. Amounts of different rows do not overlap, except those of
+        `Station.rolling`. Of whole days they end with the day of `time`, of hours with `end`.
+    seam
+        Whether the row continues another series (another source year, sensor or file), so that a
+        difference of the snow depth to the row before is no weather.
+    end
+        When the hours of the amounts end; None: at `time`.
     """
 
     line: int
@@ -43,11 +52,50 @@ class Observation:
     precipitation: Optional[float] = None
     snowfall: Optional[float] = None
     snow_depth: Optional[float] = None
+    precipitation_hours: Optional[float] = None
+    snowfall_hours: Optional[float] = None
+    seam: bool = False
+    end: Optional[datetime] = None
+
+    def shares(self, hours: Optional[float]) -> dict[date, float]:
+        """Return the days on which an amount fell, and the part of it that belongs to each.
+
+        Parameters
+        ----------
+        hours
+            How long the amount gathered; None: within the day of `time`.
+
+        Examples
+        --------
+        >>> row = Observation(1, datetime(2024, 1, 3, 6))
+        >>> {day.isoformat(): part for day, part in row.shares(24.0).items()}
+        {'2024-01-03': 1.0}
+        >>> {day.isoformat(): part for day, part in row.shares(12.0).items()}
+        {'2024-01-02': 0.5, '2024-01-03': 0.5}
+        >>> {day.isoformat(): part for day, part in row.shares(48.0).items()}
+        {'2024-01-02': 0.5, '2024-01-03': 0.5}
+        """
+        if hours is None or hours == DAY:
+            return {self.time.date(): 1.0}
+        if hours % DAY == 0.0:
+            days = int(hours / DAY)
+            first = self.time.date() - timedelta(days - 1)
+            return {first + timedelta(n): 1.0 / days for n in range(days)}
+        end = self.end or self.time
+        begin = end - timedelta(hours=hours)
+        if begin.date() == end.date():
+            return {end.date(): 1.0}
+        parts: dict[date, float] = {}
+        while begin < end:
+            midnight = datetime(begin.year, begin.month, begin.day) + timedelta(1)
+            parts[begin.date()] = (min(midnight, end) - begin) / timedelta(hours=hours)
+            begin = midnight
+        return parts
 
 
 @dataclass(frozen=True)
 class Station:
-    """A weather file.
+    """A weather file, or several of a station.
 
     Attributes
     ----------
@@ -56,11 +104,24 @@ class Station:
     name
         Of the station, as far as the file tells.
     rows
-        In the order of the file.
+        In the order of time, each later than the one before. Those of a typical year are put
+        together as a year that begins in the station's summer: July 2001 to June 2002 in the
+        north, January to December 2001 in the south.
     notes
         What was assumed in reading it.
     typical_year
         Whether its months come from different years.
+    latitude, longitude
+        Degrees, north and east; None: the file does not tell.
+    altitude
+        m above the sea; None: the file does not tell.
+    utc_offset
+        Hours of the rows' clock ahead of universal time; None: the file does not tell.
+    columns
+        Where each quantity stands in the file: names of fields of `Observation`, and of columns.
+    rolling
+        Names of the quantities of which every row holds the sum of the last hours, so that those
+        of several rows overlap; of precipitation such sums are never handed on.
     """
 
     format: str
@@ -68,6 +129,19 @@ class Station:
     rows: Sequence[Observation]
     notes: Sequence[str] = field(default_factory=tuple)
     typical_year: bool = False
+    latitude: Optional[float] = None
+    longitude: Optional[float] = None
+    altitude: Optional[float] = None
+    utc_offset: Optional[float] = None
+    columns: Mapping[str, str] = field(default_factory=dict)
+    rolling: frozenset[str] = frozenset()
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Names of the fields of `Observation` that any row has."""
+        return frozenset(
+            name for name in RANGES if any(getattr(row, name) is not None for row in self.rows)
+        )
 
 
 @dataclass(frozen=True)
@@ -171,6 +245,27 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
             pass
     example = datetime(2024, 12, 31, 6).strftime(formats[0] if formats else "%Y-%m-%dT%H:%M")
     raise InputError(f"{where}: {quoted(cell)} is not a date such as {example}")
+
+
+def coordinate(text: str, where: str, largest: float) -> Optional[float]:
+    """Return a number of a station, such as its latitude; None: missing.
+
+    Raises
+    ------
+    InputError
+        If its amount is larger than allowed, or it is none.
+
+    Examples
+    --------
+    >>> coordinate("-45.0", "f.epw, line 1, column latitude", 90.0)
+    -45.0
+    """
+    number = number_in(text) if text.strip() else math.nan
+    if text.strip() in ("", "-", "NA") or abs(number) in (999.0, 9999.0):
+        return None
+    if not abs(number) <= largest:
+        raise InputError(f"{where}: {quoted(text)}; allowed: {-largest:g} <= value <= {largest:g}")
+    return number
 
 
 def split_cells(line: str, where: str, separator: Optional[str] = ",") -> list[str]:

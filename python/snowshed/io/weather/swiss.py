@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
@@ -96,7 +97,7 @@ def _read(
                 f"{quoted(station)}"
             )
         station = cells[0]
-        values = {
+        values: dict[str, Any] = {
             one.name: one.read(cells[i], f"{place}, column {head[i]}", MISSING)
             for i, one in columns.items()
         }

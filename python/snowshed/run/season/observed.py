@@ -42,11 +42,6 @@ def days_of(station: Station, source: str) -> tuple[list[Weather], list[str]]:
     """
     days = _with_temperature(_daily(_ordered(station, source)), station.format, source)
     notes = [*station.notes, *_gaps(days)]
-    if station.typical_year:
-        notes.append(
-            f"{station.format} is a typical year: its months come from different years; it is put "
-            "together from July to June"
-        )
     temperatures = _temperatures(days)
     falls, rule = _snowfalls(days, temperatures, station.format, source)
     if rule:
@@ -71,17 +66,6 @@ def snow_fraction(temperature: float) -> float:
 
 def _ordered(station: Station, source: str) -> list[Observation]:
     rows = list(station.rows)
-    if station.typical_year:
-        moved = [
-            (row, row.time.replace(year=2001 if row.time.month >= 7 else 2002))
-            for row in rows
-            if (row.time.month, row.time.day) != (2, 29)
-        ]
-        rows = [
-            Observation(row.line, time, row.temperature, row.precipitation, row.snowfall,
-                        row.snow_depth)
-            for row, time in sorted(moved, key=lambda one: one[1])
-        ]  # fmt: skip
     for earlier, later in zip(rows, rows[1:]):
         if later.time <= earlier.time:
             raise InputError(
