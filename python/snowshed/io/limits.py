@@ -15,3 +15,5 @@ TEXT, TABLE = 64 * MB, 1024 * MB
 COORDINATE_SYSTEM = 64 * KB
 #: Columns of a table; pandas takes minutes for a line of a hundred thousand names.
 COLUMNS = 1000
+#: Days from one row of weather to the next; no station is silent for longer and goes on.
+WEATHER_GAP = 50 * 366
