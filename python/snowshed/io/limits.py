@@ -28,3 +28,5 @@ WEATHER_LINES = 1_000_000
 MEMBERS = 10_000
 #: Bytes that unpacking may need besides what it yields; the strongest level of xz has 65 MB.
 UNPACKING = 80 * MB
+#: Days from one row of weather to the next; no station is silent for longer and goes on.
+WEATHER_GAP = 50 * 366

@@ -11,7 +11,7 @@ from weather_files import FILES, METEOSWISS, NEW_SNOW, VARIANTS
 from snowshed import InputError
 from snowshed.io.weather import FORMATS, read_station
 from snowshed.run.season import read_season
-from snowshed.run.season.observed import snow_fraction
+from snowshed.run.season.gauge import snow_fraction
 from snowshed.run.season.weather import read_weather
 from snowshed.snow.relations.new_snow import hedstrom_pomeroy_1998
 

@@ -122,7 +122,7 @@ def _apart(one: _File, other: _File) -> Iterator[str]:
     if a.altitude is not None and b.altitude is not None:
         higher = abs(a.altitude - b.altitude)
         if higher > HIGHER:
-            yield f"the stations of {one.name} and {other.name} are {higher:.0f} m of altitude apart"
+            yield f"the altitudes of {one.name} and {other.name} differ by {higher:.0f} m"
 
 
 def _on_clock(station: Station, offset: Optional[float]) -> Station:
