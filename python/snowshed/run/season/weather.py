@@ -134,8 +134,8 @@ def read_record(
     if temperature is not None and not files:
         raise InputError("a file of temperatures goes with weather files only, not with a table")
     if len(files) > 1 or temperature is not None:
-        station = read_stations(files, None if temperature is None else Path(temperature))
-        return _of_station(station, " and ".join(map(str, files)), snow_from)
+        joined = read_stations(files, None if temperature is None else Path(temperature))
+        return _of_station(joined, " and ".join(map(str, files)), snow_from)
     if files:
         season = files[0]
     if isinstance(season, (str, os.PathLike)):
