@@ -156,12 +156,15 @@ class Quantity:
         In the file, for messages.
     factor, offset
         value = factor * cell + offset.
+    hours
+        How long an amount gathered; None: since the row before, or it is no amount.
     """
 
     name: str
     unit: str
     factor: float = 1.0
     offset: float = 0.0
+    hours: Optional[float] = None
 
     def read(self, text: str, where: str, missing: Sequence[str] = ("",)) -> Optional[float]:
         """Return a cell's value; None if it is missing.
@@ -227,6 +230,8 @@ RANGES = {
 def time_of(text: str, where: str, *formats: str) -> datetime:
     """Return a date or time in one of the formats of `datetime.strptime`, or ISO 8601 without any.
 
+    Without formats, a time with an offset from universal time keeps it (`tzinfo`).
+
     Raises
     ------
     InputError
@@ -240,11 +245,22 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
             continue
     if not formats:
         try:
-            return datetime.fromisoformat(cell.replace("Z", "+00:00")).replace(tzinfo=None)
+            return datetime.fromisoformat(_iso(cell))
         except ValueError:
             pass
     example = datetime(2024, 12, 31, 6).strftime(formats[0] if formats else "%Y-%m-%dT%H:%M")
     raise InputError(f"{where}: {quoted(cell)} is not a date such as {example}")
+
+
+def _iso(cell: str) -> str:
+    """Return a time of ISO 8601 in the form that Python 3.9 reads."""
+    if cell[-1:] in ("Z", "z"):
+        return cell[:-1] + "+00:00"
+    if cell[-5:-4] in ("+", "-") and ":" in cell[:-5]:
+        return f"{cell[:-2]}:{cell[-2:]}"
+    if cell[-3:-2] in ("+", "-") and ":" in cell[:-3]:
+        return cell + ":00"
+    return cell
 
 
 def coordinate(text: str, where: str, largest: float) -> Optional[float]:
