@@ -20,6 +20,7 @@ MORNING = 7.0
 NEAR = timedelta(hours=3)  # readings of sums of a day that stand for one at another time
 #: No snow falls faster; MeteoIO's filters cut the rate of the snow depth at 0.2 m/h.
 FASTEST = 0.3  # m/h
+SEVERAL = 3  # changes of the depth on a day, of a sensor that is read all day
 FOLLOWING = 2.0  # hours between readings that are held against that rate
 
 
@@ -89,7 +90,7 @@ def days_of_station(station: Station) -> Days:
         lines.setdefault(row.time.date(), row.line)
         if row.temperature is not None:
             warm.setdefault(row.time.date(), []).append(row.temperature)
-    depths, levels, seams, jumps = _depths(station.rows)
+    depths, levels, seams, jumps = _depths(station)
     dates = _calendar({*lines, *new, *water})
     return Days(
         dates,
@@ -138,7 +139,13 @@ def _sums(rows: Sequence[Observation], name: str) -> tuple[dict[date, float], se
         for day, part in row.shares(span).items():
             total[day] = total.get(day, 0.0) + part * amount
             hours[day] = hours.get(day, 0.0) + part * (24.0 if span is None else span)
-    return total, {day for day, covered in hours.items() if covered < WHOLE_DAY}
+    part = {day for day, covered in hours.items() if covered < WHOLE_DAY}
+    first = rows[0].time.date() if rows else None
+    for day in [day for day in part if first is not None and day < first]:
+        # what fell before midnight, and is told by a first row just after it
+        total[first] = total.get(first, 0.0) + total.pop(day)
+        part.discard(day)
+    return total, part
 
 
 def _disjoint(station: Station) -> Sequence[Observation]:
@@ -170,16 +177,17 @@ def _read_at(told: Sequence[Observation], hour: int, minute: int) -> Iterator[Ob
 
 
 def _depths(
-    rows: Sequence[Observation],
+    station: Station,
 ) -> tuple[dict[date, list[float]], dict[date, list[float]], set[date], list[tuple[date, float]]]:
     """Return the readings of the depth on each day, those without jumps, seams, and the jumps."""
     depths: dict[date, list[float]] = {}
     levels: dict[date, list[float]] = {}
     seams: set[date] = set()
     jumps: list[tuple[date, float]] = []
+    fastest = FASTEST if _is_continuous(station.rows) else np.inf
     shift, seam = 0.0, False
     before: Observation | None = None
-    for row in rows:
+    for row in station.rows:
         seam = seam or row.seam
         if row.snow_depth is None:
             continue
@@ -187,14 +195,29 @@ def _depths(
         if before is not None and before.snow_depth is not None:
             rise = row.snow_depth - before.snow_depth
             hours = (row.time - before.time).total_seconds() / 3600.0
-            if seam:
+            if seam or (station.typical_year and row.time.month != before.time.month):
                 shift += rise
                 seams.add(day)
                 jumps.append((day, rise))
-            elif hours <= FOLLOWING and abs(rise) > FASTEST * max(hours, 1.0):
+            elif hours <= FOLLOWING and abs(rise) > fastest * max(hours, 1.0):
                 shift += rise
                 jumps.append((day, rise))
         depths.setdefault(day, []).append(row.snow_depth)
         levels.setdefault(day, []).append(row.snow_depth - shift)
         before, seam = row, False
     return depths, levels, seams, jumps
+
+
+def _is_continuous(rows: Sequence[Observation]) -> bool:
+    """Return whether the depth changes several times a day, so that an hour's change is one.
+
+    Hourly files may repeat a depth that was read once a day; its change then is that of the day.
+    """
+    changes: Counter[date] = Counter()
+    before: float | None = None
+    for row in rows:
+        if row.snow_depth is not None:
+            if before is not None and abs(row.snow_depth - before) >= 0.001:
+                changes[row.time.date()] += 1
+            before = row.snow_depth
+    return bool(changes) and float(np.median(list(changes.values()))) >= SEVERAL
