@@ -10,6 +10,7 @@ import click
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.quiet import quiet_option
+from snowshed.cli.temperature import temperature_option
 from snowshed.cli.terminal import say
 from snowshed.io.formatting import about
 
@@ -22,7 +23,8 @@ PATH = click.Path(path_type=Path)
 
 
 @click.command()
-@click.argument("weather", metavar="WEATHER", type=PATH)
+@click.argument("weather", metavar="WEATHER...", type=PATH, nargs=-1, required=True)
+@temperature_option
 @click.option("--slope-length", required=True, help="Along the slope, m; several: 3,4,5.")
 @click.option("--tilt", required=True, help="Degrees from the horizontal; several: 40,60.")
 @click.option(
@@ -46,7 +48,8 @@ PATH = click.Path(path_type=Path)
 @click.option("--dry-run", is_flag=True, help="Say how long it takes, and end.")
 @quiet_option
 def clearance(
-    weather: Path,
+    weather: tuple[Path, ...],
+    temperature: Optional[Path],
     slope_length: str,
     tilt: str,
     heights: str,
@@ -61,8 +64,9 @@ def clearance(
     """Find how high the lower edge must be, so that shed snow does not reach it.
 
     WEATHER holds years of daily data, in any format that ``snowshed season`` reads, or is the word
-    example: ten made winters. The seasons of all its winters are simulated over the ranges of what
-    nobody knows of the snow. The same command goes on with an interrupted answer.
+    example: ten made winters. Several files of one station are read as one: those of its snow and
+    its temperature, or of its years. The seasons of all its winters are simulated over the ranges
+    of what nobody knows of the snow. The same command goes on with an interrupted answer.
 
     \b
     Example:
@@ -80,7 +84,8 @@ def clearance(
         for angle in numbers("--tilt", tilt)
     ]
     candidates = numbers("--heights", heights)
-    rows, notes = read_weather(weather) if str(weather) != EXAMPLE else _example()
+    example = weather == (Path(EXAMPLE),) and temperature is None
+    rows, notes = _example() if example else read_weather(weather, temperature)
     winters = winters_of(rows)
     if dry_run or not quiet:
         plans = [forecast(one, winters, candidates, ranges=ranges, jobs=jobs) for one in designs]

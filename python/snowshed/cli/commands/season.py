@@ -16,6 +16,7 @@ from snowshed.cli.scene_options import (
     scene_from_options,
     scene_options,
 )
+from snowshed.cli.temperature import temperature_option
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.scene.scene import Scene
@@ -32,7 +33,8 @@ DECIDED = {"slab.thickness": 0.1}
 
 
 @click.command()
-@click.argument("season_file", metavar="FILE", type=PATH)
+@click.argument("season_files", metavar="FILE...", type=PATH, nargs=-1, required=True)
+@temperature_option
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
 )
@@ -105,7 +107,8 @@ DECIDED = {"slab.thickness": 0.1}
 @quiet_option
 @scene_options
 def season(
-    season_file: Path,
+    season_files: tuple[Path, ...],
+    temperature: Optional[Path],
     folder: Path,
     scene_file: Optional[Path],
     release_friction: float,
@@ -127,8 +130,9 @@ def season(
 
     FILE is that of a weather station (SMET, iCSV, EPW, TMY3, GHCN-daily, ACIS, MeteoSwiss, IMIS),
     or a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
-    friction, adhesion_pa and snow_depth_m. The panel, the ground and the method are described by
-    the same options as in ``snowshed panel``; --friction is that of sliding snow.
+    friction, adhesion_pa and snow_depth_m. Several FILEs of one station are read as one: those of
+    its snow and its temperature, or of its years. The panel, the ground and the method are
+    described by the same options as in ``snowshed panel``; --friction is that of sliding snow.
 
     \b
     Example:
@@ -146,7 +150,7 @@ def season(
         depth_or_word(cover),
     )
     scene = _scene(scene_file, preset, snow_preset, options)
-    result = _run(season_file, scene, folder, settings, resume=resume, quiet=quiet)
+    result = _run(season_files, temperature, scene, folder, settings, resume=resume, quiet=quiet)
     if not quiet:
         from snowshed.cli.display.season import print_season
 
@@ -195,7 +199,8 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def _run(
-    season_file: Path,
+    season_files: tuple[Path, ...],
+    temperature: Optional[Path],
     scene: ResolvedScene,
     folder: Path,
     settings: SeasonSettings,
@@ -209,7 +214,13 @@ def _run(
     try:
         with progress_bar(quiet=quiet) as progress:
             return run_season(
-                season_file, scene, folder, settings=settings, resume=resume, progress=progress
+                season_files,
+                scene,
+                folder,
+                settings=settings,
+                resume=resume,
+                progress=progress,
+                temperature=temperature,
             )
     except Interrupted:
         raise Stopped("interrupted; go on with the same command and --resume") from None

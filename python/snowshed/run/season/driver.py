@@ -73,13 +73,15 @@ def run_season(
     resume: bool = False,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
+    temperature: Optional[PathLike] = None,
 ) -> SeasonResult:
     """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
 
     Parameters
     ----------
     season
-        A season file or a pandas DataFrame (see `read_season`), or rows of `Weather`.
+        A season file, several weather files of one station or a pandas DataFrame (see
+        `read_season`), or rows of `Weather`.
     scene
         A scene, its JSON data, or the path of a scene file. Its panel, ground, obstacles, snow and
         method hold; `season_scene` replaces its slab and its events. The panel's friction is that
@@ -94,6 +96,8 @@ def run_season(
         Called about twice a second while a slide-off runs.
     pictures
         Whether to draw the figure.
+    temperature
+        Another weather file of the station, whose temperatures come before those of `season`.
 
     Raises
     ------
@@ -115,7 +119,7 @@ def run_season(
     0
     """
     settings = settings or SeasonSettings()
-    rows, of_reading = read_weather(season)
+    rows, of_reading = read_weather(season, temperature)
     ready = resolve_scene(scene)
     data: dict[str, Any] = ready.data
     if "panel" not in data:
