@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Optional
 from snowshed._core import InputError
 from snowshed.io.weather.amounts import usual_step
 from snowshed.io.weather.columns import HOURS, WORDS
-from snowshed.io.weather.observation import RANGES, Observation, Station
+from snowshed.io.weather.observation import RANGES, Observation, Station, changed
 from snowshed.io.weather.plain import read_plain
 from snowshed.io.weather.recognise import read_station
 
@@ -133,7 +133,7 @@ def _on_clock(station: Station, offset: Optional[float]) -> Station:
         return station
     shift = timedelta(hours=offset - (station.utc_offset or 0.0))
     rows = [
-        replace(row, time=row.time + shift, end=row.end and row.end + shift) for row in station.rows
+        changed(row, time=row.time + shift, end=row.end and row.end + shift) for row in station.rows
     ]
     return replace(station, rows=rows, utc_offset=offset)
 
