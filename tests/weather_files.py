@@ -11,12 +11,18 @@ DAYS = ((-5.0, 0.0, 1.10), (-7.0, 24.0, 1.40), (-6.0, 0.0, 1.35))
 NEW_SNOW = 0.3  # m, on the second day
 
 
-def hours(step=1):
-    """Yield day, hour, temperature, precipitation and depth, every `step` hours."""
+def hours(step=1, *, begin=False):
+    """Yield day, hour, temperature, precipitation and depth, every `step` hours.
+
+    The precipitation is of the hours before, so that midnight has that of the day before; or of the
+    hours that begin then.
+    """
     for day, (warm, rain, depth) in enumerate(DAYS, 1):
         for hour in range(0, 24, step):
             wave = 2.0 if hour < 12 else -2.0
-            yield day, hour, warm + wave, rain * step / 24, depth
+            before = (0.0, *(one[1] for one in DAYS))[day - 1]
+            fallen = rain if begin or hour else before
+            yield day, hour, warm + wave, fallen * step / 24, depth
 
 
 def smet_rows(pattern, step=1):
@@ -115,7 +121,7 @@ DATA PERIODS,1,1,Data,Sunday, 1/ 1,12/31
 
 def epw_rows(missing_depth="999", minute=60, older=False):
     rows = []
-    for day, hour, warm, rain, depth in hours():
+    for day, hour, warm, rain, depth in hours(begin=True):
         deep = missing_depth if day == 3 else f"{100 * depth:.0f}"
         rows.append(
             f"{1995 + day},1,{day},{hour + 1},{minute},C9C9C9C9*0?9?9?9?9?9?9?9A7A7A7A7A7A7*0E8*0,"
@@ -142,7 +148,7 @@ TMY3_HEAD = [
 
 def tmy3(midnight="24:00"):
     rows = ['724666,"HINTERALP/FIELD",CO,-7.0,39.917,-105.117,1689', ",".join(TMY3_HEAD)]
-    for day, hour, warm, rain, _ in hours():
+    for day, hour, warm, rain, _ in hours(begin=True):
         date, time = f"01/{day:02d}/1996", f"{hour + 1:02d}:00"
         if hour == 23:
             time = midnight
@@ -356,5 +362,6 @@ VARIANTS = [
     ("ACIS", "NOWData: tabulators, sums below", NOWDATA, True),
     ("MeteoSwiss", "climate stations", NBCN, False),
     ("MeteoSwiss", "IDAWEB, two parts", IDAWEB.encode("latin-1"), True),
-    ("MeteoSwiss", "ten minutes", TEN_MINUTES, False),
+    # sums of ten minutes of each hour are a part of the day only; the depth is all of it
+    ("MeteoSwiss", "ten minutes", TEN_MINUTES, True),
 ]  # fmt: skip

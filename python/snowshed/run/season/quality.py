@@ -113,7 +113,7 @@ def qualities_of(
     >>> from snowshed.run.season.generator import EXAMPLE_CLIMATE
     >>> winters, season = qualities_of(EXAMPLE_CLIMATE.winters(2, seed=1), Calendar())
     >>> [(winter.name, winter.observed, winter.counts) for winter in winters], season.words
-    ([('2001/02', 181, True), ('2002/03', 181, True)], 'from November to April')
+    ([('2001/02', 165, True), ('2002/03', 165, True)], 'from 7 November to 20 April')
     """
     check_coverage(coverage)
     season = snow_season_of(rows, calendar)

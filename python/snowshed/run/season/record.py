@@ -58,7 +58,7 @@ class Record:
         >>> rows = EXAMPLE_CLIMATE.winters(3, seed=1)
         >>> winters = Record(rows[:500]).winters()
         >>> winters.words, winters.left_out_words
-        ('2 of 3 winters', '2003/04 (76 %)')
+        ('2 of 3 winters', '2003/04 (79 %)')
         """
         found, season = qualities_of(self.rows, self.calendar, coverage, self.sums)
         return WinterList(found, season, coverage)
