@@ -9,7 +9,7 @@ from statistics import median
 from typing import Any, Optional
 
 from snowshed.io.weather.amounts import HOUR, hours_before
-from snowshed.io.weather.observation import Observation, Station
+from snowshed.io.weather.observation import DAY, Observation, Station
 
 #: A quantity, the field of its hours, its unit in notes, and what it is called there.
 AMOUNTS = (
@@ -37,17 +37,7 @@ def with_hours(station: Station) -> Station:
         title = station.columns.get(name, words)
         fixed = [getattr(rows[i], hours) for i in own]
         if fixed[0] is None:
-            values = [getattr(rows[i], name) for i in own]
-            times = [rows[i].time for i in own]
-            added = added_to_counter(times, values)
-            if added is not None:
-                notes.append(
-                    f"{title} only rises, up to {max(values):g} {unit}: it is a counter, and what "
-                    f"is added to it counts as {words}, {sum(added):.4g} {unit} in all"
-                )
-            for i, amount, span in zip(own, added or values, hours_before(times)):
-                changed: dict[str, Any] = {name: amount, hours: span}
-                rows[i] = replace(rows[i], **changed)
+            notes += _fill_in(rows, own, (name, hours), f"{title}, in {unit},")
         elif _overlap([rows[i].time for i in own], fixed):
             if name == "snowfall":
                 rolling.add(name)
@@ -57,6 +47,29 @@ def with_hours(station: Station) -> Station:
             else:
                 notes.append(_thin_out(rows, own, fixed, title))
     return replace(station, rows=rows, notes=notes, rolling=frozenset(rolling))
+
+
+def _fill_in(
+    rows: list[Observation], own: Sequence[int], fields: tuple[str, str], title: str
+) -> list[str]:
+    """Set the hours of amounts since the row before, and what was added to a counter."""
+    name, hours = fields
+    values = [getattr(rows[i], name) for i in own]
+    times = [rows[i].time for i in own]
+    notes = []
+    added = added_to_counter(times, values)
+    if added is not None:
+        notes.append(
+            f"{title} only rises, up to {max(values):g}: it is a counter, and what is added to it "
+            f"counts, {sum(added):.4g} in all"
+        )
+    for n, (i, span) in enumerate(zip(own, hours_before(times))):
+        amount = values[n] if added is None else added[n]
+        if n == 0 and amount == 0.0 and span < DAY:  # gathered since nobody knows when
+            rows[i] = _with(rows[i], {name: None, hours: None})
+        else:
+            rows[i] = _with(rows[i], {name: amount, hours: span})
+    return notes
 
 
 def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Optional[list[float]]:
@@ -91,6 +104,10 @@ def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Opti
     return added
 
 
+def _with(row: Observation, changed: dict[str, Any]) -> Observation:
+    return replace(row, **changed)
+
+
 def _overlap(times: Sequence[datetime], hours: Sequence[float]) -> bool:
     """Return whether most rows follow one another faster than their amounts gather."""
     steps = [
@@ -106,7 +123,7 @@ def _thin_out(
     left = 0
     for i, span in zip(own, hours):
         if last is not None and (rows[i].time - last) / HOUR < span - MINUTE:
-            rows[i] = replace(rows[i], precipitation=None, precipitation_hours=None)
+            rows[i] = _with(rows[i], {"precipitation": None, "precipitation_hours": None})
         else:
             last, left = rows[i].time, left + 1
     return (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, Optional
 
@@ -76,7 +77,9 @@ def read_station(path: Path) -> Optional[Station]:
     station = on_one_clock(station, str(path))
     if form.logged:
         station = with_hours(station)
-    return with_plausible_units(station, str(path))
+    present = station.quantities
+    columns = {name: title for name, title in station.columns.items() if name in present}
+    return with_plausible_units(replace(station, columns=columns), str(path))
 
 
 def _lines(content: bytes, path: Path) -> list[str]:

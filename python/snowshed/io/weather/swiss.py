@@ -13,10 +13,11 @@ TEN_MINUTES, HOURLY, DAILY = 1.0 / 6.0, 1.0, 24.0  # over which amounts gather
 TEMPERATURE = Quantity("temperature", "degrees C")
 DEPTH = Quantity("snow_depth", "cm", 0.01)
 #: Parameters of MeteoSwiss, daily, hourly and of ten minutes, the better ones first: depths in cm.
+#: Times of days and hours are those of their beginning, other times are ends.
 METEOSWISS: Mapping[str, Quantity] = {
     **dict.fromkeys(("tre200d0", "tre200h0", "tre200s0"), TEMPERATURE),
     "rre150d0": Quantity("precipitation", "mm", hours=DAILY),
-    "rre150h0": Quantity("precipitation", "mm", hours=HOURLY),
+    "rre150h0": Quantity("precipitation", "mm", hours=HOURLY, begins=True),
     "rre150z0": Quantity("precipitation", "mm", hours=TEN_MINUTES),
     "rka150d0": Quantity("precipitation", "mm", hours=DAILY),
     "rre003i0": Quantity("precipitation", "mm", hours=3.0),
@@ -26,7 +27,7 @@ METEOSWISS: Mapping[str, Quantity] = {
     "hns000d0": Quantity("snowfall", "cm", 0.01, hours=DAILY),
     **dict.fromkeys(("hto000d0", "htoautd0", "htoauths", "htoauts0"), DEPTH),
 }
-SNOWY = ("rre", "rka", "hns", "hto", "tre200")  # what names of such parameters begin with
+SNOWY = ("rre", "rka", "hns", "hto")  # what names of such parameters begin with
 #: Of the open data, of its forerunner, and of IDAWEB; in small letters.
 STATIONS = ("station_abbr", "station/location", "stn")
 TIMES = ("reference_timestamp", "date", "time")

@@ -20,7 +20,7 @@ from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.messages import quoted
 from snowshed.io.notes import tell
 from snowshed.io.number_text import number_in
-from snowshed.io.weather import Station, read_station
+from snowshed.io.weather import Station, read_station, read_stations
 from snowshed.run.season.checks import NO_SNOW, check_rows
 from snowshed.run.season.observed import record_of
 from snowshed.run.season.record import Record
@@ -59,7 +59,7 @@ ALLOWED = ("date", *COLUMNS)
 SAME_UNITS: Mapping[str, Sequence[str]] = {"degrees C": ("degC", "°C"), "": ("1",)}
 
 
-Season = Union[PathLike, "pd.DataFrame", Sequence[Weather]]
+Season = Union[PathLike, Sequence[PathLike], "pd.DataFrame", Sequence[Weather]]
 
 
 def read_season(season: Season) -> list[Weather]:
@@ -74,7 +74,8 @@ def read_season(season: Season) -> list[Weather]:
         and, if known, ``density_kg_m3``, ``friction``, ``adhesion_pa`` and ``snow_depth_m`` (of the
         natural snow cover). The names tell the units. If
         ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of `Weather`
-        are returned unchanged.
+        are returned unchanged. Several weather files of one station are read as one
+        (`snowshed.io.weather.read_stations`).
 
     Raises
     ------
@@ -110,7 +111,9 @@ def read_weather(season: Season) -> tuple[list[Weather], list[str]]:
     return [*record.rows], [*record.notes]
 
 
-def read_record(season: Season, snow_from: str = AUTO) -> Record:
+def read_record(
+    season: Season, snow_from: str = AUTO, temperature: Optional[PathLike] = None
+) -> Record:
     """Return the weather of a season or of many winters, with all that is known of its quality.
 
     Parameters
@@ -120,10 +123,21 @@ def read_record(season: Season, snow_from: str = AUTO) -> Record:
     snow_from
         The column of a station that observes snow, a name in `CHOICES`; "auto": the best of each
         winter (`snowshed.run.season.columns`).
+    temperature
+        Another file of the same station, whose temperatures come first
+        (`snowshed.io.weather.read_stations`).
     """
     if snow_from != AUTO and snow_from not in CHOICES:
         allowed = ", ".join((AUTO, *CHOICES))
         raise InputError(f"snow from: {quoted(snow_from)}; allowed: {allowed}")
+    files = _files_of(season)
+    if temperature is not None and not files:
+        raise InputError("a file of temperatures goes with weather files only, not with a table")
+    if len(files) > 1 or temperature is not None:
+        joined = read_stations(files, None if temperature is None else Path(temperature))
+        return _of_station(joined, " and ".join(map(str, files)), snow_from)
+    if files:
+        season = files[0]
     if isinstance(season, (str, os.PathLike)):
         station = read_station(Path(season))
         if station is not None:
@@ -141,6 +155,15 @@ def read_record(season: Season, snow_from: str = AUTO) -> Record:
     rows = [_weather(row) for row in table.rows]
     check_rows(rows, table.rows, name)
     return Record(rows)
+
+
+def _files_of(season: Season) -> list[Path]:
+    """Return the weather files of a season; none if it is a table or rows."""
+    if isinstance(season, (str, os.PathLike)):
+        return [Path(season)]
+    if isinstance(season, Sequence):
+        return [Path(one) for one in season if isinstance(one, (str, os.PathLike))]
+    return []
 
 
 def _of_station(station: Station, source: str, snow_from: str) -> Record:
