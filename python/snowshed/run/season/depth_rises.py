@@ -187,7 +187,7 @@ def _tell_jumps(days: Days, found: DepthSnow) -> None:
 
 
 def _seam_dates(days: Days) -> set[date]:
-    return {days.dates[number] for number in np.flatnonzero(days.seams)}
+    return {days.dates[number] for number in np.flatnonzero(days.seams).tolist()}
 
 
 def _times(number: int, what: str) -> str:

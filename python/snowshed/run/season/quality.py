@@ -55,7 +55,7 @@ class WinterQuality:
     rows: Sequence[Weather]
     season: int
     observed: int
-    sources: Mapping[Source, int]
+    sources: Counter[Source]
     filled_snow: float
     counts: bool
     listed: bool = False
