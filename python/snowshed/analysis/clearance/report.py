@@ -15,7 +15,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
 from snowshed.plot.html_page import Grid, Picture, template
-from snowshed.run.season.quality_table import ALIGN, HEAD, TITLE, quality_rows
+from snowshed.run.season.quality_table import ALIGN, HEAD, quality_rows, title
 
 
 def write_report(
@@ -86,8 +86,7 @@ def _known(answer: Answer) -> Optional[tuple[str, Grid]]:
     """Return the table of the winters of the file, and its title."""
     if answer.known is None:
         return None
-    title = f"{TITLE} (days {answer.known.season.words})"
-    return title, Grid(HEAD, quality_rows(answer.known), ALIGN)
+    return title(answer.known), Grid(HEAD, quality_rows(answer.known), ALIGN)
 
 
 def _panel(answer: Answer, folder: Path) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from snowshed.cli.terminal import PlainConsole, plain_table
-from snowshed.run.season.quality_table import ALIGN, HEAD, TITLE, quality_rows, shortened
+from snowshed.run.season.quality_table import ALIGN, HEAD, quality_rows, shortened, title
 from snowshed.run.season.record import WinterList
 
 
@@ -11,7 +11,7 @@ def print_quality(console: PlainConsole, winters: WinterList) -> None:
     """Print a row for each winter: days on which its snow was observed, source, what was filled."""
     rows, left_out = shortened(quality_rows(winters))
     used = [place for place in range(len(HEAD)) if any(row[place] for row in rows)]
-    table = plain_table(f"{TITLE} (days {winters.season.words})")
+    table = plain_table(title(winters))
     for place in used:
         table.add_column(HEAD[place], justify="left" if ALIGN[place] == "l" else "right")
     for row in rows:

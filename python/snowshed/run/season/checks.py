@@ -57,7 +57,7 @@ def check_one_season(rows: Sequence[Weather]) -> None:
     >>> try:
     ...     check_one_season(rows)
     ... except InputError as error:
-    ...     print(str(error)[:63])
+    ...     print(str(error)[:62])
     the season, line 2, column date: 2024-01-01 is 1095 days after
     """
     for earlier, later in zip(rows, rows[1:]):

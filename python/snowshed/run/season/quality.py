@@ -79,7 +79,7 @@ class WinterQuality:
             for source, _ in Counter(self.sources).most_common()
             if source.observed and self.sources[source]
         ]
-        return ", ".join(observing) or "nothing"
+        return ", ".join(observing)
 
 
 def check_coverage(coverage: float) -> float:

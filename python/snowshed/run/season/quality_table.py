@@ -6,10 +6,14 @@ from snowshed.run.season.quality import WinterQuality
 from snowshed.run.season.record import WinterList, percent
 from snowshed.run.season.source import Source
 
-TITLE = "Where the snow comes from"
 HEAD = ("winter", "snow observed", "new snow, m", "source", "filled", "not known", "counts")
 ALIGN = "lrrlrrl"
 MOST_ROWS = 24  # on a console
+
+
+def title(winters: WinterList) -> str:
+    """Return the title of the table."""
+    return f"Where the snow comes from (snow season {winters.season.words})"
 
 
 def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
@@ -20,7 +24,7 @@ def quality_rows(winters: WinterList) -> list[tuple[str, ...]]:
     >>> from snowshed.run.season.generator import EXAMPLE_CLIMATE
     >>> from snowshed.run.season.record import Record
     >>> quality_rows(Record(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())[0][:4]
-    ('2001/02', '148 of 148 days (100 %)', '3.39', 'season file')
+    ('2001/02', '169 of 169 days (100 %)', '3.37', 'season file')
     """
     return [_row(winter) for winter in winters.winters]
 
@@ -41,7 +45,7 @@ def caption(winters: WinterList) -> str:
     >>> from snowshed.run.season.generator import EXAMPLE_CLIMATE
     >>> from snowshed.run.season.record import Record
     >>> caption(Record(EXAMPLE_CLIMATE.winters(1, seed=1)).winters())
-    'Snow of 2001/02: observed on 148 of 148 days (100 %), source: season file'
+    'Snow of 2001/02: observed on 169 of 169 days (100 %), source: season file'
     """
     if len(winters.winters) > 1:
         return f"Snow of {len(winters.winters)} winters; well observed in {len(winters.counted)}"
