@@ -16,7 +16,8 @@ MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
 #: Snowfalls of which half are deeper are not in metres.
 TYPICAL_SNOWFALL = 0.7  # m
 DAY, YEAR = 86400.0, 366.0  # s, days
-FEW = 3  # rows that a gap of years sets apart from all others: one of their years is mistyped
+#: So few rows that a gap of so many days sets apart from all others have a year that is mistyped.
+FEW, LONE = 3, 3 * YEAR
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
 
@@ -81,7 +82,7 @@ def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
         if days <= YEAR:
             continue
         few = min(number, len(rows) - number) <= FEW
-        if days > WEATHER_GAP or (few and later.source is Source.GIVEN):
+        if days > WEATHER_GAP or (few and days > LONE and later.source is Source.GIVEN):
             raise InputError(
                 f"{places[number].where}, column date: {later.date.date()} is {days / 365.25:.0f} "
                 f"years after {places[number - 1].place}, {earlier.date.date()}; is a year "
