@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
 from snowshed._core import InputError
+from snowshed.cli.temperature import temperature_option
 from snowshed.run.season.source import AUTO, CHOICES
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -57,11 +57,7 @@ def weather_options(command: Command) -> Command:
             help="Column of a station file that observes new snow; auto takes the best of each "
             "winter.",
         ),
-        click.option(
-            "--temperature",
-            type=click.Path(path_type=Path),
-            help="Another file of the same station, for its temperatures.",
-        ),
+        temperature_option,
     )
     for option in reversed(options):
         command = option(command)

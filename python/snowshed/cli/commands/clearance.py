@@ -66,9 +66,10 @@ def clearance(
     """Find how high the lower edge must be, so that shed snow does not reach it.
 
     WEATHER holds years of daily data, in any format that ``snowshed season`` reads, or is the word
-    example: ten made winters. The seasons of all winters whose snow was observed are simulated over
-    the ranges of what nobody knows of the snow. The same command goes on with an interrupted
-    answer.
+    example: ten made winters. Several files of one station are read as one: those of its snow and
+    its temperature, or of its years. The seasons of all winters whose snow was observed are
+    simulated over the ranges of what nobody knows of the snow. The same command goes on with an
+    interrupted answer.
 
     \b
     Example:

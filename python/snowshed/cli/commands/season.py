@@ -131,11 +131,11 @@ def season(
 ) -> None:
     """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
 
-    FILE is that of a weather station (SMET, iCSV, EPW, TMY3, GHCN-daily, ACIS, MeteoSwiss, IMIS), a
-    table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3, friction,
-    adhesion_pa and snow_depth_m, or several files of one station. The panel, the ground and the
-    method are described by the same options as in ``snowshed panel``; --friction is that of sliding
-    snow.
+    FILE is that of a weather station (SMET, iCSV, EPW, TMY3, GHCN-daily, ACIS, MeteoSwiss, IMIS),
+    or a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
+    friction, adhesion_pa and snow_depth_m. Several FILEs of one station are read as one: those of
+    its snow and its temperature, or of its years. The panel, the ground and the method are
+    described by the same options as in ``snowshed panel``; --friction is that of sliding snow.
 
     \b
     Example:

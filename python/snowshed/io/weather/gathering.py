@@ -9,7 +9,7 @@ from statistics import median
 from typing import Any, Optional
 
 from snowshed.io.weather.amounts import HOUR, hours_before
-from snowshed.io.weather.observation import DAY, Observation, Station
+from snowshed.io.weather.observation import Observation, Station
 
 #: A quantity, the field of its hours, its unit in notes, and what it is called there.
 AMOUNTS = (
@@ -46,7 +46,15 @@ def with_hours(station: Station) -> Station:
                 )
             else:
                 notes.append(_thin_out(rows, own, fixed, title))
+        _drop_first(rows, own[0], (name, hours))
     return replace(station, rows=rows, notes=notes, rolling=frozenset(rolling))
+
+
+def _drop_first(rows: list[Observation], first: int, fields: tuple[str, str]) -> None:
+    """Drop a 0 of the day before the first row, of which the file has nothing else."""
+    row, (name, hours) = rows[first], fields
+    if getattr(row, name) == 0.0 and row.time.date() not in row.shares(getattr(row, hours)):
+        rows[first] = _with(row, {name: None, hours: None})
 
 
 def _fill_in(
@@ -65,10 +73,7 @@ def _fill_in(
         )
     for n, (i, span) in enumerate(zip(own, hours_before(times))):
         amount = values[n] if added is None else added[n]
-        if n == 0 and amount == 0.0 and span < DAY:  # gathered since nobody knows when
-            rows[i] = _with(rows[i], {name: None, hours: None})
-        else:
-            rows[i] = _with(rows[i], {name: amount, hours: span})
+        rows[i] = _with(rows[i], {name: amount, hours: span})
     return notes
 
 

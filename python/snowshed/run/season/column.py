@@ -11,7 +11,6 @@ import numpy as np
 from snowshed.io.arrays import Floats
 from snowshed.snow.relations.settling import SettlingLaw, settled_densities
 
-
 #: More layers than a winter of hours with snow has; the lower half of more is merged in pairs, so
 #: that years of snow that stays cost no more than one.
 MOST_LAYERS = 1000

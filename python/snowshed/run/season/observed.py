@@ -63,7 +63,7 @@ def record_of(station: Station, source: str, only: Optional[Source] = None) -> R
     if np.isnan(days.temperature).all():
         raise InputError(
             f"{source}: no air temperature in any row of this {station.format} file; a season "
-            "needs them"
+            "needs them; give the file of its temperatures as well"
         )
     warm, far, of_temperature = filled_temperatures(days.dates, days.temperature, days.there)
     depth = snow_of_depth(days, warm)

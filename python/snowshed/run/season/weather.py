@@ -99,15 +99,17 @@ def read_season(season: Season) -> list[Weather]:
     return [*record.rows]
 
 
-def read_weather(season: Season) -> tuple[list[Weather], list[str]]:
+def read_weather(
+    season: Season, temperature: Optional[PathLike] = None
+) -> tuple[list[Weather], list[str]]:
     """Return the rows of a season, as `read_season`, and notes on what was assumed in reading.
 
     Parameters
     ----------
-    season
-        As for `read_season`, which raises the same errors.
+    season, temperature
+        As for `read_record`, which raises the same errors.
     """
-    record = read_record(season)
+    record = read_record(season, temperature=temperature)
     return [*record.rows], [*record.notes]
 
 
