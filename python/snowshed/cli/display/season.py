@@ -39,10 +39,11 @@ def print_season(result: SeasonResult, folder: Path) -> None:
     rows, left_out = _rows(result)
     for row in rows:
         shown.add_row(*(_cell(row[name], form) for name, form in columns.values()))
-    console.print(shown)
+    if rows:
+        console.print(shown)
     if left_out:
         console.print(f"{left_out} rows without a release are in season.csv")
-    print_quality(console, result.winters)
+    print_quality(console, result.winters, judged=False)
     for line in (verdict(result), *(f"note: {note}" for note in result.notes)):
         console.print(line)
     console.print(f"season.csv and season.png in {folder}")

@@ -7,10 +7,21 @@ from snowshed.run.season.quality_table import ALIGN, HEAD, quality_rows, shorten
 from snowshed.run.season.record import WinterList
 
 
-def print_quality(console: PlainConsole, winters: WinterList) -> None:
-    """Print a row for each winter: days on which its snow was observed, source, what was filled."""
+def print_quality(console: PlainConsole, winters: WinterList, *, judged: bool = True) -> None:
+    """Print a row for each winter: days on which its snow was observed, source, what was filled.
+
+    Parameters
+    ----------
+    console
+        Where to.
+    winters
+        Of the file.
+    judged
+        Whether to say which of them count.
+    """
     rows, left_out = shortened(quality_rows(winters))
-    used = [place for place in range(len(HEAD)) if any(row[place] for row in rows)]
+    columns = range(len(HEAD) if judged else len(HEAD) - 1)
+    used = [place for place in columns if any(row[place] for row in rows)]
     table = plain_table(title(winters))
     for place in used:
         table.add_column(HEAD[place], justify="left" if ALIGN[place] == "l" else "right")

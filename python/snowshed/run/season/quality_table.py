@@ -50,7 +50,7 @@ def caption(winters: WinterList) -> str:
     if len(winters.winters) > 1:
         return f"Snow of {len(winters.winters)} winters; well observed in {len(winters.counted)}"
     winter = winters.winters[0]
-    filled = f", {_filled(winter)} filled" if winter.sources[Source.FILLED] else ""
+    filled = f"; filled: {_filled(winter)}" if winter.sources[Source.FILLED] else ""
     return (
         f"Snow of {winter.name}: observed on {_observed(winter)}, source: {winter.source_words}"
         f"{filled}"
