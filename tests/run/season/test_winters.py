@@ -173,6 +173,8 @@ def test_a_list_of_snowfalls_tells_all_of_them(tmp_path):
             "line 4, column date: 2204-01-05 is 180 years",
         ),
         (("2024-01-01", "2042-01-02", "2042-01-05"), "line 3, column date: 2042-01-02 is 18 years"),
+        (("0224-01-01", "0224-01-02"), "line 2, column date: 0224-01-01; allowed: the years 1000"),
+        (("9999-12-30", "9999-12-31"), "line 2, column date: 9999-12-30; allowed: the years 1000"),
     ],
 )
 def test_a_year_mistyped_is_refused_at_once(tmp_path, dates, message):

@@ -16,6 +16,7 @@ MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
 #: Snowfalls of which half are deeper are not in metres.
 TYPICAL_SNOWFALL = 0.7  # m
 DAY, YEAR = 86400.0, 366.0  # s, days
+YEARS = (1000, 9000)  # of weather, measured or made
 #: So few rows that a gap of so many days sets apart from all others have a year that is mistyped.
 FEW, LONE = 3, 3 * YEAR
 NO_SNOW = "it never snows"
@@ -76,7 +77,7 @@ def _days(earlier: Weather, later: Weather) -> float:
 
 
 def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
-    """Refuse gaps of decades, and those of years that set few rows apart."""
+    """Refuse years without weather stations, gaps of decades, and of years beside few rows."""
     for number, (earlier, later) in enumerate(zip(rows, rows[1:]), 1):
         days = _days(earlier, later)
         if days <= YEAR:
@@ -87,6 +88,12 @@ def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
                 f"{places[number].where}, column date: {later.date.date()} is {days / 365.25:.0f} "
                 f"years after {places[number - 1].place}, {earlier.date.date()}; is a year "
                 "mistyped?"
+            )
+    for row, place in ((rows[0], places[0]), (rows[-1], places[-1])):
+        if not YEARS[0] <= row.date.year <= YEARS[1]:
+            raise InputError(
+                f"{place.where}, column date: {row.date.date()}; allowed: the years {YEARS[0]} to "
+                f"{YEARS[1]}; is a year mistyped?"
             )
 
 

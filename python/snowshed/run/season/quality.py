@@ -10,10 +10,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import date
+from datetime import date, timedelta
 from typing import Optional
-
-import numpy as np
 
 from snowshed._core import InputError
 from snowshed.run.season.source import Source
@@ -22,7 +20,7 @@ from snowshed.run.season.winter_years import Calendar, SnowSeason, snow_season_o
 
 COVERAGE = 0.9  # of the days of the snow season, on which snow must have been observed
 LONGEST_BRIDGED = 3  # days between two rows of a table, of which the later one tells
-LISTED = 1.5  # days from row to row, half of them more, in a list of snowfalls
+LISTED = timedelta(days=1.5)  # from row to row, half of them more, in a list of snowfalls
 
 
 @dataclass(frozen=True)
@@ -147,8 +145,8 @@ def is_list(rows: Sequence[Weather]) -> bool:
     """Return whether rows are a list of snowfalls, of which most lie more than a day apart."""
     if len(rows) < 2 or any(row.source is not Source.GIVEN for row in rows):
         return False
-    times = np.array([row.date.timestamp() for row in rows]) / 86400.0
-    return float(np.median(np.diff(times))) > LISTED
+    spans = [later.date - earlier.date for earlier, later in zip(rows, rows[1:])]
+    return sorted(spans)[len(spans) // 2] > LISTED
 
 
 def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:
