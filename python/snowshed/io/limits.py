@@ -18,8 +18,6 @@ PIPE_SILENCE, PIPE = 3.0, 8.0
 COORDINATE_SYSTEM = 64 * KB
 #: Columns of a table; pandas takes minutes for a line of a hundred thousand names.
 COLUMNS = 1000
-#: Days from one row of weather to the next; no station is silent for longer and goes on.
-WEATHER_GAP = 50 * 366
 #: Bytes of a line, or of the lines of one record. A line of 20 MB becomes ten million texts.
 LINE = 1 * MB
 #: Rows of a table, and of one that people write, whose rows are kept as texts.
@@ -31,3 +29,5 @@ WEATHER_LINE, WEATHER_LINES = 64 * KB, 1_000_000
 MEMBERS = 10_000
 #: Bytes that unpacking may need besides what it yields; the strongest level of xz has 65 MB.
 UNPACKING = 80 * MB
+#: Days from one row of weather to the next; no station is silent for longer and goes on.
+WEATHER_GAP = 50 * 366

@@ -190,7 +190,7 @@ def test_daily_files_of_the_slf_have_no_temperature(tmp_path):
 def test_gaps_are_told(tmp_path):
     later = METEOSWISS.replace("03.01.2024", "09.01.2024")
     _, notes = read_weather(written(tmp_path, later))
-    assert any("6 days are missing in 1 gaps, the longest from 2024-01-03" in one for one in notes)
+    assert any("6 days are missing in 1 gap, from 2024-01-03" in one for one in notes)
 
 
 def test_days_out_of_order_are_refused(tmp_path):

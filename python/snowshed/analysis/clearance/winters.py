@@ -82,7 +82,7 @@ def counted(found: WinterList) -> list[Winter]:
     if not winters:
         raise InputError(
             f"the weather: no winter whose snow was observed on {percent(found.coverage)} of the "
-            f"days {found.season.words}: {found.left_out_words}; give a longer record, or a "
-            "smaller --coverage"
+            f"days {found.season.words}: {found.left_out_words}; give a longer record, a "
+            "smaller --coverage, or another column (--snow-from)"
         )
     return winters

@@ -16,7 +16,9 @@ MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
 #: Snowfalls of which half are deeper are not in metres.
 TYPICAL_SNOWFALL = 0.7  # m
 DAY, YEAR = 86400.0, 366.0  # s, days
-FEW = 3  # rows that a gap of years sets apart from all others: one of their years is mistyped
+YEARS = (1000, 9000)  # of weather, measured or made
+#: So few rows that a gap of so many days sets apart from all others have a year that is mistyped.
+FEW, LONE = 3, 3 * YEAR
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
 
@@ -52,13 +54,13 @@ def check_one_season(rows: Sequence[Weather]) -> None:
 
     Examples
     --------
-    >>> check_one_season([
-    ...     Weather(2, datetime(2021, 1, 1), 0.1, None, -5.0),
-    ...     Weather(3, datetime(2024, 1, 1), 0.1, None, -5.0),
-    ... ])
-    Traceback (most recent call last):
-    ...
-    snowshed._core.InputError: the season, line 3, column date: 2024-01-01 is 1095 days after ...
+    >>> rows = [Weather(2, datetime(year, 1, 1), 0.1, None, -5.0) for year in (2021, 2024)]
+    >>> check_one_season(rows[:1])
+    >>> try:
+    ...     check_one_season(rows)
+    ... except InputError as error:
+    ...     print(str(error)[:62])
+    the season, line 2, column date: 2024-01-01 is 1095 days after
     """
     for earlier, later in zip(rows, rows[1:]):
         days = _days(earlier, later)
@@ -75,17 +77,23 @@ def _days(earlier: Weather, later: Weather) -> float:
 
 
 def _check_years(rows: Sequence[Weather], places: Sequence[Row]) -> None:
-    """Refuse gaps of decades, and those of years that set few rows apart."""
+    """Refuse years without weather stations, gaps of decades, and of years beside few rows."""
     for number, (earlier, later) in enumerate(zip(rows, rows[1:]), 1):
         days = _days(earlier, later)
         if days <= YEAR:
             continue
         few = min(number, len(rows) - number) <= FEW
-        if days > WEATHER_GAP or (few and later.source is Source.GIVEN):
+        if days > WEATHER_GAP or (few and days > LONE and later.source is Source.GIVEN):
             raise InputError(
                 f"{places[number].where}, column date: {later.date.date()} is {days / 365.25:.0f} "
                 f"years after {places[number - 1].place}, {earlier.date.date()}; is a year "
                 "mistyped?"
+            )
+    for row, place in ((rows[0], places[0]), (rows[-1], places[-1])):
+        if not YEARS[0] <= row.date.year <= YEARS[1]:
+            raise InputError(
+                f"{place.where}, column date: {row.date.date()}; allowed: the years {YEARS[0]} to "
+                f"{YEARS[1]}; is a year mistyped?"
             )
 
 

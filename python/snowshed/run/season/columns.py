@@ -12,7 +12,7 @@ by more than what falls; and to either where it has no snow all winter, which th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -89,23 +89,27 @@ class Chooser:
         self.only = only
         self._cold = temperature <= COLD
         everything = np.ones(len(temperature), dtype=bool)
-        self.columns = {
-            source: column
-            for source, column in columns.items()
-            if source is only or (column.known.any() and not self._idle(columns, source))
+        self._all = {
+            source: column for source, column in columns.items() if _tells(column, everything)
         }
+        idle = {source for source in self._all if source is not only and self._idle(source)}
+        self._idle_columns = idle
+        self.columns = {one: column for one, column in self._all.items() if one not in idle}
         self._gauge_fails = Source.DEPTH in self._against(Source.GAUGE, everything)
 
     def of(self, winter: Booleans) -> Choice:
         """Return the columns for the days of a winter (n,)."""
-        there = {source for source, column in self.columns.items() if column.known[winter].any()}
+        there = {source for source, column in self.columns.items() if _tells(column, winter)}
         sums = self._sums(winter)
         if self.only is not None:
             others = [source for source in self.columns if source is not self.only]
             return Choice([self.only], others[0] if others else None, sums)
-        if Source.HAND in self.columns:
-            return self._with_hand(winter, there, sums)
-        return self._without_hand(winter, there, sums)
+        with_hand = Source.HAND in self.columns
+        choice = (self._with_hand if with_hand else self._without_hand)(winter, there, sums)
+        if max(sums.values(), default=0.0) <= LEAST_DIFFERENCE:
+            return choice
+        unkept = {source for source in self._idle_columns if source in sums}
+        return replace(choice, contradicted=choice.contradicted | unkept)
 
     def _with_hand(
         self, winter: Booleans, there: set[Source], sums: Mapping[Source, float]
@@ -168,19 +172,19 @@ class Chooser:
 
     def _sums(self, winter: Booleans) -> dict[Source, float]:
         """Return the sum of each column on the days that all know which know any of the winter."""
-        there = [one for one in self.columns.values() if one.known[winter].any()]
+        there = [one for one in self._all.values() if one.known[winter].any()]
         both = winter.copy()
         for column in there:
             both &= column.known
         days = both if both.any() else winter
         return {one.source: float(np.nansum(one.snow[days & one.known])) for one in there}
 
-    def _idle(self, columns: Mapping[Source, Column], source: Source) -> bool:
+    def _idle(self, source: Source) -> bool:
         """Return whether a column is zero throughout the file, and another one tells of snow."""
-        own = columns[source]
+        own = self._all[source]
         if np.nansum(own.snow) > 0.0:
             return False
-        for other, column in columns.items():
+        for other, column in self._all.items():
             both = own.known & column.known
             if other is Source.GAUGE:
                 both &= self._cold
@@ -188,3 +192,8 @@ class Chooser:
             if other is not source and float(column.snow[both].sum()) > least:
                 return True
         return False
+
+
+def _tells(column: Column, days: Booleans) -> bool:
+    """Return whether a column has a value on any of some days."""
+    return bool((days & ~np.isnan(column.snow)).any())

@@ -139,13 +139,14 @@ def _sums(rows: Sequence[Observation], name: str) -> tuple[dict[date, float], se
         for day, part in row.shares(span).items():
             total[day] = total.get(day, 0.0) + part * amount
             hours[day] = hours.get(day, 0.0) + part * (24.0 if span is None else span)
-    part = {day for day, covered in hours.items() if covered < WHOLE_DAY}
-    first = rows[0].time.date() if rows else None
-    for day in [day for day in part if first is not None and day < first]:
-        # what fell before midnight, and is told by a first row just after it
-        total[first] = total.get(first, 0.0) + total.pop(day)
-        part.discard(day)
-    return total, part
+    partly = {day for day, covered in hours.items() if covered < WHOLE_DAY}
+    if rows:
+        first = rows[0].time.date()
+        for day in [day for day in partly if day < first]:
+            # what fell before midnight, and is told by a first row just after it
+            total[first] = total.get(first, 0.0) + total.pop(day)
+            partly.discard(day)
+    return total, partly
 
 
 def _disjoint(station: Station) -> Sequence[Observation]:

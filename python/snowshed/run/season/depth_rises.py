@@ -100,6 +100,7 @@ def snow_of_depth(days: Days, temperature: Floats) -> DepthSnow:
         found.snow[readings[0]] = 0.0
     for before, after in zip(readings, readings[1:]):
         _take_rise(days, found, int(before), int(after), float(level[after] - level[before]))
+    _tell_gaps(days, found)
     return found
 
 
@@ -124,10 +125,23 @@ def _take_rise(days: Days, found: DepthSnow, before: int, after: int, rise: floa
         found.totals.append(Total(range(before + 1, after + 1), rise))
     if span > LONGEST_TOTAL:
         found.filled[own] = True
-        found.notes.append(
-            f"the snow depth rises by {said}, over a gap of {span - 1} days: that is no snowfall "
-            "of a day, and is shared out evenly among them"
-        )
+
+
+def _tell_gaps(days: Days, found: DepthSnow) -> None:
+    """Say which rises are shared out over days that nobody observed."""
+    gaps = [total for total in found.totals if len(total.days) > LONGEST_TOTAL]
+    if not gaps:
+        return
+    most = max(gaps, key=lambda total: total.rise)
+    said = (
+        f"by {most.rise:.2f} m in the {len(most.days)} days to {days.dates[most.days[-1]]}, of "
+        f"which {len(most.days) - 1} have no reading"
+    )
+    among = f" over {len(gaps)} gaps without readings, the most" if len(gaps) > 1 else ""
+    found.notes.append(
+        f"the snow depth rises{among} {said}: that is no snowfall of a day, and is shared out "
+        "evenly among its days"
+    )
 
 
 def _wrong(ordinals: Integers, depth: Floats, temperature: Floats, seams: Booleans) -> Booleans:
@@ -147,13 +161,12 @@ def _wrong(ordinals: Integers, depth: Floats, temperature: Floats, seams: Boolea
             now = readings[later]
             if ordinals[now] - ordinals[first] > limit or joints[now] != joints[good]:
                 break
-            returned = (depth[first] - depth[now]) / change
-            if returned >= TAKEN_BACK and abs(depth[now] - depth[good]) <= max(
-                (1.0 - TAKEN_BACK) * abs(change), 0.05
-            ):
+            beyond = (depth[good] - depth[now]) / change  # below 0: not all is taken back
+            frozen = change < 0.0 and temperature[good : first + 1].max() <= NO_MELT
+            if TAKEN_BACK - 1.0 <= beyond <= (np.inf if frozen else 1.0 - TAKEN_BACK):
                 back = later
                 break
-        melted = change > 0.0 and change <= RECORD_DAY and back > 0
+        melted = 0.0 < change <= RECORD_DAY and back > 0
         if melted and temperature[first : readings[back] + 1].max() > NO_MELT:
             back = 0
         if back:
@@ -187,7 +200,7 @@ def _tell_jumps(days: Days, found: DepthSnow) -> None:
 
 
 def _seam_dates(days: Days) -> set[date]:
-    return {days.dates[number] for number in np.flatnonzero(days.seams)}
+    return {days.dates[number] for number in np.flatnonzero(days.seams).tolist()}
 
 
 def _times(number: int, what: str) -> str:

@@ -48,7 +48,7 @@ def snow_of_gauge(water: Floats, temperature: Floats) -> Floats:
     Examples
     --------
     >>> snow_of_gauge(np.array([24.0, np.nan, 10.0]), np.array([-7.0, -7.0, 5.0])).round(3).tolist()
-    [0.337, nan, 0.0]
+    [0.336, nan, 0.0]
     """
     density = NEW_SNOW_DENSITY[DENSITY]
     snow = [

@@ -15,7 +15,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.io.arrays import Booleans, Floats, Integers
 from snowshed.io.weather import Station
 from snowshed.run.season.columns import CONTRADICTION, Choice, Chooser, Column
 from snowshed.run.season.daily import Days, days_of_station
@@ -214,9 +214,18 @@ def _gaps(days: Days) -> list[str]:
         datetime.fromordinal(int(ordinals[longest + n] + (1, -1)[n])).date() for n in (0, 1)
     )
     return [
-        f"{int((spans - 1).sum())} days are missing in {int((spans > 1).sum())} gaps, the longest "
-        f"from {first} to {last}"
+        f"{_many(int((spans - 1).sum()), 'day')} missing in {_gaps_in_words(spans)}from {first} to "
+        f"{last}"
     ]
+
+
+def _many(number: int, what: str) -> str:
+    return f"{number} {what} is" if number == 1 else f"{number} {what}s are"
+
+
+def _gaps_in_words(spans: Integers) -> str:
+    gaps = int((spans > 1).sum())
+    return "1 gap, " if gaps == 1 else f"{gaps} gaps, the longest "
 
 
 def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:

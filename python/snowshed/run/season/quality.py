@@ -10,10 +10,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import date
+from datetime import date, timedelta
 from typing import Optional
-
-import numpy as np
 
 from snowshed._core import InputError
 from snowshed.run.season.source import Source
@@ -22,7 +20,7 @@ from snowshed.run.season.winter_years import Calendar, SnowSeason, snow_season_o
 
 COVERAGE = 0.9  # of the days of the snow season, on which snow must have been observed
 LONGEST_BRIDGED = 3  # days between two rows of a table, of which the later one tells
-LISTED = 1.5  # days from row to row, half of them more, in a list of snowfalls
+LISTED = timedelta(days=1.5)  # from row to row, half of them more, in a list of snowfalls
 
 
 @dataclass(frozen=True)
@@ -55,7 +53,7 @@ class WinterQuality:
     rows: Sequence[Weather]
     season: int
     observed: int
-    sources: Mapping[Source, int]
+    sources: Counter[Source]
     filled_snow: float
     counts: bool
     listed: bool = False
@@ -79,7 +77,7 @@ class WinterQuality:
             for source, _ in Counter(self.sources).most_common()
             if source.observed and self.sources[source]
         ]
-        return ", ".join(observing) or "nothing"
+        return ", ".join(observing)
 
 
 def check_coverage(coverage: float) -> float:
@@ -113,7 +111,7 @@ def qualities_of(
     >>> from snowshed.run.season.generator import EXAMPLE_CLIMATE
     >>> winters, season = qualities_of(EXAMPLE_CLIMATE.winters(2, seed=1), Calendar())
     >>> [(winter.name, winter.observed, winter.counts) for winter in winters], season.words
-    ([('2001/02', 181, True), ('2002/03', 181, True)], 'from November to April')
+    ([('2001/02', 165, True), ('2002/03', 165, True)], 'from 7 November to 20 April')
     """
     check_coverage(coverage)
     season = snow_season_of(rows, calendar)
@@ -147,8 +145,8 @@ def is_list(rows: Sequence[Weather]) -> bool:
     """Return whether rows are a list of snowfalls, of which most lie more than a day apart."""
     if len(rows) < 2 or any(row.source is not Source.GIVEN for row in rows):
         return False
-    times = np.array([row.date.timestamp() for row in rows]) / 86400.0
-    return float(np.median(np.diff(times))) > LISTED
+    spans = [later.date - earlier.date for earlier, later in zip(rows, rows[1:])]
+    return sorted(spans)[len(spans) // 2] > LISTED
 
 
 def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:

@@ -58,7 +58,7 @@ class Record:
         >>> rows = EXAMPLE_CLIMATE.winters(3, seed=1)
         >>> winters = Record(rows[:500]).winters()
         >>> winters.words, winters.left_out_words
-        ('2 of 3 winters', '2003/04 (76 %)')
+        ('2 of 3 winters', '2003/04 (79 %)')
         """
         found, season = qualities_of(self.rows, self.calendar, coverage, self.sums)
         return WinterList(found, season, coverage)
@@ -111,6 +111,32 @@ class WinterList:
                 "the file lists snowfalls; its days without a row count as days without snow"
             )
         return told
+
+    @property
+    def shortfalls(self) -> list[str]:
+        """What to know of the winters of a station whose snow was observed too seldom."""
+        return [
+            f"the snow of {winter.name} was observed on {winter.observed} of {winter.season} days "
+            f"{self.season.words} ({percent(winter.share)}); what fell on the others is not known"
+            for winter in self.winters
+            if winter.rows and not winter.counts and Source.GIVEN not in winter.sources
+        ]
+
+    def data(self) -> list[dict[str, object]]:
+        """Return the winters as JSON data."""
+        return [
+            {
+                "winter": winter.name,
+                "days_of_snow_season": winter.season,
+                "observed_days": winter.observed,
+                "new_snow_m": round(winter.snowfall, 4),
+                "days_by_source": {one.words: days for one, days in winter.sources.items()},
+                "filled_snow_m": round(winter.filled_snow, 4),
+                "sums_m": {one.words: round(total, 4) for one, total in winter.sums.items()},
+                "counts": winter.counts,
+            }
+            for winter in self.winters
+        ]
 
 
 def _number(winters: int) -> str:

@@ -147,6 +147,8 @@ def read_record(
         hint = f"the first line names the columns: {', '.join(ALLOWED)}"
         table, name = read_text_table(Path(season), hint, _check_columns), str(season)
     elif isinstance(season, Sequence):
+        if not season:
+            raise InputError("the season: no rows")
         return Record([*season])
     else:
         table, name = frame_as_text(season, "the season", index="date"), "the season"

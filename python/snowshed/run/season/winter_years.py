@@ -1,8 +1,9 @@
 """Winters by the calendar: where one ends and the next begins, its name, and its snow season.
 
 Years are cut in the station's summer: on 1 July in the north, on 1 January in the south. The snow
-season of a station goes from the first to the last month that brings a hundredth of all its snow,
-and holds the three months of the calendar's winter in any case.
+season of a station goes from the day of the year by which a hundredth of all its snow has fallen to
+the day by which all but a hundredth has, and holds December to February (in the south June to
+August) in any case.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 from calendar import month_name
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import date
+from datetime import date, timedelta
 from typing import Optional
 
 import numpy as np
@@ -19,8 +20,9 @@ from snowshed.run.season.weather_row import Weather
 
 NORTHERN_WINTER, SOUTHERN_WINTER = (11, 12, 1, 2, 3, 4), (5, 6, 7, 8, 9, 10)
 NORTHERN_START, SOUTHERN_START = 7, 1  # the month in which a winter's year begins
-NORTHERN_CORE, SOUTHERN_CORE = (12, 1, 2), (6, 7, 8)
-SNOWY = 0.01  # of all snow, in a month that belongs to the snow season
+#: First and last day of the season in any case.
+NORTHERN_CORE, SOUTHERN_CORE = ((12, 1), (2, 28)), ((6, 1), (8, 31))
+BESIDE = 0.01  # of all snow, before and after the snow season
 
 
 @dataclass(frozen=True)
@@ -52,43 +54,47 @@ class Calendar:
         """Return the name of the winter that begins in a year."""
         return str(year) if self.south else f"{year}/{(year + 1) % 100:02d}"
 
-    def months(self) -> list[int]:
-        """Return the months in the order of a winter's year."""
+    def order(self, month: int, day: int) -> tuple[int, int]:
+        """Return what days of a winter's year are sorted by."""
         start = SOUTHERN_START if self.south else NORTHERN_START
-        return [(start - 1 + n) % 12 + 1 for n in range(12)]
+        return (month - start) % 12, day
 
 
 @dataclass(frozen=True)
 class SnowSeason:
-    """The months in which it snows at a place.
+    """The part of the year in which it snows at a place.
 
     Attributes
     ----------
     calendar
         The winters of the place.
     first, last
-        Months, 1 for January.
+        Month and day.
+
+    Examples
+    --------
+    >>> season = SnowSeason(Calendar(), (11, 5), (4, 20))
+    >>> season.words, [str(day) for day in season.span(2023)]
+    ('from 5 November to 20 April', ['2023-11-05', '2024-04-21'])
     """
 
     calendar: Calendar
-    first: int
-    last: int
+    first: tuple[int, int]
+    last: tuple[int, int]
 
     @property
     def words(self) -> str:
-        """Such as "from November to April"."""
-        return f"from {month_name[self.first]} to {month_name[self.last]}"
+        """Such as "from 5 November to 20 April"."""
+        ends = (f"{day} {month_name[month]}" for month, day in (self.first, self.last))
+        return "from {} to {}".format(*ends)
 
     def span(self, year: int) -> tuple[date, date]:
         """Return the first day of a winter's snow season, and the first day after it."""
-        begin = date(self._of(self.first, year), self.first, 1)
-        last = self._of(self.last, year)
-        after = date(last + 1, 1, 1) if self.last == 12 else date(last, self.last + 1, 1)
-        return begin, after
-
-    def _of(self, month: int, year: int) -> int:
-        """Return the calendar year of a month in the winter that begins in a year."""
-        return year + (not self.calendar.south and month < NORTHERN_START)
+        begin, last = (
+            date(year + (not self.calendar.south and month < NORTHERN_START), month, day)
+            for month, day in (self.first, self.last)
+        )
+        return begin, last + timedelta(1)
 
 
 def calendar_of(rows: Sequence[Weather], latitude: Optional[float] = None) -> Calendar:
@@ -120,22 +126,26 @@ def calendar_of(rows: Sequence[Weather], latitude: Optional[float] = None) -> Ca
 
 
 def snow_season_of(rows: Sequence[Weather], calendar: Calendar) -> SnowSeason:
-    """Return the months in which it snows at a place.
+    """Return the part of the year in which it snows at a place.
 
     Examples
     --------
     >>> from snowshed.run.season.generator import EXAMPLE_CLIMATE
-    >>> snow_season_of(EXAMPLE_CLIMATE.winters(3, seed=1), Calendar()).words
-    'from November to April'
+    >>> snow_season_of(EXAMPLE_CLIMATE.winters(30, seed=1), Calendar()).words
+    'from 4 November to 27 April'
     """
-    months = np.array([row.date.month for row in rows])
-    falls = np.array([row.snowfall for row in rows])
-    total = falls.sum()
-    core = SOUTHERN_CORE if calendar.south else NORTHERN_CORE
-    order = calendar.months()
-    snowy = [
-        place
-        for place, month in enumerate(order)
-        if month in core or falls[months == month].sum() >= max(SNOWY * total, 1e-9)
-    ]
-    return SnowSeason(calendar, order[snowy[0]], order[snowy[-1]])
+    first, last = SOUTHERN_CORE if calendar.south else NORTHERN_CORE
+    falls: dict[tuple[int, int], float] = {}
+    for row in rows:
+        if row.snowfall:
+            day = (row.date.month, min(row.date.day, 28 if row.date.month == 2 else 31))
+            falls[day] = falls.get(day, 0.0) + row.snowfall
+    days = sorted(falls, key=lambda day: calendar.order(*day))
+    if days:
+        sums = np.cumsum([falls[day] for day in days])
+        snowy = [
+            days[int(np.searchsorted(sums, part * sums[-1]))] for part in (BESIDE, 1.0 - BESIDE)
+        ]
+        first = min(first, snowy[0], key=lambda day: calendar.order(*day))
+        last = max(last, snowy[1], key=lambda day: calendar.order(*day))
+    return SnowSeason(calendar, first, last)
