@@ -11,18 +11,23 @@ DAYS = ((-5.0, 0.0, 1.10), (-7.0, 24.0, 1.40), (-6.0, 0.0, 1.35))
 NEW_SNOW = 0.3  # m, on the second day
 
 
-def hours(step=1):
-    """Yield day, hour, temperature, precipitation and depth, every `step` hours."""
+def hours(step=1, before=False):
+    """Yield day, hour, temperature, precipitation and depth, every `step` hours.
+
+    Precipitation is that of the `step` hours from there on, or of those before.
+    """
+    last = 0.0
     for day, (warm, rain, depth) in enumerate(DAYS, 1):
         for hour in range(0, 24, step):
             wave = 2.0 if hour < 12 else -2.0
-            yield day, hour, warm + wave, rain * step / 24, depth
+            yield day, hour, warm + wave, (last if before else rain) * step / 24, depth
+            last = rain
 
 
 def smet_rows(pattern, step=1):
     return "".join(
         pattern.format(f"2024-01-{day:02d}T{hour:02d}:00", warm + 273.15, depth, rain) + "\n"
-        for day, hour, warm, rain, depth in hours(step)
+        for day, hour, warm, rain, depth in hours(step, before=True)
     )
 
 
@@ -251,9 +256,11 @@ stn;time;tre200d0;rre150d0;hns000d0;hto000d0
 HAL;20240103;-6.0;-;0;-
 """
 TEN_MINUTES = "station_abbr;reference_timestamp;tre200s0;ure200s0;rre150z0;htoauts0\n" + "".join(
-    f"HAL;{day:02d}.01.2024 {hour:02d}:00;{warm:.1f};88.1;{rain:.1f};"
+    f"HAL;{day:02d}.01.2024 {hour:02d}:{minute:02d};{warm:.1f};88.1;"
+    f"{(before if minute == 0 else now) / 6:.4f};"
     f"{'' if day == 3 else f'{100 * depth:.0f}'}\n"
-    for day, hour, warm, rain, depth in hours()
+    for (day, hour, warm, now, depth), (*_, before, _) in zip(hours(), hours(before=True))
+    for minute in range(0, 60, 10)
 )
 IMIS_HEAD = (
     "station_code,measure_date,hyear,HS,TA_30MIN_MEAN,RH_30MIN_MEAN,VW_30MIN_MEAN,VW_30MIN_MAX,"

@@ -12,6 +12,10 @@ Examples
 
 import importlib as _importlib
 import os
+import sys as _sys
+from importlib import machinery as _machinery
+from importlib.abc import Loader as _Loader
+from importlib.abc import MetaPathFinder as _MetaPathFinder
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
@@ -146,6 +150,30 @@ _MODULES = {
 #: Modules by a shorter name.
 _MODULE_NAMES = {"pv": "snowshed.analysis.photovoltaics"}
 _FORMER = {"InitialisedScene": "ResolvedScene", "Numerics": "MpmSettings"}
+
+
+class _ShortNames(_MetaPathFinder, _Loader):
+    """Lets modules be imported by their shorter names, as in ``from snowshed.pv import ...``."""
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> _Any:
+        """Return how a shorter name is imported; None for all other names."""
+        root, _, short = name.partition(".")
+        if root != __name__ or short not in _MODULE_NAMES:
+            return None
+        return _machinery.ModuleSpec(name, self)
+
+    def create_module(self, spec: _Any) -> _Any:
+        """Return the module that a shorter name stands for."""
+        module = _importlib.import_module(_MODULE_NAMES[spec.name.partition(".")[2]])
+        self._own = module.__spec__
+        return module
+
+    def exec_module(self, module: _Any) -> None:
+        """Leave the module as it is: it was executed under its own name."""
+        module.__spec__ = self._own
+
+
+_sys.meta_path.append(_ShortNames())
 
 
 def __dir__() -> list[str]:

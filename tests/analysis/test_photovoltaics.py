@@ -1,5 +1,9 @@
 """The pile of a season in pvlib's snow loss models."""
 
+import importlib
+import subprocess
+import sys
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -79,3 +83,70 @@ def test_a_season_month_after_month():
     assert table["pile_height_m"].tolist() == [0.4, 0.6]
     assert table["pile_angle_deg"].iloc[0] == pytest.approx(pile_angle(0.4, 0.3))
     assert blocked_days(season, 0.03).tolist() == [False, False, True]
+
+
+def made_season(dates, fall, blocked):
+    return pd.DataFrame(
+        {
+            "date": [day.isoformat() for day in dates],
+            "snowfall_m": fall,
+            "temperature_c": -5.0,
+            "event": pd.array([None] * len(dates), dtype="Int64"),
+            "released": "no",
+            "stack_height_m": 0.3,
+            "clearance_m": np.where(blocked, 0.0, 0.5),
+            "settled_clearance_m": np.where(blocked, 0.0, 0.5),
+            "joined": 0,
+        }
+    )
+
+
+NOTHING = pd.DataFrame({"event": [], "volume_m3": [], "width_m": []})
+
+
+@pytest.mark.parametrize("hours", [1, 6, 24])
+def test_days_count_by_dates_however_long_the_rows_are(hours):
+    """12 cm on every sixth day; the pile reaches the edge from 10 January on."""
+    dates = pd.date_range("2024-12-01", "2025-01-31 23:00", freq=f"{hours}h")
+    day = (dates - dates[0]).days
+    fall = np.where(day % 6 == 0, 0.12 * hours / 24, 0.0)
+    table = monthly_table(
+        made_season(dates, fall, dates >= pd.Timestamp("2025-01-10")), NOTHING, 0.02
+    )
+    assert table["snow_total"].tolist() == pytest.approx([72.0, 60.0])
+    assert table["snow_events"].tolist() == [6, 5]
+    assert table["blocked_days"].tolist() == [0, 22]
+
+
+def test_what_a_row_says_holds_until_the_next():
+    """Rows of snowfalls only: the pile blocks from 5 January to 31 March, also in February."""
+    dates = pd.to_datetime(["2024-12-01", "2025-01-05", "2025-01-20", "2025-03-31"])
+    table = monthly_table(
+        made_season(dates, [0.4, 0.4, 0.4, 0.0], [False, True, True, True]), NOTHING, 0.02
+    )
+    assert table["blocked_days"].tolist() == [0, 27, 28, 31]
+    assert table["snow_total"].tolist() == pytest.approx([40.0, 80.0, 0.0, 0.0])
+    assert table["snow_events"].tolist() == [1, 2, 0, 0]
+    assert table.index[2] == pd.Period("2025-02")
+
+
+def test_far_dates_are_refused():
+    dates = pd.to_datetime(["1700-12-01", "2025-01-05"])
+    with pytest.raises(InputError, match="from 1700-12-01 to 2025-01-05; at most"):
+        monthly_table(made_season(dates, [0.1, 0.1], [False, False]), NOTHING, 0.02)
+    wrong = made_season(dates, [0.1, 0.1], [False, False]).assign(date=["0224-01-01", "2024-01-02"])
+    with pytest.raises(InputError, match="column date"):
+        monthly_table(wrong, NOTHING, 0.02)
+
+
+def test_the_short_name_is_a_module():
+    code = (
+        "from snowshed.pv import monthly_table; import snowshed.pv, snowshed; "
+        "from snowshed.analysis import photovoltaics; "
+        "assert snowshed.pv is photovoltaics; assert photovoltaics.monthly_table is monthly_table; "
+        "assert photovoltaics.__spec__.name == photovoltaics.__name__; print('good')"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout == "good\n", done.stderr
+    with pytest.raises(ModuleNotFoundError):
+        importlib.import_module("snowshed.pvx")

@@ -20,7 +20,7 @@ ENDLESS = "/dev/zero"
         (["run", ENDLESS], 64),
         (["study", "run", ENDLESS], 64),
         (["study", "run", "study.toml"], 64),
-        (["regress", ENDLESS], 1024),
+        (["regress", ENDLESS], 256),
         (["season", ENDLESS, "--dim", "2", "--height", "1", "--length", "1", "--tilt", "40"], 64),
     ],
 )

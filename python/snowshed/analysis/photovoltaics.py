@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 EVENT_DAY = 0.0254  # m: a snowfall event of Townsend's model is a day with more than an inch
 FIXED_ANGLE = 40.0  # degrees, the pile that the model assumes
+LONGEST = 200 * 366  # days of a table of months
 LOWEST_ANGLE, HIGHEST_ANGLE = 0.1, 89.0  # degrees
 
 
@@ -168,33 +169,79 @@ def monthly_table(season: pd.DataFrame, events: pd.DataFrame, dx: float) -> pd.D
     Returns
     -------
     pandas.DataFrame
-        By month: ``snow_total`` (cm), ``snow_events`` (days above 2.54 cm), ``temp_air`` (mean, of
-        the rows), ``releases``, ``pile_height_m`` and ``clearance_m`` (least), ``blocked_days``,
-        ``pile_angle_deg`` for `loss_townsend`.
+        By month, also months without a row: ``snow_total`` (cm), ``snow_events`` (days with more
+        than 2.54 cm), ``temp_air`` (mean of the days), ``releases``, ``pile_height_m`` and
+        ``clearance_m`` (least), ``blocked_days``, ``pile_angle_deg`` for `loss_townsend`. Days
+        count by their dates, however long the rows are; what a row says holds until the next.
+
+    Raises
+    ------
+    InputError
+        If the dates cannot be dates of a season.
     """
     import pandas as pd
 
-    days = pd.to_datetime(season["date"])
     area = dict(zip(events["event"], events["volume_m3"] / events["width_m"].replace(0.0, 1.0)))
-    table = season.assign(
-        month=days.dt.to_period("M"),
-        blocked=blocked_days(season, dx).to_numpy(),
-        area=season["event"].map(area).ffill().fillna(0.0),
+    rows = pd.DataFrame(
+        {
+            "day": _dates(season).dt.normalize(),
+            "snow": season["snowfall_m"],
+            "warm": season["temperature_c"],
+            "releases": season["released"] == "yes",
+            "height": season["stack_height_m"],
+            "clearance": season["clearance_m"],
+            "blocked": blocked_days(season, dx).to_numpy(),
+            "area": season["event"].map(area).ffill().fillna(0.0),
+        }
     )
-    rows = []
-    for month, own in table.groupby("month"):
-        height = float(own["stack_height_m"].max())
-        rows.append(
-            {
-                "month": month,
-                "snow_total": 100.0 * own["snowfall_m"].sum(),
-                "snow_events": int((own["snowfall_m"] > EVENT_DAY).sum()),
-                "temp_air": own["temperature_c"].mean(),
-                "releases": int((own["released"] == "yes").sum()),
-                "pile_height_m": height,
-                "clearance_m": own["clearance_m"].min(),
-                "blocked_days": int(own["blocked"].sum()),
-                "pile_angle_deg": pile_angle(height, float(own["area"].max())),
-            }
+    days = _daily(rows)
+    months = days.groupby(pd.PeriodIndex(days.index, freq="M"))
+    height, largest = months["height"].max(), months["area"].max()
+    return pd.DataFrame(
+        {
+            "snow_total": 100.0 * months["snow"].sum(),
+            "snow_events": months["snow"].agg(lambda falls: int((falls > EVENT_DAY).sum())),
+            "temp_air": months["warm"].mean(),
+            "releases": months["releases"].sum().astype(int),
+            "pile_height_m": height,
+            "clearance_m": months["clearance"].min(),
+            "blocked_days": months["blocked"].sum().astype(int),
+            "pile_angle_deg": [pile_angle(*pair) for pair in zip(height, largest)],
+        }
+    ).rename_axis("month")
+
+
+def _dates(season: pd.DataFrame) -> pd.Series:
+    import pandas as pd
+
+    try:
+        dates = pd.Series(pd.to_datetime(season["date"])).reset_index(drop=True)
+    except (ValueError, TypeError) as error:  # also of years that pandas cannot hold
+        raise InputError(f"the season, column date: {error}") from None
+    if dates.empty:
+        raise InputError("the season: no rows")
+    if (dates.iloc[-1] - dates.iloc[0]).days > LONGEST:
+        raise InputError(
+            f"the season, column date: it goes from {dates.iloc[0].date()} to "
+            f"{dates.iloc[-1].date()}; at most {LONGEST} days are allowed"
         )
-    return pd.DataFrame(rows).set_index("month")
+    return dates
+
+
+def _daily(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a row for each day from the first to the last, of rows of any length.
+
+    A day without a row has what the row before it says; in a day with rows, the state that it
+    begins with counts as well.
+    """
+    import pandas as pd
+
+    by_day = rows.groupby("day")
+    every = pd.date_range(rows["day"].iloc[0], rows["day"].iloc[-1], freq="D")
+    sums = by_day[["snow", "releases"]].sum().reindex(every, fill_value=0)
+    last = by_day[["height", "clearance", "blocked", "area"]].last().reindex(every).ffill()
+    state = {"height": "max", "clearance": "min", "blocked": "max", "area": "max"}
+    within = by_day.agg(state).reindex(every)
+    within = within.where(within.notna(), last)
+    warm = by_day["warm"].mean().reindex(every).ffill()
+    return pd.concat([sums, within, warm], axis=1).astype({"blocked": bool})

@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
+import itertools
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -18,9 +19,10 @@ from typing import TYPE_CHECKING, Any
 from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import COLUMNS, TABLE, TEXT
+from snowshed.io.limits import COLUMNS, LINE, MB, ROWS, TABLE, TEXT, WRITTEN_ROWS
 from snowshed.io.messages import quoted
 from snowshed.io.number_text import number_in
+from snowshed.io.packed import unpacked
 from snowshed.io.paths import PathLike
 from snowshed.io.printable import csv_cell
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 WHOLE = re.compile("[0-9]{1,9}")
+LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")  # with their ends, one after another
 
 
 class Table:
@@ -174,7 +177,7 @@ def read_text_table(
     Parameters
     ----------
     path
-        The file.
+        The file, packed with gzip or xz or not.
     hint
         What to do about a file that is empty, for the message.
     check_columns
@@ -188,7 +191,7 @@ def read_text_table(
     OSError
         If it cannot be read.
     """
-    records = _records(path, _decoded(path, TEXT), comment="#")
+    records = _records(path, _decoded(path, TEXT), comment="#", most=WRITTEN_ROWS)
     head = next(records, None)
     if head is None:
         raise InputError(f"{path}: empty; {hint}")
@@ -295,15 +298,18 @@ def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.Data
     for _ in _records(where, text):
         pass
     options: dict[str, Any] = {"dtype": str, "keep_default_na": False} if as_text else {}
-    try:
-        table: pd.DataFrame = pd.read_csv(io.StringIO(text), **options)
+    try:  # bytes, because a StringIO has four of them for each character
+        table: pd.DataFrame = pd.read_csv(io.BytesIO(text.encode()), **options)
     except ValueError as error:  # of pandas all errors on content are ValueErrors
         raise InputError(f"{where}: not a table: {error}") from None
     return table
 
 
 def _decoded(path: Path, largest: int) -> str:
-    content = read_input(path, largest)
+    content = unpacked(read_input(path, largest), path, largest)
+    if b"\0" in content:
+        line = content[: content.index(b"\0")].count(b"\n") + 1
+        raise InputError(f"{path}, line {line}: not a table: it holds bytes that are 0")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -311,12 +317,16 @@ def _decoded(path: Path, largest: int) -> str:
         raise InputError(f"{path}, line {line}: not a table: not UTF-8 text") from None
 
 
-def _records(path: Path | str, text: str, comment: str = "") -> Iterator[tuple[int, list[str]]]:
+def _records(
+    path: Path | str, text: str, comment: str = "", most: int = ROWS
+) -> Iterator[tuple[int, list[str]]]:
     """Yield the first line and the cells of each record, which has as many as there are names."""
     pulled: list[int] = []
-    reader = csv.reader(_numbered(text, comment, pulled), strict=True)
+    reader = csv.reader(_numbered(path, text, comment, pulled), strict=True)
     names: list[str] = []
-    while True:
+    for count in itertools.count():
+        if count > most + 1:
+            raise InputError(f"{path}: not a table: more than {most} rows")
         pulled.clear()
         try:
             cells = [cell.strip() for cell in next(reader)]
@@ -336,9 +346,17 @@ def _records(path: Path | str, text: str, comment: str = "") -> Iterator[tuple[i
         yield pulled[0], cells
 
 
-def _numbered(text: str, comment: str, pulled: list[int]) -> Iterator[str]:
+def _numbered(path: Path | str, text: str, comment: str, pulled: list[int]) -> Iterator[str]:
     """Yield the lines that are neither empty nor comments, noting their numbers in `pulled`."""
-    for number, line in enumerate(io.StringIO(text, newline=""), 1):
+    length = 0
+    for number, found in enumerate(LINES.finditer(text), 1):
+        start, end = found.span()
+        length = end - start if not pulled else length + end - start
+        if length > LINE:  # before the reader makes cells of it
+            raise InputError(
+                f"{path}, line {number}: not a table: a row longer than {LINE // MB} MB"
+            )
+        line = found.group()
         if comment and (not line.strip() or line.lstrip().startswith(comment)):
             continue
         pulled.append(number)
@@ -350,6 +368,6 @@ def _check_names(names: Sequence[str], where: str) -> None:
         raise InputError(
             f"{where}: not a table: {len(names)} columns; at most {COLUMNS} are allowed"
         )
-    for number, name in enumerate(names):
+    for number, name in enumerate(names):  # few, as was checked
         if name in names[:number]:
             raise InputError(f"{where}: not a table: the column {quoted(name)} is there twice")

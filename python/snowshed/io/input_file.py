@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import resource
+import select
 import stat
+import time
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.io.limits import MB, TEXT
+from snowshed.io.limits import MB, PIPE, PIPE_SILENCE, TEXT
 
 
 def read_regular(path: Path) -> bytes:
@@ -52,26 +54,49 @@ def _memory() -> int:
 def read_input(path: Path, largest: int = TEXT) -> bytes:
     """Return the content of a file; devices without end are read no farther than `largest` bytes.
 
+    A pipe is read as long as its writer goes on, but nothing waits for a writer that is silent.
+
     Raises
     ------
     InputError
-        If it is longer than the limit, or a pipe or a terminal, which could wait for ever.
+        If it is longer than the limit, or a pipe into which nothing is written.
     OSError
         If it cannot be read.
 
     Examples
     --------
-    >>> read_input(Path("/dev/zero"))
+    >>> read_input(Path("/dev/zero"), 2**20)
     Traceback (most recent call last):
     ...
-    snowshed._core.InputError: /dev/zero: longer than 64 MB
+    snowshed._core.InputError: /dev/zero: longer than 1 MB
     """
     with open(path, "rb", opener=_open_at_once) as file:
-        mode = os.fstat(file.fileno()).st_mode
-        if stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode) or file.isatty():
-            raise InputError(f"{path}: not a regular file")
-        content = file.read(largest + 1)
-    if len(content) > largest:
-        limit = f"{largest} bytes" if largest % MB else f"{largest // MB} MB"
-        raise InputError(f"{path}: longer than {limit}")
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            content = _awaited(file.fileno(), path, largest)
+        elif status.st_size <= largest:
+            content = file.read(largest + 1) or b""  # None of what has nothing to say yet
+        if status.st_size > largest or len(content) > largest:
+            limit = f"{largest} bytes" if largest % MB else f"{largest // MB} MB"
+            raise InputError(f"{path}: longer than {limit}")
     return content
+
+
+def _awaited(descriptor: int, path: Path, largest: int) -> bytes:
+    """Return what a pipe or a device holds, at most `largest` + 1 bytes."""
+    content, end = bytearray(), time.monotonic() + PIPE
+    while len(content) <= largest:
+        wait = min(end - time.monotonic(), PIPE_SILENCE)
+        if wait <= 0.0 or not select.select([descriptor], [], [], wait)[0]:
+            raise InputError(
+                f"{path}: a pipe or a device to which nobody writes, or too slowly; write its "
+                "content to a file first"
+            )
+        try:
+            part = os.read(descriptor, min(largest + 1 - len(content), MB))
+        except BlockingIOError:  # another reader was faster
+            continue
+        if not part:
+            break
+        content += part
+    return bytes(content)

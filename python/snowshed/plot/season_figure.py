@@ -54,6 +54,7 @@ def season_figure(
     panel: Sequence[Sequence[float]],
     contact: Optional[_Contact],
     title: str,
+    snow: str = "",
 ) -> Figure:
     """Draw a season.
 
@@ -71,6 +72,8 @@ def season_figure(
         The first contact of the snow with the panel; None: there is none.
     title
         Above the figure, before the key numbers of the scene.
+    snow
+        How well the snow of the season is known, in a line.
     """
     figure = blank(*SIZE)
     load, stack, side = figure.subplots(3, 1, height_ratios=(1.0, 1.1, 1.2))
@@ -89,7 +92,8 @@ def season_figure(
         _plain(axes)
     first, last = (f"{moment:%Y-%m-%d}" for moment in (moments[0], moments[-1]))
     caption = scene_caption(dict(scene))
-    describe(figure, f"Season from {first} to {last}, {title}\n{caption}")
+    known = f"\n{snow}" if snow else ""
+    describe(figure, f"Season from {first} to {last}, {title}{known}\n{caption}")
     return figure
 
 

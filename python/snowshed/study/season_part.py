@@ -13,7 +13,7 @@ from snowshed._core import InputError
 from snowshed.run.season.accumulation import accumulate, stack_ageing
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
-from snowshed.run.season.weather import read_weather
+from snowshed.run.season.weather import read_season
 from snowshed.run.season.weather_row import Weather
 from snowshed.scene.scene import PathLike, ResolvedScene
 from snowshed.study.scene_hash import Run
@@ -82,7 +82,7 @@ class SeasonPart:
     @cached_property
     def rows(self) -> Sequence[Weather]:
         """The rows of the winter; raises InputError where the file is wrong."""
-        return read_weather(self.weather)[0]
+        return read_season(self.weather)
 
     def run(self, scene: ResolvedScene) -> Run:
         """Return the slide-offs of the winter from the panel of a scene as a run.

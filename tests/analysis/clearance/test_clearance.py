@@ -4,10 +4,12 @@ import json
 import os
 import signal
 from dataclasses import replace
+from datetime import date
 
 import numpy as np
 import pytest
 from plot.browser import check_page
+from station_files import days, elements, ghcn
 
 from snowshed import InputError
 from snowshed.analysis.clearance import Design, Ranges, clearance_of, winters_of
@@ -237,5 +239,30 @@ def test_bad_questions_are_refused(options, message, tmp_path, capsys):
 
 
 def test_too_short_weather_is_refused():
-    with pytest.raises(InputError, match="no winter of 60 days"):
+    with pytest.raises(InputError, match=r"no winter whose snow .*: 2001/02 \(22 %\)"):
         winters_of(SHORT.winters(1, seed=1)[:20])
+
+
+def test_the_answer_says_from_how_many_winters_it_is(tmp_path, capsys):
+    """Of three winters of a station, snow was observed in one; the others held back no answer."""
+    rows = [
+        (day, elements(day, snow=150.0 if day.year == 2000 or day < date(2001, 7, 1) else None))
+        for day in days(date(2000, 10, 1), date(2003, 5, 31))
+    ]
+    file, out = ghcn(tmp_path / "station.csv", rows), tmp_path / "out"
+    asked = ["clearance", str(file), "--slope-length", "0.6", "--tilt", "60", "--draws", "1"]
+    known = ["--range", "friction=0.4", "--range", "adhesion=500", "--range", "sliding=0.2"]
+    assert main([*asked, *known, "--heights", "0.5,2", "-o", str(out)]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "This follows from 1 of 3 winters of the file" in shown
+    assert "left out are the winters" in shown and "2001/02 to 2002/03 (0 %)" in shown
+    assert "Where the snow comes from" in shown and "new snow" in shown
+    summary = json.loads((out / "clearance.json").read_text())
+    counts = {one["winter"]: one["counts"] for one in summary["winters_of_the_file"]}
+    assert counts == {"2000/01": True, "2001/02": False, "2002/03": False}
+    assert summary["coverage"] == 0.9 and "1 of 3" in summary["warnings"][0]
+    page = (out / "clearance.html").read_text()
+    assert "1 of 3 winters" in page and "2001/02 to 2002/03 (0 %)" in page
+    assert "Where the snow comes from" in page
+    assert main([*asked, "--coverage", "2x", "-o", str(tmp_path / "no")]) == 2
+    assert "--coverage: '2x'; allowed: 0 to 1" in capsys.readouterr().err

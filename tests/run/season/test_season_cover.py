@@ -1,5 +1,6 @@
 """The natural snow cover of a season, the strength of its slabs, and its first contact."""
 
+from dataclasses import replace
 from datetime import datetime, timedelta
 
 import pandas as pd
@@ -8,6 +9,7 @@ import pytest
 from snowshed import InputError, Scene
 from snowshed.run.season import SeasonSettings, accumulate
 from snowshed.run.season.clearance import first_contact
+from snowshed.run.season.column import SnowColumn
 from snowshed.run.season.cover import natural_cover
 from snowshed.run.season.slabs import season_scene
 from snowshed.run.season.weather_row import Weather
@@ -43,6 +45,36 @@ def test_a_measured_or_a_given_depth_goes_before():
     assert natural_cover(days(0.3, 0.0), SeasonSettings(cover="none")) == [0.0, 0.0]
     with pytest.raises(InputError, match="cover: 'deep'; allowed: weather, none, a depth in m"):
         SeasonSettings(cover="deep")
+
+
+def test_the_cover_does_not_outlast_its_readings():
+    """Readings end at 0.6 m; at 10 degrees the cover is gone after some days, not in autumn."""
+    read = days(0.0, 0.0, depth=0.6)
+    later = [
+        replace(row, date=row.date + timedelta(days=2), temperature=10.0)
+        for row in days(*[0.0] * 30)
+    ]
+    depths = natural_cover([*read, *later], SeasonSettings())
+    assert depths[:2] == [0.6, 0.6] and 0.5 < depths[2] < 0.6
+    assert depths[10] == 0.0 == depths[-1]
+    grown = natural_cover(
+        [*read, *(replace(row, snowfall=0.1) for row in later[:1])], SeasonSettings()
+    )
+    assert grown[2] == pytest.approx(depths[2] + 0.1)
+
+
+def test_between_two_readings_the_cover_follows_a_line():
+    rows = days(*[0.0] * 5)
+    ends = [replace(rows[0], snow_depth=0.8), *rows[1:4], replace(rows[4], snow_depth=0.4)]
+    assert natural_cover(ends, SeasonSettings()) == pytest.approx([0.8, 0.7, 0.6, 0.5, 0.4])
+
+
+def test_years_of_snow_that_stays_cost_no_more_than_some():
+    column = SnowColumn(load_factor=9.81)
+    for _ in range(5000):
+        column.add(2.0, 100.0)
+    assert column.mass == pytest.approx(10_000.0) and column.thickness == pytest.approx(100.0)
+    assert len(column.masses) <= 1000
 
 
 def slab_snow(density, settings):

@@ -22,6 +22,7 @@ from snowshed.analysis.clearance.winters import Winter
 from snowshed.io.arrays import Floats
 from snowshed.io.json_file import JsonValue
 from snowshed.run.progress import Reporter
+from snowshed.run.season.record import WinterList
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.study.session import compute_runs, expected_duration
 from snowshed.study.table import read_table
@@ -48,6 +49,10 @@ class Answer:
         For each case, what was simulated, by rising height.
     failed
         Runs that could not be computed; their cases are left out.
+    winters
+        Names of the winters that count.
+    known
+        How well the snow of each winter of the file is known; None: not asked.
     """
 
     design: Design
@@ -56,6 +61,7 @@ class Answer:
     outcomes: Sequence[Sequence[Outcome]]
     failed: int = 0
     winters: Sequence[str] = field(default_factory=list)
+    known: Optional[WinterList] = None
 
     @property
     def required(self) -> Floats:
@@ -84,6 +90,14 @@ class Answer:
     def buried(self, height: float) -> float:
         """Return the probability of a winter that snow reaches a lower edge at a height, m."""
         return float((self.required > height).mean())
+
+    @property
+    def winters_in_words(self) -> str:
+        """From how many winters the answer is, such as "2 of 20 winters"."""
+        number = len(self.winters)
+        if self.known is None or len(self.known.winters) == number:
+            return "1 winter" if number == 1 else f"{number} winters"
+        return self.known.words
 
     @property
     def _winter_numbers(self) -> Floats:
@@ -151,6 +165,7 @@ def clearance_of(
     ranges: Optional[Ranges] = None,
     settings: Optional[SeasonSettings] = None,
     scene: Optional[Mapping[str, JsonValue]] = None,
+    known: Optional[WinterList] = None,
     jobs: Optional[int] = None,
     progress: Optional[Reporter] = None,
 ) -> Answer:
@@ -172,6 +187,8 @@ def clearance_of(
         Of the seasons, but for what varies; None: the defaults.
     scene
         Values of the scene by dotted path, such as ``numerics.dx``.
+    known
+        How well the snow of each winter of the file is known (`Record.winters`), for the words.
     jobs
         Local processes at once; None: as many as there are cores.
     progress
@@ -204,6 +221,7 @@ def clearance_of(
         [sorted(search.outcomes[number], key=lambda one: one.height) for number in kept],
         len(cases) - len(kept),
         [winter.name for winter in winters],
+        known,
     )
 
 

@@ -15,6 +15,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
 from snowshed.plot.html_page import Grid, Picture, template
+from snowshed.run.season.quality_table import ALIGN, HEAD, quality_rows, title
 
 
 def write_report(
@@ -39,24 +40,31 @@ def write_report(
 
     table = pd.concat([answer.table() for answer in answers], ignore_index=True)
     write_csv(table, folder / "clearance.csv", float_format="%.6g")
-    write_text(folder / "clearance.json", json.dumps(summary(answers, ranges), indent=2) + "\n")
+    data = summary(answers, ranges, notes)
+    write_text(folder / "clearance.json", json.dumps(data, indent=2) + "\n")
     page = template("snowshed.plot", "clearance.html.j2").render(
         title="How high must the lower edge be?",
         sentence=words.sentence(answers),
         warnings=words.warnings(answers),
         panels=[_panel(answer, folder) for answer in answers],
         chart=_chart(answers) if len(answers) > 1 else None,
+        known=_known(answers[0]),
+        notes=notes,
         ranges=Grid(("not known", "from", "to"), words.range_rows(ranges), "lrr"),
-        assumptions=[*notes, *words.assumptions(answers[0])],
+        assumptions=words.assumptions(answers[0]),
     )
     write_text(folder / "clearance.html", page)
 
 
-def summary(answers: Sequence[Answer], ranges: Ranges) -> dict[str, Any]:
-    """Return the answer as JSON data."""
+def summary(answers: Sequence[Answer], ranges: Ranges, notes: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the answer as JSON data; parameters as of `write_report`."""
+    known = answers[0].known
     return {
         "sentence": words.sentence(answers),
         "warnings": words.warnings(answers),
+        "notes": list(notes),
+        "coverage": None if known is None else known.coverage,
+        "winters_of_the_file": [] if known is None else known.data(),
         "ranges": {name: list(span) for name, span in ranges.spans.items()},
         "draws": ranges.draws,
         "panels": [
@@ -72,6 +80,13 @@ def summary(answers: Sequence[Answer], ranges: Ranges) -> dict[str, Any]:
             for answer in answers
         ],
     }
+
+
+def _known(answer: Answer) -> Optional[tuple[str, Grid]]:
+    """Return the table of the winters of the file, and its title."""
+    if answer.known is None:
+        return None
+    return title(answer.known), Grid(HEAD, quality_rows(answer.known), ALIGN)
 
 
 def _panel(answer: Answer, folder: Path) -> dict[str, Any]:

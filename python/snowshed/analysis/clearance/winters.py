@@ -1,16 +1,15 @@
-"""Weather of many years, cut into winters."""
+"""Weather of many years, cut into winters, of which those count whose snow was observed."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from snowshed._core import InputError
+from snowshed.io.notes import tell
+from snowshed.run.season.quality import COVERAGE
+from snowshed.run.season.record import Record, WinterList, percent
 from snowshed.run.season.weather_row import Weather
-
-LEAST_DAYS = 60  # of a winter that counts
 
 
 @dataclass(frozen=True)
@@ -20,7 +19,7 @@ class Winter:
     Attributes
     ----------
     name
-        Such as "2001/02".
+        Such as "2001/02", or "2001" in the south.
     days
         Its rows, in order.
     """
@@ -34,16 +33,24 @@ class Winter:
         return sum(day.snowfall for day in self.days)
 
 
-def winters_of(season: Sequence[Weather]) -> list[Winter]:
-    """Return the winters of a season file of many years.
+def winters_of(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Winter]:
+    """Return the winters of many years of weather whose snow was observed.
 
-    A winter goes from the warmest month of the file's mean year to the next. Winters of less than
-    60 days, at the ends of the file, are left out.
+    Years are cut in the station's summer, on 1 July in the north and on 1 January in the south.
+    Winters whose snow was observed on less than the asked share of the days of the station's snow
+    season are left out, and named in a note.
+
+    Parameters
+    ----------
+    season
+        From `read_season`.
+    coverage
+        Share of the days of the snow season, 0 to 1.
 
     Raises
     ------
     InputError
-        If none is long enough.
+        If no winter counts, or the coverage is no share.
 
     Examples
     --------
@@ -51,24 +58,31 @@ def winters_of(season: Sequence[Weather]) -> list[Winter]:
     >>> [winter.name for winter in winters_of(EXAMPLE_CLIMATE.winters(2, seed=1))]
     ['2001/02', '2002/03']
     """
-    start = _first_month(season)
-    years: dict[int, list[Weather]] = {}
-    for row in season:
-        years.setdefault(row.date.year - (row.date.month < start), []).append(row)
-    found = [
-        Winter(f"{year}/{(year + 1) % 100:02d}", days)
-        for year, days in sorted(years.items())
-        if (days[-1].date - days[0].date).days >= LEAST_DAYS
-    ]
-    if not found:
-        raise InputError(f"the weather: no winter of {LEAST_DAYS} days; it has {len(season)} rows")
-    return found
+    found = Record(season).winters(coverage)
+    winters = counted(found)
+    for note in found.notes:
+        tell(note)
+    return winters
 
 
-def _first_month(season: Sequence[Weather]) -> int:
-    """Return the month in which a winter's year begins: half a year from the coldest one."""
-    months = np.array([row.date.month for row in season])
-    temperatures = np.array([row.temperature for row in season])
-    means = {month: temperatures[months == month].mean() for month in set(months.tolist())}
-    coldest = min(means, key=lambda month: means[month])
-    return int((coldest + 5) % 12 + 1)
+def counted(found: WinterList) -> list[Winter]:
+    """Return the winters that count.
+
+    Parameters
+    ----------
+    found
+        From `Record.winters`.
+
+    Raises
+    ------
+    InputError
+        If none does, with the share of each.
+    """
+    winters = [Winter(winter.name, winter.rows) for winter in found.counted]
+    if not winters:
+        raise InputError(
+            f"the weather: no winter whose snow was observed on {percent(found.coverage)} of the "
+            f"days {found.season.words}: {found.left_out_words}; give a longer record, a "
+            "smaller --coverage, or another column (--snow-from)"
+        )
+    return winters

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import MEANING, Ranges
+from snowshed.run.season.record import percent
 
 OWNERS = 0.9  # the probability that the first sentence tells
 CHANCE = "chance: places of particles, and causes that act together"
@@ -18,8 +19,9 @@ def sentence(answers: Sequence[Answer]) -> str:
     return (
         f"The lower edge of a panel of {answer.design.slope_length:g} m at "
         f"{answer.design.tilt:g}° must be {level.height:.1f} m above the ground, so that its snow "
-        f"stays clear of it in 9 of 10 winters; by the {len(answer.winters)} winters of the file "
-        f"and what nobody knows of the snow, {level.low:.1f} to {level.high:.1f} m."
+        f"stays clear of it in 9 of 10 winters. This follows from {answer.winters_in_words} of the "
+        f"file; chance and what nobody knows of the snow leave {level.low:.1f} to "
+        f"{level.high:.1f} m."
     )
 
 
@@ -46,7 +48,7 @@ def advice(answer: Answer) -> str:
 
 def warnings(answers: Sequence[Answer]) -> list[str]:
     """Return where the answer leaves its validity."""
-    found = []
+    found = _left_out(answers[0])
     for answer in answers:
         name = f"{answer.design.slope_length:g} m at {answer.design.tilt:g}°"
         for level in answer.levels:
@@ -58,7 +60,7 @@ def warnings(answers: Sequence[Answer]) -> list[str]:
             elif not level.counted:
                 found.append(
                     f"{name}: {100 * level.probability:g} % is extrapolated (Gumbel) from "
-                    f"{len(answer.winters)} winters; {level.return_period:.0f} and more would be "
+                    f"{_number(len(answer.winters))}; {level.return_period:.0f} and more would be "
                     "needed to count it"
                 )
         if answer.failed:
@@ -66,6 +68,22 @@ def warnings(answers: Sequence[Answer]) -> list[str]:
                 f"{name}: {answer.failed} seasons could not be simulated, and are left out"
             )
     return found
+
+
+def _left_out(answer: Answer) -> list[str]:
+    """Return what to know of the winters of the file that do not count."""
+    if answer.known is None or len(answer.known.counted) == len(answer.known.winters):
+        return []
+    number = len(answer.known.winters) - len(answer.known.counted)
+    return [
+        f"the answer is from {answer.known.words}; the snow of {_number(number)} was not observed "
+        f"on {percent(answer.known.coverage)} of the days {answer.known.season.words}: "
+        f"{answer.known.left_out_words}"
+    ]
+
+
+def _number(winters: int) -> str:
+    return "1 winter" if winters == 1 else f"{winters} winters"
 
 
 def assumptions(answer: Answer) -> list[str]:

@@ -11,18 +11,19 @@ from snowshed._core import InputError
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say
+from snowshed.cli.weather_options import weather_options
 from snowshed.io.formatting import about
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance import Answer, Design, Ranges, Winter
-    from snowshed.run.season.weather_row import Weather as WeatherRow
+    from snowshed.run.season.record import Record, WinterList
 
 EXAMPLE = "example"  # in place of a file: made winters
 PATH = click.Path(path_type=Path)
 
 
 @click.command()
-@click.argument("weather", metavar="WEATHER", type=PATH)
+@click.argument("weather", metavar="WEATHER...", type=PATH, nargs=-1, required=True)
 @click.option("--slope-length", required=True, help="Along the slope, m; several: 3,4,5.")
 @click.option("--tilt", required=True, help="Degrees from the horizontal; several: 40,60.")
 @click.option(
@@ -41,18 +42,22 @@ PATH = click.Path(path_type=Path)
 )
 @click.option("--draws", type=int, default=3, show_default=True, help="Seasons for each winter.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Of the drawing.")
+@weather_options
 @click.option("--jobs", type=int, help="Processes at once.  [default: cores]")
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="Results folder.")
 @click.option("--dry-run", is_flag=True, help="Say how long it takes, and end.")
 @quiet_option
 def clearance(
-    weather: Path,
+    weather: tuple[Path, ...],
     slope_length: str,
     tilt: str,
     heights: str,
     spans: tuple[str, ...],
     draws: int,
     seed: int,
+    coverage: float,
+    snow_from: str,
+    temperature: Optional[Path],
     jobs: Optional[int],
     folder: Path,
     dry_run: bool,
@@ -61,17 +66,19 @@ def clearance(
     """Find how high the lower edge must be, so that shed snow does not reach it.
 
     WEATHER holds years of daily data, in any format that ``snowshed season`` reads, or is the word
-    example: ten made winters. The seasons of all its winters are simulated over the ranges of what
-    nobody knows of the snow. The same command goes on with an interrupted answer.
+    example: ten made winters. Several files of one station are read as one: those of its snow and
+    its temperature, or of its years. The seasons of all winters whose snow was observed are
+    simulated over the ranges of what nobody knows of the snow. The same command goes on with an
+    interrupted answer.
 
     \b
     Example:
       snowshed clearance winters.csv --slope-length 4 --tilt 60 --heights 1.5:4:0.5 -o answer
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.clearance import Design, Ranges, winters_of
+    from snowshed.analysis.clearance import Design, Ranges
     from snowshed.analysis.clearance.answer import forecast
     from snowshed.analysis.clearance.design import DEFAULT_RANGES
-    from snowshed.run.season.weather import read_weather
+    from snowshed.analysis.clearance.winters import counted
 
     ranges = Ranges({**DEFAULT_RANGES, **dict(map(_span, spans))}, draws, seed)
     designs = [
@@ -80,20 +87,22 @@ def clearance(
         for angle in numbers("--tilt", tilt)
     ]
     candidates = numbers("--heights", heights)
-    rows, notes = read_weather(weather) if str(weather) != EXAMPLE else _example()
-    winters = winters_of(rows)
+    record = _record(weather, snow_from, temperature)
+    known = record.winters(coverage)
+    notes = [*record.notes, *known.notes]
+    for note in () if quiet else notes:
+        say(f"note: {note}")
+    winters = counted(known)
     if dry_run or not quiet:
         plans = [forecast(one, winters, candidates, ranges=ranges, jobs=jobs) for one in designs]
         seconds, seasons = sum(plan[0] for plan in plans), sum(plan[1] for plan in plans)
         say(
-            f"{len(winters)} winters, {len(designs)} panels, about {seasons} seasons: "
-            f"{about(seconds)}"
+            f"{known.words}, {len(designs)} {'panel' if len(designs) == 1 else 'panels'}, about "
+            f"{seasons} seasons: {about(seconds)}"
         )
     if dry_run:
         return
-    for note in () if quiet else notes:
-        say(f"note: {note}")
-    answers = _answers(designs, winters, candidates, ranges, folder, jobs, quiet=quiet)
+    answers = _answers(designs, known, winters, candidates, ranges, folder, jobs, quiet=quiet)
     from snowshed.analysis.clearance.report import write_report
 
     write_report(answers, ranges, folder, notes)
@@ -105,6 +114,7 @@ def clearance(
 
 def _answers(
     designs: list[Design],
+    known: WinterList,
     winters: list[Winter],
     heights: list[float],
     ranges: Ranges,
@@ -118,7 +128,7 @@ def _answers(
     from snowshed.study.errors import StudyInterrupted
 
     folder.mkdir(parents=True, exist_ok=True)
-    options: dict[str, Any] = {"ranges": ranges, "jobs": jobs}
+    options: dict[str, Any] = {"ranges": ranges, "jobs": jobs, "known": known}
     found = []
     try:
         for one in designs:
@@ -132,11 +142,15 @@ def _answers(
     return found
 
 
-def _example() -> tuple[list[WeatherRow], list[str]]:
+def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> Record:
     from snowshed.run.season.generator import EXAMPLE_CLIMATE
+    from snowshed.run.season.record import Record
+    from snowshed.run.season.weather import read_record
 
+    if [str(one) for one in weather] != [EXAMPLE]:
+        return read_record(weather, snow_from, temperature)
     rows = EXAMPLE_CLIMATE.winters(10, seed=7)
-    return rows, ["the weather is that of ten made winters (generator of Richardson 1981)"]
+    return Record(rows, ["the weather is that of ten made winters (generator of Richardson 1981)"])
 
 
 def numbers(option: str, text: str) -> list[float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
 
@@ -16,6 +17,7 @@ from snowshed.cli.scene_options import (
     scene_from_options,
     scene_options,
 )
+from snowshed.cli.weather_options import weather_options
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.scene.scene import Scene
@@ -32,7 +34,7 @@ DECIDED = {"slab.thickness": 0.1}
 
 
 @click.command()
-@click.argument("season_file", metavar="FILE", type=PATH)
+@click.argument("season_files", metavar="FILE...", type=PATH, nargs=-1, required=True)
 @click.option(
     "-o", "--output", "folder", type=PATH, required=True, help="Results folder, new or empty."
 )
@@ -101,11 +103,12 @@ DECIDED = {"slab.thickness": 0.1}
     show_default=True,
     help="Natural snow cover below the stack: weather (from the file), none, or a depth in m.",
 )
+@weather_options
 @click.option("--resume", is_flag=True, help="Go on with an interrupted season.")
 @quiet_option
 @scene_options
 def season(
-    season_file: Path,
+    season_files: tuple[Path, ...],
     folder: Path,
     scene_file: Optional[Path],
     release_friction: float,
@@ -117,6 +120,9 @@ def season(
     strength_age: float,
     strength: str,
     cover: str,
+    coverage: float,
+    snow_from: str,
+    temperature: Optional[Path],
     resume: bool,
     quiet: bool,
     preset: Optional[str],
@@ -127,8 +133,9 @@ def season(
 
     FILE is that of a weather station (SMET, iCSV, EPW, TMY3, GHCN-daily, ACIS, MeteoSwiss, IMIS),
     or a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
-    friction, adhesion_pa and snow_depth_m. The panel, the ground and the method are described by
-    the same options as in ``snowshed panel``; --friction is that of sliding snow.
+    friction, adhesion_pa and snow_depth_m. Several FILEs of one station are read as one: those of
+    its snow and its temperature, or of its years. The panel, the ground and the method are
+    described by the same options as in ``snowshed panel``; --friction is that of sliding snow.
 
     \b
     Example:
@@ -146,7 +153,8 @@ def season(
         depth_or_word(cover),
     )
     scene = _scene(scene_file, preset, snow_preset, options)
-    result = _run(season_file, scene, folder, settings, resume=resume, quiet=quiet)
+    reading = {"coverage": coverage, "snow_from": snow_from, "temperature": temperature}
+    result = _run(season_files, scene, folder, settings, reading, resume=resume, quiet=quiet)
     if not quiet:
         from snowshed.cli.display.season import print_season
 
@@ -195,10 +203,11 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def _run(
-    season_file: Path,
+    season_files: tuple[Path, ...],
     scene: ResolvedScene,
     folder: Path,
     settings: SeasonSettings,
+    reading: Mapping[str, Any],
     *,
     resume: bool,
     quiet: bool,
@@ -206,10 +215,11 @@ def _run(
     from snowshed.cli.progress import progress_bar
     from snowshed.run.season.driver import run_season
 
+    options = {**reading, "resume": resume}
     try:
         with progress_bar(quiet=quiet) as progress:
             return run_season(
-                season_file, scene, folder, settings=settings, resume=resume, progress=progress
+                season_files, scene, folder, settings=settings, progress=progress, **options
             )
     except Interrupted:
         raise Stopped("interrupted; go on with the same command and --resume") from None

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from snowshed.analysis.clearance import words
 from snowshed.analysis.clearance.answer import Answer
+from snowshed.cli.display.winters import print_quality
 from snowshed.cli.terminal import plain_table, wide_console
 
 
@@ -26,6 +27,8 @@ def print_answers(answers: Sequence[Answer], folder: Path) -> None:
                 f"{level.low:.2f} to {level.high:.2f}",
             )
     console.print(shown)
+    if answers[0].known is not None:
+        print_quality(console, answers[0].known)
     for warning in words.warnings(answers):
         console.print(f"note: {warning}")
     console.print(f"clearance.html and clearance.csv in {folder}")

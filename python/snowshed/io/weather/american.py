@@ -4,37 +4,33 @@ from __future__ import annotations
 
 import calendar
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from datetime import datetime
-from typing import Any
 
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
-from snowshed.io.weather.observation import (
-    Observation,
-    Quantity,
-    Station,
-    cells_of,
-    split_cells,
-    time_of,
-)
+from snowshed.io.weather.daily import COLUMNS, COUNTS, MISSING, TOTALS, Days, with_totals
+from snowshed.io.weather.observation import Quantity, Station, cells_of, split_cells, time_of
 
-#: Elements of GHCN-daily: SNOW and SNWD in mm, PRCP in tenths of mm, temperatures in tenths of C.
-ELEMENTS: Mapping[str, Quantity] = {
-    "SNOW": Quantity("snowfall", "mm", 1e-3),
-    "SNWD": Quantity("snow_depth", "mm", 1e-3),
-    "PRCP": Quantity("precipitation", "tenths of mm", 0.1),
-    "TMAX": Quantity("temperature", "tenths of degrees C", 0.1),
-    "TMIN": Quantity("temperature", "tenths of degrees C", 0.1),
-    "TAVG": Quantity("temperature", "tenths of degrees C", 0.1),
-}
+#: Elements of GHCN-daily: SNOW and SNWD in mm, PRCP in tenths of mm, temperatures in tenths of C;
+#: MDSF and MDPR are new snow and precipitation of several days.
+ELEMENTS: Mapping[str, Quantity] = with_totals(
+    {
+        "SNOW": Quantity("snowfall", "mm", 1e-3),
+        "SNWD": Quantity("snow_depth", "mm", 1e-3),
+        "PRCP": Quantity("precipitation", "tenths of mm", 0.1),
+        "TMAX": Quantity("temperature", "tenths of degrees C", 0.1),
+        "TMIN": Quantity("temperature", "tenths of degrees C", 0.1),
+        "TAVG": Quantity("temperature", "tenths of degrees C", 0.1),
+    }
+)
 DLY = re.compile(r"^[A-Z0-9_-]{11}\d{6}[A-Z0-9]{4}")
 DLY_LINE, DLY_CELL, DLY_DAYS = 21, 8, 31
 BY_STATION = re.compile(r'^"?[A-Z0-9_-]{11}"?,"?\d{8}"?,"?[A-Z0-9]{4}"?,')
 BY_STATION_HEAD = (
     "ID", "DATE", "ELEMENT", "DATA_VALUE", "M_FLAG", "Q_FLAG", "S_FLAG", "OBS_TIME",
 )  # fmt: skip
-MISSING = ("", "-9999")
 INCH = 0.0254  # m
 FAHRENHEIT = (5.0 / 9.0, -160.0 / 9.0)
 _HIGHEST = ("TMAX", Quantity("temperature", "degrees F", *FAHRENHEIT))
@@ -56,9 +52,8 @@ ACIS: Mapping[str, tuple[str, Quantity]] = {
 SUMMARIES = ("sum", "average", "normal")  # rows at the end of a month of NOWData
 BARE_TITLE = re.compile(r'"?[A-Za-z0-9 .&()/-]{1,60}"?')
 BARE_ROW = re.compile(r"\d{4}-\d{2}-\d{2}(,[MTS]?-?[0-9.]*A?){2,}")
-TRACE, LACKING = "T", ("M", "", "S")
-
-Days = dict[datetime, dict[str, Any]]
+#: Flags of ACIS: a trace, missing values, an amount that is a part of a later one, and that one.
+TRACE, LACKING, PART, GATHERED = "T", ("M", "", "S"), "S", "A"
 
 
 def is_dly(lines: Sequence[str]) -> bool:
@@ -68,7 +63,7 @@ def is_dly(lines: Sequence[str]) -> bool:
 
 def read_dly(name: str, lines: Sequence[str]) -> Station:
     """Return a .dly file's observations; raises InputError naming line and column."""
-    days: Days = {}
+    days = Days()
     for number, line in enumerate(lines, 1):
         if not line.strip():
             continue
@@ -80,7 +75,7 @@ def read_dly(name: str, lines: Sequence[str]) -> Station:
             )
         same_station(line[:11], lines[0][:11], f"{place}, column station")
         element = line[17:21]
-        if element not in ELEMENTS:
+        if element not in ELEMENTS and element not in COUNTS:
             continue
         year, month = int(line[11:15]), int(line[15:17])
         if not 1 <= month <= 12 or year < 1:
@@ -92,12 +87,22 @@ def read_dly(name: str, lines: Sequence[str]) -> Station:
                     f"{place}, column day {day}: the line ends after {len(line)} characters; "
                     f"needed: {DLY_LINE + DLY_CELL * DLY_DAYS}"
                 )
-            if line[start + 6 : start + 7].strip():  # failed a check of quality
+            if not days.passes(line[start + 5 : start + 6], line[start + 6 : start + 7]):
                 continue
-            where = f"{place}, column day {day}"
-            value = ELEMENTS[element].read(line[start : start + 5], where, MISSING)
-            enter(days, datetime(year, month, day), number, element, value)
-    return Station("GHCN-daily", lines[0][:11], rows_of(days), NOTES)
+            where, text = f"{place}, column day {day}", line[start : start + 5]
+            date = datetime(year, month, day)
+            if element in COUNTS:
+                days.count(text, date, number, element, where)
+            else:
+                value = ELEMENTS[element].read(text, where, MISSING)
+                days.enter(date, number, element, value, where)
+    return ghcn(lines[0][:11], days)
+
+
+def ghcn(station: str, days: Days, *more: str) -> Station:
+    """Return a station of GHCN-daily, with more notes."""
+    rows, notes = days.rows()
+    return Station("GHCN-daily", station, rows, (*notes, *more), columns=COLUMNS)
 
 
 def is_by_station(lines: Sequence[str]) -> bool:
@@ -107,21 +112,27 @@ def is_by_station(lines: Sequence[str]) -> bool:
 
 def read_by_station(name: str, lines: Sequence[str]) -> Station:
     """Return a by_station file's observations; raises InputError naming line and column."""
-    days: Days = {}
+    days = Days()
     start = 1 if _is_head(lines[0]) else 0  # the copies of cloud services name the columns
     station = ""
     for number, line in enumerate(lines[start:], start + 1):
         if not line.strip():
             continue
         place = f"{name}, line {number}"
-        own, date, element, text, _, quality, *_ = cells_of(line, BY_STATION_HEAD, place)
+        own, date, element, text, measurement, quality, *_ = cells_of(line, BY_STATION_HEAD, place)
         station = station or own
         same_station(own, station, f"{place}, column ID")
-        if element not in ELEMENTS or quality:
+        counts = element in COUNTS
+        if not (counts or element in ELEMENTS) or not days.passes(measurement, quality):
             continue
-        value = ELEMENTS[element].read(text, f"{place}, column DATA_VALUE ({element})", MISSING)
-        enter(days, time_of(date, f"{place}, column DATE", "%Y%m%d"), number, element, value)
-    return Station("GHCN-daily", station, rows_of(days), NOTES)
+        where = f"{place}, column DATA_VALUE ({element})"
+        day = time_of(date, f"{place}, column DATE", "%Y%m%d")
+        if counts:
+            days.count(text, day, number, element, where)
+        else:
+            value = ELEMENTS[element].read(text, where, MISSING)
+            days.enter(day, number, element, value, where)
+    return ghcn(station, days)
 
 
 def is_acis(lines: Sequence[str]) -> bool:
@@ -140,46 +151,32 @@ def read_acis(name: str, lines: Sequence[str]) -> Station:
     start, separator = found
     head = split_cells(lines[start], f"{name}, line {start + 1}", separator)
     columns = {i: ACIS[key] for i, key in enumerate(map(_key, head)) if key in ACIS}
-    days: Days = {}
+    days = Days()
+    parts: Counter[str] = Counter()  # days whose amount is told later, by element
     for number, line in enumerate(lines[start + 1 :], start + 2):
         if not line.strip() or line.startswith("#") or _key(line).startswith(SUMMARIES):
             continue
         place = f"{name}, line {number}"
         cells = cells_of(line, head, place, separator)
         day = time_of(cells[0], f"{place}, column {head[0]}", "%Y-%m-%d", "%m/%d/%Y")
-        days.setdefault(day, {"line": number})
         for i, (element, quantity) in columns.items():
-            cell = cells[i].removesuffix("A")  # what gathered over several days
-            where = f"{place}, column {head[i]}"
+            cell, where = cells[i].removesuffix(GATHERED), f"{place}, column {head[i]}"
             value = 0.0 if cell == TRACE else quantity.read(cell, where, LACKING)
-            enter(days, day, number, element, value)
+            several = TOTALS.get(element) if cells[i].endswith(GATHERED) else None
+            if several and value is not None:
+                days.enter(day, number, several[0], value, where)
+                days.enter(day, number, several[1], 1 + parts[element], where)
+            else:
+                days.enter(day, number, element, value, where)
+            parts[element] = parts[element] + 1 if cell == PART else 0
+    rows, notes = days.rows()
     title = lines[0].strip().strip('"') if start else ""
-    return Station("ACIS", title, rows_of(days), ("temperatures in F, depths in inches",))
-
-
-NOTES = ("values that failed a check of quality are left out",)
-
-
-def enter(days: Days, day: datetime, line: int, element: str, value: float | None) -> None:
-    """Enter what was measured on a day; its line is that of the first element."""
-    days.setdefault(day, {"line": line})[element] = value
-
-
-def rows_of(days: Days) -> list[Observation]:
-    """Return the days on which anything was measured as observations, in their order."""
-    rows = []
-    for day, found in sorted(days.items()):
-        if all(value is None for key, value in found.items() if key != "line"):
-            continue  # nothing was measured, which is a gap
-        mean = found.get("TAVG")
-        if mean is None and None not in (found.get("TMAX"), found.get("TMIN")):
-            mean = 0.5 * (found["TMAX"] + found["TMIN"])
-        rows.append(
-            Observation(
-                found["line"], day, mean, found.get("PRCP"), found.get("SNOW"), found.get("SNWD")
-            )
-        )
-    return rows
+    notes.append("temperatures in °F, depths in inches")
+    titles: dict[str, list[str]] = {}
+    for i, (_, quantity) in columns.items():
+        titles.setdefault(quantity.name, []).append(head[i])
+    named = {name: " and ".join(own) for name, own in titles.items()}
+    return Station("ACIS", title, rows, notes, columns=named)
 
 
 def _is_head(line: str) -> bool:
@@ -189,7 +186,10 @@ def _is_head(line: str) -> bool:
 def same_station(own: str, station: str, where: str) -> None:
     """Raise InputError where a row is of another station than the rows before."""
     if own != station:
-        raise InputError(f"{where}: {quoted(own)} is another station than {quoted(station)}")
+        raise InputError(
+            f"{where}: {quoted(own)} is another station than {quoted(station)}; a file has the "
+            "data of one"
+        )
 
 
 def _acis_head(lines: Sequence[str]) -> tuple[int, str] | None:

@@ -1,25 +1,30 @@
-"""Typical years of building and solar energy: EPW and TMY3, hour after hour.
+"""Years of building and solar energy, hour after hour: EPW and TMY3.
 
-Their months come from different years, so that they are no winters that were. A year is put
-together again from July to June.
+Most are typical years, whose months come from different years. Precipitation is told as totals of
+one or more hours, which may contain one another.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import datetime, timedelta
+from typing import Any, NamedTuple, Optional
 
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
 from snowshed.io.number_text import number_in
+from snowshed.io.weather.amounts import Total, usual_step, without_overlap
 from snowshed.io.weather.observation import (
     Observation,
     Quantity,
     Station,
     cells_of,
+    coordinate,
     split_cells,
     time_of,
 )
+from snowshed.io.weather.years import arranged
 
 EPW_HEADER, EPW_LAST = 8, "DATA PERIODS"
 EPW_HEAD = (
@@ -43,6 +48,33 @@ TMY3_NAMES = {
     "Lprecip depth (mm)": Quantity("precipitation", "mm"),
 }
 TMY3_DATE, TMY3_TIME = "Date (MM/DD/YYYY)", "Time (HH:MM)"
+EPW_PERIOD = "liquid precipitation quantity"
+#: Columns of the name, latitude, longitude, altitude and time zone in the first line.
+EPW_PLACE, TMY3_PLACE = (1, 6, 7, 9, 8), (1, 4, 5, 6, 3)
+NUMBERS = (("latitude", 90.0), ("longitude", 360.0), ("elevation", 9000.0), ("time zone", 15.0))
+TMY3_PERIOD = "Lprecip quantity (hr)"
+UNKNOWN, MISSING_TMY3 = 99.0, -9900.0  # hours of totals that stand for a missing value
+MINUTE = timedelta(minutes=1)
+
+
+class _Place(NamedTuple):
+    """A station: its name, latitude, longitude, altitude, and hours ahead of universal time."""
+
+    name: str
+    latitude: Optional[float]
+    longitude: Optional[float]
+    altitude: Optional[float]
+    utc_offset: Optional[float]
+
+    @classmethod
+    def of(cls, line: str, name: str, columns: Sequence[int]) -> _Place:
+        """Return the station of the first line, whose name and numbers stand in given columns."""
+        cells = [*split_cells(line, f"{name}, line 1"), *[""] * 10]
+        numbers = [
+            coordinate(cells[i], f"{name}, line 1, column {title}", largest)
+            for i, (title, largest) in zip(columns[1:], NUMBERS)
+        ]
+        return cls(cells[columns[0]], *numbers)
 
 
 def is_epw(lines: Sequence[str]) -> bool:
@@ -58,7 +90,7 @@ def read_epw(name: str, lines: Sequence[str]) -> Station:
             f"{name}, line {min(len(lines), EPW_HEADER)}, column 1: {quoted(found)}; allowed: "
             f"{EPW_LAST}, which ends the header of an EPW file"
         )
-    rows = []
+    rows, periods = [], []
     for number, line in enumerate(lines[EPW_HEADER:], EPW_HEADER + 1):
         if not line.strip():
             continue
@@ -66,24 +98,29 @@ def read_epw(name: str, lines: Sequence[str]) -> Station:
         older = line.count(",") == EPW_OLDER - 1
         head = EPW_HEAD[:EPW_OLDER] if older else EPW_HEAD
         cells = dict(zip(head, cells_of(line, head, place)))
-        values = {
+        values: dict[str, Any] = {
             one.name: one.read(cells.get(title, ""), f"{place}, column {title}", ("", missing))
             for title, one, missing in EPW_COLUMNS
         }
-        rows.append(Observation(number, _epw_time(cells, place), **values))
-    return Station("EPW", lines[0].split(",")[1].strip(), rows, typical_year=True)
+        time, end = _epw_time(cells, place)
+        rows.append(Observation(number, time, **values, end=end))
+        periods.append(_period(cells.get(EPW_PERIOD, ""), f"{place}, column {EPW_PERIOD}"))
+    columns = {one.name: title for title, one, _ in EPW_COLUMNS}
+    return _station("EPW", name, _Place.of(lines[0], name, EPW_PLACE), rows, periods, columns)
 
 
-def _epw_time(cells: dict[str, str], place: str) -> datetime:
-    """Return the time of a row: a minute before the end of its hour, or of its part of an hour."""
+def _epw_time(cells: dict[str, str], place: str) -> tuple[datetime, datetime]:
+    """Return the time of a row, a minute before the end of its hour or part of it, and the end."""
     year, month, day, minute = (
         _whole(cells[title], f"{place}, column {title}", 0, 9999)
         for title in ("year", "month", "day", "minute")
     )
     hour = _whole(cells["hour"], f"{place}, column hour", 1, 24)
     try:
-        return datetime(year, month, day, hour - 1, max(min(minute, 60) - 1, 0))
-    except ValueError:
+        begin = datetime(year, month, day, hour - 1)
+        time = begin.replace(minute=max(min(minute, 60) - 1, 0))
+        return time, begin + timedelta(minutes=min(minute, 60) or 60)
+    except (ValueError, OverflowError):
         raise InputError(f"{place}, column day: {year}-{month}-{day} is no date") from None
 
 
@@ -98,29 +135,35 @@ def read_tmy3(name: str, lines: Sequence[str]) -> Station:
     for needed in (TMY3_DATE, TMY3_TIME, *TMY3_NAMES):
         if needed not in head:
             raise InputError(f"{name}, line 2, column {needed}: missing")
-    rows = []
+    rows, periods = [], []
     for number, line in enumerate(lines[2:], 3):
         if not line.strip():
             continue
         place = f"{name}, line {number}"
         cells = dict(zip(head, cells_of(line, head, place)))
-        day = time_of(cells[TMY3_DATE], f"{place}, column {TMY3_DATE}", "%m/%d/%Y")
-        # midnight is 24:00 in files of NREL, and 00:00 of the next day in those of others
-        hour = _whole(cells[TMY3_TIME].partition(":")[0], f"{place}, column {TMY3_TIME}", 0, 24)
-        values = {
+        values: dict[str, Any] = {
             one.name: one.read(cells[title], f"{place}, column {title}", ("", "-9900"))
             for title, one in TMY3_NAMES.items()
         }
-        rows.append(Observation(number, _hour_before(day, hour, place), **values))
-    title = [*split_cells(lines[0], f"{name}, line 1"), ""][1]
-    return Station("TMY3", title, rows, typical_year=True)
+        end = _tmy3_end(cells, place)
+        rows.append(Observation(number, end - MINUTE, **values, end=end))
+        periods.append(_period(cells.get(TMY3_PERIOD, ""), f"{place}, column {TMY3_PERIOD}"))
+    columns = {one.name: title for title, one in TMY3_NAMES.items()}
+    return _station("TMY3", name, _Place.of(lines[0], name, TMY3_PLACE), rows, periods, columns)
 
 
-def _hour_before(day: datetime, hour: int, place: str) -> datetime:
+def _tmy3_end(cells: dict[str, str], place: str) -> datetime:
+    """Return the end of a row's hour: midnight is 24:00, or 00:00 of the next day."""
+    day = time_of(cells[TMY3_DATE], f"{place}, column {TMY3_DATE}", "%m/%d/%Y")
+    where = f"{place}, column {TMY3_TIME}"
+    hour, _, minute = cells[TMY3_TIME].partition(":")
+    hours, minutes = _whole(hour, where, 0, 24), _whole(minute or "0", where, 0, 59)
     try:
-        return day + timedelta(hours=hour - 1)
+        end = day + timedelta(hours=hours, minutes=minutes)
+        _ = end - MINUTE, end + timedelta(days=1)
     except OverflowError:
-        raise InputError(f"{place}, column {TMY3_DATE}: {day.year} is no year of weather") from None
+        raise InputError(f"{where}: no time before or after that") from None
+    return end
 
 
 def _whole(text: str, where: str, low: int, high: int) -> int:
@@ -128,3 +171,52 @@ def _whole(text: str, where: str, low: int, high: int) -> int:
     if not (low <= number <= high and number == int(number)):
         raise InputError(f"{where}: {quoted(text)}; allowed: whole numbers from {low} to {high}")
     return int(number)
+
+
+def _period(text: str, where: str) -> Optional[float]:
+    """Return the hours of a total of precipitation; None: missing, or 0."""
+    number = number_in(text) if text else 0.0
+    if number == MISSING_TMY3:
+        return None
+    if not 0.0 <= number <= UNKNOWN:
+        raise InputError(f"{where}: {quoted(text)}; allowed: hours from 0 to {UNKNOWN:g}")
+    return number if 0.0 < number < UNKNOWN else None
+
+
+def _station(
+    form: str,
+    source: str,
+    place: _Place,
+    rows: Sequence[Observation],
+    periods: Sequence[Optional[float]],
+    columns: Mapping[str, str],
+) -> Station:
+    made, of_amounts = _with_amounts(rows, periods)
+    made, typical, of_years = arranged(made, place.latitude, source)
+    return Station(form, place.name, made, (*of_amounts, *of_years), typical, *place[1:], columns)
+
+
+def _with_amounts(
+    rows: Sequence[Observation], periods: Sequence[Optional[float]]
+) -> tuple[list[Observation], list[str]]:
+    """Return the rows with amounts that do not overlap, and notes on those that did."""
+    step = usual_step([row.time for row in rows])
+    if not any(period for row, period in zip(rows, periods) if row.precipitation is not None):
+        periods = [step] * len(rows)  # no row tells its period
+    totals = {
+        i: Total(row.end or row.time, period, row.precipitation)
+        for i, (row, period) in enumerate(zip(rows, periods))
+        if row.precipitation is not None and period is not None
+    }
+    amounts, notes = without_overlap(list(totals.values()), min(step, 1.0), "mm of precipitation")
+    unknown = [row for i, row in enumerate(rows) if row.precipitation and i not in totals]
+    if unknown:
+        notes.append(
+            f"{sum(row.precipitation or 0.0 for row in unknown):g} mm of precipitation in "
+            f"{len(unknown)} rows are totals over an unknown time, and left out"
+        )
+    own = dict(zip(totals, amounts))
+    return [
+        replace(row, precipitation=own.get(i), precipitation_hours=periods[i] if i in own else None)
+        for i, row in enumerate(rows)
+    ], notes

@@ -20,36 +20,40 @@ beside it; without any decimal a file is taken only in the form that the archive
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.weather.american import (
-    ELEMENTS,
-    FAHRENHEIT,
-    INCH,
-    MISSING,
-    NOTES,
-    Days,
-    enter,
-    rows_of,
-    same_station,
+from snowshed.io.weather.american import ELEMENTS, FAHRENHEIT, INCH, ghcn, same_station
+from snowshed.io.weather.daily import COUNTS, MISSING, Days, with_totals
+from snowshed.io.weather.observation import (
+    Quantity,
+    Station,
+    cells_of,
+    coordinate,
+    split_cells,
+    time_of,
 )
-from snowshed.io.weather.observation import Quantity, Station, cells_of, split_cells, time_of
 
 TEMPERATURES = ("TMAX", "TMIN", "TAVG")
-METRIC: Mapping[str, Quantity] = {
-    "SNOW": Quantity("snowfall", "mm", 1e-3),
-    "SNWD": Quantity("snow_depth", "mm", 1e-3),
-    "PRCP": Quantity("precipitation", "mm"),
-    **dict.fromkeys(TEMPERATURES, Quantity("temperature", "degrees C")),
-}
-STANDARD: Mapping[str, Quantity] = {
-    "SNOW": Quantity("snowfall", "inches", INCH),
-    "SNWD": Quantity("snow_depth", "inches", INCH),
-    "PRCP": Quantity("precipitation", "inches", 1e3 * INCH),
-    **dict.fromkeys(TEMPERATURES, Quantity("temperature", "degrees F", *FAHRENHEIT)),
-}
+METRIC: Mapping[str, Quantity] = with_totals(
+    {
+        "SNOW": Quantity("snowfall", "mm", 1e-3),
+        "SNWD": Quantity("snow_depth", "mm", 1e-3),
+        "PRCP": Quantity("precipitation", "mm"),
+        **dict.fromkeys(TEMPERATURES, Quantity("temperature", "degrees C")),
+    }
+)
+STANDARD: Mapping[str, Quantity] = with_totals(
+    {
+        "SNOW": Quantity("snowfall", "inches", INCH),
+        "SNWD": Quantity("snow_depth", "inches", INCH),
+        "PRCP": Quantity("precipitation", "inches", 1e3 * INCH),
+        **dict.fromkeys(TEMPERATURES, Quantity("temperature", "degrees F", *FAHRENHEIT)),
+    }
+)
 STATION, DATE, PLACE = "STATION", "DATE", "LATITUDE"
-FLAGS, QUALITY = "_ATTRIBUTES", 1  # the second of the flags of a value
+FLAGS = "_ATTRIBUTES"  # of measurement, of quality, of the source, and the time of observation
 ARCHIVE = [STATION, DATE, PLACE]  # the order of columns in the archive alone
 
 
@@ -68,29 +72,41 @@ def read_summaries(name: str, lines: Sequence[str]) -> Station:
         if line.strip()
     ]
     units, title = _units(name, head, [row for _, row in rows])
-    days: Days = {}
+    days = Days()
     for number, row in rows:
         place = f"{name}, line {number}"
         same_station(row[STATION], rows[0][1][STATION], f"{place}, column {STATION}")
         day = time_of(row[DATE], f"{place}, column {DATE}", "%Y-%m-%d")
-        for element, quantity in units.items():
-            if element not in row:
+        for element in (one for one in (*units, *COUNTS) if one in row):
+            where = f"{place}, column {element}"
+            value = None if element in COUNTS else units[element].read(row[element], where, MISSING)
+            measurement, quality, *_ = [*row.get(element + FLAGS, "").split(","), "", ""]
+            if row[element] in MISSING or not days.passes(measurement, quality):
                 continue
-            value = quantity.read(row[element], f"{place}, column {element}", MISSING)
-            flags = row.get(element + FLAGS, "").split(",")
-            if len(flags) > QUALITY and flags[QUALITY].strip():
-                continue
-            enter(days, day, number, element, value)
-    station = rows[0][1].get("NAME") or rows[0][1][STATION] if rows else ""
-    return Station("GHCN-daily", station, rows_of(days), (*NOTES, f"its units are {title}"))
+            if element in COUNTS:
+                days.count(row[element], day, number, element, where)
+            else:
+                days.enter(day, number, element, value, where)
+    first = rows[0][1] if rows else {}
+    station = ghcn(first.get("NAME") or first.get(STATION, ""), days, f"its units are {title}")
+    return replace(station, **_position(first, f"{name}, line 2, column"))
+
+
+def _position(row: Mapping[str, str], where: str) -> dict[str, Any]:
+    return {
+        key.lower().replace("elevation", "altitude"): coordinate(
+            row.get(key, ""), f"{where} {key}", largest
+        )
+        for key, largest in ((PLACE, 90.0), ("LONGITUDE", 360.0), ("ELEVATION", 9000.0))
+    }
 
 
 def _units(
     name: str, head: Sequence[str], rows: Sequence[Mapping[str, str]]
 ) -> tuple[Mapping[str, Quantity], str]:
     """Return the units of a file, and their name."""
-    temperature, rain = _decimals(rows, *TEMPERATURES), _decimals(rows, "PRCP")
-    inches = rain > 1 or _decimals(rows, "SNOW") > 0
+    temperature, rain = _decimals(rows, *TEMPERATURES), _decimals(rows, "PRCP", "MDPR")
+    inches = rain > 1 or _decimals(rows, "SNOW", "MDSF") > 0
     if temperature > 0 and inches:
         raise _unknown(name, head, "with decimals of temperatures, and those of inches")
     if temperature > 0:

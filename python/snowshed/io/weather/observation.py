@@ -4,17 +4,27 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import date, datetime, timedelta
 from functools import lru_cache
-from typing import Optional
+from typing import Any, Optional
 
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
 from snowshed.io.number_text import number_in
 
 ZERO_CELSIUS = 273.15  # K
+DAY = 24.0  # hours
+#: Parts of times in formats, by their signs: names of arguments of `datetime`, and digits.
+PARTS = {
+    "%Y": ("year", "{4}"),
+    "%m": ("month", "{1,2}"),
+    "%d": ("day", "{1,2}"),
+    "%H": ("hour", "{1,2}"),
+    "%M": ("minute", "{1,2}"),
+}
 
 
 @dataclass(frozen=True)
@@ -26,15 +36,23 @@ class Observation:
     line
         In the file, from 1.
     time
-        When it was, or the day.
+        When it was, or the day. It is of one clock throughout a station, without summer time.
     temperature
         Of the air, degrees C.
     precipitation
-        mm of water since the row before, or of the day.
+        mm of water that fell in the last `precipitation_hours`.
     snowfall
-        Depth of new snow, m, of the day.
+        Depth of new snow, m, of the last `snowfall_hours`.
     snow_depth
         m.
+    precipitation_hours, snowfall_hours
+        How long the amounts gathered. Amounts of different rows do not overlap, except those of
+        `Station.rolling`. Of whole days they end with the day of `time`, of hours with `end`.
+    seam
+        Whether the row continues another series (another source year, sensor or file), so that a
+        difference of the snow depth to the row before is no weather.
+    end
+        When the hours of the amounts end; None: at `time`.
     """
 
     line: int
@@ -43,11 +61,64 @@ class Observation:
     precipitation: Optional[float] = None
     snowfall: Optional[float] = None
     snow_depth: Optional[float] = None
+    precipitation_hours: Optional[float] = None
+    snowfall_hours: Optional[float] = None
+    seam: bool = False
+    end: Optional[datetime] = None
+
+    def shares(self, hours: Optional[float]) -> dict[date, float]:
+        """Return the days on which an amount fell, and the part of it that belongs to each.
+
+        Parameters
+        ----------
+        hours
+            How long the amount gathered; None: within the day of `time`.
+
+        Examples
+        --------
+        >>> row = Observation(1, datetime(2024, 1, 3, 6))
+        >>> {day.isoformat(): part for day, part in row.shares(24.0).items()}
+        {'2024-01-03': 1.0}
+        >>> {day.isoformat(): part for day, part in row.shares(12.0).items()}
+        {'2024-01-02': 0.5, '2024-01-03': 0.5}
+        >>> {day.isoformat(): part for day, part in row.shares(48.0).items()}
+        {'2024-01-02': 0.5, '2024-01-03': 0.5}
+        """
+        if hours is None or hours == DAY:
+            return {self.time.date(): 1.0}
+        if hours % DAY == 0.0:
+            days = int(hours / DAY)
+            first = self.time.date() - timedelta(days - 1)
+            return {first + timedelta(n): 1.0 / days for n in range(days)}
+        end = self.end or self.time
+        begin = end - timedelta(hours=hours)
+        if begin.date() == end.date():
+            return {end.date(): 1.0}
+        parts: dict[date, float] = {}
+        while begin < end:
+            midnight = datetime(begin.year, begin.month, begin.day) + timedelta(1)
+            parts[begin.date()] = (min(midnight, end) - begin) / timedelta(hours=hours)
+            begin = midnight
+        return parts
+
+
+def changed(row: Observation, **values: Any) -> Observation:
+    """Return a row with other values, as `dataclasses.replace`, but many times as fast.
+
+    Examples
+    --------
+    >>> changed(Observation(1, datetime(2024, 1, 3)), snow_depth=0.5).snow_depth
+    0.5
+    """
+    made = object.__new__(Observation)
+    made.__dict__.update(row.__dict__)
+    made.__dict__.update(values)
+    return made
 
 
 @dataclass(frozen=True)
 class Station:
-    """A weather file.
+    """A weather file, or several of a station.
 
     Attributes
     ----------
@@ -56,11 +127,24 @@ class Station:
     name
         Of the station, as far as the file tells.
     rows
-        In the order of the file.
+        In the order of time, each later than the one before. Those of a typical year are put
+        together as a year that begins in the station's summer: July 2001 to June 2002 in the
+        north, January to December 2001 in the south.
     notes
         What was assumed in reading it.
     typical_year
         Whether its months come from different years.
+    latitude, longitude
+        Degrees, north and east; None: the file does not tell.
+    altitude
+        m above the sea; None: the file does not tell.
+    utc_offset
+        Hours of the rows' clock ahead of universal time; None: the file does not tell.
+    columns
+        Where each quantity stands in the file: names of fields of `Observation`, and of columns.
+    rolling
+        Names of the quantities of which every row holds the sum of the last hours, so that those
+        of several rows overlap; of precipitation such sums are never handed on.
     """
 
     format: str
@@ -68,6 +152,19 @@ class Station:
     rows: Sequence[Observation]
     notes: Sequence[str] = field(default_factory=tuple)
     typical_year: bool = False
+    latitude: Optional[float] = None
+    longitude: Optional[float] = None
+    altitude: Optional[float] = None
+    utc_offset: Optional[float] = None
+    columns: Mapping[str, str] = field(default_factory=dict)
+    rolling: frozenset[str] = frozenset()
+
+    @property
+    def quantities(self) -> frozenset[str]:
+        """Names of the fields of `Observation` that any row has."""
+        return frozenset(
+            name for name in RANGES if any(getattr(row, name) is not None for row in self.rows)
+        )
 
 
 @dataclass(frozen=True)
@@ -82,12 +179,18 @@ class Quantity:
         In the file, for messages.
     factor, offset
         value = factor * cell + offset.
+    hours
+        How long an amount gathered; None: since the row before, or it is no amount.
+    begins
+        Whether these hours begin at the time of the row, instead of ending there.
     """
 
     name: str
     unit: str
     factor: float = 1.0
     offset: float = 0.0
+    hours: Optional[float] = None
+    begins: bool = False
 
     def read(self, text: str, where: str, missing: Sequence[str] = ("",)) -> Optional[float]:
         """Return a cell's value; None if it is missing.
@@ -151,7 +254,9 @@ RANGES = {
 
 
 def time_of(text: str, where: str, *formats: str) -> datetime:
-    """Return a date or time in one of the formats of `datetime.strptime`, or ISO 8601 without any.
+    """Return a date or time in one of the formats (`PARTS`), or in ISO 8601 without any.
+
+    Without formats, a time with an offset from universal time keeps it (`tzinfo`).
 
     Raises
     ------
@@ -160,17 +265,68 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
     """
     cell = text.strip().strip('"')
     for one in formats:
+        found = _pattern(one).fullmatch(cell)
+        if found is None:
+            continue
         try:
-            return datetime.strptime(cell, one)
+            parts = found.groupdict(default="0")
+            return datetime(
+                int(parts["year"]),
+                int(parts["month"]),
+                int(parts["day"]),
+                int(parts.get("hour", 0)),
+                int(parts.get("minute", 0)),
+            )
         except ValueError:
             continue
     if not formats:
         try:
-            return datetime.fromisoformat(cell.replace("Z", "+00:00")).replace(tzinfo=None)
+            return datetime.fromisoformat(_iso(cell))
         except ValueError:
             pass
     example = datetime(2024, 12, 31, 6).strftime(formats[0] if formats else "%Y-%m-%dT%H:%M")
     raise InputError(f"{where}: {quoted(cell)} is not a date such as {example}")
+
+
+@lru_cache(maxsize=16)
+def _pattern(form: str) -> re.Pattern[str]:
+    """Return what a time in a format of `strptime` looks like, which is ten times as fast."""
+    text = re.escape(form).replace("\\ ", " ")
+    for sign, (name, digits) in PARTS.items():
+        text = text.replace(sign, f"(?P<{name}>[0-9]{digits})")
+    return re.compile(text)
+
+
+def _iso(cell: str) -> str:
+    """Return a time of ISO 8601 in the form that Python 3.9 reads."""
+    if cell[-1:] in ("Z", "z"):
+        return cell[:-1] + "+00:00"
+    if cell[-5:-4] in ("+", "-") and ":" in cell[:-5]:
+        return f"{cell[:-2]}:{cell[-2:]}"
+    if cell[-3:-2] in ("+", "-") and ":" in cell[:-3]:
+        return cell + ":00"
+    return cell
+
+
+def coordinate(text: str, where: str, largest: float) -> Optional[float]:
+    """Return a number of a station, such as its latitude; None: missing.
+
+    Raises
+    ------
+    InputError
+        If its amount is larger than allowed, or it is none.
+
+    Examples
+    --------
+    >>> coordinate("-45.0", "f.epw, line 1, column latitude", 90.0)
+    -45.0
+    """
+    number = number_in(text) if text.strip() else math.nan
+    if text.strip() in ("", "-", "NA") or abs(number) in (999.0, 9999.0):
+        return None
+    if not abs(number) <= largest:
+        raise InputError(f"{where}: {quoted(text)}; allowed: {-largest:g} <= value <= {largest:g}")
+    return number
 
 
 def split_cells(line: str, where: str, separator: Optional[str] = ",") -> list[str]:
@@ -181,10 +337,12 @@ def split_cells(line: str, where: str, separator: Optional[str] = ",") -> list[s
     InputError
         If it has a cell without end.
     """
+    if separator is None:
+        return line.split()
+    if '"' not in line and "\r" not in line:  # as the reader would, in a fifth of the time
+        return [cell.strip() for cell in line.split(separator)] if line else []
     try:
-        cells = (
-            line.split() if separator is None else next(csv.reader([line], delimiter=separator), [])
-        )
+        cells = next(csv.reader([line], delimiter=separator), [])
     except csv.Error as error:
         raise InputError(f"{where}: not a table: {error}") from None
     return [cell.strip() for cell in cells]

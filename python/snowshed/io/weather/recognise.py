@@ -3,45 +3,57 @@
 from __future__ import annotations
 
 import re
-import zlib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import MB, TEXT
+from snowshed.io.limits import KB, WEATHER_LINE, WEATHER_LINES
+from snowshed.io.packed import unpacked
 from snowshed.io.weather import american, energy, ncei, smet, swiss
+from snowshed.io.weather.clock import on_one_clock
+from snowshed.io.weather.gathering import with_hours
 from snowshed.io.weather.observation import Station
-
-GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
+from snowshed.io.weather.plausible import with_plausible_units
 
 
 class Format(NamedTuple):
-    """How a format is recognised by its lines, and read."""
+    """How a format is recognised by its lines, and read.
+
+    Attributes
+    ----------
+    recognises, read
+        Called with the lines.
+    logged
+        Whether every row is a reading of a logger, whose amounts may overlap or be a counter's.
+    """
 
     recognises: Callable[[Sequence[str]], bool]
     read: Callable[[str, Sequence[str]], Station]
+    logged: bool = False
 
 
 FORMATS: Mapping[str, Format] = {
-    "SMET": Format(smet.is_smet, smet.read_smet),
-    "iCSV": Format(smet.is_icsv, smet.read_icsv),
+    "SMET": Format(smet.is_smet, smet.read_smet, logged=True),
+    "iCSV": Format(smet.is_icsv, smet.read_icsv, logged=True),
     "EPW": Format(energy.is_epw, energy.read_epw),
     "TMY3": Format(energy.is_tmy3, energy.read_tmy3),
     "GHCN-daily, fixed width": Format(american.is_dly, american.read_dly),
     "GHCN-daily, by station": Format(american.is_by_station, american.read_by_station),
     "GHCN-daily, summaries": Format(ncei.is_summaries, ncei.read_summaries),
     "ACIS": Format(american.is_acis, american.read_acis),
-    "MeteoSwiss": Format(swiss.is_meteoswiss, swiss.read_meteoswiss),
-    "IMIS": Format(swiss.is_imis, swiss.read_imis),
+    "MeteoSwiss": Format(swiss.is_meteoswiss, swiss.read_meteoswiss, logged=True),
+    "IMIS": Format(swiss.is_imis, swiss.read_imis, logged=True),
 }
 
 
 def read_station(path: Path) -> Optional[Station]:
     """Return the observations of a weather file; None if its format is none of `FORMATS`.
 
-    A file packed with gzip, as GHCN-daily is published, is read like the file inside.
+    A file packed with gzip or xz, as GHCN-daily is published, is read like the file inside. Its
+    times are on one clock, its amounts do not overlap, and its numbers can be in their units.
 
     Raises
     ------
@@ -50,14 +62,40 @@ def read_station(path: Path) -> Optional[Station]:
     OSError
         If it cannot be read.
     """
-    lines = re.split("\r\n|\n|\r", _text(_unpacked(read_input(path, TEXT), path)).rstrip("\r\n"))
+    lines = _lines(unpacked(read_input(path), path), path)
     form = next((one for one in FORMATS.values() if one.recognises(lines)), None)
     if form is None:
+        if lines[0].lstrip().startswith("{"):
+            raise InputError(
+                f"{path}: JSON; the weather of a station is read from tables, such as the CSV "
+                "that the same services give"
+            )
         return None
     station = form.read(str(path), lines)
     if not station.rows:
         raise InputError(f"{path}: no rows below the header of this {station.format} file")
-    return station
+    station = on_one_clock(station, str(path))
+    if form.logged:
+        station = with_hours(station)
+    present = station.quantities
+    columns = {name: title for name, title in station.columns.items() if name in present}
+    return with_plausible_units(replace(station, columns=columns), str(path))
+
+
+def _lines(content: bytes, path: Path) -> list[str]:
+    """Return the lines of a text; raises InputError if it is none, or its lines cost too much."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise InputError(f"{path}: text in UTF-16; save it in UTF-8")
+    if b"\0" in content:
+        line = content[: content.index(b"\0")].count(b"\n") + 1
+        raise InputError(f"{path}, line {line}: not text: it holds bytes that are 0")
+    if max(content.count(b"\n"), content.count(b"\r")) > WEATHER_LINES:
+        raise InputError(f"{path}: more than {WEATHER_LINES} lines; cut it into parts")
+    lines = re.split("\r\n|\n|\r", _text(content).rstrip("\r\n"))
+    longest = max(range(len(lines)), key=lambda i: len(lines[i]))
+    if len(lines[longest]) > WEATHER_LINE:
+        raise InputError(f"{path}, line {longest + 1}: longer than {WEATHER_LINE // KB} KB")
+    return lines
 
 
 def _text(content: bytes) -> str:
@@ -67,23 +105,3 @@ def _text(content: bytes) -> str:
         except UnicodeDecodeError:
             continue
     return content.decode("latin-1")
-
-
-def _unpacked(content: bytes, path: Path) -> bytes:
-    if content.startswith(ZIP):
-        raise InputError(f"{path}: a zip archive; unpack it and give the file of the weather")
-    if not content.startswith(GZIP):
-        return content
-    unpacked = b""
-    while content:  # members one after another
-        member = zlib.decompressobj(16 + zlib.MAX_WBITS)
-        try:
-            unpacked += member.decompress(content, TEXT + 1 - len(unpacked))
-        except zlib.error as error:
-            raise InputError(f"{path}: damaged: gzip: {error}") from None
-        if len(unpacked) > TEXT:
-            raise InputError(f"{path}: longer than {TEXT // MB} MB when unpacked")
-        if not member.eof:
-            raise InputError(f"{path}: damaged: gzip: it ends too early")
-        content = member.unused_data.lstrip(b"\0")
-    return unpacked

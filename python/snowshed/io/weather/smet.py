@@ -2,48 +2,70 @@
 
 Both name their fields and their value for missing ones in a header. Their units are SI (K, m, mm),
 or become SI with the offsets and factors that the header gives; iCSV may name its units instead.
+Amounts gathered since the row before, except HN24, which is the new snow of the last 24 hours.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from typing import Any
+from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
 from snowshed.io.number_text import number_in
+from snowshed.io.weather.columns import Cells, Column, Reading, observations
 from snowshed.io.weather.observation import (
+    DAY,
     ZERO_CELSIUS,
-    Observation,
     Quantity,
     Station,
     cells_of,
+    coordinate,
     time_of,
 )
 
-#: Fields of MeteoIO: which quantity, and its SI unit. HNW is the former name of PSUM.
-FIELDS: Mapping[str, tuple[str, str]] = {
-    "TA": ("temperature", "K"),
-    "PSUM": ("precipitation", "mm"),
-    "HNW": ("precipitation", "mm"),
-    "HS": ("snow_depth", "m"),
-    "HN": ("snowfall", "m"),
-    "HN24": ("snowfall", "m"),
+#: Fields of MeteoIO, the better ones first: which quantity, its SI unit, and the hours over which
+#: an amount gathers (None: since the row before). HNW is the former name of PSUM.
+FIELDS: Mapping[str, tuple[str, str, Optional[float]]] = {
+    "TA": ("temperature", "K", None),
+    "PSUM": ("precipitation", "mm", None),
+    "HNW": ("precipitation", "mm", None),
+    "HS": ("snow_depth", "m", None),
+    "HN": ("snowfall", "m", None),
+    "HN24": ("snowfall", "m", DAY),
 }
 #: Units of each quantity, and how they become those of an observation: factor and offset.
-KELVIN, CELSIUS = (1.0, -ZERO_CELSIUS), (1.0, 0.0)
-DEPTHS = {"m": (1.0, 0.0), "cm": (0.01, 0.0), "mm": (0.001, 0.0)}
+KELVIN, CELSIUS, FAHRENHEIT = (1.0, -ZERO_CELSIUS), (1.0, 0.0), (5.0 / 9.0, -160.0 / 9.0)
+INCH = 0.0254  # m
+DEPTHS = {
+    "m": (1.0, 0.0),
+    "cm": (0.01, 0.0),
+    "mm": (0.001, 0.0),
+    **dict.fromkeys(("in", "inch", "inches"), (INCH, 0.0)),
+}
 UNITS: Mapping[str, Mapping[str, tuple[float, float]]] = {
-    "temperature": {"K": KELVIN, "degC": CELSIUS, "°C": CELSIUS, "C": CELSIUS},
-    "precipitation": dict.fromkeys(("mm", "kg/m2", "kg/m^2", "kg m-2"), (1.0, 0.0)),
+    "temperature": {
+        **dict.fromkeys(("K", "kelvin", "Kelvin"), KELVIN),
+        **dict.fromkeys(("degC", "°C", "C", "deg C", "celsius", "Celsius"), CELSIUS),
+        **dict.fromkeys(("degF", "°F", "F"), FAHRENHEIT),
+    },
+    "precipitation": {
+        **dict.fromkeys(("mm", "kg/m2", "kg/m^2", "kg m-2", "kg/m²"), (1.0, 0.0)),
+        "cm": (10.0, 0.0),
+        "m": (1000.0, 0.0),
+        **dict.fromkeys(("in", "inch", "inches"), (1000.0 * INCH, 0.0)),
+    },
     "snowfall": DEPTHS,
     "snow_depth": DEPTHS,
 }
 JULIAN_NOON, NOON = 2451545.0, datetime(2000, 1, 1, 12)
 PROFILES = "2DTIMESERIES"
+NUMBER = r"(-?[0-9.]+)"
+POINT = re.compile(rf"POINTZ? *\( *{NUMBER} +{NUMBER}(?: +{NUMBER})? *\)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -72,8 +94,7 @@ def read_smet(name: str, lines: Sequence[str]) -> Station:
         raise InputError(f"{name}, line 1, column 3: {quoted(kind)}; allowed: ASCII")
     header = _header(name, [re.sub(r"\s[#;].*", "", line).strip() for line in lines])
     fields = header.values.get("fields", "").split()
-    quantities = _by_factors(header, fields, None) or _by_units(header, fields, None)
-    return _station("SMET", header, lines, fields, quantities, None)
+    return _station("SMET", header, lines, fields, _by_factors(header, fields, None), None)
 
 
 def is_icsv(lines: Sequence[str]) -> bool:
@@ -94,48 +115,65 @@ def read_icsv(name: str, lines: Sequence[str]) -> Station:
             f"{header.where('field_delimiter')}: {quoted(separator)}; allowed: one character"
         )
     fields = _listed(header, "fields", separator)
-    quantities = _by_factors(header, fields, separator) or _by_units(header, fields, separator)
+    quantities = _by_units(header, fields, separator) or _by_factors(header, fields, separator)
     return _station("iCSV", header, lines, fields, quantities, separator)
 
 
 def _by_factors(
     header: _Header, fields: Sequence[str], separator: str | None
 ) -> dict[int, Quantity]:
-    """Return the fields to read with factors and offsets to SI; none if the header has neither."""
+    """Return the fields to read in SI units, by the factors and offsets of the header to them."""
     offsets, factors = (
         _numbers(header, one, fields, separator) for one in ("units_offset", "units_multiplier")
     )
-    if not offsets and not factors:
-        return {}
     quantities = {}
     for place, one in enumerate(fields):
         if one in FIELDS:
-            quantity, unit = FIELDS[one]
-            shift = UNITS[quantity][unit][1]
+            name, unit, hours = FIELDS[one]
+            shift = UNITS[name][unit][1]
             factor, offset = factors[place] if factors else 1.0, offsets[place] if offsets else 0.0
             if factor == 0.0:
                 raise InputError(f"{header.where('units_multiplier')}: 0 for {one}")
-            quantities[place] = Quantity(quantity, unit, factor, offset + shift)
+            told = (
+                unit if (factor, offset) == (1.0, 0.0) else f"{unit} by {factor:g} and {offset:g}"
+            )
+            quantities[place] = Quantity(name, told, factor, offset + shift, hours)
     return quantities
 
 
-def _by_units(header: _Header, fields: Sequence[str], separator: str | None) -> dict[int, Quantity]:
-    """Return the fields to read in the units that the header names, or else in SI units."""
-    units = _listed(header, "units", separator) if "units" in header.values and separator else []
-    if units and len(units) != len(fields):
+def _by_units(header: _Header, fields: Sequence[str], separator: str) -> dict[int, Quantity]:
+    """Return the fields to read in the units that the header names; none if it names none.
+
+    Factors beside the units must be 1, or those of the units to SI.
+    """
+    units = _listed(header, "units", separator)
+    if not units:
+        return {}
+    if len(units) != len(fields):
         raise InputError(f"{header.where('units')}: {len(units)} units for {len(fields)} fields")
+    by_factors = _by_factors(header, fields, separator)
     quantities = {}
     for place, one in enumerate(fields):
         if one not in FIELDS:
             continue
-        quantity, unit = FIELDS[one]
-        unit = units[place] if units else unit
-        if unit not in UNITS[quantity]:
+        name, si, hours = FIELDS[one]
+        unit = units[place]
+        if unit not in UNITS[name]:
             raise InputError(
                 f"{header.where('units')}: {quoted(unit)} of {one}; allowed: "
-                f"{', '.join(UNITS[quantity])}"
+                f"{', '.join(UNITS[name])}"
             )
-        quantities[place] = Quantity(quantity, unit, *UNITS[quantity][unit])
+        quantities[place] = Quantity(name, unit, *UNITS[name][unit], hours)
+        factor, offset = by_factors[place].factor, by_factors[place].offset
+        to_si = UNITS[name][unit]
+        plain = math.isclose(factor, 1.0) and math.isclose(offset, UNITS[name][si][1])
+        if not plain and not (
+            math.isclose(factor, to_si[0]) and math.isclose(offset, to_si[1], abs_tol=0.01)
+        ):
+            raise InputError(
+                f"{header.where('units')}: {quoted(unit)} of {one}, and a factor {factor:g} that "
+                f"is none of {unit} to {si}; correct one of them"
+            )
     return quantities
 
 
@@ -155,7 +193,12 @@ def _station(
         )
     when = fields.index(clock)
     missing = ("", header.values.get("nodata", "-999"), "nan", "NaN", "NA")
-    rows = []
+    order = list(FIELDS)
+    columns = [
+        Column(place, fields[place], quantities[place])
+        for place in sorted(quantities, key=lambda place: order.index(fields[place]))
+    ]
+    of_columns, readings = Cells(columns, missing), []
     for number, line in enumerate(lines[header.start + 1 :], header.start + 2):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -163,13 +206,34 @@ def _station(
         cells = cells_of(line, fields, place, separator)
         if cells == fields:  # some writers of iCSV name the columns once more
             continue
-        values: dict[str, Any] = {
-            one.name: one.read(cells[column], f"{place}, column {fields[column]}", missing)
-            for column, one in quantities.items()
-        }
-        rows.append(Observation(number, _time(cells[when], place, clock), **values))
+        values = of_columns.read(cells, place)
+        readings.append(Reading(number, _time(cells[when], place, clock), values))
+    rows, titles, notes = observations(columns, readings)
     title = header.values.get("station_name") or header.values.get("station_id", "")
-    return Station(form, title, rows)
+    latitude, longitude, altitude, zone = _position(header)
+    return Station(form, title, rows, notes, False, latitude, longitude, altitude, zone, titles)
+
+
+def _position(header: _Header) -> tuple[Optional[float], ...]:
+    """Return latitude, longitude, altitude, and hours ahead of universal time."""
+    values = header.values
+    point = POINT.match(values.get("geometry", ""))
+    if point and values.get("srid", "").endswith("4326"):
+        longitude, latitude, altitude = (point[1], point[2], point[3] or "")
+    else:
+        keys = ("longitude", "latitude", "altitude")
+        longitude, latitude, altitude = (values.get(key, "") for key in keys)
+    zone = "tz" if "tz" in values else "timezone"
+    nodata = values.get("nodata", "-999")
+    return tuple(
+        None if text == nodata else coordinate(text, header.where(key), largest)
+        for text, key, largest in (
+            (latitude, "latitude", 90.0),
+            (longitude, "longitude", 360.0),
+            (altitude, "altitude", 9000.0),
+            (values.get(zone, ""), zone, 15.0),
+        )
+    )
 
 
 def _time(cell: str, place: str, clock: str) -> datetime:

@@ -6,22 +6,28 @@ from collections.abc import Mapping, Sequence
 
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
-from snowshed.io.weather.observation import Observation, Quantity, Station, cells_of, time_of
+from snowshed.io.weather.columns import Cells, Column, Reading, observations
+from snowshed.io.weather.observation import Quantity, Station, cells_of, time_of
 
-#: Parameters of MeteoSwiss, daily, hourly and of ten minutes: depths in cm.
+TEN_MINUTES, HOURLY, DAILY = 1.0 / 6.0, 1.0, 24.0  # over which amounts gather
+TEMPERATURE = Quantity("temperature", "degrees C")
+DEPTH = Quantity("snow_depth", "cm", 0.01)
+#: Parameters of MeteoSwiss, daily, hourly and of ten minutes, the better ones first: depths in cm.
+#: Times of days and hours are those of their beginning, other times are ends.
 METEOSWISS: Mapping[str, Quantity] = {
-    "tre200d0": Quantity("temperature", "degrees C"),
-    "tre200h0": Quantity("temperature", "degrees C"),
-    "tre200s0": Quantity("temperature", "degrees C"),
-    "rre150d0": Quantity("precipitation", "mm"),
-    "rre150h0": Quantity("precipitation", "mm"),
-    "rre150z0": Quantity("precipitation", "mm"),
-    "rka150d0": Quantity("precipitation", "mm"),
-    "hns000d0": Quantity("snowfall", "cm", 0.01),
-    "hto000d0": Quantity("snow_depth", "cm", 0.01),
-    "htoautd0": Quantity("snow_depth", "cm", 0.01),
-    "htoauts0": Quantity("snow_depth", "cm", 0.01),
+    **dict.fromkeys(("tre200d0", "tre200h0", "tre200s0"), TEMPERATURE),
+    "rre150d0": Quantity("precipitation", "mm", hours=DAILY),
+    "rre150h0": Quantity("precipitation", "mm", hours=HOURLY, begins=True),
+    "rre150z0": Quantity("precipitation", "mm", hours=TEN_MINUTES),
+    "rka150d0": Quantity("precipitation", "mm", hours=DAILY),
+    "rre003i0": Quantity("precipitation", "mm", hours=3.0),
+    "rre006i0": Quantity("precipitation", "mm", hours=6.0),
+    "rre012i0": Quantity("precipitation", "mm", hours=12.0),
+    "rre024i0": Quantity("precipitation", "mm", hours=DAILY),
+    "hns000d0": Quantity("snowfall", "cm", 0.01, hours=DAILY),
+    **dict.fromkeys(("hto000d0", "htoautd0", "htoauths", "htoauts0"), DEPTH),
 }
+SNOWY = ("rre", "rka", "hns", "hto")  # what names of such parameters begin with
 #: Of the open data, of its forerunner, and of IDAWEB; in small letters.
 STATIONS = ("station_abbr", "station/location", "stn")
 TIMES = ("reference_timestamp", "date", "time")
@@ -29,9 +35,9 @@ MISSING = ("", "-", "NA", "NaN", "null")
 FORMATS = ("%d.%m.%Y %H:%M", "%Y%m%d%H%M", "%Y%m%d")
 #: Columns of the SLF; depths in cm.
 IMIS: Mapping[str, Quantity] = {
-    "HS": Quantity("snow_depth", "cm", 0.01),
-    "HN_1D": Quantity("snowfall", "cm", 0.01),
-    "TA_30MIN_MEAN": Quantity("temperature", "degrees C"),
+    "HS": DEPTH,
+    "HN_1D": Quantity("snowfall", "cm", 0.01, hours=DAILY),
+    "TA_30MIN_MEAN": TEMPERATURE,
 }
 
 
@@ -79,15 +85,23 @@ def _read(
     when = next((i for i, title in enumerate(head) if title.lower() in times), None)
     if when is None:
         raise InputError(f"{name}, line {start + 1}, column {' or '.join(times)}: missing")
-    columns = _best(head, parameters)
+    columns = [
+        Column(i, head[i], quantity)
+        for title, quantity in parameters.items()
+        for i in range(len(head))
+        if head[i] == title
+    ]
     if not columns:
         raise InputError(
             f"{name}, line {start + 1}, column {' or '.join(parameters)}: all are missing"
         )
-    rows, station = [], ""
+    of_columns, begin = Cells(columns, MISSING), lines[start].split(separator)[0]
+    readings, station = [], ""
     for number, line in enumerate(lines[start + 1 :], start + 2):
         place = f"{name}, line {number}"
-        if not line.strip() or [_title(cell) for cell in line.split(separator)] == head:
+        if not line.strip():
+            continue
+        if line.startswith(begin) and [_title(cell) for cell in line.split(separator)] == head:
             continue  # orders of IDAWEB name the columns again above every part
         cells = cells_of(line, head, place, separator)
         if station and cells[0] != station:
@@ -96,23 +110,15 @@ def _read(
                 f"{quoted(station)}"
             )
         station = cells[0]
-        values = {
-            one.name: one.read(cells[i], f"{place}, column {head[i]}", MISSING)
-            for i, one in columns.items()
-        }
+        values = of_columns.read(cells, place)
         time = time_of(cells[when], f"{place}, column {head[when]}", *formats)
-        rows.append(Observation(number, time, **values))
-    return Station(form, station, rows)
+        readings.append(Reading(number, time, values))
+    rows, titles, notes = observations(columns, readings)
+    unread = [one for one in head if one.startswith(SNOWY) and one not in parameters]
+    if unread:
+        notes.append(f"not read: {', '.join(unread)}")
+    return Station(form, station, rows, notes, utc_offset=0.0, columns=titles)
 
 
 def _title(cell: str) -> str:
     return cell.strip().strip('"')
-
-
-def _best(head: Sequence[str], parameters: Mapping[str, Quantity]) -> dict[int, Quantity]:
-    """Return the columns to read: of several of a quantity the first in the list."""
-    found: dict[str, tuple[int, Quantity]] = {}
-    for title, quantity in parameters.items():
-        if title in head:
-            found.setdefault(quantity.name, (head.index(title), quantity))
-    return dict(found.values())

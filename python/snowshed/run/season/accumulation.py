@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Optional
 
 from snowshed.run.ageing import Ageing, Interval
+from snowshed.run.season.checks import check_one_season
 from snowshed.run.season.column import SnowColumn
 from snowshed.run.season.release import Balance, balance
 from snowshed.run.season.settings import SeasonSettings
@@ -70,6 +71,11 @@ def accumulate(
     gravity
         m/s2.
 
+    Raises
+    ------
+    InputError
+        If more than a year passes from one row to the next.
+
     Examples
     --------
     >>> from datetime import datetime
@@ -78,6 +84,7 @@ def accumulate(
     >>> round(day.load), round(day.balance.driving), round(day.balance.resisting), day.event
     (10, 85, 84, 1)
     """
+    check_one_season(season)
     slope = math.cos(math.radians(tilt))
     snow = SnowColumn(load_factor=gravity * slope)
     days: list[Day] = []

@@ -11,6 +11,10 @@ import numpy as np
 from snowshed.io.arrays import Floats
 from snowshed.snow.relations.settling import SettlingLaw, settled_densities
 
+#: More layers than a winter of hours with snow has; the lower half of more is merged in pairs, so
+#: that years of snow that stays cost no more than one.
+MOST_LAYERS = 1000
+
 
 @dataclass
 class SnowColumn:
@@ -54,6 +58,8 @@ class SnowColumn:
         if mass > 0.0:
             self.masses = np.append(self.masses, mass)
             self.densities = np.append(self.densities, density)
+        if len(self.masses) > MOST_LAYERS:
+            self._merge()
 
     def melt(self, mass: float) -> None:
         """Take a mass, kg/m2, away from the top.
@@ -80,3 +86,12 @@ class SnowColumn:
             return
         stress = self.load_factor * (np.cumsum(self.masses[::-1])[::-1] - 0.5 * self.masses)
         self.densities = settled_densities(law, self.densities, stress, seconds, temperature)
+
+    def _merge(self) -> None:
+        """Merge the layers of the lower half in pairs, with the same mass and thickness."""
+        half = 2 * (len(self.masses) // 4)
+        thick = self.masses / self.densities
+        masses = self.masses[:half].reshape(-1, 2).sum(axis=1)
+        thickness = thick[:half].reshape(-1, 2).sum(axis=1)
+        self.masses = np.concatenate([masses, self.masses[half:]])
+        self.densities = np.concatenate([masses / thickness, self.densities[half:]])

@@ -17,11 +17,15 @@ from snowshed.run.results import check_empty
 from snowshed.run.season.accumulation import Day, accumulate, stack_ageing
 from snowshed.run.season.clearance import Contact, first_contact, first_reached, panel_ends
 from snowshed.run.season.notes import assumptions, first_staying, notes
+from snowshed.run.season.quality import COVERAGE
+from snowshed.run.season.quality_table import caption
+from snowshed.run.season.record import Record, WinterList
 from snowshed.run.season.results import SeasonFolder
 from snowshed.run.season.settings import SeasonSettings
 from snowshed.run.season.slabs import season_scene
+from snowshed.run.season.source import AUTO
 from snowshed.run.season.table import season_table
-from snowshed.run.season.weather import Season, read_weather
+from snowshed.run.season.weather import Season, read_record
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
 
 if TYPE_CHECKING:
@@ -50,6 +54,8 @@ class SeasonResult:
         none.
     staying_event
         First event after which snow stayed on the panel; None if there is none.
+    winters
+        How well the snow of the season, or of each of its winters, is known.
     notes
         Notes on the limits of the results.
     """
@@ -61,6 +67,7 @@ class SeasonResult:
     burial_event: Optional[int]
     crest_event: Optional[int]
     staying_event: Optional[int]
+    winters: WinterList
     notes: Sequence[str]
 
 
@@ -73,6 +80,9 @@ def run_season(
     resume: bool = False,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
+    coverage: float = COVERAGE,
+    snow_from: str = AUTO,
+    temperature: Optional[PathLike] = None,
 ) -> SeasonResult:
     """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
 
@@ -94,6 +104,12 @@ def run_season(
         Called about twice a second while a slide-off runs.
     pictures
         Whether to draw the figure.
+    coverage
+        Share of the days of the snow season on which snow should have been observed; a note tells
+        of winters with less.
+    snow_from, temperature
+        As for `read_record`: the column of a station that observes snow, and another file of its
+        temperatures.
 
     Raises
     ------
@@ -115,12 +131,13 @@ def run_season(
     0
     """
     settings = settings or SeasonSettings()
-    rows, of_reading = read_weather(season)
+    record = read_record(season, snow_from, temperature)
+    winters = record.winters(coverage)
     ready = resolve_scene(scene)
     data: dict[str, Any] = ready.data
     if "panel" not in data:
         raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
-    days = accumulate(rows, settings, data["panel"]["tilt"], data["gravity"])
+    days = accumulate(record.rows, settings, data["panel"]["tilt"], data["gravity"])
     folder = SeasonFolder(out_dir)
     if not resume:
         check_empty(folder.folder)
@@ -135,7 +152,7 @@ def run_season(
             pictures=pictures,
         )
     folder.folder.mkdir(parents=True, exist_ok=True)
-    result = _result(slides or ready, days, settings, folder, of_reading)
+    result = _result(slides or ready, days, settings, folder, record, winters)
     _write(result, slides or ready, settings, folder, pictures=pictures)
     return result
 
@@ -145,7 +162,8 @@ def _result(
     days: Sequence[Day],
     settings: SeasonSettings,
     folder: SeasonFolder,
-    of_reading: Sequence[str],
+    record: Record,
+    winters: WinterList,
 ) -> SeasonResult:
     import pandas as pd
 
@@ -163,8 +181,10 @@ def _result(
         burial_event=first_reached(simulated["clearance_m"].tolist(), dx),
         crest_event=first_reached(simulated["crest_clearance_m"].tolist(), dx),
         staying_event=staying,
+        winters=winters,
         notes=[
-            *of_reading,
+            *record.notes,
+            *winters.shortfalls,
             *assumptions(table, days, settings),
             *notes(dx, days, settings, events, staying),
         ],
@@ -187,6 +207,7 @@ def _write(
 ) -> None:
     summary = {name: value for name, value in vars(result).items() if name != "table"}
     summary["contact"] = None if result.contact is None else asdict(result.contact)
+    summary["winters"] = result.winters.data()
     text = json.dumps({"settings": asdict(settings), **summary}, indent=2, default=list)
     write_csv(result.table, folder.table, float_format="%.6g")
     write_text(folder.summary, text + "\n")
@@ -218,6 +239,7 @@ def drawn(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]
         panel=panel_ends(scene),
         contact=result.contact,
         title=f"{result.releases} releases; {verdict(result)}",
+        snow=caption(result.winters),
     )
 
 

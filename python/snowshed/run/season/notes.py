@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Optional
 
 from snowshed.run.season.accumulation import Day
+from snowshed.run.season.cover import end_of_readings
 from snowshed.run.season.settings import SeasonSettings
 
 if TYPE_CHECKING:
@@ -48,6 +49,13 @@ def assumptions(
             f"the stack lies on a natural snow cover ({source}), at most {deepest:.2f} m deep on "
             f"{date}"
         )
+        last = end_of_readings([day.weather for day in days])
+        if last is not None:
+            yield (
+                f"the readings of the snow depth end on {last.date.date()} at "
+                f"{last.snow_depth:.2f} m; from then on, the cover settles and melts by the "
+                "temperature, and grows by the snowfalls"
+            )
     if settings.settling is None:
         yield "no snow settles"
     if settings.strength is None:

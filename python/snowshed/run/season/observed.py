@@ -1,32 +1,48 @@
-"""From the observations of a station to the days of a season.
+"""From the observations of a station to the days of a season: the one place that decides.
 
-Hours become days. New snow is what the station measured; where it measured none, it follows from
-precipitation and temperature, or from the rises of the snow depth, and a note says so.
+What a day's new snow is, for every format, and where it comes from: `Source`. Each day takes it
+from the first of the winter's columns (`columns`) that knows it; what none of them knows is filled
+by a stated rule, or is missing. Missing is not zero: such a day says so.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from datetime import datetime, timedelta
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
 from typing import Optional
 
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.weather import Observation, Station
+from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.io.weather import Station
+from snowshed.run.season.columns import CONTRADICTION, Choice, Chooser, Column
+from snowshed.run.season.daily import Days, days_of_station
+from snowshed.run.season.depth_rises import LEAST_RISE, DepthSnow, Total, snow_of_depth
+from snowshed.run.season.extremes import RECORD_DAY, RECORD_WORDS
+from snowshed.run.season.gauge import RULE, snow_of_gauge
+from snowshed.run.season.record import Record
+from snowshed.run.season.source import Source
+from snowshed.run.season.temperatures import filled_temperatures, some_days
 from snowshed.run.season.weather_row import Weather
-from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
+from snowshed.run.season.winter_years import Calendar, calendar_of
 
-#: All precipitation is snow below the first and rain above the second temperature, degrees C, with
-#: a straight line between: U.S. Army Corps of Engineers 1956, Snow Hydrology, as in Wigmosta et al.
-#: 1994, Water Resour. Res. 30, 1665-1679.
-ALL_SNOW, ALL_RAIN = -1.1, 3.3
-LEAST_RISE = 0.02  # m; smaller rises of the snow depth are noise of the sensor
-LONGEST_BRIDGED = 3  # days without temperature that are interpolated
+NAMED = 3  # winters that a note names
 
 
-def days_of(station: Station, source: str) -> tuple[list[Weather], list[str]]:
-    """Return the days of a station, and notes on what was assumed.
+@dataclass
+class _Snow:
+    """The new snow of every day, m, its source and the reason where it is not the file's."""
+
+    fall: Floats
+    source: list[Source]
+    reason: list[str]
+    choices: dict[int, Choice] = field(default_factory=dict)
+
+
+def record_of(station: Station, source: str, only: Optional[Source] = None) -> Record:
+    """Return the days of a station as a record.
 
     Parameters
     ----------
@@ -34,156 +50,256 @@ def days_of(station: Station, source: str) -> tuple[list[Weather], list[str]]:
         From `read_station`.
     source
         The file, for messages.
+    only
+        The one column that observes snow; None: the best of each winter.
 
     Raises
     ------
     InputError
-        If snow cannot be told from its columns, or there are no temperatures.
+        If there is no snow or no temperature in any row, or not the column that was asked for.
     """
-    days = _with_temperature(_daily(_ordered(station, source)), station.format, source)
-    notes = [*station.notes, *_gaps(days)]
-    if station.typical_year:
-        notes.append(
-            f"{station.format} is a typical year: its months come from different years; it is put "
-            "together from July to June"
+    _check_order(station, source)
+    days = days_of_station(station)
+    if np.isnan(days.temperature).all():
+        raise InputError(
+            f"{source}: no air temperature in any row of this {station.format} file; a season "
+            "needs them; give the file of its temperatures as well"
         )
-    temperatures = _temperatures(days)
-    falls, rule = _snowfalls(days, temperatures, station.format, source)
-    if rule:
-        notes.append(rule)
+    warm, far, of_temperature = filled_temperatures(days.dates, days.temperature, days.there)
+    depth = snow_of_depth(days, warm)
+    notes = [*station.notes, *_gaps(days), *of_temperature, *depth.notes]
+    columns = _columns(days, warm, far, depth, notes)
+    _check_columns(columns, only, station.format, source)
+    calendar = _calendar(days, warm, station.latitude)
+    snow = _chosen(days, Chooser(columns, warm, only), columns, calendar, depth.totals)
+    notes += _notes(snow, days, calendar)
+    modelled = station.typical_year
     rows = [
-        Weather(day.line, day.time, fall, None, round(warm, 2), snow_depth=day.snow_depth)
-        for day, warm, fall in zip(days, temperatures, falls)
+        Weather(
+            int(days.lines[n]),
+            datetime(day.year, day.month, day.day),
+            round(float(snow.fall[n]), 4),
+            None,
+            round(float(warm[n]), 2),
+            snow_depth=None if np.isnan(depth.depth[n]) else float(depth.depth[n]),
+            source=Source.MODEL if modelled and snow.source[n] is Source.GAUGE else snow.source[n],
+            reason=snow.reason[n],
+        )
+        for n, day in enumerate(days.dates)
     ]
-    return rows, notes
+    sums = {year: choice.sums for year, choice in snow.choices.items()}
+    return Record(rows, notes, station.latitude, sums)
 
 
-def snow_fraction(temperature: float) -> float:
-    """Return the part of precipitation that falls as snow at an air temperature, degrees C.
-
-    Examples
-    --------
-    >>> [round(snow_fraction(t), 2) for t in (-5.0, 1.1, 4.0)]
-    [1.0, 0.5, 0.0]
-    """
-    return float(np.clip((ALL_RAIN - temperature) / (ALL_RAIN - ALL_SNOW), 0.0, 1.0))
-
-
-def _ordered(station: Station, source: str) -> list[Observation]:
-    rows = list(station.rows)
-    if station.typical_year:
-        moved = [
-            (row, row.time.replace(year=2001 if row.time.month >= 7 else 2002))
-            for row in rows
-            if (row.time.month, row.time.day) != (2, 29)
-        ]
-        rows = [
-            Observation(row.line, time, row.temperature, row.precipitation, row.snowfall,
-                        row.snow_depth)
-            for row, time in sorted(moved, key=lambda one: one[1])
-        ]  # fmt: skip
-    for earlier, later in zip(rows, rows[1:]):
+def _check_order(station: Station, source: str) -> None:
+    for earlier, later in zip(station.rows, station.rows[1:]):
         if later.time <= earlier.time:
             raise InputError(
                 f"{source}, line {later.line}, column date: {later.time.isoformat(' ')} is not "
                 f"after line {earlier.line}, {earlier.time.isoformat(' ')}"
             )
-    return rows
 
 
-def _daily(rows: Sequence[Observation]) -> list[Observation]:
-    """Return a row for each day: means of temperature, sums of precipitation, the last depth."""
-    grouped: dict[datetime, list[Observation]] = {}
-    for row in rows:
-        grouped.setdefault(datetime(row.time.year, row.time.month, row.time.day), []).append(row)
-    days = []
-    for day, own in grouped.items():
-        warm = [row.temperature for row in own if row.temperature is not None]
-        wet = [row.precipitation for row in own if row.precipitation is not None]
-        new = [row.snowfall for row in own if row.snowfall is not None]
-        deep = [row.snow_depth for row in own if row.snow_depth is not None]
-        days.append(
-            Observation(
-                own[0].line,
-                day,
-                float(np.mean(warm)) if warm else None,
-                sum(wet) if wet else None,
-                max(new) if new else None,  # of the last 24 hours, told anew each time
-                deep[-1] if deep else None,
-            )
+def _columns(
+    days: Days, warm: Floats, far: Booleans, depth: DepthSnow, notes: list[str]
+) -> dict[Source, Column]:
+    """Return the columns of a station that tell of snow; appends notes on what was left out."""
+    hand = days.new_snow.copy()
+    beyond = hand > RECORD_DAY
+    if beyond.any():
+        first = int(np.flatnonzero(beyond)[0])
+        notes.append(
+            f"new snow of {hand[first]:.2f} m on {days.dates[first]}"
+            f"{' and on other days' if beyond.sum() > 1 else ''} is left out: {RECORD_WORDS}"
         )
-    return days
-
-
-def _gaps(days: Sequence[Observation]) -> list[str]:
-    missing = [
-        (earlier, later)
-        for earlier, later in zip(days, days[1:])
-        if later.time - earlier.time > timedelta(days=1)
-    ]
-    if not missing:
-        return []
-    longest = max(missing, key=lambda pair: pair[1].time - pair[0].time)
-    count = sum((later.time - earlier.time).days - 1 for earlier, later in missing)
-    first = longest[0].time + timedelta(days=1)
-    return [
-        f"{count} days are missing in {len(missing)} gaps, the longest from {first.date()} to "
-        f"{(longest[1].time - timedelta(days=1)).date()}; no snow is taken to fall there"
-    ]
-
-
-def _with_temperature(days: Sequence[Observation], form: str, source: str) -> list[Observation]:
-    """Return the days whose temperature is known, or known a few days before or after."""
-    known = np.array([i for i, day in enumerate(days) if day.temperature is not None])
-    if len(known) == 0:
-        raise InputError(
-            f"{source}: no air temperature in any row of this {form} file; a season needs them"
+        hand[beyond] = np.nan
+    gauge = snow_of_gauge(days.water, warm)
+    if (gauge >= RECORD_DAY).any():
+        first = int(np.flatnonzero(gauge >= RECORD_DAY)[0])
+        notes.append(
+            f"the precipitation of {days.dates[first]} ({days.water[first]:g} mm) counts as "
+            f"{RECORD_DAY:g} m of snow: {RECORD_WORDS}"
         )
-    near = np.searchsorted(known, np.arange(len(days)))
-    before, after = known[np.maximum(near - 1, 0)], known[np.minimum(near, len(known) - 1)]
-    distance = np.minimum(
-        np.abs(before - np.arange(len(days))), np.abs(after - np.arange(len(days)))
-    )
-    return [day for day, gap in zip(days, distance) if gap <= LONGEST_BRIDGED]
+    return {
+        Source.HAND: Column(Source.HAND, *_whole(hand, days.part_snow)),
+        Source.GAUGE: Column(
+            Source.GAUGE, *_whole(gauge, days.part_water | (far & (days.water > 0.0)))
+        ),
+        Source.DEPTH: Column(Source.DEPTH, depth.snow, depth.filled),
+    }
 
 
-def _temperatures(days: Sequence[Observation]) -> list[float]:
-    known = [i for i, day in enumerate(days) if day.temperature is not None]
-    values = [float(days[i].temperature or 0.0) for i in known]
-    return [float(one) for one in np.interp(np.arange(len(days)), known, values)]
+def _whole(snow: Floats, part: Booleans) -> tuple[Floats, Booleans]:
+    """Return snow and whether it is no observation: without any, a part of a day tells nothing."""
+    return np.where(part & (snow == 0.0), np.nan, snow), part & (snow > 0.0)
 
 
-def _snowfalls(
-    days: Sequence[Observation], temperatures: Sequence[float], form: str, source: str
-) -> tuple[list[float], Optional[str]]:
-    """Return the new snow of each day, m, and the rule by which it was found."""
-    if any(day.snowfall is not None for day in days):
-        lacking = sum(day.snowfall is None for day in days)
-        note = f"new snow is missing on {lacking} days, and taken as none" if lacking else None
-        return [day.snowfall or 0.0 for day in days], note
-    if any(day.precipitation for day in days):
-        density = NEW_SNOW_DENSITY["hedstrom-pomeroy-1998"]
-        falls = [
-            round((day.precipitation or 0.0) * snow_fraction(warm) / density(max(warm, -90.0)), 4)
-            for day, warm in zip(days, temperatures)
-        ]
-        return falls, (
-            "new snow follows from precipitation and temperature: all snow below "
-            f"{ALL_SNOW:g} °C, all rain above {ALL_RAIN:g} °C (U.S. Army Corps of Engineers 1956), "
-            "with the density of hedstrom-pomeroy-1998"
-        )
-    depths: list[float] = []
-    for day in days:
-        last = depths[-1] if depths else 0.0
-        depths.append(last if day.snow_depth is None else day.snow_depth)
-    if not any(depths):
+def _check_columns(
+    columns: Mapping[Source, Column], only: Optional[Source], form: str, source: str
+) -> None:
+    if only is not None and np.isnan(columns[only].snow).all():
+        raise InputError(f"{source}: no {only.words} in any row of this {form} file")
+    if all(np.isnan(column.snow).all() for column in columns.values()):
         raise InputError(
             f"{source}: neither new snow, precipitation nor snow depth in any row of this {form} "
             "file"
         )
-    rises = np.diff(depths, prepend=depths[0])
-    falls = [round(float(rise), 4) if rise >= LEAST_RISE else 0.0 for rise in rises]
-    return falls, (
-        f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; since snow "
-        "settles at the same time, it is too little"
+
+
+def _calendar(days: Days, warm: Floats, latitude: Optional[float]) -> Calendar:
+    rows = [
+        Weather(0, datetime(day.year, day.month, day.day), 0.0, None, float(temperature))
+        for day, temperature in zip(days.dates, warm)
+    ]
+    return calendar_of(rows, latitude)
+
+
+def _chosen(
+    days: Days,
+    chooser: Chooser,
+    columns: Mapping[Source, Column],
+    calendar: Calendar,
+    totals: Sequence[Total],
+) -> _Snow:
+    """Return the new snow of every day by the columns of its winter."""
+    count = len(days.dates)
+    snow = _Snow(np.zeros(count), [Source.MISSING] * count, [""] * count)
+    years = np.array([calendar.year(day) for day in days.dates])
+    for year in np.unique(years).tolist():
+        choice = chooser.of(years == year)
+        snow.choices[year] = choice
+        for n in np.flatnonzero(years == year).tolist():
+            _take(snow, n, choice, columns)
+    for total in totals:
+        _share_out(snow, total)
+    return snow
+
+
+def _take(snow: _Snow, n: int, choice: Choice, columns: Mapping[Source, Column]) -> None:
+    for source in choice.observing:
+        if columns[source].known[n]:
+            snow.fall[n], snow.source[n] = columns[source].snow[n], source
+            return
+    for source in (*choice.observing, *([choice.filling] if choice.filling else [])):
+        fall = columns[source].snow[n]
+        if not np.isnan(fall):
+            snow.fall[n], snow.source[n] = fall, Source.FILLED
+            part = columns[source].filled[n]
+            snow.reason[n] = f"from {'a part of ' if part else ''}the {source.words}"
+            return
+
+
+def _share_out(snow: _Snow, total: Total) -> None:
+    """Take what other columns know of some of its days out of a rise over several days."""
+    own, known = [], 0.0
+    for n in total.days:
+        if snow.source[n] is Source.DEPTH or snow.reason[n].endswith(Source.DEPTH.words):
+            own.append(n)
+            snow.reason[n] = f"part of a rise of {total.rise:.2f} m over {len(total.days)} days"
+        else:
+            known += snow.fall[n]
+    if len(own) < len(total.days):
+        for n in own:
+            snow.fall[n] = max(total.rise - known, 0.0) / len(own)
+
+
+def _gaps(days: Days) -> list[str]:
+    """Return a note on the days of which the file has nothing."""
+    ordinals = days.ordinals[days.there]
+    spans = np.diff(ordinals)
+    if not (spans > 1).any():
+        return []
+    longest = int(np.argmax(spans))
+    first, last = (
+        datetime.fromordinal(int(ordinals[longest + n] + (1, -1)[n])).date() for n in (0, 1)
     )
+    return [
+        f"{_many(int((spans - 1).sum()), 'day')} missing in {_gaps_in_words(spans)}from {first} to "
+        f"{last}"
+    ]
+
+
+def _many(number: int, what: str) -> str:
+    return f"{number} {what} is" if number == 1 else f"{number} {what}s are"
+
+
+def _gaps_in_words(spans: Integers) -> str:
+    gaps = int((spans > 1).sum())
+    return "1 gap, " if gaps == 1 else f"{gaps} gaps, the longest "
+
+
+def _notes(snow: _Snow, days: Days, calendar: Calendar) -> Iterator[str]:
+    if Source.GAUGE in snow.source:
+        yield RULE
+    if Source.DEPTH in snow.source:
+        yield (
+            f"new snow is the daily rise of the snow depth, from {100 * LEAST_RISE:g} cm; since "
+            "snow settles at the same time, it is too little"
+        )
+    yield from _contradictions(snow, calendar)
+    filled = [n for n, source in enumerate(snow.source) if source is Source.FILLED]
+    if filled:
+        words = sorted({_kind(snow.reason[n]) for n in filled})
+        yield (
+            f"the snow of {some_days(days.dates, filled)} is filled, "
+            f"{sum(snow.fall[n] for n in filled):.2f} m in all: {'; '.join(words)}"
+        )
+    missing = [n for n, source in enumerate(snow.source) if source is Source.MISSING]
+    if missing:
+        yield (
+            f"the snow of {some_days(days.dates, missing)} is not known; none is laid on the panel "
+            "then, and they count as not observed"
+        )
+
+
+def _kind(reason: str) -> str:
+    return "the rise over a gap, shared out" if reason.startswith("part") else reason
+
+
+def _contradictions(snow: _Snow, calendar: Calendar) -> Iterator[str]:
+    """Yield how columns contradict each other, with their sums, for some winters by name."""
+    groups: dict[tuple[Source, frozenset[Source]], list[int]] = {}
+    for year, choice in snow.choices.items():
+        wrong = choice.contradicted or _far_off(choice)
+        if wrong and choice.observing:
+            groups.setdefault((choice.observing[0], wrong), []).append(year)
+    for (used, wrong), years in groups.items():
+        named = "; ".join(
+            f"{calendar.name(year)}: "
+            + ", ".join(
+                f"{source.words} {total:.3g} m" for source, total in snow.choices[year].sums.items()
+            )
+            for year in years[:NAMED]
+        )
+        more = f"; and {len(years) - NAMED} more winters" if len(years) > NAMED else ""
+        yield (
+            f"columns contradict each other by more than a factor of {CONTRADICTION:g} ({named}"
+            f"{more}); the {used.words} is used, not the "
+            f"{' or the '.join(sorted(one.words for one in wrong))}{_why(used, wrong)}"
+        )
+
+
+def _far_off(choice: Choice) -> frozenset[Source]:
+    """Return the sources that contradict the one in use, which stands."""
+    if not choice.observing:
+        return frozenset()
+    own = choice.sums.get(choice.observing[0])
+    if own is None:
+        return frozenset()
+    return frozenset(
+        source
+        for source, total in choice.sums.items()
+        if max(total, own) > CONTRADICTION * min(total, own) and abs(total - own) > 0.1
+    )
+
+
+def _why(used: Source, wrong: frozenset[Source]) -> str:
+    if used is Source.DEPTH and Source.GAUGE in wrong:
+        return ": gauges catch too little snow in wind or stand still (WMO/TD-872, 1998)"
+    if used is Source.DEPTH:
+        return ": no cover rises by more than what falls"
+    if used is Source.GAUGE and Source.DEPTH in wrong:
+        return ": a cover settles, melts and drifts away while it snows"
+    if used is Source.GAUGE:
+        return ": nobody entered any new snow all winter"
+    return ": new snow that was measured goes before what is derived"

@@ -20,6 +20,7 @@ SEASON_COLUMNS = (
     "date",
     "released",
     "snowfall_m",
+    "snow_source",
     "density_kg_m3",
     "temperature_c",
     "panel_snow_m",

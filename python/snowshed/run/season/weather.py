@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Union
@@ -18,9 +18,13 @@ from typing import TYPE_CHECKING, Optional, Union
 from snowshed._core import InputError
 from snowshed.io.csv_table import Row, frame_as_text, read_text_table
 from snowshed.io.messages import quoted
+from snowshed.io.notes import tell
 from snowshed.io.number_text import number_in
-from snowshed.io.weather import Station, read_station
-from snowshed.run.season.observed import days_of
+from snowshed.io.weather import Station, read_station, read_stations
+from snowshed.run.season.checks import NO_SNOW, check_rows
+from snowshed.run.season.observed import record_of
+from snowshed.run.season.record import Record
+from snowshed.run.season.source import AUTO, CHOICES
 from snowshed.run.season.weather_row import MOST_SNOWFALL, Weather
 from snowshed.scene.scene import PathLike
 
@@ -40,8 +44,6 @@ class _Column:
     hint: str = ""  # what a number beyond the range may be
 
 
-#: Snowfalls of which half are deeper are not in metres.
-TYPICAL_SNOWFALL = 0.7  # m
 COLUMNS: Mapping[str, _Column] = {
     "snowfall_m": _Column(
         0.0, MOST_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
@@ -55,10 +57,9 @@ COLUMNS: Mapping[str, _Column] = {
 ALLOWED = ("date", *COLUMNS)
 #: Other spellings of units.
 SAME_UNITS: Mapping[str, Sequence[str]] = {"degrees C": ("degC", "°C"), "": ("1",)}
-MOST_ROWS = 100_000  # daily data of the longest records, and hourly seasons
 
 
-Season = Union[PathLike, "pd.DataFrame", Sequence[Weather]]
+Season = Union[PathLike, Sequence[PathLike], "pd.DataFrame", Sequence[Weather]]
 
 
 def read_season(season: Season) -> list[Weather]:
@@ -73,7 +74,8 @@ def read_season(season: Season) -> list[Weather]:
         and, if known, ``density_kg_m3``, ``friction``, ``adhesion_pa`` and ``snow_depth_m`` (of the
         natural snow cover). The names tell the units. If
         ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of `Weather`
-        are returned unchanged.
+        are returned unchanged. Several weather files of one station are read as one
+        (`snowshed.io.weather.read_stations`).
 
     Raises
     ------
@@ -91,39 +93,94 @@ def read_season(season: Season) -> list[Weather]:
     >>> [(row.snowfall, row.temperature) for row in read_season(table)]
     [(0.2, -4.0), (0.0, 1.5)]
     """
-    return read_weather(season)[0]
+    record = read_record(season)
+    for note in record.notes:
+        tell(note)
+    return [*record.rows]
 
 
-def read_weather(season: Season) -> tuple[list[Weather], list[str]]:
+def read_weather(
+    season: Season, temperature: Optional[PathLike] = None
+) -> tuple[list[Weather], list[str]]:
     """Return the rows of a season, as `read_season`, and notes on what was assumed in reading.
+
+    Parameters
+    ----------
+    season, temperature
+        As for `read_record`, which raises the same errors.
+    """
+    record = read_record(season, temperature=temperature)
+    return [*record.rows], [*record.notes]
+
+
+def read_record(
+    season: Season, snow_from: str = AUTO, temperature: Optional[PathLike] = None
+) -> Record:
+    """Return the weather of a season or of many winters, with all that is known of its quality.
 
     Parameters
     ----------
     season
         As for `read_season`, which raises the same errors.
+    snow_from
+        The column of a station that observes snow, a name in `CHOICES`; "auto": the best of each
+        winter (`snowshed.run.season.columns`).
+    temperature
+        Another file of the same station, whose temperatures come first
+        (`snowshed.io.weather.read_stations`).
     """
+    if snow_from != AUTO and snow_from not in CHOICES:
+        allowed = ", ".join((AUTO, *CHOICES))
+        raise InputError(f"snow from: {quoted(snow_from)}; allowed: {allowed}")
+    files = _files_of(season)
+    if temperature is not None and not files:
+        raise InputError("a file of temperatures goes with weather files only, not with a table")
+    if len(files) > 1 or temperature is not None:
+        joined = read_stations(files, None if temperature is None else Path(temperature))
+        return _of_station(joined, " and ".join(map(str, files)), snow_from)
+    if files:
+        season = files[0]
     if isinstance(season, (str, os.PathLike)):
         station = read_station(Path(season))
         if station is not None:
-            return _of_station(station, str(season))
+            return _of_station(station, str(season), snow_from)
         hint = f"the first line names the columns: {', '.join(ALLOWED)}"
         table, name = read_text_table(Path(season), hint, _check_columns), str(season)
     elif isinstance(season, Sequence):
-        return [*season], []
+        if not season:
+            raise InputError("the season: no rows")
+        return Record([*season])
     else:
         table, name = frame_as_text(season, "the season", index="date"), "the season"
         _check_columns(table.columns, name)
         _check_units(season.attrs.get("units", {}))
+    if snow_from != AUTO:
+        raise InputError(f"{name}: its snow is that of its column snowfall_m, not {snow_from}")
     rows = [_weather(row) for row in table.rows]
-    _check_season(rows, table.rows, name)
-    return rows, []
+    check_rows(rows, table.rows, name)
+    return Record(rows)
 
 
-def _of_station(station: Station, source: str) -> tuple[list[Weather], list[str]]:
-    rows, notes = days_of(station, source)
-    places = [Row(source, f"line {row.line}", row.line, {}) for row in rows]
-    _check_season(rows, places, source)
-    return rows, [f"the weather is of a file in the format {station.format}", *notes]
+def _files_of(season: Season) -> list[Path]:
+    """Return the weather files of a season; none if it is a table or rows."""
+    if isinstance(season, (str, os.PathLike)):
+        return [Path(season)]
+    if isinstance(season, Sequence):
+        return [Path(one) for one in season if isinstance(one, (str, os.PathLike))]
+    return []
+
+
+def _of_station(station: Station, source: str, snow_from: str) -> Record:
+    record = record_of(station, source, CHOICES.get(snow_from))
+    places = [Row(source, f"line {row.line}", row.line, {}) for row in record.rows]
+    notes = [f"the weather is of a file in the format {station.format}", *record.notes]
+    try:
+        check_rows(record.rows, places, source)
+    except InputError as error:
+        if NO_SNOW not in str(error):
+            raise
+        raise InputError("; ".join([str(error), *record.notes])) from None
+    return replace(record, notes=notes)
 
 
 def _check_columns(names: Sequence[str], where: str) -> None:
@@ -196,25 +253,3 @@ def _date(text: str, where: str) -> datetime:
             f"{where}: {quoted(text)} is not a date such as 2024-12-31 or 2024-12-31T18:00"
         ) from None
     return date
-
-
-def _check_season(season: Sequence[Weather], rows: Sequence[Row], name: str) -> None:
-    if not season:
-        raise InputError(f"{name}: no rows below the header")
-    if len(season) > MOST_ROWS:
-        raise InputError(f"{name}: {len(season)} rows; at most {MOST_ROWS} are allowed")
-    for earlier, later, before, row in zip(season, season[1:], rows, rows[1:]):
-        if later.date <= earlier.date:
-            raise InputError(
-                f"{row.where}, column date: {later.date.isoformat(' ')} is not after "
-                f"{before.place}, {earlier.date.isoformat(' ')}"
-            )
-    falls = sorted(row.snowfall for row in season if row.snowfall)
-    if not falls:
-        raise InputError(f"{name}: it never snows; every snowfall_m is 0")
-    middle = falls[len(falls) // 2]
-    if len(falls) >= 3 and middle > TYPICAL_SNOWFALL:
-        raise InputError(
-            f"{name}, column snowfall_m: half of the snowfalls are of {middle:g} m and more; is it "
-            "in cm, mm or inches?"
-        )

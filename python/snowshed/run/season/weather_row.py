@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Optional
 
-#: No more snow was measured in 24 hours than 1.93 m (Silver Lake, Colorado, 1921).
-MOST_SNOWFALL = 3.0  # m in a row
+from snowshed.run.season.source import Source
+
+#: In a row, which may hold the snow of several days.
+MOST_SNOWFALL = 3.0  # m
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,10 @@ class Weather:
         Friction and adhesion (Pa) of the panel on that day; None: those of the settings.
     snow_depth
         Depth of the natural snow cover, m; None: not measured.
+    source
+        Where the snowfall comes from.
+    reason
+        Why it is not what the file holds for that day, in words; empty where it is.
     """
 
     line: int
@@ -40,3 +46,5 @@ class Weather:
     friction: Optional[float] = None
     adhesion: Optional[float] = None
     snow_depth: Optional[float] = None
+    source: Source = Source.GIVEN
+    reason: str = ""

@@ -1,0 +1,109 @@
+"""Packed files: gzip and xz, which may be small and unpack to more than the memory holds."""
+
+from __future__ import annotations
+
+import lzma
+import re
+import zlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from snowshed._core import InputError
+from snowshed.io.limits import KB, MB, MEMBERS, TEXT, UNPACKING
+
+GZIP, XZ = b"\x1f\x8b", b"\xfd7zXZ\x00"
+#: What is not unpacked, by its first bytes.
+OTHERS = {
+    b"PK\x03\x04": "a zip archive",
+    b"BZh": "packed with bzip2",
+    b"7z\xbc\xaf\x27\x1c": "a 7z archive",
+    b"\x28\xb5\x2f\xfd": "packed with zstd",
+}
+ZEROS = re.compile(rb"\0*")
+PART = 64 * KB  # fed at once, so that the rest is not copied for every member
+
+
+def unpacked(content: bytes, path: Path, largest: int = TEXT) -> bytes:
+    """Return the content of a file, unpacked if it is packed with gzip or xz.
+
+    Parameters
+    ----------
+    content
+        Of the file, packed or not.
+    path
+        Its name, for messages.
+    largest
+        Bytes that it may have when it is unpacked.
+
+    Raises
+    ------
+    InputError
+        If it is damaged, longer than allowed, or packed in another way.
+
+    Examples
+    --------
+    >>> import gzip
+    >>> unpacked(gzip.compress(b"snow"), Path("a.gz")), unpacked(b"snow", Path("a"))
+    (b'snow', b'snow')
+    """
+    for begin, what in OTHERS.items():
+        if content.startswith(begin):
+            raise InputError(f"{path}: {what}; unpack it and give the file inside")
+    if content.startswith(GZIP):
+        return _members(content, path, largest, "gzip", _gzip_part, _gzip)
+    if content.startswith(XZ):
+        return _members(content, path, largest, "xz", _xz_part, _xz)
+    return content
+
+
+def _gzip() -> Any:
+    return zlib.decompressobj(zlib.MAX_WBITS + 16)
+
+
+def _xz() -> Any:
+    return lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=UNPACKING)
+
+
+def _gzip_part(member: Any, part: bytes, most: int) -> Iterator[bytes]:
+    while part:
+        yield member.decompress(part, most)
+        part = member.unconsumed_tail
+
+
+def _xz_part(member: Any, part: bytes, most: int) -> Iterator[bytes]:
+    yield member.decompress(part, most)
+    while not (member.eof or member.needs_input):
+        yield member.decompress(b"", most)
+
+
+def _members(
+    content: bytes,
+    path: Path,
+    largest: int,
+    kind: str,
+    made_of: Callable[[Any, bytes, int], Iterator[bytes]],
+    begin: Callable[[], Any],
+) -> bytes:
+    """Return what the members hold, one after another; zeros may stand between and after them."""
+    made, start = bytearray(), 0
+    for _ in range(MEMBERS):
+        member = begin()
+        while not member.eof:
+            part = content[start : start + PART]
+            if not part:
+                raise InputError(f"{path}: damaged: {kind}: it ends too early")
+            start += len(part)
+            try:
+                for piece in made_of(member, part, MB):
+                    made += piece
+                    if len(made) > largest:
+                        raise InputError(f"{path}: longer than {largest // MB} MB when unpacked")
+            except (zlib.error, lzma.LZMAError) as error:
+                raise InputError(f"{path}: damaged: {kind}: {error}") from None
+        start -= len(member.unused_data)
+        zeros = ZEROS.match(content, start)
+        start = zeros.end() if zeros else start
+        if start >= len(content):
+            return bytes(made)
+    raise InputError(f"{path}: more than {MEMBERS} {kind} members; unpack it first")

@@ -1,0 +1,108 @@
+"""Amounts of water and snow as files tell them, and what of them fell between two readings.
+
+Totals may contain one another (1, 3, 6 and 24 hours), a counter may only rise, and every row may
+hold the sum of the last day. What is handed on does not overlap, so that it may be summed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from datetime import datetime, timedelta
+from statistics import median
+from typing import NamedTuple
+
+from snowshed.io.weather.observation import DAY
+
+HOUR = timedelta(hours=1)
+EPOCH = datetime(1, 1, 1)
+#: A total is an error of its sensor if it exceeds the totals within it, which cover half of its
+#: time and more, by this factor and by this many mm.
+FACTOR, EXCESS = 20.0, 50.0
+MOST_STEPS = 400  # of a total: a year of days, half a month of hours
+
+
+class Total(NamedTuple):
+    """An amount over some hours before a time."""
+
+    end: datetime
+    hours: float
+    amount: float
+
+
+def without_overlap(
+    totals: Sequence[Total], step: float, what: str
+) -> tuple[list[float], list[str]]:
+    """Return what each total adds to the shorter ones that it contains, and notes.
+
+    Parameters
+    ----------
+    totals
+        In any order.
+    step
+        Hours of the shortest total.
+    what
+        Their unit and quantity, for the notes.
+
+    Examples
+    --------
+    >>> noon = datetime(2024, 1, 1, 12)
+    >>> hour, longer = Total(noon - timedelta(hours=2), 1.0, 4.0), Total(noon, 6.0, 10.0)
+    >>> without_overlap([hour, longer], 1.0, "mm of precipitation")[0]
+    [4.0, 6.0]
+    """
+    known: dict[int, float] = {}
+    amounts = [0.0] * len(totals)
+    contained, refused = 0, []
+    for i in sorted(range(len(totals)), key=lambda i: totals[i].hours):
+        total = totals[i]
+        last = math.ceil((total.end - EPOCH) / HOUR / step - 1e-6)
+        span = range(last - min(max(round(total.hours / step), 1), MOST_STEPS) + 1, last + 1)
+        inside = [known[slot] for slot in span if slot in known]
+        rest = max(total.amount - math.fsum(inside), 0.0)
+        if 2 * len(inside) >= len(span) and rest > max(EXCESS, FACTOR * math.fsum(inside)):
+            refused.append(rest)
+            continue
+        contained += bool(inside) and total.amount > 0.0
+        free = [slot for slot in span if slot not in known] or list(span)
+        for slot in free:
+            known[slot] = known.get(slot, 0.0) + rest / len(free)
+        amounts[i] = round(rest, 6)
+    notes = []
+    if contained:
+        notes.append(
+            f"{contained} totals contain shorter ones; {math.fsum(amounts):g} {what} are left of "
+            f"{math.fsum(total.amount for total in totals):g}, since nothing counts twice"
+        )
+    if refused:
+        notes.append(
+            f"{len(refused)} totals contradict the totals within them, and are left out with "
+            f"{math.fsum(refused):g} {what}"
+        )
+    return amounts, notes
+
+
+def usual_step(times: Sequence[datetime]) -> float:
+    """Return the usual hours from row to row; 1 if there are not two rows.
+
+    Examples
+    --------
+    >>> usual_step([datetime(2024, 1, 1, hour) for hour in (0, 3, 6, 7)])
+    3.0
+    """
+    steps = [(later - earlier) / HOUR for earlier, later in zip(times, times[1:])]
+    rising = [step for step in steps if step > 0.0]
+    return median(rising) if rising else 1.0
+
+
+def hours_before(times: Sequence[datetime]) -> list[float]:
+    """Return the hours since the row before; after a gap of more than a day those of usual rows.
+
+    Examples
+    --------
+    >>> hours_before([datetime(2024, 1, 1, hour) for hour in (0, 1, 2, 5)])
+    [1.0, 1.0, 1.0, 3.0]
+    """
+    usual = usual_step(times)
+    steps = [(later - earlier) / HOUR for earlier, later in zip(times, times[1:])]
+    return [usual, *(step if 0.0 < step <= max(DAY, usual) else usual for step in steps)]

@@ -1,0 +1,124 @@
+"""One clock for all rows of a station: times with offsets, and hours that summer time moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime, timedelta, timezone
+
+from snowshed._core import InputError
+from snowshed.io.weather.amounts import HOUR, usual_step
+from snowshed.io.weather.observation import DAY, Observation, Station, changed
+
+YEARS = (1700, 2200)  # older than any thermometer, later than any scenario
+SUNDAY = 6
+
+
+def on_one_clock(station: Station, source: str) -> Station:
+    """Return a station whose rows have increasing times of one clock, without offsets.
+
+    Times with offsets are put on the clock of the smallest, which is that of standard time.
+
+    Raises
+    ------
+    InputError
+        If only some times have offsets, or a time is not after the one before.
+    """
+    rows, offset, notes = station.rows, station.utc_offset, [*station.notes]
+    aware = rows[0].time.tzinfo is not None
+    for row in rows:
+        if (row.time.tzinfo is not None) != aware:
+            raise InputError(
+                f"{source}, line {row.line}, column date: {row.time.isoformat(' ')} has "
+                f"{'no' if aware else 'an'} offset from universal time, other than line "
+                f"{rows[0].line}; give all of them offsets, or none"
+            )
+    if aware:
+        offsets = {row.time.utcoffset() or timedelta(0) for row in rows}
+        offset = min(offsets) / HOUR
+        rows = [_moved(row, min(offsets), source) for row in rows]
+        if len(offsets) > 1:
+            notes.append(
+                f"its times have {len(offsets)} offsets from universal time; they are put on the "
+                f"clock of UTC{offset:+g} h, whose days count"
+            )
+    _check_years(rows, source)
+    step = usual_step([row.time for row in rows])
+    _check_order(rows, source, step)
+    if not aware and step <= 1.0:
+        notes += _of_missing_hours(rows, step)
+    return replace(station, rows=rows, utc_offset=offset, notes=notes)
+
+
+def _moved(row: Observation, offset: timedelta, source: str) -> Observation:
+    try:
+        time = row.time.astimezone(timezone(offset)).replace(tzinfo=None)
+        return changed(row, time=time)
+    except OverflowError:
+        raise InputError(
+            f"{source}, line {row.line}, column date: {row.time.isoformat(' ')} has no universal "
+            "time"
+        ) from None
+
+
+def _check_years(rows: Sequence[Observation], source: str) -> None:
+    low, high = YEARS
+    for row in rows:
+        if not low <= row.time.year <= high:
+            raise InputError(
+                f"{source}, line {row.line}, column date: the year {row.time.year}; allowed: "
+                f"{low} to {high}"
+            )
+
+
+def _check_order(rows: Sequence[Observation], source: str, step: float) -> None:
+    for earlier, later in zip(rows, rows[1:]):
+        if later.time <= earlier.time:
+            raise InputError(
+                f"{source}, line {later.line}, column date: {later.time.isoformat(' ')} is not "
+                f"after line {earlier.line}, {earlier.time.isoformat(' ')}"
+                + repeated_hour(earlier.time, later.time, step)
+            )
+
+
+def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:
+    """Return what to add to a message where an hour may be there twice; nothing elsewhere.
+
+    Parameters
+    ----------
+    earlier, later
+        Times of a row and of the next, which is not later.
+    step
+        Usual hours from row to row.
+
+    Examples
+    --------
+    >>> time = datetime(2024, 10, 27, 2)
+    >>> repeated_hour(time, time, 1.0)[:27], repeated_hour(time, time, 24.0)
+    ('; this hour is there twice,', '')
+    """
+    back = (earlier - later) / HOUR
+    if step < DAY and 0.0 <= back <= 1.0:
+        return (
+            "; this hour is there twice, as where summer time ends: give times of standard time, "
+            "or times with offsets such as 2024-10-27T02:00+01:00"
+        )
+    return ""
+
+
+def _of_missing_hours(rows: Sequence[Observation], step: float) -> list[str]:
+    missing = [
+        earlier.time
+        for earlier, later in zip(rows, rows[1:])
+        if abs((later.time - earlier.time) / HOUR - step - 1.0) < 1e-6
+        and earlier.time.weekday() == SUNDAY
+        and earlier.time.hour <= 3
+        and earlier.time.month in (3, 4, 9, 10)
+    ]
+    if not missing:
+        return []
+    return [
+        f"the hour after {missing[0]:%Y-%m-%d %H:%M} is missing"
+        + (f", and {len(missing) - 1} more like it" if len(missing) > 1 else "")
+        + ", as where summer time begins; the times are taken as they stand"
+    ]

@@ -1,0 +1,161 @@
+"""Days of a station, element by element, as the daily data of the United States tell them."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from typing import Any, NamedTuple, Optional
+
+from snowshed._core import InputError
+from snowshed.io.messages import quoted
+from snowshed.io.number_text import number_in
+from snowshed.io.weather.amounts import Total, without_overlap
+from snowshed.io.weather.observation import DAY, Observation, Quantity
+
+MISSING = ("", "-9999")
+PRESUMED = "P"  # the flag of a value that is missing and was presumed to be 0
+MOST_DAYS = 366  # of a total over several days
+
+
+class _Several(NamedTuple):
+    """Elements of an amount: of a day, of several days, the number of these days; and its unit."""
+
+    day: str
+    days: str
+    number: str
+    unit: str
+
+
+SNOW = _Several("SNOW", "MDSF", "DASF", "m of new snow")
+WATER = _Several("PRCP", "MDPR", "DAPR", "mm of precipitation")
+COUNTS = (SNOW.number, WATER.number)
+#: Elements of several days and of their number, by that of a day.
+TOTALS = {one.day: (one.days, one.number) for one in (SNOW, WATER)}
+#: Which elements tell each quantity, by the names in the files.
+COLUMNS: Mapping[str, str] = {
+    "temperature": "TAVG, or TMAX and TMIN",
+    "precipitation": "PRCP",
+    "snowfall": "SNOW",
+    "snow_depth": "SNWD",
+}
+
+
+def with_totals(elements: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """Return elements with those of amounts over several days, in the units of their days'."""
+    more = {one.days: elements[one.day] for one in (SNOW, WATER)}
+    return {**elements, **more}
+
+
+@dataclass
+class Days:
+    """What was measured on the days of a station, whose elements come in any order.
+
+    Attributes
+    ----------
+    values
+        By day: its first line, and values by element.
+    left_out
+        How many values were left out, by reason.
+    """
+
+    values: dict[datetime, dict[str, Any]] = field(default_factory=dict)
+    left_out: Counter[str] = field(default_factory=Counter)
+
+    def enter(self, day: datetime, line: int, element: str, value: Any, where: str) -> None:
+        """Enter a value, None if it is missing; raises InputError for another one of a day."""
+        found = self.values.setdefault(day, {"line": line})
+        if found.get(element, value) != value:
+            raise InputError(
+                f"{where}: {element} of {day.date()} is there twice with different values; the "
+                f"first is in line {found['line']} or below"
+            )
+        found[element] = value
+
+    def passes(self, measurement: str, quality: str) -> bool:
+        """Return whether a value with these flags counts; if not, it is counted as left out."""
+        if quality.strip():
+            self.left_out["failed a check of quality"] += 1
+        elif measurement.strip() == PRESUMED:
+            self.left_out["are missing and only presumed to be 0"] += 1
+        else:
+            return True
+        return False
+
+    def count(self, text: str, day: datetime, line: int, element: str, where: str) -> None:
+        """Enter the number of days of an amount over several."""
+        cell = text.strip()
+        if cell in MISSING:
+            return
+        number = number_in(cell)
+        if not (1 <= number <= MOST_DAYS and number == int(number)):
+            raise InputError(f"{where}: {quoted(cell)}; allowed: 1 to {MOST_DAYS} days")
+        self.enter(day, line, element, int(number), where)
+
+    def rows(self) -> tuple[list[Observation], list[str]]:
+        """Return the days on which anything was measured, in their order, and notes."""
+        notes = [f"{count} values {why}, and are left out" for why, count in self.left_out.items()]
+        snow, of_snow = self._amounts(SNOW)
+        water, of_water = self._amounts(WATER)
+        rows = []
+        for day, found in sorted(self.values.items()):
+            mean = found.get("TAVG")
+            if mean is None and None not in (found.get("TMAX"), found.get("TMIN")):
+                mean = 0.5 * (found["TMAX"] + found["TMIN"])
+            new, new_hours = snow.get(day, (None, None))
+            wet, wet_hours = water.get(day, (None, None))
+            deep = found.get("SNWD")
+            if any(one is not None for key, one in found.items() if key not in NO_VALUES):
+                row = Observation(found["line"], day, mean, wet, new, deep, wet_hours, new_hours)
+                rows.append(row)
+        return rows, [*notes, *of_snow, *of_water]
+
+    def _amounts(self, names: _Several) -> tuple[dict[datetime, tuple[float, float]], list[str]]:
+        """Return the amount and the hours of each day on which one was measured, and notes."""
+        totals: list[Total] = []
+        days: list[datetime] = []
+        several, counted = 0, 0
+        last: Optional[datetime] = None
+        for day, found in sorted(self.values.items()):
+            own, total = found.get(names.day), found.get(names.days)
+            end = _after(day)
+            if own is not None:
+                totals.append(Total(end, DAY, own))
+                days.append(day)
+            if total is not None:
+                count = found.get(names.number)
+                counted += count is None
+                count = count or (min((day - last).days, MOST_DAYS) if last else 1)
+                totals.append(Total(end, DAY * max(count, 1), total))
+                days.append(day)
+                several += 1
+            if own is not None or total is not None:
+                last = day
+        amounts, notes = without_overlap(totals, DAY, names.unit)
+        made: dict[datetime, tuple[float, float]] = {}
+        for day, total, amount in zip(days, totals, amounts):
+            before, hours = made.get(day, (0.0, 0.0))
+            made[day] = (before + amount, max(hours, total.hours))
+        if several:
+            gathered = math.fsum(found.get(names.days) or 0.0 for found in self.values.values())
+            notes.insert(
+                0,
+                f"{several} amounts of several days ({names.days}), {gathered:.4g} {names.unit} in "
+                "all, are spread over their days"
+                + (
+                    f"; {counted} do not tell how many, and count since the last" if counted else ""
+                ),
+            )
+        return made, notes
+
+
+NO_VALUES = ("line", *COUNTS)
+
+
+def _after(day: datetime) -> datetime:
+    try:
+        return day + timedelta(days=1)
+    except OverflowError:
+        return day

@@ -1,0 +1,133 @@
+"""How long amounts gathered: since the row before, since a counter was reset, or over hours."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
+from statistics import median
+from typing import Optional
+
+from snowshed.io.weather.amounts import HOUR, hours_before
+from snowshed.io.weather.observation import Observation, Station, changed
+
+#: A quantity, the field of its hours, its unit in notes, and what it is called there.
+AMOUNTS = (
+    ("precipitation", "precipitation_hours", "mm", "precipitation"),
+    ("snowfall", "snowfall_hours", "m", "new snow"),
+)
+FEWEST_RISES = 8  # of a counter; a storm may grow from row to row some times
+#: A counter's noise, as part of its value; what it falls to when it is emptied; rises per reset.
+NOISE, EMPTIED, RISES = 0.02, 0.2, 10
+FILLED = 0.5  # part of the rows, from the first amount on, in which a counter is above 0
+MINUTE = 1.0 / 60.0
+
+
+def with_hours(station: Station) -> Station:
+    """Return a station of which every amount says over how many hours it gathered.
+
+    Counters become what was added to them. Of sums of the last hours, those of precipitation are
+    thinned out until they do not overlap, and those of new snow are named by `rolling`.
+    """
+    rows, notes, rolling = list(station.rows), [*station.notes], set(station.rolling)
+    for name, hours, unit, words in AMOUNTS:
+        own = [i for i, row in enumerate(rows) if getattr(row, name) is not None]
+        if not own:
+            continue
+        title = station.columns.get(name, words)
+        fixed = [getattr(rows[i], hours) for i in own]
+        if fixed[0] is None:
+            notes += _fill_in(rows, own, (name, hours), f"{title}, in {unit},")
+        elif _overlap([rows[i].time for i in own], fixed):
+            if name == "snowfall":
+                rolling.add(name)
+                notes.append(
+                    f"{title} holds the new snow of the last {fixed[0]:g} hours in every row"
+                )
+            else:
+                notes.append(_thin_out(rows, own, fixed, title))
+        _drop_first(rows, own[0], (name, hours))
+    return replace(station, rows=rows, notes=notes, rolling=frozenset(rolling))
+
+
+def _drop_first(rows: list[Observation], first: int, fields: tuple[str, str]) -> None:
+    """Drop a 0 of the day before the first row, of which the file has nothing else."""
+    row, (name, hours) = rows[first], fields
+    if getattr(row, name) == 0.0 and row.time.date() not in row.shares(getattr(row, hours)):
+        rows[first] = changed(row, **{name: None, hours: None})
+
+
+def _fill_in(
+    rows: list[Observation], own: Sequence[int], fields: tuple[str, str], title: str
+) -> list[str]:
+    """Set the hours of amounts since the row before, and what was added to a counter."""
+    name, hours = fields
+    values = [getattr(rows[i], name) for i in own]
+    times = [rows[i].time for i in own]
+    notes = []
+    added = added_to_counter(times, values)
+    if added is not None:
+        notes.append(
+            f"{title} only rises, up to {max(values):g}: it is a counter, and what is added to it "
+            f"counts, {sum(added):.4g} in all"
+        )
+    for n, (i, span) in enumerate(zip(own, hours_before(times))):
+        amount = values[n] if added is None else added[n]
+        rows[i] = changed(rows[i], **{name: amount, hours: span})
+    return notes
+
+
+def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Optional[list[float]]:
+    """Return what each row adds to a counter, mm or m; None: the values are no counter.
+
+    A counter rises or stands still, except where it is emptied: seldom, or at the same time of the
+    day.
+
+    Examples
+    --------
+    >>> hours = [datetime(2024, 1, 1, hour) for hour in range(10)]
+    >>> [round(one) for one in added_to_counter(hours, [0, 1, 1, 2, 4, 5, 7, 8, 9, 10])]
+    [0, 1, 0, 1, 2, 1, 2, 1, 1, 1]
+    >>> added_to_counter(hours, [0, 1, 3, 2, 0, 0, 4, 0, 0, 0])
+    """
+    rises = sum(later > earlier for earlier, later in zip(values, values[1:]))
+    falls = [i for i in range(1, len(values)) if values[i] < (1.0 - NOISE) * values[i - 1]]
+    if rises < FEWEST_RISES or any(values[i] > EMPTIED * values[i - 1] for i in falls):
+        return None
+    daily = len(falls) >= 3 and len({times[i].time() for i in falls}) == 1
+    if rises < RISES * len(falls) and not daily:
+        return None
+    begin = next(i for i, value in enumerate(values) if value > 0.0)
+    if sum(value > 0.0 for value in values[begin:]) < FILLED * (len(values) - begin):
+        return None
+    added, highest = [0.0], values[0]
+    for i in range(1, len(values)):
+        if values[i] < (1.0 - NOISE) * values[i - 1]:
+            highest = 0.0
+        added.append(max(values[i] - highest, 0.0))
+        highest = max(highest, values[i])
+    return added
+
+
+def _overlap(times: Sequence[datetime], hours: Sequence[float]) -> bool:
+    """Return whether most rows follow one another faster than their amounts gather."""
+    steps = [
+        (later - earlier) / HOUR / own for earlier, later, own in zip(times, times[1:], hours[1:])
+    ]
+    return bool(steps) and median(steps) < 0.75
+
+
+def _thin_out(
+    rows: list[Observation], own: Sequence[int], hours: Sequence[float], title: str
+) -> str:
+    last: Optional[datetime] = None
+    left = 0
+    for i, span in zip(own, hours):
+        if last is not None and (rows[i].time - last) / HOUR < span - MINUTE:
+            rows[i] = changed(rows[i], precipitation=None, precipitation_hours=None)
+        else:
+            last, left = rows[i].time, left + 1
+    return (
+        f"{title} holds the sum of the last {hours[0]:g} hours in every row; {left} of "
+        f"{len(own)} rows are used, which do not overlap"
+    )

@@ -1,0 +1,264 @@
+"""Several files of one station: its snow in one and its temperature in another, or year by year."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from datetime import date, datetime, timedelta
+from pathlib import Path
+from typing import Any, NamedTuple, Optional
+
+from snowshed._core import InputError
+from snowshed.io.weather.amounts import usual_step
+from snowshed.io.weather.columns import HOURS, WORDS
+from snowshed.io.weather.observation import RANGES, Observation, Station, changed
+from snowshed.io.weather.plain import read_plain
+from snowshed.io.weather.recognise import read_station
+
+MOST_FILES = 200
+FAR, HIGHER = 2.0, 100.0  # km and m between the positions of what should be one station
+DEGREE = 111.2  # km of latitude
+TEMPERATURE, DEPTH = "temperature", "snow_depth"
+
+
+class _File(NamedTuple):
+    name: str
+    station: Station
+
+
+class _Value(NamedTuple):
+    """What one row of one file contributes."""
+
+    file: int
+    row: Observation
+    quantity: str
+
+
+def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> Station:
+    """Return the observations of one station from several files.
+
+    Every quantity is taken, day by day, from the first file that has it on that day. So the files
+    may complete one another, as snow by hand and an automatic thermometer do, or follow one
+    another, as years do. A file may also be a table with the columns ``date`` and one or more of
+    ``temperature_c``, ``precipitation_mm``, ``snowfall_m`` and ``snow_depth_m``.
+
+    Parameters
+    ----------
+    paths
+        The files, the better ones first.
+    temperature
+        Another file, whose temperatures come before those of `paths`.
+
+    Raises
+    ------
+    InputError
+        If a file is none of a station, or a typical year, or the snow and the temperatures have no
+        day in common.
+    OSError
+        If one cannot be read.
+    """
+    if len(paths) > MOST_FILES:
+        raise InputError(f"{len(paths)} weather files; at most {MOST_FILES} are allowed")
+    if not paths:
+        raise InputError("no weather file is given")
+    files = [_read(path) for path in paths]
+    if temperature is not None:
+        files.append(_read(temperature))
+        if TEMPERATURE not in files[-1].station.quantities:
+            raise InputError(f"{temperature}: no temperature of the air in any row")
+    if len(files) == 1:
+        return files[0].station
+    files, notes = _alike(files)
+    own = -1 if temperature is not None else None
+    values = [value for name in RANGES for value in _of_quantity(files, name, own)]
+    rows = _rows(values, _series_of_depth(files))
+    _check_common_days(files, values)
+    return _station(files, rows, values, notes)
+
+
+def _read(path: Path) -> _File:
+    station = read_station(path) or read_plain(path)
+    if station.typical_year:
+        raise InputError(
+            f"{path}: a typical year of the format {station.format}, whose days go with no other "
+            "file"
+        )
+    return _File(Path(path).name, station)
+
+
+def _alike(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
+    """Return the files on the clock of the first, and notes on what tells them apart."""
+    first, *others = files
+    made, notes = [first], []
+    for name, station in others:
+        if station.name and first.station.name and not _same_name(station.name, first.station.name):
+            notes.append(
+                f"{name} is of {station.name}, and {first.name} of {first.station.name}; they are "
+                "taken as one station"
+            )
+        notes += _apart(first, _File(name, station))
+        made.append(_File(name, _on_clock(station, first.station.utc_offset)))
+        if made[-1].station is not station:
+            notes.append(
+                f"{name} is moved from UTC{station.utc_offset:+g} h to the clock of {first.name}, "
+                f"UTC{first.station.utc_offset:+g} h"
+            )
+    return made, notes
+
+
+def _same_name(one: str, other: str) -> bool:
+    return one.casefold().strip() == other.casefold().strip()
+
+
+def _apart(one: _File, other: _File) -> Iterator[str]:
+    a, b = one.station, other.station
+    if None not in (a.latitude, a.longitude, b.latitude, b.longitude):
+        north = ((a.latitude or 0.0) - (b.latitude or 0.0)) * DEGREE
+        east = ((a.longitude or 0.0) - (b.longitude or 0.0)) * DEGREE
+        distance = math.hypot(north, east * math.cos(math.radians(a.latitude or 0.0)))
+        if distance > FAR:
+            yield f"the stations of {one.name} and {other.name} are {distance:.3g} km apart"
+    if a.altitude is not None and b.altitude is not None:
+        higher = abs(a.altitude - b.altitude)
+        if higher > HIGHER:
+            yield f"the altitudes of {one.name} and {other.name} differ by {higher:.0f} m"
+
+
+def _on_clock(station: Station, offset: Optional[float]) -> Station:
+    """Return a station on another clock, if it is known and the rows are not those of days."""
+    if offset is None or station.utc_offset in (None, offset):
+        return station
+    if usual_step([row.time for row in station.rows]) > 12.0:
+        return station
+    shift = timedelta(hours=offset - (station.utc_offset or 0.0))
+    rows = [
+        changed(row, time=row.time + shift, end=row.end and row.end + shift) for row in station.rows
+    ]
+    return replace(station, rows=rows, utc_offset=offset)
+
+
+def _of_quantity(files: Sequence[_File], name: str, own: Optional[int]) -> list[_Value]:
+    """Return the values of a quantity, each day those of one file, the first that has any."""
+    order = list(range(len(files)))
+    if own is not None:  # the file of the temperature, which is for nothing else
+        order = [order[own], *order[:own]] if name == TEMPERATURE else order[:own]
+    taken: set[date] = set()
+    found = []
+    for number in order:
+        new: set[date] = set()
+        for row in files[number].station.rows:
+            if getattr(row, name) is None:
+                continue
+            days = _days(row, name)
+            if taken.isdisjoint(days):
+                found.append(_Value(number, row, name))
+                new.update(days)
+        taken |= new
+    return found
+
+
+def _days(row: Observation, name: str) -> set[date]:
+    hours = getattr(row, HOURS[name]) if name in HOURS else None
+    return set(row.shares(hours))
+
+
+def _series_of_depth(files: Sequence[_File]) -> list[int]:
+    """Return for each file the first of the same series of depths: one sensor, year by year.
+
+    It has the same station and column, and the same values wherever both have one.
+    """
+    told = [
+        {row.time: row.snow_depth for row in file.station.rows if row.snow_depth is not None}
+        for file in files
+    ]
+    series = list(range(len(files)))
+    for n, file in enumerate(files):
+        for i in range(n):
+            other = files[i].station
+            same = (other.name, other.columns.get(DEPTH)) == (
+                file.station.name,
+                file.station.columns.get(DEPTH),
+            )
+            if same and all(told[i][time] == told[n][time] for time in told[i].keys() & told[n]):
+                series[n] = series[i]
+                break
+    return series
+
+
+def _rows(values: Sequence[_Value], series: Sequence[int]) -> list[Observation]:
+    """Return one row for each time; it is a seam where the depth is of another series."""
+    by_time: dict[datetime, list[_Value]] = {}
+    for value in values:
+        by_time.setdefault(value.row.time, []).append(value)
+    rows, source = [], None
+    for time, own in sorted(by_time.items()):
+        given: dict[str, Any] = {"seam": False, "end": None}
+        for number, row, name in own:
+            given[name] = getattr(row, name)
+            if name in HOURS:
+                given[HOURS[name]] = getattr(row, HOURS[name])
+                given["end"] = given["end"] or row.end
+            if name == DEPTH:
+                given["seam"] = row.seam or source not in (None, series[number])
+                source = series[number]
+        rows.append(Observation(min(value.row.line for value in own), time, **given))
+    return rows
+
+
+def _check_common_days(files: Sequence[_File], values: Sequence[_Value]) -> None:
+    days: dict[bool, set[date]] = {True: set(), False: set()}
+    for _, row, name in values:
+        days[name == TEMPERATURE] |= _days(row, name)
+    if days[True] and days[False] and days[True].isdisjoint(days[False]):
+        periods = "; ".join(
+            f"{name} from {station.rows[0].time.date()} to {station.rows[-1].time.date()}"
+            for name, station in files
+        )
+        raise InputError(
+            f"{files[0].name}: its temperatures and its snow have no day in common: {periods}"
+        )
+
+
+def _station(
+    files: Sequence[_File], rows: Sequence[Observation], values: Sequence[_Value], notes: list[str]
+) -> Station:
+    columns: dict[str, str] = {}
+    rolling: set[str] = set()
+    used: set[int] = set()
+    for name in RANGES:
+        days: dict[int, set[date]] = {}
+        for number, row, quantity in values:
+            if quantity == name:
+                days.setdefault(number, set()).update(_days(row, name))
+        titles = [
+            f"{files[i].station.columns.get(name, name)} of {files[i].name}" for i in sorted(days)
+        ]
+        if titles:
+            columns[name] = " and ".join(titles)
+            parts = (f"{title} on {len(own)} days" for title, own in zip(titles, _sorted(days)))
+            notes.append(f"{WORDS[name]} is from {', '.join(parts)}")
+        used |= days.keys()
+        rolling |= {name for i in days if name in files[i].station.rolling}
+    notes += [
+        f"{file.name} adds nothing" for number, file in enumerate(files) if number not in used
+    ]
+    notes += [f"{file.name}: {note}" for file in files for note in file.station.notes]
+    stations = [file.station for file in files]
+    return Station(
+        " and ".join(dict.fromkeys(one.format for one in stations)),
+        next((one.name for one in stations if one.name), ""),
+        rows,
+        notes,
+        False,
+        next((one.latitude for one in stations if one.latitude is not None), None),
+        next((one.longitude for one in stations if one.longitude is not None), None),
+        next((one.altitude for one in stations if one.altitude is not None), None),
+        stations[0].utc_offset,
+        columns,
+        frozenset(rolling),
+    )
+
+
+def _sorted(days: dict[int, set[date]]) -> list[set[date]]:
+    return [days[number] for number in sorted(days)]

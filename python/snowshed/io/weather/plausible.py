@@ -1,0 +1,152 @@
+"""Whether a station's numbers can be in the units in which they were read, all of them together.
+
+Single numbers beyond everything that was ever measured are refused where they are read. Here it is
+the middle of many that tells a column in another unit, so that a faulty sensor does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from datetime import timedelta
+from statistics import median
+
+from snowshed._core import InputError
+from snowshed.io.weather.columns import WORDS
+from snowshed.io.weather.observation import DAY, Observation, Station
+
+FEWEST = 5  # values by whose middle a unit is judged
+LONGEST = timedelta(hours=26)  # between rows whose depths are compared
+#: Half of the changes of the snow depth from row to row are smaller, m, as is half of the new snow.
+CHANGE, NEW_SNOW = 0.5, 0.7
+#: Temperatures of the air, degrees C, between which snow falls.
+COLDEST, WARMEST = -40.0, 12.0
+LEAST_NEW, LEAST_RISE = 0.01, 0.1  # m, of snowfalls by which temperatures are judged
+#: Half of the amounts of a wet day, and of any shorter time, are smaller, mm.
+WET_DAY, WET_HOURS = 100.0, 50.0
+#: The most rain that was measured in D hours is 491 D^0.452 mm (WMO 2009, Manual on Estimation of
+#: Probable Maximum Precipitation, WMO-No. 1045).
+MOST_RAIN, EXPONENT = 491.0, 0.452
+#: New snow of a cold day is lighter than this, kg/m3; a day is cold below a temperature, degrees C.
+HEAVIEST, COLD = 600.0, -2.0
+SHALLOW = 0.15  # m
+
+
+def with_plausible_units(station: Station, source: str) -> Station:
+    """Return a station, with notes on units that may be others.
+
+    Raises
+    ------
+    InputError
+        If a column cannot be in the unit that its format prescribes, with the likely one.
+    """
+    for check in (_check_depths, _check_new_snow, _check_rain, _check_temperatures, _check_density):
+        check(station, source)
+    notes = _of_shallow_snow(station)
+    return replace(station, notes=[*station.notes, *notes]) if notes else station
+
+
+def _refused(station: Station, source: str, name: str, what: str) -> InputError:
+    title = station.columns.get(name, WORDS[name])
+    return InputError(f"{source}, column {title}: {what}")
+
+
+def _pairs(rows: Sequence[Observation]) -> Iterator[tuple[Observation, float]]:
+    """Yield the rows whose depth is known, with its change since a row at most a day before."""
+    known = [row for row in rows if row.snow_depth is not None]
+    for earlier, later in zip(known, known[1:]):
+        if later.time - earlier.time <= LONGEST and not later.seam:
+            yield later, (later.snow_depth or 0.0) - (earlier.snow_depth or 0.0)
+
+
+def _check_depths(station: Station, source: str) -> None:
+    changes = [abs(change) for _, change in _pairs(station.rows) if abs(change) > 1e-6]
+    if len(changes) >= FEWEST and median(changes) > CHANGE:
+        raise _refused(
+            station, source, "snow_depth",
+            f"half of the changes of the snow depth from row to row are of {median(changes):g} m "
+            "and more; is it in cm, mm or inches?",
+        )  # fmt: skip
+
+
+def _check_new_snow(station: Station, source: str) -> None:
+    falls = [row.snowfall for row in station.rows if row.snowfall]
+    if len(falls) >= FEWEST and median(falls) > NEW_SNOW:
+        raise _refused(
+            station, source, "snowfall",
+            f"half of the snowfalls are of {median(falls):g} m and more; is it in cm, mm or "
+            "inches?",
+        )  # fmt: skip
+
+
+def _check_rain(station: Station, source: str) -> None:
+    amounts: dict[bool, list[float]] = {True: [], False: []}
+    for row in station.rows:
+        if not row.precipitation:
+            continue
+        hours = row.precipitation_hours or DAY
+        most = MOST_RAIN * max(hours, 0.1) ** EXPONENT
+        if row.precipitation > most:
+            raise InputError(
+                f"{source}, line {row.line}, column "
+                f"{station.columns.get('precipitation', 'precipitation')}: {row.precipitation:g} "
+                f"mm in {hours:.3g} hours; no more than {most:.0f} mm was ever measured; is it in "
+                "tenths of mm, or a counter?"
+            )
+        amounts[hours >= DAY].append(row.precipitation)
+    for long, most in ((True, WET_DAY), (False, WET_HOURS)):
+        if len(amounts[long]) >= FEWEST and median(amounts[long]) > most:
+            raise _refused(
+                station, source, "precipitation",
+                f"half of the amounts are of {median(amounts[long]):g} mm and more; is it in "
+                "tenths or hundredths of mm, or the sum of many hours?",
+            )  # fmt: skip
+
+
+def _check_temperatures(station: Station, source: str) -> None:
+    rises = {row.line for row, change in _pairs(station.rows) if change >= LEAST_RISE}
+    snowy = [
+        row.temperature
+        for row in station.rows
+        if row.temperature is not None and ((row.snowfall or 0.0) >= LEAST_NEW or row.line in rises)
+    ]
+    if len(snowy) < FEWEST or COLDEST <= median(snowy) <= WARMEST:
+        return
+    unit = "degrees F" if median(snowy) > WARMEST else "tenths of degrees C"
+    raise _refused(
+        station, source, "temperature",
+        f"half of the snow fell at {median(snowy):.3g} °C and "
+        f"{'more' if median(snowy) > WARMEST else 'less'}; is it in {unit}?",
+    )  # fmt: skip
+
+
+def _check_density(station: Station, source: str) -> None:
+    cold = [
+        row
+        for row in station.rows
+        if row.snowfall
+        and row.precipitation
+        and row.snowfall_hours == row.precipitation_hours
+        and row.temperature is not None
+        and row.temperature < COLD
+    ]
+    water = sum(row.precipitation or 0.0 for row in cold)
+    snow = sum(row.snowfall or 0.0 for row in cold)
+    if len(cold) >= FEWEST and water > HEAVIEST * snow:
+        raise _refused(
+            station, source, "precipitation",
+            f"{water:.4g} mm of water fell as {snow:.3g} m of new snow below {COLD:g} °C, of "
+            f"{water / snow:.0f} kg/m3; is the water in mm, the snow in cm, or one of them wrong?",
+        )  # fmt: skip
+
+
+def _of_shallow_snow(station: Station) -> list[str]:
+    depths = [row.snow_depth for row in station.rows if row.snow_depth]
+    broken = [depth for depth in depths if abs(1000.0 * depth - round(1000.0 * depth)) > 1e-3]
+    if len(depths) < FEWEST or max(depths) > SHALLOW or 2 * len(broken) < len(depths):
+        return []
+    title = station.columns.get("snow_depth", WORDS["snow_depth"])
+    return [
+        f"{title} never exceeds {100.0 * max(depths):.3g} cm, with parts of a millimetre; check "
+        "that it is not in m"
+    ]

@@ -1,0 +1,103 @@
+"""Typical years and actual years of building and solar energy.
+
+A typical year has months of different years. It is put together again as a year that begins in the
+station's summer. Files of the same formats may hold actual years.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime, timedelta
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.io.weather.observation import Observation
+
+FIRST = 2001  # the year in which a typical year begins, once it is put together
+NEAR = timedelta(days=1)  # between rows that follow one another in one series
+YEAR = timedelta(days=365)
+
+
+def arranged(
+    rows: Sequence[Observation], latitude: Optional[float], source: str
+) -> tuple[list[Observation], bool, list[str]]:
+    """Return the rows in the order of a winter, whether they are a typical year, and notes.
+
+    Parameters
+    ----------
+    rows
+        In the order of the file, with their own years.
+    latitude
+        Of the station, degrees; None counts as north.
+    source
+        The file, for messages.
+
+    Raises
+    ------
+    InputError
+        If an hour of the year is there twice, and the rows are not in the order of time.
+    """
+    rising = all(earlier.time < later.time for earlier, later in zip(rows, rows[1:]))
+    years = sorted({row.time.year for row in rows})
+    if rising and _are_actual(rows):
+        words = f"the year {years[0]}" if len(years) == 1 else f"{years[0]} to {years[-1]}"
+        return list(rows), False, [f"the years are taken as actual ones: {words}"]
+    return _typical(rows, latitude, source), True, _notes(years, latitude)
+
+
+def _are_actual(rows: Sequence[Observation]) -> bool:
+    """Return whether rising rows go on from year to year, or hold an hour of the year twice."""
+    steady = all(later.time - earlier.time <= NEAR for earlier, later in zip(rows, rows[1:]))
+    if steady:
+        return not _is_calendar_year(rows)
+    return len({_hour_of_year(row.time) for row in rows}) < len(rows)
+
+
+def _is_calendar_year(rows: Sequence[Observation]) -> bool:
+    """Return whether rows go from 1 January to 31 December, of which a winter must be made."""
+    first, last = rows[0].time, rows[-1].time
+    begin = datetime((first + NEAR).year, 1, 1)
+    return abs(first - begin) <= NEAR and abs(last - begin - YEAR) <= 2 * NEAR
+
+
+def _typical(
+    rows: Sequence[Observation], latitude: Optional[float], source: str
+) -> list[Observation]:
+    south = latitude is not None and latitude < 0.0
+    moved: list[tuple[datetime, Observation]] = []
+    for row in rows:
+        if (row.time.month, row.time.day) != (2, 29):
+            year = FIRST if south or row.time.month >= 7 else FIRST + 1
+            moved.append((row.time.replace(year=year), row))
+    moved.sort(key=lambda pair: pair[0])
+    made: list[Observation] = []
+    before: Optional[Observation] = None
+    for time, row in moved:
+        if before is not None and time == made[-1].time:
+            first, second = sorted((before.line, row.line))
+            raise InputError(
+                f"{source}, line {second}, column date: {time:%m-%d %H:%M} is there twice, as in "
+                f"line {first}; allowed: a typical year, or actual years in their order"
+            )
+        seam = before is not None and not timedelta(0) < row.time - before.time <= NEAR
+        end = row.end and time + (row.end - row.time)
+        made.append(replace(row, time=time, end=end, seam=seam))
+        before = row
+    return made
+
+
+def _hour_of_year(time: datetime) -> tuple[int, int, int, int]:
+    return time.month, time.day, time.hour, time.minute
+
+
+def _notes(years: Sequence[int], latitude: Optional[float]) -> list[str]:
+    begins, ends = ("January", "December") if (latitude or 0.0) < 0.0 else ("July", "June")
+    if len(years) == 1:
+        origin = f"all of its months have the year {years[0]}"
+    else:
+        origin = f"its months come from {len(years)} different years"
+    return [
+        f"it is a typical year: {origin}; it is put together from {begins} to {ends}, and a jump "
+        "of the snow depth at a joint of months is no snowfall"
+    ]

@@ -1,0 +1,38 @@
+"""Where a day's new snow comes from: the provenance of a day."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Source(Enum):
+    """Where the new snow of a day comes from.
+
+    Examples
+    --------
+    >>> Source.DEPTH.words, Source.DEPTH.observed, Source.FILLED.observed
+    ('snow depth', True, False)
+    """
+
+    GIVEN = "season file"  # the column snowfall_m of the user's own table
+    HAND = "new snow"  # measured as such: on a board, or by the provider
+    DEPTH = "snow depth"  # the rise of the depth sensor or the stake
+    GAUGE = "precipitation"  # the water of a gauge, turned into snow by the temperature
+    MODEL = "typical year"  # precipitation and temperature of a year that never was
+    FILLED = "filled"  # by a rule, from a less trusted column or over a gap
+    MISSING = "missing"  # nobody knows; no snow is laid on that day
+
+    @property
+    def words(self) -> str:
+        """The source in the field's words."""
+        return self.value
+
+    @property
+    def observed(self) -> bool:
+        """Whether somebody or something observed the snow of such a day."""
+        return self not in (Source.FILLED, Source.MISSING)
+
+
+#: What may be asked for by name (`--snow-from`), and what it stands for.
+CHOICES = {"new-snow": Source.HAND, "depth": Source.DEPTH, "gauge": Source.GAUGE}
+AUTO = "auto"
