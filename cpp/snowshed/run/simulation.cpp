@@ -167,12 +167,20 @@ void Simulation::settle(const std::vector<double>& drops,
   solver_->settle(drops, plastic_changes);
 }
 
-double Simulation::obstacle_distance(const Vec3& x) const {
+/// Signed distance to the nearest of obstacles where they are at a time, m.
+static double nearest_distance(const std::vector<Obstacle>& obstacles, double time, const Vec3& x) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Obstacle& o : listed_obstacles_)
-    nearest =
-        std::min(nearest, o.shape->distance(o.motion ? o.motion->to_body(x, solver_->time()) : x));
+  for (const Obstacle& o : obstacles)
+    nearest = std::min(nearest, o.shape->distance(o.motion ? o.motion->to_body(x, time) : x));
   return nearest;
+}
+
+double Simulation::obstacle_distance(const Vec3& x) const {
+  return nearest_distance(listed_obstacles_, solver_->time(), x);
+}
+
+double Simulation::resolved_distance(const Vec3& x) const {
+  return nearest_distance(resolved_obstacles_, solver_->time(), x);
 }
 
 RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, double interval) {

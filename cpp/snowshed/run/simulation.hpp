@@ -111,6 +111,9 @@ class Simulation {
   /// and of grains, whose curve has them.
   const EnergyHistory& energy_history() const;
   int event() const { return event_; }
+  /// What readers of the results should know of the snow that was laid since this object was made,
+  /// a sentence each.
+  const std::vector<std::string>& notes() const { return notes_; }
   bool event_running() const { return running_; }
   double event_time() const { return solver_->time() - event_start_; }
   int threads() const;
@@ -139,6 +142,10 @@ class Simulation {
   /// and domain do not count. Infinite without any.
   double obstacle_distance(const Vec3& x) const;
 
+  /// The same to the obstacles as the method sees them, whose thin parts are thicker: snow lies on
+  /// those.
+  double resolved_distance(const Vec3& x) const;
+
   /// One .vtp with all particles and their quantities.
   void write_vtp(const std::filesystem::path&) const;
 
@@ -166,13 +173,15 @@ class Simulation {
   CostEstimate cost_;
   PanelRegion panel_;
   Surroundings surroundings_;
-  std::vector<Obstacle> listed_obstacles_;  // those of the scene's list
+  // Those of the scene's list, as given and as the method sees them.
+  std::vector<Obstacle> listed_obstacles_, resolved_obstacles_;
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
   std::unique_ptr<LoadingCurve> curve_;      // of grains only
   std::unique_ptr<EnergyHistory> energies_;  // of all others, with output.energy
   RestDetector rest_;
+  std::vector<std::string> notes_;
   int event_ = 0;
   bool running_ = false;
   double event_start_ = 0;  // s

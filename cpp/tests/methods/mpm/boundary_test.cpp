@@ -162,18 +162,15 @@ TEST(Friction, OfFastSlabsIsAsCoulombSays) {
 
 // --- thin obstacles ---------------------------------------------------------------------------
 
-double thickness_seen(const Shape& shape, double dx) {
-  return thick_enough({"", shape, {Condition::separate, 0.0}, std::nullopt}, dx).shape->inradius();
-}
-
 TEST(ThickEnough, LeavesThickBodiesAloneAndPadsThinOnes) {
   const Shape thick = make_box(Vec3::Zero(), Vec3(1, 1, 0.02));
-  EXPECT_EQ(thick_enough({"", thick, {}, std::nullopt}, 0.01).shape, thick);
+  EXPECT_EQ(as_grid_sees(thick, 0.01, 3).shape, thick);
   const Shape thin = make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, 1, 0.002);
-  EXPECT_NEAR(thickness_seen(thin, 0.01), 0.01, 1e-12);
-  const Obstacle padded = thick_enough({"", thin, {}, std::nullopt}, 0.01);
-  EXPECT_NEAR(padded.shape->distance(Vec3(0, 0, 0.009)), 0.0, 1e-12);
-  EXPECT_NEAR(padded.shape->distance(Vec3(0, 0, -0.011)), 0.0, 1e-12);
+  const Shape padded = as_grid_sees(thin, 0.01, 3).shape;
+  EXPECT_NEAR(padded->inradius(), 0.01, 1e-12);
+  EXPECT_NEAR(padded->distance(Vec3(0, 0, 0.009)), 0.0, 1e-12);
+  EXPECT_NEAR(padded->distance(Vec3(0, 0, -0.011)), 0.0, 1e-12);
+  EXPECT_EQ(as_grid_sees(padded, 0.01, 3).shape, padded);
 }
 
 struct Throw {
