@@ -10,7 +10,7 @@ namespace snowshed {
 namespace {
 
 /// Comparisons of a corner with an ear, over all faces of a file: some seconds.
-constexpr std::size_t most_comparisons = 1'000'000'000;
+constexpr std::size_t most_comparisons = 300'000'000;
 
 /// The corners of a face as they lie in a plane, counter-clockwise.
 struct Outline {

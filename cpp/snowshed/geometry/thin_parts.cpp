@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <unordered_set>
 
 #include "snowshed/geometry/bounds.hpp"
 
@@ -33,7 +35,7 @@ class ThinPartSearch {
       cells = divided(cells);
     std::vector<ThinPart> parts = parts_of(cells);
     if (parts.empty() || parts.size() * children() > most_fine_pieces) return parts;
-    return parts_of(divided(thin_cells_));
+    return parts_of(divided(around_thin(cells)));
   }
 
   /// The same of a solid without varied bounds, near the origin.
@@ -56,7 +58,31 @@ class ThinPartSearch {
     while (edge_ < size.maxCoeff()) edge_ *= 2;
     Vec3 middle = 0.5 * (within.min + within.max);
     if (dimension_ == 2) middle.y() = 0;
+    corner_ = middle - 0.5 * edge_ * in_space();
     return {middle};
+  }
+
+  /// A number for the cell that holds x, and those for the cells around it.
+  std::uint64_t key(const Vec3& x) const {
+    std::uint64_t sum = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      sum = sum << 21 |
+            (std::uint64_t(std::int64_t(std::floor((x - corner_)[axis] / edge_)) + 1) & 0x1fffff);
+    return sum;
+  }
+
+  /// Those of the cells that are thin, and their neighbours: where a thin part meets a thick one, a
+  /// cell is as near to either.
+  std::vector<Vec3> around_thin(const std::vector<Vec3>& cells) const {
+    std::unordered_set<std::uint64_t> thin;
+    for (const Vec3& cell : thin_cells_)
+      for (int k = 0; k < 27; ++k)
+        thin.insert(
+            key(cell + edge_ * in_space().cwiseProduct(Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1))));
+    std::vector<Vec3> found;
+    for (const Vec3& cell : cells)
+      if (thin.count(key(cell))) found.push_back(cell);
+    return found;
   }
 
   Vec3 in_space() const { return {1.0, dimension_ == 2 ? 0.0 : 1.0, 1.0}; }
@@ -112,7 +138,7 @@ class ThinPartSearch {
     const Vec3 middle = *touch + 0.5 * (out - in) * n;
     const Vec3 begin = normal(*touch + out * n), end = normal(*touch - in * n);
     if (begin.dot(end) <= -parallel) return piece(middle, n, 0.5 * (in + out));
-    return deepest_near(middle, n);
+    return deepest_near(middle, n, begin + end);
   }
 
   std::optional<Vec3> nearest_on_surface(Vec3 x, double farthest) const {
@@ -164,6 +190,12 @@ class ThinPartSearch {
     part.corners[1] = middle + a1 * along - b0 * across;
     part.corners[2] = middle + a1 * along + b1 * across;
     part.corners[3] = middle - a0 * along + b1 * across;
+    if (dimension_ == 3)
+      for (Vec3& corner : part.corners) {  // which an edge that runs aslant cuts off
+        const double way = (corner - middle).norm();
+        const Vec3 direction = (corner - middle) / way;
+        corner = middle + std::max(least, way_to_edge(middle, direction, half, way)) * direction;
+      }
     return part;
   }
 
@@ -175,17 +207,18 @@ class ThinPartSearch {
     return {along, n.cross(along)};
   }
 
-  /// The part around the deepest point near x, if that is not deep enough.
-  std::optional<ThinPart> deepest_near(const Vec3& x, const Vec3& n) const {
+  /// The part around the deepest point near x, if that is not deep enough. `outward` leads to where
+  /// the faces meet.
+  std::optional<ThinPart> deepest_near(const Vec3& x, const Vec3& n, const Vec3& outward) const {
     constexpr int most_steps = 60;
     const auto [along, across] = tangents(n);
     Vec3 best = x;
     double deepest = depth(x), step = 0.5 * half_;
     for (int k = 0; k < most_steps && step > 0.02 * half_; ++k) {
       const Vec3 from = best;
-      for (const Vec3& direction : {n, along, across})
+      for (const Vec3& direction : {Vec3(outward.stableNormalized()), n, along, across})
         for (const double sign : {1.0, -1.0}) {
-          if (dimension_ == 2 && direction.y() != 0) continue;
+          if (direction.isZero() || (dimension_ == 2 && direction.y() != 0)) continue;
           const Vec3 next = from + sign * step * direction;
           const double d = depth(next);
           if (d <= deepest || (next - x).norm() > 3.5 * half_) continue;
@@ -202,6 +235,7 @@ class ThinPartSearch {
   const double half_;
   const int dimension_;
   double edge_ = 0;  // of the present cells, m
+  Vec3 corner_ = Vec3::Zero();
   std::vector<Vec3> thin_cells_;
 };
 

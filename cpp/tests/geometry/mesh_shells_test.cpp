@@ -36,7 +36,7 @@ TriangleMesh cubes(const std::vector<Cube>& parts) {
 struct Solid {
   Shape shape;
   std::vector<std::string> notes;
-  double volume() const { return measure(*shape, 3, 0.05); }
+  double volume() const { return measure(*shape, 3, 0.25); }
 };
 
 Solid solid_of(const TriangleMesh& mesh) {
@@ -113,11 +113,11 @@ TEST(MeshShells, ThreeLevelsInAnySense) {
 
 TEST(MeshShells, OverlappingShellsAreUnited) {
   for (const bool inward : {false, true}) {
-    const Solid cross = solid_of(
-        cubes({{{-1, -0.2, -0.2}, {1, 0.2, 0.2}}, {{-0.2, -0.2, -1}, {0.2, 0.2, 1}, inward}}));
-    EXPECT_NEAR(cross.volume(), 2 * 2 * 0.16 - 0.064, 1e-9);
+    const Solid cross = solid_of(cubes(
+        {{{-1, -0.25, -0.25}, {1, 0.25, 0.25}}, {{-0.25, -0.25, -1}, {0.25, 0.25, 1}, inward}}));
+    EXPECT_NEAR(cross.volume(), 2 * 2 * 0.25 - 0.125, 1e-9);
     EXPECT_LT(cross.shape->distance(zero), -0.1);
-    EXPECT_NEAR(cross.shape->distance({0.5, 0, 0.5}), 0.3, 1e-12);
+    EXPECT_NEAR(cross.shape->distance({0.5, 0, 0.5}), 0.25, 1e-12);
   }
 }
 

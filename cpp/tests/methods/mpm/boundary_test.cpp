@@ -224,6 +224,24 @@ TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
   }
 }
 
+// Walls of combined solids are as thin as those of plates, however thick the whole is.
+TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
+  const double wall = 0.003;
+  const Shape bin = subtract(make_box(Vec3(0, 0, 0.1), Vec3(0.3, 10, 0.2)),
+                             {make_box(Vec3(0, 0, 0.1 + wall), Vec3(0.3 - 2 * wall, 11, 0.2))});
+  const Shape shelf = unite({make_box(Vec3(0.1, 0, 0), Vec3(0.1, 10, 0.4)),
+                             make_box(Vec3(-0.05, 0, 0.0017), Vec3(0.3, 10, wall))});
+  for (const Shape& shape : {bin, shelf}) {
+    const auto solver =
+        make_mpm(options_for({2, Precision::float32}), {fixed(shape, Condition::separate, 0.3)});
+    ParticleBatch batch = filled_box(2, Vec3(-0.1, 0, 0.04), Vec3(0.03, 0, 0.1), 0.005);
+    batch.velocity.z() = -3;
+    solver->add(batch);
+    run_until(*solver, 0.15);
+    for (const Vec3& x : solver->state().positions) ASSERT_GT(x.z(), 0);
+  }
+}
+
 // --- bodies -----------------------------------------------------------------------------------
 
 TEST(Contact, SnowSinksLessThanACellIntoBodies) {
