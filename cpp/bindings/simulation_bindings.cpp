@@ -160,9 +160,10 @@ std::vector<Vec3> vectors(const py::array_t<double>& array, const char* name) {
   return out;
 }
 
-py::array_t<double> obstacle_distance(const Simulation& sim, const py::array_t<double>& points) {
+template <double (Simulation::*distance)(const Vec3&) const>
+py::array_t<double> distances_at(const Simulation& sim, const py::array_t<double>& points) {
   std::vector<double> distances;
-  for (const Vec3& x : vectors(points, "points")) distances.push_back(sim.obstacle_distance(x));
+  for (const Vec3& x : vectors(points, "points")) distances.push_back((sim.*distance)(x));
   return column<double>(distances);
 }
 
@@ -312,7 +313,8 @@ void bind_facts(SimulationClass& c) {
   c.reads("slide_maps", &slide_maps);
   c.reads("slide_facts", &slide_facts);
   c.reads("slide_bonds", &slide_bonds);
-  c.reads("obstacle_distance", &obstacle_distance, "points"_a);
+  c.reads("obstacle_distance", &distances_at<&Simulation::obstacle_distance>, "points"_a);
+  c.reads("resolved_distance", &distances_at<&Simulation::resolved_distance>, "points"_a);
   c.property("notes", [](const Simulation& s) { return s.notes(); });
   c.property("expected_particles", [](const Simulation& s) {
     const std::vector<double>& particles = s.cost().particles;

@@ -27,8 +27,13 @@ inline Bounds expanded(const Bounds& bounds, double margin) {
   return {bounds.min.array() - margin, bounds.max.array() + margin};
 }
 
+inline bool is_empty(const Bounds& bounds) {
+  return (bounds.min.array() > bounds.max.array()).any();
+}
+
 /// Returns bounds of the points rotation * x + translation for x within `bounds`.
 inline Bounds moved(const Bounds& bounds, const Mat3& rotation, const Vec3& translation) {
+  if (is_empty(bounds)) return bounds;
   Bounds result{translation, translation};
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) {

@@ -21,6 +21,12 @@ std::pair<const LevelSet*, double> nearest(const std::vector<Shape>& shapes, con
   return {best, smallest};
 }
 
+Bounds varied_bounds_of(const std::vector<Shape>& shapes) {
+  Bounds result = no_bounds();
+  for (const Shape& shape : shapes) result = unite(result, shape->varied_bounds());
+  return result;
+}
+
 class Union final : public LevelSet {
  public:
   explicit Union(std::vector<Shape> shapes) : shapes_(std::move(shapes)) {}
@@ -38,6 +44,18 @@ class Union final : public LevelSet {
     for (const Shape& shape : shapes_) result = std::max(result, shape->inradius());
     return result;
   }
+
+  double half_thickness(const Vec3& x) const override {
+    return nearest(shapes_, x).first->half_thickness(x);
+  }
+
+  double least_half_thickness() const override {
+    double result = infinity;
+    for (const Shape& shape : shapes_) result = std::min(result, shape->least_half_thickness());
+    return result;
+  }
+
+  Bounds varied_bounds() const override { return varied_bounds_of(shapes_); }
 
  private:
   std::vector<Shape> shapes_;
@@ -60,6 +78,12 @@ class Difference final : public LevelSet {
   Bounds bounds() const override { return first_->bounds(); }
   double inradius() const override { return first_->inradius(); }
 
+  Bounds varied_bounds() const override {
+    const Bounds all = unite(first_->varied_bounds(), varied_bounds_of(others_));
+    const Bounds within = first_->bounds();
+    return {all.min.cwiseMax(within.min), all.max.cwiseMin(within.max)};
+  }
+
  private:
   Shape first_;
   std::vector<Shape> others_;
@@ -73,7 +97,13 @@ class Transformed final : public LevelSet {
   double distance(const Vec3& x) const override { return shape_->distance(local(x)); }
   Vec3 normal(const Vec3& x) const override { return rotation_ * shape_->normal(local(x)); }
   Bounds bounds() const override { return moved(shape_->bounds(), rotation_, translation_); }
+  Bounds varied_bounds() const override {
+    return moved(shape_->varied_bounds(), rotation_, translation_);
+  }
   double inradius() const override { return shape_->inradius(); }
+  double half_thickness(const Vec3& x) const override { return shape_->half_thickness(local(x)); }
+  double least_half_thickness() const override { return shape_->least_half_thickness(); }
+  bool is_convex() const override { return shape_->is_convex(); }
 
   std::optional<OrientedBox> oriented_box() const override {
     auto box = shape_->oriented_box();
@@ -95,30 +125,17 @@ class Dilated final : public LevelSet {
   double distance(const Vec3& x) const override { return shape_->distance(x) - offset_; }
   Vec3 normal(const Vec3& x) const override { return shape_->normal(x); }
   Bounds bounds() const override { return expanded(shape_->bounds(), offset_); }
+  Bounds varied_bounds() const override { return expanded(shape_->varied_bounds(), offset_); }
   double inradius() const override { return shape_->inradius() + offset_; }
+  double half_thickness(const Vec3& x) const override {
+    return shape_->half_thickness(x) + offset_;
+  }
+  double least_half_thickness() const override { return shape_->least_half_thickness() + offset_; }
+  bool is_convex() const override { return shape_->is_convex(); }
 
  private:
   Shape shape_;
   double offset_;
-};
-
-class CrossSection final : public LevelSet {
- public:
-  explicit CrossSection(Shape shape) : shape_(std::move(shape)) {}
-  double distance(const Vec3& x) const override { return shape_->distance(x); }
-
-  Vec3 normal(const Vec3& x) const override {
-    Vec3 n = shape_->normal(x);
-    n.y() = 0;
-    const double length = n.norm();
-    return length > 1e-6 ? Vec3(n / length) : Vec3::UnitZ();
-  }
-
-  Bounds bounds() const override { return shape_->bounds(); }
-  double inradius() const override { return shape_->inradius(); }
-
- private:
-  Shape shape_;
 };
 
 }  // namespace
@@ -136,7 +153,5 @@ Shape transform(Shape shape, const Mat3& rotation, const Vec3& translation) {
 Shape dilate(Shape shape, double offset) {
   return std::make_shared<Dilated>(std::move(shape), offset);
 }
-
-Shape cross_section(Shape shape) { return std::make_shared<CrossSection>(std::move(shape)); }
 
 }  // namespace snowshed

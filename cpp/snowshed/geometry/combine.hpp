@@ -22,9 +22,4 @@ Shape transform(Shape shape, const Mat3& rotation, const Vec3& translation);
 /// Returns all points within `offset` >= 0 metres of `shape`.
 Shape dilate(Shape shape, double offset);
 
-/// Returns the cross-section of `shape` with the plane y = 0, for two-dimensional scenes. Distances
-/// are those of `shape`; normals are projected onto the plane. If the solid is not constant in y,
-/// its distance is a lower bound of the distance to the cross-section.
-Shape cross_section(Shape shape);
-
 }  // namespace snowshed

@@ -36,9 +36,21 @@ class LevelSet {
 
   virtual Bounds bounds() const = 0;
 
-  /// Returns the greatest depth below the surface, metres (infinite for a half-space). Contact uses
-  /// it to recognise obstacles that are too thin for the grid to resolve.
+  /// Returns bounds of where the solid is more than a plane: finite for a half-space with a pit.
+  virtual Bounds varied_bounds() const { return bounds(); }
+
+  /// Returns the greatest depth below the surface, metres (infinite for a half-space).
   virtual double inradius() const = 0;
+
+  /// Returns half of the thickness of the part that is nearest to x, metres, as far as it is known:
+  /// by default that of the thickest part.
+  virtual double half_thickness(const Vec3& /*x*/) const { return inradius(); }
+
+  /// Returns a lower bound of half of the thickness anywhere, metres; 0 if none is known. Contact
+  /// uses it to leave solids alone that the grid resolves.
+  virtual double least_half_thickness() const { return is_convex() ? inradius() : 0.0; }
+
+  virtual bool is_convex() const { return false; }
 
   /// Returns the solid as a box if it is one. Seeding tiles boxes exactly.
   virtual std::optional<OrientedBox> oriented_box() const { return std::nullopt; }

@@ -6,7 +6,8 @@
 
 namespace snowshed {
 
-/// Returns the solid inside `mesh`, which must satisfy require_solid. A bounding volume hierarchy
+/// Returns the solid inside `mesh`, which must be closed and face outward (solid_of_shells),
+/// or be swept by an outline (sections_at_y0). A bounding volume hierarchy
 /// finds the nearest point; angle-weighted pseudo-normals give the sign (Baerentzen & Aanaes 2005,
 /// "Signed distance computation using the angle weighted pseudonormal").
 ///

@@ -16,19 +16,25 @@ Vec3 direction(const Vec3& v, const Vec3& fallback) {
   return length > 0 ? Vec3(v / length) : fallback;
 }
 
-class Plane final : public LevelSet {
+class Convex : public LevelSet {
+ public:
+  bool is_convex() const final { return true; }
+};
+
+class Plane final : public Convex {
  public:
   Plane(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal.normalized()) {}
   double distance(const Vec3& x) const override { return (x - point_).dot(normal_); }
   Vec3 normal(const Vec3&) const override { return normal_; }
   Bounds bounds() const override { return unbounded(); }
+  Bounds varied_bounds() const override { return no_bounds(); }
   double inradius() const override { return infinity; }
 
  private:
   Vec3 point_, normal_;
 };
 
-class Box : public LevelSet {
+class Box : public Convex {
  public:
   explicit Box(const OrientedBox& box) : box_(box) {}
 
@@ -71,7 +77,7 @@ class Plate final : public Box {
   }
 };
 
-class Sphere final : public LevelSet {
+class Sphere final : public Convex {
  public:
   Sphere(const Vec3& center, double radius) : center_(center), radius_(radius) {}
   double distance(const Vec3& x) const override { return (x - center_).norm() - radius_; }
@@ -84,7 +90,7 @@ class Sphere final : public LevelSet {
   double radius_;
 };
 
-class Cylinder final : public LevelSet {
+class Cylinder final : public Convex {
  public:
   Cylinder(const Vec3& from, const Vec3& to, double radius)
       : center_((from + to) / 2),
@@ -132,7 +138,7 @@ class Cylinder final : public LevelSet {
   double half_length_, radius_;
 };
 
-class Capsule final : public LevelSet {
+class Capsule final : public Convex {
  public:
   Capsule(const Vec3& from, const Vec3& to, double radius)
       : from_(from), edge_(to - from), radius_(radius) {}

@@ -12,12 +12,14 @@ namespace {
 
 using Index = NearestSeed::Index;
 
+double at(const Band& band, double value) { return value < 0 ? band.inside : band.outside; }
+
 /// Lowers each rebuilt magnitude that exceeds a neighbour's by more than the spacing. Without this,
 /// values of a file that are not quite distances would make a step at the edge of the band.
-void limit_slope(GridSamples& samples, const NearestSeed& grid, double band) {
+void limit_slope(GridSamples& samples, const NearestSeed& grid, const Band& band) {
   const auto lower = [&](const Index& n, int step) {
     float& value = samples.values[grid.at(n)];
-    if (std::abs(value) < band) return;
+    if (std::abs(value) < at(band, value)) return;
     for (const Index& from :
          {Index{n.i + step, n.j, n.k}, {n.i, n.j + step, n.k}, {n.i, n.j, n.k + step}}) {
       if (!grid.contains(from)) continue;
@@ -43,19 +45,20 @@ bool cross_too_steeply(const GridSamples& samples, const NearestSeed& grid) {
 
 }  // namespace
 
-void rebuild_distance(GridSamples& samples, double band, const std::string& where) {
+void rebuild_distance(GridSamples& samples, Band band, const std::string& where) {
   NearestSeed grid(samples.origin, samples.spacing, samples.counts);
   const std::vector<Vec3> surface = zero_crossings(grid, samples.values);
   if (surface.empty()) throw InputError(where, "no value is negative: the solid is empty");
   grid.propagate(surface);
-  if (cross_too_steeply(samples, grid)) band = 0;  // none of the values is a distance
+  if (cross_too_steeply(samples, grid)) band = {0, 0};  // none of the values is a distance
   grid.for_each_node([&](const Index& n) {
     float& value = samples.values[grid.at(n)];
-    if (std::abs(value) < band) return;
-    const double distance = std::max(band, grid.distance(n));
+    const double trusted = at(band, value);
+    if (std::abs(value) < trusted) return;
+    const double distance = std::max(trusted, grid.distance(n));
     value = static_cast<float>(value < 0 ? -distance : distance);
   });
-  if (band > 0) limit_slope(samples, grid, band);
+  if (band.outside > 0) limit_slope(samples, grid, band);
 }
 
 }  // namespace snowshed

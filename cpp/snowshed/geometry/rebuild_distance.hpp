@@ -7,15 +7,23 @@
 
 namespace snowshed {
 
-/// Replaces values of magnitude `band` or more by signed distances to the surface, on which the
-/// values change sign. Their signs stay. All values are replaced if `band` is 0, or if the values
-/// change sign more steeply than a distance can.
+/// Magnitudes beyond which values are no distances, metres.
+struct Band {
+  double outside, inside;  // the solid
+};
+
+/// Replaces values whose magnitude is that of the band or more by signed distances to the surface,
+/// on which the values change sign. Their signs stay. All values are replaced if the band is 0, or
+/// if the values change sign more steeply than a distance can.
 ///
 /// Only the crossings of the surface with the edges of the grid are known. Rebuilt distances are
 /// therefore too large: by at most a third of the spacing, and by at most a fifth from three
 /// spacings away on.
 ///
 /// Throws InputError at `where` if the values do not change sign.
-void rebuild_distance(GridSamples& samples, double band, const std::string& where);
+void rebuild_distance(GridSamples& samples, Band band, const std::string& where);
+inline void rebuild_distance(GridSamples& samples, double band, const std::string& where) {
+  rebuild_distance(samples, Band{band, band}, where);
+}
 
 }  // namespace snowshed

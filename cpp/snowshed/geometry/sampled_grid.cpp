@@ -2,68 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
-#include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/bounds.hpp"
+#include "snowshed/geometry/sample_checks.hpp"
 
 namespace snowshed {
 namespace {
-
-/// Neighbouring samples of an exact distance differ by at most the spacing. Approximate distances
-/// may differ by this factor more.
-constexpr double slope_tolerance = 1.25;
-
-std::size_t index_of(const GridSamples& s, std::size_t i, std::size_t j, std::size_t k) {
-  return (i * s.counts[1] + j) * s.counts[2] + k;
-}
-
-template <class Visit>
-void for_each_sample(const GridSamples& s, Visit visit) {
-  for (std::size_t i = 0; i < s.counts[0]; ++i)
-    for (std::size_t j = 0; j < s.counts[1]; ++j)
-      for (std::size_t k = 0; k < s.counts[2]; ++k) visit(i, j, k);
-}
-
-std::string place(std::size_t i, std::size_t j, std::size_t k) {
-  std::ostringstream text;
-  text << "sample [" << i << "][" << j << "][" << k << "]";
-  return text.str();
-}
-
-void check_counts(const GridSamples& s, const std::string& where) {
-  std::size_t total = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t n = s.counts[axis], least = axis == 1 ? 1 : 2;
-    if (n < least || n > s.values.size())
-      throw InputError(where, std::to_string(n) + " samples along axis " + std::to_string(axis) +
-                                  "; at least 2 are needed");
-    total *= n;
-    if (total > s.values.size()) break;  // before it overflows
-  }
-  if (total != s.values.size()) throw InputError(where, "the counts do not fit the values");
-}
-
-void check_values(const GridSamples& s, const std::string& where) {
-  const std::size_t strides[3] = {s.counts[1] * s.counts[2], s.counts[2], 1};
-  bool any_inside = false;
-  for_each_sample(s, [&](std::size_t i, std::size_t j, std::size_t k) {
-    const std::size_t n = index_of(s, i, j, k), ijk[3] = {i, j, k};
-    if (!std::isfinite(s.values[n])) throw InputError(where, place(i, j, k) + " is not finite");
-    any_inside = any_inside || s.values[n] < 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (ijk[axis] == 0) continue;
-      const double step = std::abs(double(s.values[n]) - s.values[n - strides[axis]]);
-      if (step <= slope_tolerance * s.spacing) continue;
-      std::ostringstream what;
-      what << place(i, j, k) << " differs from its neighbour by " << step << " m over " << s.spacing
-           << " m: not a signed distance in metres";
-      throw InputError(where, what.str());
-    }
-  });
-  if (!any_inside) throw InputError(where, "no sample is negative: the solid is empty");
-}
 
 class SampledGrid final : public LevelSet {
  public:
@@ -109,8 +54,8 @@ class SampledGrid final : public LevelSet {
       fraction[axis] = u[axis] - static_cast<double>(low[axis]);
     }
     const auto along_z = [&](std::size_t i, std::size_t j) {
-      const double a = samples_.values[index_of(samples_, i, j, low[2])];
-      return a + fraction[2] * (samples_.values[index_of(samples_, i, j, high[2])] - a);
+      const double a = samples_.values[samples_.index(i, j, low[2])];
+      return a + fraction[2] * (samples_.values[samples_.index(i, j, high[2])] - a);
     };
     const auto along_yz = [&](std::size_t i) {
       const double a = along_z(i, low[1]);
@@ -132,8 +77,8 @@ class SampledGrid final : public LevelSet {
   /// Calls visit(position relative to the origin, value) for the samples inside the solid.
   template <class Visit>
   void for_each_inside(Visit visit) const {
-    for_each_sample(samples_, [&](std::size_t i, std::size_t j, std::size_t k) {
-      const double value = samples_.values[index_of(samples_, i, j, k)];
+    samples_.for_each([&](std::size_t i, std::size_t j, std::size_t k) {
+      const double value = samples_.values[samples_.index(i, j, k)];
       if (value < 0) visit(Vec3(samples_.spacing * Vec3(i, j, k)), value);
     });
   }
@@ -177,8 +122,8 @@ class SampledGrid final : public LevelSet {
 }  // namespace
 
 Shape make_sampled_grid(GridSamples samples, const std::string& where) {
-  check_counts(samples, where);
-  check_values(samples, where);
+  require_counts(samples, where);
+  require_distances(samples, where);
   return std::make_shared<SampledGrid>(std::move(samples));
 }
 

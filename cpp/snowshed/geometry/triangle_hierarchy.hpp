@@ -54,9 +54,11 @@ class TriangleHierarchy {
     build(0, static_cast<std::uint32_t>(order_.size()));
   }
 
-  /// Returns the nearest point of the mesh to x.
-  Nearest nearest(const Vec3& x) const {
+  /// Returns the nearest point of the mesh to x. Without one whose squared distance is below a
+  /// limit, m2, returns that limit as the squared distance.
+  Nearest nearest(const Vec3& x, double squared_limit = infinity) const {
     Nearest best;
+    best.squared_distance = squared_limit;
     std::uint32_t stack[2 * max_depth];
     int size = 0;
     stack[size++] = 0;

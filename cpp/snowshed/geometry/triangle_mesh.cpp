@@ -28,6 +28,7 @@ std::string describe(const Vec3& v) {
   return text.str();
 }
 
+/// Edges that several solids of a file share are passed as often one way as the other.
 void check_closed(const TriangleMesh& mesh, const std::string& where) {
   std::vector<DirectedEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -39,16 +40,19 @@ void check_closed(const TriangleMesh& mesh, const std::string& where) {
     throw InputError(where, "the edge from " + describe(mesh.vertices[edge.from]) + " to " +
                                 describe(mesh.vertices[edge.to]) + " " + what);
   };
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (edges[e].from == edges[e].to) fail(edges[e], "has no length");
-    if (e > 0 && edges[e] == edges[e - 1])
-      fail(edges[e],
-           "is used twice in the same direction: neighbouring triangles must turn the "
-           "same way, and no more than two may share an edge");
+  for (auto first = edges.begin(); first != edges.end();) {
+    const DirectedEdge edge = *first, back{edge.to, edge.from};
+    if (edge.from == edge.to) fail(edge, "has no length");
+    const auto end = std::upper_bound(first, edges.end(), edge);
+    const auto backward = std::equal_range(edges.begin(), edges.end(), back);
+    const auto uses = end - first, uses_back = backward.second - backward.first;
+    if (uses > 1 && uses > uses_back)
+      fail(edge, "is used " + (uses == 2 ? "twice" : std::to_string(uses) + " times") +
+                     " in the same direction, and " + std::to_string(uses_back) +
+                     " times in the other: neighbouring triangles must turn the same way");
+    if (uses > uses_back) fail(edge, "belongs to one triangle only: the surface must be closed");
+    first = end;
   }
-  for (const DirectedEdge& edge : edges)
-    if (!std::binary_search(edges.begin(), edges.end(), DirectedEdge{edge.to, edge.from}))
-      fail(edge, "belongs to one triangle only: the surface must be closed");
 }
 
 }  // namespace
@@ -103,20 +107,9 @@ double enclosed_volume(const TriangleMesh& mesh) {
   return sum;
 }
 
-void require_solid(TriangleMesh& mesh, const std::string& where) {
+void require_closed(const TriangleMesh& mesh, const std::string& where) {
   require_valid_numbers(mesh, where);
   check_closed(mesh, where);
-  Vec3 low = mesh.vertices[mesh.triangles.front()[0]], high = low;
-  for (const Triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) {
-      low = low.cwiseMin(mesh.vertices[v]);
-      high = high.cwiseMax(mesh.vertices[v]);
-    }
-  const double volume = enclosed_volume(mesh), size = (high - low).norm();
-  if (!(std::abs(volume) > 1e-12 * size * size * size))
-    throw InputError(where, "the mesh encloses no volume");
-  if (volume < 0)
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
 }  // namespace snowshed

@@ -29,9 +29,8 @@ void merge_identical_vertices(TriangleMesh& mesh);
 /// Returns the volume enclosed by a closed mesh, m3; negative if the triangles face inward.
 double enclosed_volume(const TriangleMesh& mesh);
 
-/// Throws InputError at `where` unless the mesh bounds a solid: its numbers are valid, every edge
-/// is shared by exactly two triangles that run through it in opposite directions, and the volume is
-/// not zero. Turns the triangles outward if they face inward.
-void require_solid(TriangleMesh& mesh, const std::string& where);
+/// Throws InputError at `where` unless the mesh is a closed surface: its numbers are valid, and its
+/// triangles run through every edge as often in one direction as in the other.
+void require_closed(const TriangleMesh& mesh, const std::string& where);
 
 }  // namespace snowshed

@@ -55,6 +55,8 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   shape_prints_ = fingerprints_of_shapes(scene_, base_dir_);
   surroundings_ = build_surroundings(scene_, base_dir_);
   listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
+  resolved_obstacles_ = listed_obstacles(scene_, surroundings_.resolved);
+  notes_ = surroundings_.notes;
   solver_ = empty_method();
   if (scene_.uses<SlideSettings>()) {
     cost_ = estimate_slide_cost(scene_, slide().terrain(), surroundings_.areas.release.front(),
@@ -249,12 +251,20 @@ void Simulation::settle(const std::vector<double>& drops,
   solver_->settle(drops, plastic_changes);
 }
 
-double Simulation::obstacle_distance(const Vec3& x) const {
+/// Signed distance to the nearest of obstacles where they are at a time, m.
+static double nearest_distance(const std::vector<Obstacle>& obstacles, double time, const Vec3& x) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Obstacle& o : listed_obstacles_)
-    nearest =
-        std::min(nearest, o.shape->distance(o.motion ? o.motion->to_body(x, solver_->time()) : x));
+  for (const Obstacle& o : obstacles)
+    nearest = std::min(nearest, o.shape->distance(o.motion ? o.motion->to_body(x, time) : x));
   return nearest;
+}
+
+double Simulation::obstacle_distance(const Vec3& x) const {
+  return nearest_distance(listed_obstacles_, solver_->time(), x);
+}
+
+double Simulation::resolved_distance(const Vec3& x) const {
+  return nearest_distance(resolved_obstacles_, solver_->time(), x);
 }
 
 RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, double interval) {

@@ -151,6 +151,10 @@ class Simulation {
   /// and domain do not count. Infinite without any.
   double obstacle_distance(const Vec3& x) const;
 
+  /// The same to the obstacles as the method sees them, whose thin parts are thicker: snow lies on
+  /// those.
+  double resolved_distance(const Vec3& x) const;
+
   /// One .vtp with all particles and their quantities.
   void write_vtp(const std::filesystem::path&) const;
 
@@ -183,7 +187,8 @@ class Simulation {
   CostEstimate cost_;
   PanelRegion panel_;
   Surroundings surroundings_;
-  std::vector<Obstacle> listed_obstacles_;  // those of the scene's list
+  // Those of the scene's list, as given and as the method sees them.
+  std::vector<Obstacle> listed_obstacles_, resolved_obstacles_;
   std::unique_ptr<Method> solver_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;

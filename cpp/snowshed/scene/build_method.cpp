@@ -7,6 +7,8 @@
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/build_sample.hpp"
 #include "snowshed/scene/build_terrain.hpp"
+#include "snowshed/scene/file_notes.hpp"
+#include "snowshed/scene/resolve_obstacles.hpp"
 
 namespace snowshed {
 namespace {
@@ -19,7 +21,7 @@ std::unique_ptr<Method> build(const MpmSettings& settings, const Scene& scene,
   o.snows = snows;
   o.numerics = settings;
   o.energy = scene.output.energy;
-  return make_mpm(o, surroundings.obstacles);
+  return make_mpm(o, surroundings.resolved);
 }
 
 std::unique_ptr<Method> build(const SlideSettings& settings, const Scene& scene,
@@ -40,7 +42,7 @@ std::unique_ptr<Method> build(const MpsSettings& settings, const Scene& scene,
   o.dimension = scene.dimension;
   o.settings = settings;
   o.gravity = -scene.gravity * Vec3::UnitZ();
-  o.obstacles = surroundings.obstacles;
+  o.obstacles = surroundings.resolved;
   o.energy = scene.output.energy;
   return make_mps(std::move(o));
 }
@@ -49,7 +51,9 @@ std::unique_ptr<Method> build(const MpsSettings& settings, const Scene& scene,
 
 Surroundings build_surroundings(const Scene& scene, const std::filesystem::path& base_dir) {
   Surroundings s;
-  s.obstacles = build_obstacles(scene, base_dir);
+  s.obstacles = build_obstacles(scene, base_dir, &s.notes);
+  s.resolved = resolve_obstacles(scene, s.obstacles, s.notes);
+  add_notes_on_files(scene, base_dir, s.obstacles, s.notes);
   if (scene.terrain && scene.uses<SlideSettings>()) {
     s.terrain =
         build_height_field(*scene.terrain, std::get<SlideSettings>(scene.numerics), base_dir);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "snowshed/methods/grains/clumps.hpp"
@@ -15,7 +16,9 @@ namespace snowshed {
 
 /// What a scene's files and shapes hold, read and built once.
 struct Surroundings {
-  std::vector<Obstacle> obstacles;  // all of them
+  std::vector<Obstacle> obstacles;  // all of them, as they are given
+  std::vector<Obstacle> resolved;   // the same as the method sees them
+  std::vector<std::string> notes;   // on what was assumed or changed, a sentence each
   HeightField terrain;              // empty without terrain
   SlideAreas areas;
   GrainSample sample;  // empty without one

@@ -26,7 +26,8 @@ void add_domain_walls(const Scene& scene, std::vector<Obstacle>& obstacles) {
 
 }  // namespace
 
-std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem::path& base_dir) {
+std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem::path& base_dir,
+                                      std::vector<std::string>* notes) {
   std::vector<Obstacle> obstacles;
   const std::size_t first = standing_before_listed(scene);
   for (const ObstacleSpec& spec : assemble_obstacles(scene)) {
@@ -34,7 +35,7 @@ std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem:
     const std::string path =
         i < first ? "/" + spec.name : "/obstacles/" + std::to_string(i - first) + "/shape";
     Obstacle o{spec.name,
-               build_shape(spec.shape, scene.dimension, path, base_dir),
+               build_shape(spec.shape, scene.dimension, path, base_dir, notes),
                {spec.condition, spec.friction},
                std::nullopt};
     if (spec.motion) o.motion.emplace(*spec.motion);

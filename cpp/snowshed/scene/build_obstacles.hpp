@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "snowshed/methods/obstacle.hpp"
@@ -11,8 +12,9 @@ namespace snowshed {
 
 /// Builds the ground, the panel, the obstacles of the scene's list and the sides of its domain, in
 /// this order. Relative file names are looked for in `base_dir`. Throws InputError naming the
-/// obstacle whose shape cannot be built.
-std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem::path& base_dir);
+/// obstacle whose shape cannot be built. `notes`, if given, are as of build_shape.
+std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem::path& base_dir,
+                                      std::vector<std::string>* notes = nullptr);
 
 /// Returns those of the scene's list among the obstacles that `build_obstacles` built.
 std::vector<Obstacle> listed_obstacles(const Scene& scene, const std::vector<Obstacle>& built);

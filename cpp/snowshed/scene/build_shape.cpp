@@ -8,11 +8,11 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/combine.hpp"
-#include "snowshed/geometry/mesh_level_set.hpp"
+#include "snowshed/geometry/mesh_solid.hpp"
 #include "snowshed/geometry/primitives.hpp"
-#include "snowshed/geometry/readers/mesh_io.hpp"
 #include "snowshed/geometry/readers/npy_io.hpp"
 #include "snowshed/geometry/readers/vdb_file.hpp"
+#include "snowshed/geometry/sample_checks.hpp"
 #include "snowshed/geometry/sampled_grid.hpp"
 
 namespace snowshed {
@@ -26,8 +26,13 @@ constexpr double smallest = 1e-9;  // m
 class Builder {
  public:
   Builder(const ShapeSpec& spec, int dimension, const std::string& path,
-          const std::filesystem::path& base_dir, int depth)
-      : spec_(spec), dimension_(dimension), path_(path), base_dir_(base_dir), depth_(depth) {}
+          const std::filesystem::path& base_dir, int depth, std::vector<std::string>* notes)
+      : spec_(spec),
+        dimension_(dimension),
+        path_(path),
+        base_dir_(base_dir),
+        depth_(depth),
+        notes_(notes) {}
 
   Shape build() const {
     if (depth_ > max_shape_depth)
@@ -93,7 +98,7 @@ class Builder {
 
   Shape mesh() const {
     const double scale = length(spec_.scale, "/scale");
-    return in_scene(make_mesh(read_mesh(file(), scale)));
+    return make_mesh_solid(file(), scale, dimension_, notes_);
   }
 
   Shape grid() const {
@@ -110,13 +115,15 @@ class Builder {
                        "a grid with the indices [x][y][z]");
     samples.counts = {n[0], flat ? 1 : n[1], flat ? n[1] : n[2]};
     samples.values = std::move(array.values);
-    return in_scene(make_sampled_grid(std::move(samples), path.string()));
+    require_counts(samples, path.string());
+    repair_distances(samples, path.string(), notes_);
+    return in_scene(std::move(samples), path.string());
   }
 
   Shape vdb() const {
     const VdbSource source{file(), spec_.grid, length(spec_.threshold, "/threshold"),
                            length(spec_.scale, "/scale")};
-    return in_scene(make_sampled_grid(read_vdb(source), source.path.string()));
+    return in_scene(read_vdb(source), source.path.string());
   }
 
   Shape make_union() const { return unite(children(1)); }
@@ -151,14 +158,14 @@ class Builder {
     std::vector<Shape> shapes;
     for (std::size_t i = 0; i < spec_.shapes.size(); ++i)
       shapes.push_back(Builder(spec_.shapes[i], dimension_, path_ + "/shapes/" + std::to_string(i),
-                               base_dir_, depth_ + 1)
+                               base_dir_, depth_ + 1, notes_)
                            .build());
     return shapes;
   }
 
-  /// Solids that vary along y have normals out of the plane of a two-dimensional scene.
-  Shape in_scene(Shape shape) const {
-    return dimension_ == 2 ? cross_section(std::move(shape)) : shape;
+  Shape in_scene(GridSamples samples, const std::string& where) const {
+    if (dimension_ == 2) samples = samples_at_y0(samples, where);
+    return make_sampled_grid(std::move(samples), where);
   }
 
   std::filesystem::path file() const {
@@ -212,13 +219,14 @@ class Builder {
   const std::string& path_;
   const std::filesystem::path& base_dir_;
   const int depth_;
+  std::vector<std::string>* const notes_;
 };
 
 }  // namespace
 
 Shape build_shape(const ShapeSpec& spec, int dimension, const std::string& json_path,
-                  const std::filesystem::path& base_dir) {
-  return Builder(spec, dimension, json_path, base_dir, 1).build();
+                  const std::filesystem::path& base_dir, std::vector<std::string>* notes) {
+  return Builder(spec, dimension, json_path, base_dir, 1, notes).build();
 }
 
 }  // namespace snowshed

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "snowshed/geometry/level_set.hpp"
 #include "snowshed/scene/scene.hpp"
@@ -16,9 +17,11 @@ inline constexpr int max_shape_depth = 32;
 /// relative to `base_dir`. In 2D boxes and plates are unbounded along y, and every point and
 /// direction must lie in the plane y = 0.
 ///
+/// What was changed or assumed in files is added to `notes`, if given, a sentence each.
+///
 /// Throws InputError with the JSON path (`json_path` + "/radius") of a bad value, or with
 /// the file and place of bad mesh or grid data.
 Shape build_shape(const ShapeSpec& spec, int dimension, const std::string& json_path,
-                  const std::filesystem::path& base_dir);
+                  const std::filesystem::path& base_dir, std::vector<std::string>* notes = nullptr);
 
 }  // namespace snowshed

@@ -72,12 +72,5 @@ TEST(Dilate, MovesTheSurfaceOutward) {
   expect_bounds_hold(*grown, 1.0);
 }
 
-TEST(CrossSection, TurnsNormalsIntoThePlane) {
-  const Shape tilted = make_plane({0, 0, 0}, {1, 5, 1});
-  EXPECT_LT((cross_section(tilted)->normal({0, 0, 0}) - Vec3(1, 0, 1).normalized()).norm(), 1e-12);
-  const Shape across = make_plane({0, 0, 0}, {0, 1, 0});
-  EXPECT_EQ(cross_section(across)->normal({0, 0, 0}), Vec3::UnitZ());
-}
-
 }  // namespace
 }  // namespace snowshed

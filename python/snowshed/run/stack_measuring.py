@@ -55,7 +55,7 @@ def surroundings(simulation: _core.Simulation, positions: Floats) -> Surrounding
     ground = None
     if scene.get("obstacles"):
         if scene.get("ground"):
-            gap = np.minimum(gap, simulation.obstacle_distance(positions))
+            gap = np.minimum(gap, simulation.resolved_distance(positions))
         else:
             ground = _ground_below(simulation, positions)
     return Surroundings(gap < TOUCHES * simulation.resolution, ground)
@@ -121,7 +121,7 @@ def _ground_below(simulation: _core.Simulation, positions: Floats) -> Floats:
     left = np.arange(len(points))
     lowest = float(points[:, 2].min()) - np.ptp(points, axis=0).max() - 100.0 * dx
     for _ in range(MOST_STEPS):
-        distance = simulation.obstacle_distance(points[left])
+        distance = simulation.resolved_distance(points[left])
         points[left, 2] -= distance  # upward where a particle lies a little inside
         left = left[(np.abs(distance) > NEAR_ENOUGH * dx) & (points[left, 2] > lowest)]
         if len(left) == 0:

@@ -25,13 +25,17 @@ TriangleMesh parse(const std::filesystem::path& path) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& path, double scale) {
+ShellSolid read_solid(const std::filesystem::path& path, double scale) {
   TriangleMesh mesh = parse(path);
   for (Vec3& vertex : mesh.vertices) vertex *= scale;
   require_valid_numbers(mesh, path.string());
   merge_identical_vertices(mesh);
-  require_solid(mesh, path.string());
-  return mesh;
+  require_closed(mesh, path.string());
+  return solid_of_shells(mesh, path.string());
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& path, double scale) {
+  return joined(read_solid(path, scale));
 }
 
 }  // namespace snowshed

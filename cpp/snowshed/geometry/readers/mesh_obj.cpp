@@ -1,5 +1,6 @@
 #include <cstdint>
 
+#include "snowshed/geometry/polygon_faces.hpp"
 #include "snowshed/geometry/readers/mesh_formats.hpp"
 #include "snowshed/geometry/readers/text_scanner.hpp"
 
@@ -23,6 +24,8 @@ std::uint32_t vertex_index(const TextScanner& scanner, std::string_view word, st
 TriangleMesh parse_obj(const std::filesystem::path& path, std::string_view bytes) {
   TriangleMesh mesh;
   TextScanner scanner(path, bytes);
+  FaceCutter cutter(path.string());
+  Face face;
   while (scanner.next_line()) {
     const auto& words = scanner.words();
     if (words[0] == "v") {
@@ -34,11 +37,11 @@ TriangleMesh parse_obj(const std::filesystem::path& path, std::string_view bytes
       const auto corner = [&](std::size_t i) {
         return vertex_index(scanner, words[i], mesh.vertices.size());
       };
-      const std::uint32_t first = corner(1);
-      for (std::size_t i = 3; i < words.size(); ++i) {
-        if (mesh.triangles.size() >= max_mesh_items) scanner.fail("more than 2e7 triangles");
-        mesh.triangles.push_back({first, corner(i - 1), corner(i)});
-      }
+      face.clear();
+      for (std::size_t i = 1; i < words.size(); ++i) face.push_back(corner(i));
+      if (mesh.triangles.size() + face.size() > max_mesh_items)
+        scanner.fail("more than 2e7 triangles");
+      cutter.append(face, mesh);
     }  // other lines concern the appearance only
   }
   return mesh;

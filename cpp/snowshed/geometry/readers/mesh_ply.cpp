@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "snowshed/geometry/polygon_faces.hpp"
 #include "snowshed/geometry/readers/byte_reader.hpp"
 #include "snowshed/geometry/readers/mesh_formats.hpp"
 #include "snowshed/geometry/readers/text_scanner.hpp"
@@ -156,7 +157,8 @@ std::unique_ptr<Rows> open_rows(const std::filesystem::path& path, std::string_v
 
 class MeshBuilder {
  public:
-  MeshBuilder(Rows& rows, const std::vector<Element>& elements) : rows_(rows) {
+  MeshBuilder(Rows& rows, const std::vector<Element>& elements, const std::string& where)
+      : rows_(rows), cutter_(where) {
     for (const Element& element : elements)
       if (element.name == "vertex") vertex_count_ = element.count;
   }
@@ -182,7 +184,10 @@ class MeshBuilder {
     }
   }
 
-  TriangleMesh take() { return std::move(mesh_); }
+  TriangleMesh take() {
+    for (const Face& face : waiting_) cutter_.append(face, mesh_);
+    return std::move(mesh_);
+  }
 
  private:
   void read_scalar(const Property& property, Vec3& vertex) {
@@ -197,24 +202,29 @@ class MeshBuilder {
     const bool polygon =
         of_face && (property.name == "vertex_indices" || property.name == "vertex_index");
     if (polygon && count < 3) rows_.fail("a face with fewer than three vertices");
-    std::uint32_t first = 0, previous = 0;
+    face_.clear();
     for (std::uint64_t i = 0; i < count; ++i) {
-      if (!polygon) {
+      if (!polygon)
         rows_.value(property.type);
-        continue;
-      }
-      const auto vertex = static_cast<std::uint32_t>(
-          rows_.whole(property.type, vertex_count_, "the vertex of a face"));
-      if (mesh_.triangles.size() >= max_mesh_items) rows_.fail("more than 2e7 triangles");
-      if (i == 0) first = vertex;
-      if (i >= 2) mesh_.triangles.push_back({first, previous, vertex});
-      previous = vertex;
+      else
+        face_.push_back(static_cast<std::uint32_t>(
+            rows_.whole(property.type, vertex_count_, "the vertex of a face")));
     }
+    if (!polygon) return;
+    corners_ += count;
+    if (corners_ > 3 * max_mesh_items) rows_.fail("more than 2e7 triangles");
+    if (mesh_.vertices.size() == vertex_count_)
+      cutter_.append(face_, mesh_);
+    else
+      waiting_.push_back(face_);
   }
 
   Rows& rows_;
-  std::uint64_t vertex_count_ = 0;
+  FaceCutter cutter_;
+  std::uint64_t vertex_count_ = 0, corners_ = 0;
   TriangleMesh mesh_;
+  Face face_;
+  std::vector<Face> waiting_;  // for the vertices, which come later in the file
 };
 
 }  // namespace
@@ -223,7 +233,7 @@ TriangleMesh parse_ply(const std::filesystem::path& path, std::string_view bytes
   TextScanner scanner(path, bytes);
   const Header header = parse_header(scanner);
   const auto rows = open_rows(path, bytes, header.format, scanner);
-  MeshBuilder builder(*rows, header.elements);
+  MeshBuilder builder(*rows, header.elements, path.string());
   for (const Element& element : header.elements) builder.read(element);
   return builder.take();
 }

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "snowshed/core/parallel.hpp"
-#include "snowshed/geometry/combine.hpp"
 
 namespace snowshed {
 
-Obstacle thick_enough(Obstacle obstacle, double dx) {
-  const double missing = dx - obstacle.shape->inradius();
-  if (missing > 0) obstacle.shape = dilate(obstacle.shape, missing);
-  return obstacle;
+ThickSolid as_grid_sees(Shape shape, double dx, int dimension) {
+  return thickened(std::move(shape), dx, dimension);
 }
 
 template <class T, int D>
@@ -20,7 +18,8 @@ Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx) : dx_(dx) {
   for (Obstacle& o : obstacles) {
     laws_.push_back(o.law);
     any_motion_ = any_motion_ || o.motion.has_value();
-    obstacles_.push_back(thick_enough(std::move(o), dx));
+    o.shape = as_grid_sees(o.shape, dx, D).shape;
+    obstacles_.push_back(std::move(o));
   }
 }
 

@@ -11,14 +11,15 @@
 #include <algorithm>
 #include <vector>
 
+#include "snowshed/geometry/thickened.hpp"
 #include "snowshed/methods/mpm/block_layout.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
 namespace snowshed {
 
-/// The same obstacle as the grid must see it: a body thinner than two cells would slip between
-/// the nodes, so its surface is moved out until it is two cells thick.
-Obstacle thick_enough(Obstacle obstacle, double dx);
+/// A solid as the grid must see it: parts thinner than two cells would slip between the nodes, so
+/// their surface is moved out until they are two cells thick.
+ThickSolid as_grid_sees(Shape shape, double dx, int dimension);
 
 /// The obstacles as the grid sees them. It never changes.
 template <class T, int D>

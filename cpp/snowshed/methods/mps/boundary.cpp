@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace snowshed {
 namespace {
@@ -37,11 +38,16 @@ bool may_touch(const PlacedObstacle& o, const PointBox& box, double reach, int d
 
 }  // namespace
 
+ThickSolid as_particles_see(Shape shape, double spacing, int dimension) {
+  if (shape->is_convex()) return {std::move(shape), std::nullopt};
+  return thickened(std::move(shape), spacing, dimension);
+}
+
 std::vector<PlacedObstacle> place_obstacles(const std::vector<Obstacle>& obstacles, double time) {
   std::vector<PlacedObstacle> placed;
   for (std::uint32_t k = 0; k < obstacles.size(); ++k) {
     const Obstacle& o = obstacles[k];
-    placed.push_back({&o, k, o.motion ? o.motion->at(time) : RigidPose{}, 2 * o.shape->inradius()});
+    placed.push_back({&o, k, o.motion ? o.motion->at(time) : RigidPose{}});
   }
   return placed;
 }
@@ -71,7 +77,7 @@ void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
               if (!(normal.squaredNorm() > 1e-12)) continue;  // a surface along the plane (x, z)
               VecD<D> velocity = VecD<D>::Zero();
               if (o->obstacle->motion) velocity = section<D>(o->pose.velocity(x));
-              list.push_back({o->number, distance, o->thickness, normal.normalized(), velocity});
+              list.push_back({o->number, distance, o->thickness(x), normal.normalized(), velocity});
             }
           first[i + 1] = std::uint32_t(list.size() - before);
         }

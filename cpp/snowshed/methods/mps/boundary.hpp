@@ -4,18 +4,24 @@
 #include <cstdint>
 #include <vector>
 
+#include "snowshed/geometry/thickened.hpp"
 #include "snowshed/methods/mps/particles.hpp"
 #include "snowshed/methods/mps/row_lists.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
 namespace snowshed {
 
+/// A solid as the particles must see it. Parts of solids that are not convex are made two spacings
+/// thick if they are thinner. Thin boxes and other convex solids stay as they are: they have walls
+/// on both sides (WallParticles).
+ThickSolid as_particles_see(Shape shape, double spacing, int dimension);
+
 /// A particle within the radius of an obstacle's surface.
 template <int D>
 struct WallContact {
   std::uint32_t obstacle;
   double distance;   // m
-  double thickness;  // m, of the obstacle, at most
+  double thickness;  // m, of the obstacle there, at most
   VecD<D> normal;    // out of the obstacle
   VecD<D> velocity;  // m/s, of the obstacle's surface
 };
@@ -25,8 +31,10 @@ struct PlacedObstacle {
   const Obstacle* obstacle;
   std::uint32_t number;
   RigidPose pose;
-  double thickness;  // m
 
+  double thickness(const Vec3& x) const {
+    return 2 * obstacle->shape->half_thickness(obstacle->motion ? pose.to_body(x) : x);
+  }
   double distance(const Vec3& x) const {
     return obstacle->shape->distance(obstacle->motion ? pose.to_body(x) : x);
   }

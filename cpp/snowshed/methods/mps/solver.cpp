@@ -80,7 +80,10 @@ MpsModel<D>::MpsModel(MpsOptions o)
       second_layer(second_layer_share(D, kernel)),
       surface_lack(second_layer_lack(D, kernel)),
       rheology(Rheology::from(options.settings)),
-      threads(threads_to_use(options.settings.threads)) {}
+      threads(threads_to_use(options.settings.threads)) {
+  for (Obstacle& o : options.obstacles)
+    o.shape = as_particles_see(o.shape, options.settings.spacing, D).shape;
+}
 
 template <int D>
 double MpsSolver<D>::largest_speed(const MpsParticles<D>& particles) const {

@@ -153,7 +153,7 @@ void WallParticles<D>::push_apart(const LevelSet& shape, std::vector<VecD<D>>& p
 template <int D>
 typename WallParticles<D>::Placed WallParticles<D>::place(const LevelSet& shape,
                                                           const Vec3& x) const {
-  const double distance = shape.distance(x), thin = shape.inradius();
+  const double distance = shape.distance(x), thin = shape.half_thickness(x);
   double target = thin;
   if (thin >= 0.5 * spacing_) {
     if (!(distance < 0) || !(distance >= -layers_ * spacing_)) return {};
@@ -173,7 +173,6 @@ template <int D>
 void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) {
   const LevelSet& shape = *(*obstacles_)[number].shape;
   Lattice& lattice = lattices_[number];
-  const double thin = shape.inradius();
   VecD<D> corner;
   for (int d = 0; d < D; ++d) corner[d] = cell[std::size_t(d)] * edge_;
   const Vec3 middle = embed(VecD<D>(corner + 0.5 * edge_ * VecD<D>::Ones()));
@@ -201,10 +200,11 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
     own.push_back(cell_of<D>(section<D>(x), edge_) == cell);
   });
   push_apart(shape, points, depth);
-  const bool has_inner = 2 * thin >= edge_ + spacing_;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!own[i]) continue;
-    const VecD<D> normal = section<D>(shape.normal(embed(points[i]))).stableNormalized();
+    const Vec3 x = embed(points[i]);
+    const bool has_inner = 2 * shape.half_thickness(x) >= edge_ + spacing_;
+    const VecD<D> normal = section<D>(shape.normal(x)).stableNormalized();
     to.push_back({points[i], normal, number,
                   has_inner && depth[i] < spacing_ ? MpsKind::inner_wall : MpsKind::dummy_wall});
   }

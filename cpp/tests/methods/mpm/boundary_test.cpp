@@ -162,18 +162,15 @@ TEST(Friction, OfFastSlabsIsAsCoulombSays) {
 
 // --- thin obstacles ---------------------------------------------------------------------------
 
-double thickness_seen(const Shape& shape, double dx) {
-  return thick_enough({"", shape, {Condition::separate, 0.0}, std::nullopt}, dx).shape->inradius();
-}
-
 TEST(ThickEnough, LeavesThickBodiesAloneAndPadsThinOnes) {
   const Shape thick = make_box(Vec3::Zero(), Vec3(1, 1, 0.02));
-  EXPECT_EQ(thick_enough({"", thick, {}, std::nullopt}, 0.01).shape, thick);
+  EXPECT_EQ(as_grid_sees(thick, 0.01, 3).shape, thick);
   const Shape thin = make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, 1, 0.002);
-  EXPECT_NEAR(thickness_seen(thin, 0.01), 0.01, 1e-12);
-  const Obstacle padded = thick_enough({"", thin, {}, std::nullopt}, 0.01);
-  EXPECT_NEAR(padded.shape->distance(Vec3(0, 0, 0.009)), 0.0, 1e-12);
-  EXPECT_NEAR(padded.shape->distance(Vec3(0, 0, -0.011)), 0.0, 1e-12);
+  const Shape padded = as_grid_sees(thin, 0.01, 3).shape;
+  EXPECT_NEAR(padded->inradius(), 0.01, 1e-12);
+  EXPECT_NEAR(padded->distance(Vec3(0, 0, 0.009)), 0.0, 1e-12);
+  EXPECT_NEAR(padded->distance(Vec3(0, 0, -0.011)), 0.0, 1e-12);
+  EXPECT_EQ(as_grid_sees(padded, 0.01, 3).shape, padded);
 }
 
 struct Throw {
@@ -224,6 +221,24 @@ TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
     }
     EXPECT_GT(reached, -0.03);  // it did hit the panel
     for (const Vec3& x : solver->state().positions) ASSERT_LT(x.dot(normal), -0.1) << degrees;
+  }
+}
+
+// Walls of combined solids are as thin as those of plates, however thick the whole is.
+TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
+  const double wall = 0.003;
+  const Shape bin = subtract(make_box(Vec3(0, 0, 0.1), Vec3(0.3, 10, 0.2)),
+                             {make_box(Vec3(0, 0, 0.1 + wall), Vec3(0.3 - 2 * wall, 11, 0.2))});
+  const Shape shelf = unite({make_box(Vec3(0.1, 0, 0), Vec3(0.1, 10, 0.4)),
+                             make_box(Vec3(-0.05, 0, 0.0017), Vec3(0.3, 10, wall))});
+  for (const Shape& shape : {bin, shelf}) {
+    const auto solver =
+        make_mpm(options_for({2, Precision::float32}), {fixed(shape, Condition::separate, 0.3)});
+    ParticleBatch batch = filled_box(2, Vec3(-0.1, 0, 0.04), Vec3(0.03, 0, 0.1), 0.005);
+    batch.velocity.z() = -3;
+    solver->add(batch);
+    run_until(*solver, 0.15);
+    for (const Vec3& x : solver->state().positions) ASSERT_GT(x.z(), 0);
   }
 }
 

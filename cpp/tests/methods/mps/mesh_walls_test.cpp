@@ -6,6 +6,7 @@
 #include "geometry/mesh_testing.hpp"
 #include "mps_testing.hpp"
 #include "snowshed/geometry/mesh_level_set.hpp"
+#include "snowshed/geometry/mesh_shells.hpp"
 
 namespace snowshed {
 namespace {
@@ -49,8 +50,8 @@ TriangleMesh bumpy_ground(double edge) {
 }
 
 Obstacle of_mesh(const char* name, TriangleMesh mesh) {
-  require_solid(mesh, name);
-  return {name, make_mesh(std::move(mesh)), {Condition::sticky, 0.0}, std::nullopt};
+  return {
+      name, make_mesh(joined(solid_of_shells(mesh, name))), {Condition::sticky, 0.0}, std::nullopt};
 }
 
 /// A tank with bumpy ground.

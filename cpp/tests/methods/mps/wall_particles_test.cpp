@@ -122,5 +122,29 @@ TEST(MpsWallParticles, OfAThinBoardStandInItsMiddle) {
   EXPECT_EQ(p.size(), 2u);
 }
 
+// The wall of a bin has particles on both sides, however thick the block is that it was cut from.
+TEST(MpsWallParticles, OfAThinWallOfACombinedSolidStandWhereItIs) {
+  const double spacing = 0.01, wall = 0.004;
+  const Shape bin = subtract(make_box(Vec3(0, 0, 0.2), Vec3(0.6, 10, 0.4)),
+                             {make_box(Vec3(0, 0, 0.2 + wall), Vec3(0.6 - 2 * wall, 11, 0.4))});
+  MpsOptions o = tank(2, 1, spacing);
+  o.settings.walls = MpsWalls::particles;
+  o.obstacles = {{"bin", bin, {Condition::sticky, 0.0}, std::nullopt}};
+  const MpsModel<2> model(o);
+  EXPECT_NEAR(model.options.obstacles.front().shape->distance({0, 0, wall / 2 + spacing}), 0,
+              1e-4 * spacing);
+  MpsParticles<2> p = at_rest<2>({{0, 0, 0.03}, {0.27, 0, 0.2}});
+  WallParticles<2> walls(model.options.obstacles, spacing, 2.1 * spacing);
+  walls.append_near(0, 0, 1, p);
+  int below = 0, beside = 0;
+  for (std::size_t i = 2; i < p.size(); ++i) {
+    EXPECT_EQ(p.kind[i], MpsKind::dummy_wall);
+    below += std::abs(p.position[i][1] - wall / 2 + spacing / 2) < 0.01 * spacing;
+    beside += std::abs(p.position[i][0] - 0.3 + wall / 2 + spacing / 2) < 0.01 * spacing;
+  }
+  EXPECT_GT(below, 4);
+  EXPECT_GT(beside, 4);
+}
+
 }  // namespace
 }  // namespace snowshed

@@ -1,0 +1,16 @@
+// The shells of a closed surface: its parts that are connected by edges.
+#pragma once
+
+#include <vector>
+
+#include "snowshed/geometry/triangle_mesh.hpp"
+
+namespace snowshed {
+
+/// Returns the shells of a mesh that satisfies require_closed, each with vertices of its own, in
+/// the order of their first triangles. Every edge of a shell is shared by exactly two of its
+/// triangles. Where more triangles meet at an edge, those are neighbours that have the solid
+/// between them.
+std::vector<TriangleMesh> connected_shells(const TriangleMesh& mesh);
+
+}  // namespace snowshed

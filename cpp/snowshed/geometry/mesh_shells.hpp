@@ -1,0 +1,37 @@
+// The solid that a closed surface of several shells bounds.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/geometry/triangle_mesh.hpp"
+
+namespace snowshed {
+
+/// A solid as the union of meshes, whose triangles face outward.
+struct ShellSolid {
+  std::vector<TriangleMesh> layers;  // of shells that lie apart, each with the cavities within it
+  std::vector<std::string> notes;    // on what was changed, a sentence each
+};
+
+/// Returns the solid bounded by `mesh`, which must satisfy require_closed.
+///
+/// A shell is a part of the surface that is connected by edges. Where more than two triangles share
+/// an edge, those are neighbours that have the solid between them, so that solids that touch along
+/// an edge or a face are shells of their own.
+///
+/// - A shell in no other faces outward, whichever way the file has it.
+/// - Shells within others count by the rule of non-zero winding: one that turns the opposite way as
+///   the shell around it is a cavity, a shell in a cavity is solid again, and one that turns the
+///   same way lies in the solid and bounds nothing.
+/// - Shells that overlap are united.
+/// - Shells without volume, such as sheets with two faces, are left out.
+///
+/// Throws InputError at `where` if no shell has a volume, if a surface runs through itself, or if
+/// there are more than 10000 shells.
+ShellSolid solid_of_shells(const TriangleMesh& mesh, const std::string& where);
+
+/// Returns all triangles of a solid's layers as one mesh.
+TriangleMesh joined(const ShellSolid& solid);
+
+}  // namespace snowshed

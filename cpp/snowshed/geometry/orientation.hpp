@@ -1,0 +1,48 @@
+// Which way three points of a plane turn, without rounding errors.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+namespace snowshed {
+
+using PlanePoint = std::array<double, 2>;
+
+/// Returns a number whose sign tells how a, b, c turn: positive counter-clockwise, negative
+/// clockwise, 0 where they lie on one line. The sign is exact; the magnitude is about twice the
+/// area of the triangle. A rounded determinant decides where its error bound allows; else the six
+/// products are summed without rounding (Shewchuk 1997, doi:10.1007/PL00009321).
+inline double orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+  const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
+  constexpr double relative_error = 3.3306690738754716e-16;  // (3 + 16 u) u, u = 2^-53
+  if (std::abs(left - right) > relative_error * (std::abs(left) + std::abs(right)))
+    return left - right;
+
+  // The parts do not overlap, and the last one that is not zero has the sign of the sum.
+  std::array<double, 12> parts{};
+  int count = 0;
+  const auto add = [&](double value) {
+    for (int i = 0; i < count; ++i) {
+      const double sum = value + parts[i], shared = sum - value;
+      parts[i] = (value - (sum - shared)) + (parts[i] - shared);
+      value = sum;
+    }
+    parts[count++] = value;
+  };
+  const auto add_product = [&](double x, double y) {
+    const double product = x * y;
+    add(std::fma(x, y, -product));
+    add(product);
+  };
+  add_product(a[0], b[1]);
+  add_product(-a[0], c[1]);
+  add_product(-c[0], b[1]);
+  add_product(-a[1], b[0]);
+  add_product(a[1], c[0]);
+  add_product(c[1], b[0]);
+  for (int i = count - 1; i >= 0; --i)
+    if (parts[i] != 0) return parts[i];
+  return 0;
+}
+
+}  // namespace snowshed

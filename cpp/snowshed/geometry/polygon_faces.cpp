@@ -1,0 +1,184 @@
+#include "snowshed/geometry/polygon_faces.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/orientation.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Comparisons of a corner with an ear, over all faces of a file: some seconds.
+constexpr std::size_t most_comparisons = 300'000'000;
+
+/// The corners of a face as they lie in a plane, counter-clockwise.
+struct Outline {
+  Face corners;
+  std::vector<PlanePoint> points;
+};
+
+/// Twice the area vector of a face (Newell).
+Vec3 area_vector(const std::vector<Vec3>& vertices, const Face& face) {
+  Vec3 sum = Vec3::Zero();
+  const Vec3& origin = vertices[face.front()];
+  for (std::size_t i = 0; i < face.size(); ++i)
+    sum += (vertices[face[i]] - origin).cross(vertices[face[(i + 1) % face.size()]] - origin);
+  return sum;
+}
+
+/// Drops the coordinate in which the area vector is largest, which rounds nothing.
+Outline flattened(const std::vector<Vec3>& vertices, const Face& face, const Vec3& area) {
+  int away;
+  area.cwiseAbs().maxCoeff(&away);
+  int u = (away + 1) % 3, v = (away + 2) % 3;
+  if (area[away] < 0) std::swap(u, v);
+  Outline outline{face, {}};
+  for (const std::uint32_t corner : face)
+    outline.points.push_back({vertices[corner][u], vertices[corner][v]});
+  return outline;
+}
+
+Face without_repetitions(const std::vector<Vec3>& vertices, const Face& face) {
+  Face kept;
+  for (const std::uint32_t corner : face)
+    if (kept.empty() || vertices[corner] != vertices[kept.back()]) kept.push_back(corner);
+  while (kept.size() > 1 && vertices[kept.back()] == vertices[kept.front()]) kept.pop_back();
+  return kept;
+}
+
+bool is_convex(const Outline& outline) {
+  const auto& p = outline.points;
+  const std::size_t n = p.size();
+  for (std::size_t i = 0; i < n; ++i)
+    if (!(orientation(p[i], p[(i + 1) % n], p[(i + 2) % n]) > 0)) return false;
+  for (std::size_t i = 2; i + 1 < n; ++i)  // turns around but once
+    if (!(orientation(p[0], p[i], p[i + 1]) > 0)) return false;
+  return true;
+}
+
+/// Cuts triangles off a polygon until none is left.
+class EarClipper {
+ public:
+  EarClipper(const Outline& outline, std::size_t& comparisons)
+      : p_(outline.points),
+        corners_(outline.corners),
+        left_(p_.size()),
+        comparisons_(comparisons),
+        before_(p_.size()),
+        after_(p_.size()) {
+    for (std::size_t i = 0; i < left_; ++i) {
+      before_[i] = (i + left_ - 1) % left_;
+      after_[i] = (i + 1) % left_;
+    }
+  }
+
+  /// Returns false where no ear can be cut although the rest has an area.
+  bool clip(std::vector<Triangle>& triangles) {
+    std::size_t i = 0, since_cut = 0;
+    while (left_ > 3) {
+      if (since_cut > left_) return is_flat(i) && fan(i, triangles);
+      if (!is_ear(i)) {
+        i = after_[i];
+        ++since_cut;
+        continue;
+      }
+      cut(i, triangles);
+      i = after_[after_[i]];  // so that not all ears share a corner
+      since_cut = 0;
+    }
+    if (orientation(p_[before_[i]], p_[i], p_[after_[i]]) < 0) return false;
+    cut(i, triangles);
+    return true;
+  }
+
+ private:
+  void cut(std::size_t i, std::vector<Triangle>& triangles) {
+    triangles.push_back({corners_[before_[i]], corners_[i], corners_[after_[i]]});
+    after_[before_[i]] = after_[i];
+    before_[after_[i]] = before_[i];
+    --left_;
+  }
+
+  /// Whether no other corner lies in the triangle at i or on its border, or keeps i from being cut
+  /// off because the outline comes back to the same point and goes on into the triangle.
+  bool is_ear(std::size_t i) {
+    const std::size_t first = before_[i], last = after_[i];
+    const PlanePoint &a = p_[first], &b = p_[i], &c = p_[last];
+    if (a == c) return true;  // to a point and back
+    if (!(orientation(a, b, c) > 0)) return false;
+    for (std::size_t k = after_[last]; k != first; k = after_[k]) {
+      if (++comparisons_ > most_comparisons) return false;
+      const PlanePoint& q = p_[k];
+      if (q == a || q == c) continue;
+      if (q == b) {
+        if (is_within_corner(a, b, c, p_[before_[k]]) || is_within_corner(a, b, c, p_[after_[k]]))
+          return false;
+        continue;
+      }
+      if (orientation(a, b, q) >= 0 && orientation(b, c, q) >= 0 && orientation(c, a, q) >= 0)
+        return false;
+    }
+    return true;
+  }
+
+  static bool is_within_corner(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c,
+                               const PlanePoint& q) {
+    return orientation(a, b, q) > 0 && orientation(b, c, q) > 0;
+  }
+
+  bool is_flat(std::size_t i) const {
+    std::size_t k = i;
+    do {
+      if (orientation(p_[before_[k]], p_[k], p_[after_[k]]) != 0) return false;
+      k = after_[k];
+    } while (k != i);
+    return true;
+  }
+
+  /// What has no area keeps the neighbouring faces connected.
+  bool fan(std::size_t i, std::vector<Triangle>& triangles) {
+    while (left_ > 2) cut(after_[i], triangles);
+    return true;
+  }
+
+  const std::vector<PlanePoint>& p_;
+  const Face& corners_;
+  std::size_t left_;
+  std::size_t& comparisons_;
+  std::vector<std::size_t> before_, after_;
+};
+
+void append_fan(const Face& face, std::vector<Triangle>& triangles) {
+  for (std::size_t i = 2; i < face.size(); ++i)
+    triangles.push_back({face[0], face[i - 1], face[i]});
+}
+
+[[noreturn]] void refuse(const std::string& where, const TriangleMesh& mesh, const Face& face,
+                         const char* why) {
+  const Vec3& at = mesh.vertices[face.front()];
+  std::ostringstream text;
+  text << "the face of " << face.size() << " corners that begins at (" << at.x() << ", " << at.y()
+       << ", " << at.z() << ") " << why;
+  throw InputError(where, text.str());
+}
+
+}  // namespace
+
+void FaceCutter::append(const Face& given, TriangleMesh& mesh) {
+  if (given.size() == 3) return append_fan(given, mesh.triangles);
+  const Face face = without_repetitions(mesh.vertices, given);
+  if (face.size() < 3) return;
+  const Vec3 area = area_vector(mesh.vertices, face);
+  if (face.size() == 3 || area.isZero(0.0)) return append_fan(face, mesh.triangles);
+  const Outline outline = flattened(mesh.vertices, face, area);
+  if (is_convex(outline)) return append_fan(face, mesh.triangles);
+  EarClipper clipper(outline, comparisons_);
+  const bool whole = clipper.clip(mesh.triangles);
+  if (comparisons_ > most_comparisons)
+    refuse(where_, mesh, face,
+           "is one concave face too many to cut into triangles; give triangles instead");
+  if (!whole) refuse(where_, mesh, face, "has an outline that crosses itself");
+}
+
+}  // namespace snowshed

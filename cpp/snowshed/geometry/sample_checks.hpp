@@ -1,0 +1,37 @@
+// Whether samples on a grid are signed distances: negative inside the solid, metres.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/geometry/sampled_grid.hpp"
+
+namespace snowshed {
+
+/// Throws InputError at `where` if the counts do not fit the values, or if a value is not finite.
+void require_counts(const GridSamples& samples, const std::string& where);
+
+/// Throws InputError at `where` if no value is negative; if neighbours differ by clearly more than
+/// the spacing, since a distance cannot; or if the sign is the other way round. That is so where
+/// the solid would fill most of the border of the grid and most of its top, and either nothing of
+/// its bottom, or the largest value is found neither at its sides nor at its top. The samples must
+/// satisfy require_counts.
+void require_distances(const GridSamples& samples, const std::string& where);
+
+/// Replaces values that are no distances, where the surface is known, and adds a note on it.
+///
+/// - Values that were cut off, as those of a narrow band are: the largest or the smallest value
+///   recurs on all neighbours of a sample, as no distance does. They become distances
+///   (rebuild_distance).
+/// - All values, if they change at the surface by less than 0.6 over a distance of 1: they are in
+///   another unit, or no distances at all.
+///
+/// The samples must satisfy require_counts.
+void repair_distances(GridSamples& samples, const std::string& where,
+                      std::vector<std::string>* notes);
+
+/// Returns the samples on the plane y = 0, which are constant in y. Throws InputError at `where` if
+/// the grid does not reach the plane, or if the solid does not.
+GridSamples samples_at_y0(const GridSamples& samples, const std::string& where);
+
+}  // namespace snowshed

@@ -1,0 +1,37 @@
+// Where a solid is thinner than a grid can resolve.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "snowshed/geometry/level_set.hpp"
+
+namespace snowshed {
+
+/// A piece of the middle of a thin part: a rectangle between both of its faces. Its edges lie half
+/// the thickness away from those of the part. Of a thin rod it is a line, of a small ball a point,
+/// but for rounding.
+struct ThinPart {
+  Vec3 middle;      // m
+  Vec3 normal;      // across the part, unit
+  double half;      // m, half of the thickness
+  Vec3 corners[4];  // of the rectangle, m
+};
+
+/// Returns pieces of all parts of a solid that are thinner than `2 half`, so near to each other
+/// that balls of the radius `half` around them leave no gap; in 2D within the plane y = 0.
+///
+/// The surface is found cell by cell, each as large as `half`. The thickness at a point of the
+/// surface is the length of the chord along its normal. It counts where the faces at both ends are
+/// parallel within 40 degrees, so that corners of thick parts are not thin. At other ends, as of
+/// triangular bars, the greatest depth within reach decides. Signs alone are used to measure, since
+/// depths of combined solids are lower bounds.
+///
+/// A solid whose surface fills more than 400000 cells is searched in larger ones; parts that are
+/// smaller than those may be missed.
+std::vector<ThinPart> find_thin_parts(const LevelSet& shape, double half, int dimension);
+
+/// Returns a piece of a solid that planes alone bound, if two of them are as near to each other.
+std::optional<ThinPart> find_thin_plate(const LevelSet& shape, double half, int dimension);
+
+}  // namespace snowshed

@@ -1,0 +1,72 @@
+#include "snowshed/scene/resolve_obstacles.hpp"
+
+#include <sstream>
+
+#include "snowshed/methods/mpm/boundary.hpp"
+#include "snowshed/methods/mps/boundary.hpp"
+
+namespace snowshed {
+namespace {
+
+ThickSolid as_seen(const MpmSettings& settings, const Shape& shape, int dimension) {
+  return as_grid_sees(shape, settings.dx, dimension);
+}
+
+ThickSolid as_seen(const MpsSettings& settings, const Shape& shape, int dimension) {
+  return as_particles_see(shape, settings.spacing, dimension);
+}
+
+template <class Settings>
+ThickSolid as_seen(const Settings&, const Shape& shape, int) {
+  return {shape, std::nullopt};
+}
+
+std::string millimetres(double metres) {
+  std::ostringstream text;
+  text.precision(3);
+  text << 1000 * metres << " mm";
+  return text.str();
+}
+
+std::string place_of(const Vec3& x, int dimension) {
+  std::ostringstream text;
+  text.precision(4);
+  // Adding 0 makes 0 of -0.
+  const auto rounded = [](double v) { return std::abs(v) < 5e-5 ? 0.0 : v; };
+  if (dimension == 2)
+    text << "(x, z) = (" << rounded(x.x()) << ", " << rounded(x.z()) << ") m";
+  else
+    text << "(x, y, z) = (" << rounded(x.x()) << ", " << rounded(x.y()) << ", " << rounded(x.z())
+         << ") m";
+  return text.str();
+}
+
+std::string note_on(const Thickening& t, const Obstacle& obstacle, const Scene& scene) {
+  const std::string unit = scene.uses<MpsSettings>() ? "spacings" : "cells";
+  const std::string name =
+      obstacle.name.empty() ? "an obstacle" : "obstacle '" + obstacle.name + "'";
+  const std::string least = millimetres(2 * resolution(scene.numerics));
+  if (t.whole)
+    return name + " is " + millimetres(t.thickness) + " thick, less than two " + unit +
+           ": it is made " + least + " thick, " + millimetres(t.outward) + " more on each side";
+  return name + " has parts thinner than two " + unit + ", down to " + millimetres(t.thickness) +
+         " at " + place_of(t.thinnest, scene.dimension) + ": there it is made " + least +
+         " thick, up to " + millimetres(t.outward) + " more on each side";
+}
+
+}  // namespace
+
+std::vector<Obstacle> resolve_obstacles(const Scene& scene, const std::vector<Obstacle>& given,
+                                        std::vector<std::string>& notes) {
+  std::vector<Obstacle> resolved = given;
+  for (Obstacle& obstacle : resolved) {
+    ThickSolid solid = std::visit(
+        [&](const auto& settings) { return as_seen(settings, obstacle.shape, scene.dimension); },
+        scene.numerics);
+    if (solid.thickening) notes.push_back(note_on(*solid.thickening, obstacle, scene));
+    obstacle.shape = std::move(solid.shape);
+  }
+  return resolved;
+}
+
+}  // namespace snowshed

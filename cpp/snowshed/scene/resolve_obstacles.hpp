@@ -1,0 +1,17 @@
+// The obstacles of a scene as its method sees them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/methods/obstacle.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// Returns the obstacles with their thin parts made as thick as the method resolves, and adds a
+/// note on each that differs: where it is how thin, and by how much its surface moves.
+std::vector<Obstacle> resolve_obstacles(const Scene& scene, const std::vector<Obstacle>& given,
+                                        std::vector<std::string>& notes);
+
+}  // namespace snowshed
