@@ -15,3 +15,16 @@ TEXT, TABLE = 64 * MB, 1024 * MB
 COORDINATE_SYSTEM = 64 * KB
 #: Columns of a table; pandas takes minutes for a line of a hundred thousand names.
 COLUMNS = 1000
+#: Cells of a raster, and bytes of one block of it, which GDAL takes as a whole: with all that is
+#: made of a raster while it is read, that is a gigabyte. The core has the same limit for cells.
+RASTER_CELLS, RASTER_BLOCK = 25_000_000, 256 * MB
+#: Bytes of a file of facts beside a raster.
+SIDECAR = MB
+#: Cells of terrain under a slide, unless more are asked for: with its maps and its page a gigabyte.
+TERRAIN_CELLS = 2_500_000
+#: Elevations of more cells than this are not worth fewer bytes than one in so many cells: what is
+#: packed closer was made to cost much, because a slide takes some 250 bytes for a cell.
+PACKED_CELLS, PACKED = 1_000_000, 20
+#: Cells of snow in a raster of thickness, corners of the areas that they make, and cells times
+#: corners, because each cell and each particle is compared with each corner when snow is laid.
+SNOW_CELLS, RELEASE_CORNERS, CELLS_TIMES_CORNERS = 4_000_000, 5000, 200_000_000
