@@ -73,7 +73,8 @@ def test_a_raster_that_is_not_finite_or_too_large_is_refused(tmp_path, capsys):
     header = "ncols {}\nnrows {}\nxllcenter 0\nyllcenter 0\ncellsize 2\n"
     for text, message in (
         (header.format(2, 2) + "1 2 inf 4\n", "dem.asc:6: 'inf' is not a valid number"),
-        (header.format(40000, 40000) + "1 2 3\n", "the file is too short"),
+        (header.format(4000, 4000) + "1 2 3\n", "the file is too short"),
+        (header.format(40000, 40000) + "1 2 3\n", "1600000000 cells; at most 25000000"),
         (header.format(90000, 2) + "1 2 3\n", "ncols must be a whole number from 2 to 50000"),
     ):
         (tmp_path / "dem.asc").write_text(text)

@@ -1,7 +1,11 @@
 #include "snowshed/scene/build_terrain.hpp"
 
+#include <string>
+
 #include "snowshed/core/errors.hpp"
+#include "snowshed/geometry/cliffs.hpp"
 #include "snowshed/geometry/readers/ascii_grid.hpp"
+#include "snowshed/scene/message_format.hpp"
 
 namespace snowshed {
 namespace {
@@ -30,11 +34,19 @@ std::vector<SlideArea> areas_of(const std::vector<AreaSpec>& specs, const Height
   return areas;
 }
 
+/// Throws where the ground under a release, or anywhere, is as no ground is.
+void check_cliff(const std::string& where, const std::string& cliff, double max_slope) {
+  if (cliff.empty()) return;
+  throw InputError(where, "elevations of " + cliff + "; are some missing? At most " +
+                              show(max_slope) + " degrees are believed (terrain.max_slope)");
+}
+
 }  // namespace
 
 HeightField build_height_field(const TerrainSpec& terrain, const SlideSettings& settings,
                                const std::filesystem::path& base_dir) {
   HeightField field = read_ascii_grid(base_dir / terrain.file);
+  check_cliff("/terrain/file", impossible_cliff(field, terrain.max_slope), terrain.max_slope);
   if (settings.mode == SlideMode::compatible && terrain.single_precision)
     for (double& height : field.heights) height = double(float(height));
   const double cell = settings.cell > 0 ? settings.cell : field.cell;
@@ -54,8 +66,14 @@ SlideAreas build_areas(const TerrainSpec& terrain, const HeightField& field,
     map.west -= field.west;
     map.south -= field.south;
     const auto shared = std::make_shared<const HeightField>(std::move(map));
-    for (SlideArea& area : areas.release) area.map = shared;
+    for (SlideArea& area : areas.release) {
+      area.map = shared;
+      area.max_thickness = terrain.max_thickness;
+    }
   }
+  for (std::size_t i = 0; i < areas.release.size(); ++i)
+    check_cliff("/terrain/release/" + std::to_string(i),
+                cliff_under(areas.release[i].polygon, field, terrain.max_slope), terrain.max_slope);
   areas.entrainment = areas_of(terrain.entrainment, field);
   for (const ResistanceSpec& spec : terrain.resistance)
     areas.resistance.push_back(area_of(spec, field));

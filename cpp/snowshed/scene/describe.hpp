@@ -224,6 +224,12 @@ void describe(V& v, TerrainSpec& t) {
   v.text("thickness_file", t.thickness_file,
          "Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid; "
          "relative to the scene file");
+  v.number("max_thickness", t.max_thickness, "m", positive.up_to(100.0),
+           "Largest thickness of the snow that is released or taken up");
+  v.number("max_slope", t.max_slope, "deg", positive.up_to(90.0),
+           "Steepest ground between neighbouring nodes under a release, where they differ by more "
+           "than 10 m in height");
+  v.text("notes", t.notes, "What was assumed of the files, a line each, handed on to the results");
   v.list("release", t.release, between(1, 10000).required(), "Where snow is released");
   v.list("entrainment", t.entrainment, between(0, 10000), "Where the slide takes up snow");
   v.list("resistance", t.resistance, between(0, 10000), "Where forest or the like holds it back");

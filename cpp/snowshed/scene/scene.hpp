@@ -125,6 +125,9 @@ struct TerrainSpec {
   std::string crs;               // of the raster and the areas, in words; handed on to the results
   bool single_precision = true;  // of elevations in compatible mode
   std::string thickness_file;    // of the release, in place of the areas' thickness; an ASCII grid
+  double max_thickness = 10;     // m, of the snow in the areas
+  double max_slope = 70;         // degrees, of cliffs under a release
+  std::string notes;             // what was assumed of the files, for the results
   std::vector<AreaSpec> release, entrainment;
   std::vector<ResistanceSpec> resistance;
 };

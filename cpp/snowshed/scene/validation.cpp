@@ -261,9 +261,24 @@ class SceneRules {
   }
 
   void check_terrain(const TerrainSpec& terrain) const {
-    for (const AreaSpec& area : terrain.release) check_area(area);
-    for (const AreaSpec& area : terrain.entrainment) check_area(area);
+    const bool from_map = !terrain.thickness_file.empty();
+    for (const AreaSpec& area : terrain.release) {
+      check_area(area);
+      if (!from_map) check_thickness(area, terrain);
+    }
+    for (const AreaSpec& area : terrain.entrainment) {
+      check_area(area);
+      check_thickness(area, terrain);
+    }
     for (const ResistanceSpec& area : terrain.resistance) check_area(area);
+  }
+
+  void check_thickness(const AreaSpec& area, const TerrainSpec& terrain) const {
+    if (area.thickness > terrain.max_thickness)
+      fail(area.thickness, show(area.thickness) + " m of snow; at most " +
+                               show(terrain.max_thickness) +
+                               " m are believed: is it in centimetres? Else raise " +
+                               path_of(scene_, terrain.max_thickness));
   }
 
   template <class Area>

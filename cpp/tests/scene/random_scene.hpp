@@ -122,6 +122,7 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   scene.snow = {};
   scene.seeding = {};
   if (!scene.terrain) describe(randomizer, scene.terrain.emplace());
+  scene.terrain->max_thickness = 100;  // as thick as an area may be
   scene.events.count = 1;
   scene.output.energy = false;
   SlideSettings& settings = std::get<SlideSettings>(scene.numerics);

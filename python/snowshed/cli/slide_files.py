@@ -17,7 +17,7 @@ WAYS = "give --terrain and --release, or --avaframe, or --example"
 
 @dataclass(frozen=True)
 class SlideFiles:
-    """Files of a slide, and the thickness of its release, m; None for what is not given."""
+    """Files of a slide, their bands, and the thickness of its release, m; None: not given."""
 
     terrain: Optional[Path]
     release: Optional[Path]
@@ -25,6 +25,8 @@ class SlideFiles:
     entrainment: Optional[Path]
     resistance: Optional[Path]
     thickness: Optional[float]
+    band: Optional[int] = None
+    thickness_band: Optional[int] = None
 
     def any(self) -> bool:
         """Return whether there are any."""
@@ -38,7 +40,14 @@ class SlideFiles:
             "resistance": self.resistance,
         }
 
-    def scene(self, folder: Path, *, example: bool, settings: Mapping[str, object]) -> Scene:
+    def scene(
+        self,
+        folder: Path,
+        *,
+        example: bool,
+        settings: Mapping[str, object],
+        limits: Mapping[str, Any],
+    ) -> Scene:
         """Return the scene that they describe, or that of the example.
 
         Parameters
@@ -49,6 +58,9 @@ class SlideFiles:
             Whether the example is wanted, which takes no files.
         settings
             Settings of the method.
+        limits
+            What is believed of terrain and snow: `max_slope`, `max_thickness` and
+            `max_cells` of `slide_scene`.
         """
         from snowshed.methods.slide import SlideSettings
         from snowshed.scene.builders.slides import example_slide, slide_scene
@@ -71,6 +83,9 @@ class SlideFiles:
             settings=SlideSettings.from_data(dict(settings)),
             ascii_copy=terrain_copy(folder),
             title=f"Slide on {self.terrain.name}",
+            band=self.band,
+            thickness_band=self.thickness_band,
+            **limits,
         )
 
 

@@ -8,6 +8,7 @@ import select
 import stat
 import time
 from pathlib import Path
+from typing import BinaryIO
 
 from snowshed._core import InputError
 from snowshed.io.limits import MB, PIPE, PIPE_SILENCE, TEXT
@@ -30,17 +31,37 @@ def read_regular(path: Path) -> bytes:
     ...
     snowshed._core.InputError: /dev/zero: not a regular file
     """
-    with open(path, "rb", opener=_open_at_once) as file:
-        status = os.fstat(file.fileno())
-        if not stat.S_ISREG(status.st_mode):
-            raise InputError(f"{path}: not a regular file")
-        if status.st_size > _memory() / 2:
-            raise InputError(f"{path}: {status.st_size / 1e9:.3g} GB do not fit into memory")
+    with _opened(path) as file:
+        size = os.fstat(file.fileno()).st_size
+        if size > _memory() / 2:
+            raise InputError(f"{path}: {size / 1e9:.3g} GB do not fit into memory")
         return file.read()
 
 
+def first_bytes(path: Path, count: int) -> bytes:
+    """Return the first bytes of a regular file, fewer where it is shorter; errors are the same.
+
+    Examples
+    --------
+    >>> from tempfile import NamedTemporaryFile
+    >>> with NamedTemporaryFile() as file:
+    ...     first_bytes(Path(file.name), 4)
+    b''
+    """
+    with _opened(path) as file:
+        return file.read(count)
+
+
+def _opened(path: Path) -> BinaryIO:
+    """Open a regular file without waiting, as for the writer of a pipe."""
+    file = open(path, "rb", opener=_open_at_once)  # noqa: SIM115 - the caller closes it
+    if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+        file.close()
+        raise InputError(f"{path}: not a regular file")
+    return file
+
+
 def _open_at_once(path: str, flags: int) -> int:
-    """Open a file without waiting, as for the writer of a pipe."""
     return os.open(path, flags | os.O_NONBLOCK)
 
 

@@ -31,3 +31,16 @@ MEMBERS = 10_000
 UNPACKING = 80 * MB
 #: Days from one row of weather to the next; no station is silent for longer and goes on.
 WEATHER_GAP = 50 * 366
+#: Cells of a raster, and bytes of one block of it, which GDAL takes as a whole: with all that is
+#: made of a raster while it is read, that is a gigabyte. The core has the same limit for cells.
+RASTER_CELLS, RASTER_BLOCK = 25_000_000, 256 * MB
+#: Bytes of a file of facts beside a raster.
+SIDECAR = MB
+#: Cells of terrain under a slide, unless more are asked for: with its maps and its page a gigabyte.
+TERRAIN_CELLS = 2_500_000
+#: Elevations of more cells than this are not worth fewer bytes than one in so many cells: what is
+#: packed closer was made to cost much, because a slide takes some 250 bytes for a cell.
+PACKED_CELLS, PACKED = 1_000_000, 20
+#: Cells of snow in a raster of thickness, corners of the areas that they make, and cells times
+#: corners, because each cell and each particle is compared with each corner when snow is laid.
+SNOW_CELLS, RELEASE_CORNERS, CELLS_TIMES_CORNERS = 4_000_000, 5000, 200_000_000

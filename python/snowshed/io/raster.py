@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Optional
 
 import numpy as np
 
@@ -14,11 +12,15 @@ from snowshed._core import InputError, read_ascii_grid
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.io.coordinate_systems import read_prj
-from snowshed.io.extras import require
+from snowshed.io.geotiff import read_geotiff
+from snowshed.io.input_file import first_bytes
+from snowshed.io.notes import tell
 from snowshed.io.paths import PathLike
+from snowshed.io.raster_sidecars import refuse_other_facts
+from snowshed.io.vertical_units import split_words
 
 GEOTIFF = (".tif", ".tiff")
-LARGEST = 100_000_000  # cells of a raster that is read, 800 MB of heights
+TIFF_MARKS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,11 @@ class Raster:
     name
         For messages.
     crs
-        Coordinate system in words, such as "EPSG:31287"; empty where it is not known.
+        Coordinate system of the map in words, such as "EPSG:31287"; empty where it is not known.
+    plain
+        Whether the file of this name is an ESRI ASCII grid that holds just these heights.
+    numbers
+        Type of the numbers in the file, such as "int16"; empty where they are text.
     """
 
     heights: Floats
@@ -45,6 +51,8 @@ class Raster:
     cell: float
     name: str = "raster"
     crs: str = ""
+    plain: bool = False
+    numbers: str = ""
 
     def height_at(self, east: Floats, north: Floats) -> Floats:
         """Return heights at map coordinates, m, interpolated between cell middles (bilinear).
@@ -90,14 +98,19 @@ class Raster:
         return found
 
 
-def read_raster(path: PathLike) -> Raster:
-    """Read terrain heights.
+def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
+    """Read heights in metres.
+
+    What a file says of scale, offset, unit and missing values is taken into account; a note says
+    what was changed.
 
     Parameters
     ----------
     path
-        An ESRI ASCII grid (any name, its coordinate system in a .prj beside it), or a GeoTIFF
-        (.tif, .tiff), in metres on a projected map.
+        An ESRI ASCII grid (any name, its coordinate system in a .prj beside it) or a GeoTIFF, told
+        apart by their contents, on a projected map.
+    band
+        Which band of a GeoTIFF, from 1; needed where it has several.
 
     Raises
     ------
@@ -108,12 +121,28 @@ def read_raster(path: PathLike) -> Raster:
         If the file cannot be read.
     """
     path = Path(path)
-    return _read_geotiff(path) if path.suffix.lower() in GEOTIFF else _read_ascii(path)
+    if path.suffix.lower() in GEOTIFF or first_bytes(path, 4) in TIFF_MARKS:
+        found = read_geotiff(path, band)
+        place = (found.east, found.north, found.cell)
+        return Raster(found.heights, *place, str(path), found.system, numbers=found.numbers)
+    if band not in (None, 1):
+        raise InputError(f"{path}: has no band {band}; an ESRI ASCII grid has one")
+    return _read_ascii(path)
 
 
 def _read_ascii(path: Path) -> Raster:
-    heights, west, south, cell = read_ascii_grid(str(path))
-    return Raster(heights, west, south, cell, str(path), read_prj(path))
+    heights, west, south, cell, missing, commas = read_ascii_grid(str(path))
+    refuse_other_facts(path, heights)
+    if missing:
+        tell(f"{path.name}: {missing} values of -9999 are missing ones; the header says none", 3)
+    if commas:
+        tell(f"{path.name}: {commas} numbers have a decimal comma", 3)
+    raster = Raster(heights, west, south, cell, str(path), read_prj(path), plain=True)
+    system, per_height = split_words(raster.crs, str(path))
+    if per_height in (None, 1.0):
+        return replace(raster, crs=system)
+    tell(f"{path.name}: its values were turned into metres; one unit is {per_height:.10g} m", 3)
+    return replace(raster, crs=system, heights=heights * per_height, plain=False)
 
 
 def is_single(raster: Raster) -> bool:
@@ -131,8 +160,8 @@ def is_single(raster: Raster) -> bool:
 def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> None:
     """Write a raster as an ESRI ASCII grid, whole or not at all; NaN becomes -9999.
 
-    Values have nine digits, which keep single precision; with `exact` as many as double precision
-    needs.
+    Values have nine digits, from which single precision is recovered; with `exact` as many as
+    double precision needs. Single values need them, too, where a reader keeps double precision.
 
     Examples
     --------
@@ -149,54 +178,10 @@ def write_ascii_grid(path: PathLike, raster: Raster, *, exact: bool = False) -> 
         f"yllcenter {raster.north:.15g}\ncellsize {raster.cell:.15g}\nnodata_value -9999\n"
     )
     known = np.where(np.isnan(raster.heights), -9999.0, raster.heights)
-    single = not exact or is_single(raster)
     with replacing(path) as beside, beside.open("w", encoding="ascii") as file:
         file.write(header)
-        np.savetxt(file, known[::-1], fmt="%.9g" if single else "%.17g")
-
-
-def _check_band(source: Any, path: Path) -> None:
-    """Refuse what would fill the memory, and what are no heights, before it is read."""
-    if source.width * source.height > LARGEST:
-        raise InputError(
-            f"{path}: {source.width} columns and {source.height} rows; at most {LARGEST} cells "
-            "are allowed; crop it first"
-        )
-    if np.dtype(source.dtypes[0]).kind not in "iuf":
-        raise InputError(f"{path}: holds {source.dtypes[0]} values, which are no heights")
-
-
-def _check_finite(heights: Floats, path: Path) -> None:
-    if np.isinf(heights).any():
-        row, column = np.argwhere(np.isinf(heights))[0]
-        raise InputError(
-            f"{path}: a height that is not finite, {column} cells from the west and {row} from "
-            "the south"
-        )
-
-
-def _read_geotiff(path: Path) -> Raster:
-    if not path.is_file():
-        raise FileNotFoundError(2, "No such file or directory", str(path))
-    rasterio: Any = require("rasterio", "terrain", "reading a GeoTIFF")
-    try:
-        with warnings.catch_warnings():
-            # A raster without a place on the map is refused below.
-            warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
-            with rasterio.open(path, driver="GTiff") as source:
-                _check_band(source, path)
-                heights = source.read(1, masked=True).astype(np.float64).filled(np.nan)
-                transform, crs = source.transform, source.crs
-    except rasterio.errors.RasterioError as error:
-        raise InputError(f"{path}: not a GeoTIFF: {error}") from None
-    _check_finite(heights[::-1], path)
-    if crs is not None and crs.is_geographic:
-        raise InputError(f"{path}: its map is in degrees ({crs}); project it to metres first")
-    if transform.b or transform.d or transform.a <= 0 or not math.isclose(
-        transform.a, -transform.e, rel_tol=1e-6
-    ):  # fmt: skip
-        raise InputError(f"{path}: not on square cells with north up; resample it first")
-    cell = float(transform.a)
-    north = transform.f - (len(heights) - 0.5) * cell
-    place = "" if crs is None else crs.to_string()
-    return Raster(heights[::-1], transform.c + 0.5 * cell, north, cell, str(path), place)
+        number = "%.17g" if exact else "%.9g"
+        empty = " ".join(["0"] * columns) + "\n"  # most rows of a map
+        for row in known[::-1]:
+            filled = row.any() or np.signbit(row).any()
+            file.write(" ".join([number] * columns) % tuple(row) + "\n" if filled else empty)

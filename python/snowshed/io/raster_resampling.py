@@ -9,8 +9,9 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.io.extras import require
+from snowshed.io.limits import RASTER_CELLS
 from snowshed.io.paths import PathLike
-from snowshed.io.raster import LARGEST, Raster, read_raster
+from snowshed.io.raster import Raster, read_raster
 
 #: Any map in metres: GDAL wants one to resample on.
 SOME_MAP = "EPSG:31287"
@@ -38,8 +39,8 @@ def resampled_raster(path: PathLike, cell: float) -> Raster:
     rows, columns = old.heights.shape
     new_columns = int((columns - 1) * old.cell / cell + 1)
     new_rows = int((rows - 1) * old.cell / cell + 1)
-    if new_columns * new_rows > LARGEST:
-        raise InputError(f"{path}: has more than {LARGEST} cells of {cell:g} m; crop it first")
+    if new_columns * new_rows > RASTER_CELLS:
+        raise InputError(f"{path}: has more than {RASTER_CELLS} cells of {cell:g} m; crop it first")
     rasterio: Any = require("rasterio", "terrain", "resampling terrain")
     warp: Any = require("rasterio.warp", "terrain", "resampling terrain")
     # GDAL reads the numbers of text files in single precision, AvaFrame the resampled ones, too.

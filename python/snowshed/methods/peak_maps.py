@@ -49,7 +49,6 @@ class PeakMaps:
     @classmethod
     def cropped(cls, thickness: Any, speed: Any, pressure: Any) -> PeakMaps:
         """Return the rectangle of whole maps (rows, columns) that holds all snow."""
-        # The mean speed of the default mode reaches a node beyond the snow.
         snow = (np.asarray(thickness) > 0.0) | (np.asarray(speed) > 0.0)
         rows, columns = (np.flatnonzero(snow.any(axis=axis)) for axis in (1, 0))
         if not rows.size:

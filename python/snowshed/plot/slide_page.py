@@ -97,11 +97,13 @@ def write_slide_page(
         The snow over time.
     """
     outlines = [area["outline"] for area in scene["terrain"]["release"]]
+    assumed = str(scene["terrain"].get("notes") or "").splitlines()
     page = template("snowshed.plot", "slide.html.j2")
     text = page.render(
         title=scene.get("title") or "Snow slide",
         sentence=headline(figures),
-        notes=figures.get("notes", ()),
+        notes=[note for note in figures.get("notes", ()) if note not in assumed],
+        assumed=assumed,
         facts=_facts(figures),
         areas=_area_table(areas),
         mass=_mass_table(figures),

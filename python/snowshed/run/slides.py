@@ -115,7 +115,11 @@ def slide_maps(simulation: _core.Simulation) -> SlideMaps:
         If the scene's method is another.
     """
     density = json.loads(simulation.scene)["numerics"]["density"]
-    return SlideMaps(**simulation.slide_maps(), density=density)
+    found = simulation.slide_maps()
+    # The mean speed of the default mode fades beyond the snow (kernels/mean_speed.hpp). In the maps
+    # that people read, no place that snow never reached has a speed or a pressure.
+    found["peak_speed"] = np.where(found["peak_thickness"] > 0.0, found["peak_speed"], 0.0)
+    return SlideMaps(**found, density=density)
 
 
 def slide_terrain(scene: SceneLike) -> Raster:
@@ -384,7 +388,9 @@ def _summary(
     )
     settings = json.loads(simulation.scene)["numerics"]
     left = validity_notes(areas, settings, asdict(summary))
-    return replace(summary, notes=(*sequence.notes, *summary.notes, *left))
+    return replace(
+        summary, notes=(*_of_files(simulation), *sequence.notes, *summary.notes, *left)
+    )
 
 
 def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:
@@ -403,6 +409,11 @@ def _notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
         f"{left:,.0f} kg of snow left the terrain {where}; what lies beyond is not part of these "
         "figures",
     )
+
+
+def _of_files(simulation: _core.Simulation) -> list[str]:
+    """Return what was assumed of the scene's files when it was made."""
+    return str(json.loads(simulation.scene)["terrain"].get("notes", "")).splitlines()
 
 
 def _crs(simulation: _core.Simulation) -> str:

@@ -274,6 +274,14 @@ class Terrain(Record):
     thickness_file : str
         Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid;
         relative to the scene file.
+    max_thickness : float
+        Largest thickness of the snow that is released or taken up [m]. 0 < value <= 100; default
+        10.
+    max_slope : float
+        Steepest ground between neighbouring nodes under a release, where they differ by more than
+        10 m in height [deg]. 0 < value <= 90; default 70.
+    notes : str
+        What was assumed of the files, a line each, handed on to the results.
     release : list of Area
         Where snow is released. Required.
     entrainment : list of Area
@@ -286,6 +294,9 @@ class Terrain(Record):
     crs: Optional[str] = None
     single_precision: Optional[bool] = None
     thickness_file: Optional[str] = None
+    max_thickness: Optional[float] = None
+    max_slope: Optional[float] = None
+    notes: Optional[str] = None
     release: Optional[List[Area]] = None
     entrainment: Optional[List[Area]] = None
     resistance: Optional[List[ResistanceArea]] = None

@@ -27,6 +27,8 @@ from snowshed.study.aged_scene import with_ageing
 HASH_DIGITS = 32  # hexadecimal: 128 bits
 HASH = re.compile(f"[0-9a-f]{{{HASH_DIGITS}}}")
 WITHOUT_EFFECT = ("title", "output")
+#: What terrain tells of its files and believes of them: a result does not depend on it.
+TERRAIN_WITHOUT_EFFECT = ("notes", "max_slope", "max_thickness")
 #: Keys of a scene under which the path of a file stands.
 FILES = ("file", "thickness_file")
 #: Settings keep the name that they had when they were first hashed, so that runs computed then are
@@ -111,6 +113,9 @@ def content_hash(scene: Mapping[str, Any]) -> str:
     content["numerics"] = {
         HASHED_AS.get(k, k): v for k, v in scene["numerics"].items() if k != "threads"
     }
+    if content.get("terrain"):
+        terrain = content["terrain"].items()
+        content["terrain"] = {k: v for k, v in terrain if k not in TERRAIN_WITHOUT_EFFECT}
     whole = {"snowshed": _core.version, "scene": _with_file_contents(content)}
     text = json.dumps(whole, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]

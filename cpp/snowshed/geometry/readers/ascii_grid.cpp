@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -13,9 +14,12 @@
 namespace snowshed {
 namespace {
 
-constexpr double largest_side = 50'000;  // nodes
-constexpr double most_nodes = 2e8;
+// As LARGEST_TERRAIN in python/snowshed/io/limits.py, which says why.
+constexpr double most_nodes = 25e6;
+constexpr double largest_side = 50'000;     // nodes
 constexpr double largest_coordinate = 1e8;  // m
+constexpr double largest_elevation = 1e5;   // m
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 struct Header {
   std::map<std::string, double> values;
@@ -30,28 +34,74 @@ std::string lower(std::string_view word) {
   return text;
 }
 
-/// As GDAL writes a missing value where the header says nodata_value nan.
-bool is_nan(std::string_view word) { return lower(word) == "nan"; }
+/// The spellings of "not a number" in texts of C libraries old and new.
+bool is_nan(std::string_view word) {
+  if (!word.empty() && (word[0] == '-' || word[0] == '+')) word.remove_prefix(1);
+  const std::string text = lower(word);
+  return text.compare(0, 3, "nan") == 0 || text.compare(0, 3, "1.#") == 0;
+}
 
-bool is_header_key(const std::string& word) {
-  static const char* const keys[] = {"ncols",     "nrows",     "xllcenter", "yllcenter",
-                                     "xllcorner", "yllcorner", "cellsize",  "nodata_value"};
-  return std::any_of(std::begin(keys), std::end(keys),
-                     [&](const char* key) { return word == key; });
+/// A number, whose decimals may follow a comma, as GDAL reads it; `commas` counts those.
+double number_of(std::string_view word, const TextScanner& scanner, std::size_t& commas) {
+  if (is_nan(word)) return not_known;
+  const std::size_t comma = word.find(',');
+  if (comma == std::string_view::npos) return scanner.parse<double>(word);
+  if (comma + 1 == word.size()) scanner.fail("values are separated by blanks, not by commas");
+  std::string text(word.substr(0, 40));
+  if (comma < text.size()) text[comma] = '.';
+  ++commas;
+  return scanner.parse<double>(text);
+}
+
+/// Returns the name that this reader has for a word of the header; empty if it is none.
+std::string header_key(std::string_view word) {
+  static const char* const keys[] = {"ncols",     "nrows",       "xllcenter", "yllcenter",
+                                     "xllcorner", "yllcorner",   "cellsize",  "dx",
+                                     "dy",        "nodata_value"};
+  const std::string key = lower(word);
+  if (key == "nodata") return "nodata_value";
+  const bool known =
+      std::any_of(std::begin(keys), std::end(keys), [&](const char* name) { return key == name; });
+  return known ? key : "";
 }
 
 /// Reads the lines of the header; the scanner is then at the first line of values.
-Header read_header(TextScanner& scanner) {
+Header read_header(TextScanner& scanner, std::size_t& commas) {
   Header header;
-  while (scanner.next_line() && is_header_key(lower(scanner.words()[0]))) {
+  while (scanner.next_line()) {
+    const std::string key = header_key(scanner.words()[0]);
+    if (key.empty()) break;
     if (scanner.words().size() != 2) scanner.fail("a line of the header has a key and a value");
-    const std::string key = lower(scanner.words()[0]);
     if (header.has(key)) scanner.fail(key + " is given twice");
-    header.values[key] = key == "nodata_value" && is_nan(scanner.words()[1])
-                             ? std::numeric_limits<double>::quiet_NaN()
-                             : scanner.number<double>(1);
+    header.values[key] = number_of(scanner.words()[1], scanner, commas);
+    if (std::isnan(header.at(key)) && key != "nodata_value")
+      scanner.fail("'nan' is not a valid number");
   }
+  if (header.values.empty())
+    scanner.fail("neither an ESRI ASCII grid, which begins with ncols, nor a GeoTIFF");
   return header;
+}
+
+/// Returns the size of the square cells.
+double cell_of(const Header& header, const TextScanner& scanner) {
+  const bool two = header.has("dx") || header.has("dy");
+  if (header.has("cellsize") == two || (two && !(header.has("dx") && header.has("dy"))))
+    scanner.fail("the header must have one of cellsize and both dx and dy");
+  const double cell = header.at(two ? "dx" : "cellsize");
+  if (!(cell > 0 && cell <= 1e5))
+    scanner.fail(std::string(two ? "dx" : "cellsize") + " must be above 0 and at most 1e5 m");
+  if (two && !(std::abs(header.at("dy") - cell) <= 1e-6 * cell))
+    scanner.fail("dx and dy differ; resample the raster to square cells");
+  return cell;
+}
+
+/// Whether a value is the one that stands for a missing one. GDAL holds both in single precision;
+/// some programs write the largest single number with fewer digits than it needs.
+bool is_missing(double value, double nodata) {
+  if (std::isnan(value) || value == nodata) return true;
+  if (std::abs(nodata) > largest_elevation)
+    return std::abs(value - nodata) <= 1e-6 * std::abs(nodata);
+  return float(value) == float(nodata);
 }
 
 int count_of(const Header& header, const std::string& key, const TextScanner& scanner) {
@@ -75,39 +125,46 @@ double first_node(const Header& header, const std::string& axis, double cell,
 
 }  // namespace
 
-HeightField read_ascii_grid(const std::filesystem::path& file) {
+HeightField read_ascii_grid(const std::filesystem::path& file, AsciiGridFacts* facts) {
   const std::string text = read_bytes(file);
-  TextScanner scanner(file, text);
-  const Header header = read_header(scanner);
+  const std::string_view mark = "\xEF\xBB\xBF";
+  TextScanner scanner(file,
+                      std::string_view(text).substr(text.rfind(mark, 0) == 0 ? mark.size() : 0));
+  AsciiGridFacts found;
+  const Header header = read_header(scanner, found.decimal_commas);
   HeightField field;
   field.columns = count_of(header, "ncols", scanner);
   field.rows = count_of(header, "nrows", scanner);
-  if (!header.has("cellsize")) scanner.fail("the header has no cellsize");
-  field.cell = header.at("cellsize");
-  if (!(field.cell > 0 && field.cell <= 1e5))
-    scanner.fail("cellsize must be above 0 and at most 1e5 m");
+  field.cell = cell_of(header, scanner);
   field.west = first_node(header, "x", field.cell, scanner);
   field.south = first_node(header, "y", field.cell, scanner);
-  const double nodata = header.has("nodata_value") ? header.at("nodata_value") : -9999;
+  const bool declared = header.has("nodata_value");
+  const double nodata = declared ? header.at("nodata_value") : -9999;
   const std::size_t nodes = std::size_t(field.columns) * std::size_t(field.rows);
+  if (double(nodes) > most_nodes)
+    scanner.fail("the header tells of " + std::to_string(nodes) + " cells; at most " +
+                 std::to_string(std::size_t(most_nodes)) + " are allowed; crop it first");
   // A value takes two bytes at least: a short file cannot ask for much memory.
-  if (double(nodes) > most_nodes || nodes > text.size())
+  if (nodes > text.size())
     scanner.fail("the header tells of " + std::to_string(nodes) + " values; the file is too short");
   field.heights.resize(nodes);
   std::size_t read = 0;
   for (bool more = !scanner.words().empty(); more; more = scanner.next_line())
-    for (std::size_t i = 0; i < scanner.words().size(); ++i) {
+    for (const std::string_view word : scanner.words()) {
       if (read == nodes) scanner.fail("more values than the header tells of");
-      const bool missing = std::isnan(nodata) && is_nan(scanner.words()[i]);
-      const double value = missing ? nodata : scanner.number<double>(i);
-      if (std::abs(value) > 1e5 && value != nodata) scanner.fail("an elevation beyond 1e5 m");
+      const double value = number_of(word, scanner, found.decimal_commas);
+      const bool missing = is_missing(value, nodata);
+      if (!missing && std::abs(value) > largest_elevation)
+        scanner.fail("'" + std::string(word.substr(0, 40)) + "' is beyond 1e5 m" +
+                     (declared ? "" : "; the header has no nodata_value"));
+      if (missing && !declared && !std::isnan(value)) ++found.undeclared_missing;
       const int row = field.rows - 1 - int(read / std::size_t(field.columns));
       const int column = int(read++ % std::size_t(field.columns));
-      field.heights[field.index(column, row)] =
-          value == nodata ? std::numeric_limits<double>::quiet_NaN() : value;
+      field.heights[field.index(column, row)] = missing ? not_known : value;
     }
   if (read != nodes)
     scanner.fail(std::to_string(read) + " values; the header tells of " + std::to_string(nodes));
+  if (facts) *facts = found;
   return field;
 }
 

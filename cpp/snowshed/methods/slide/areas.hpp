@@ -17,6 +17,7 @@ struct SlideArea {
   double thickness = 0;  // m of snow, normal to the ground; unused where there is resistance only
   /// In place of that: the thickness in the cells around nodes. Only of releases.
   std::shared_ptr<const HeightField> map;
+  double max_thickness = 100;  // m, that the map may tell of
 };
 
 struct SlideAreas {

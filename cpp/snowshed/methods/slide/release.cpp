@@ -145,13 +145,13 @@ double mean_thickness(const SlideArea& area, const Terrain& terrain, std::size_t
       const double part = area_within(area.polygon, {x - half, y - half}, {x + half, y + half});
       if (part <= rounding * m.cell) continue;
       const double h = m.height(column, row);
-      if (!(h > 0 && h <= 100))
+      if (!(h > 0 && h <= area.max_thickness))
         refuse_area(index, area.name,
                     "the raster of thickness says " +
                         (std::isnan(h) ? "nothing" : std::to_string(h) + " m") + " at (" +
                         std::to_string(terrain.west() + x) + ", " +
-                        std::to_string(terrain.south() + y) +
-                        "); allowed: above 0 and at most 100 m");
+                        std::to_string(terrain.south() + y) + "); allowed: above 0 and at most " +
+                        std::to_string(area.max_thickness) + " m");
       volume += part * h;
       covered += part;
     }

@@ -38,11 +38,42 @@ TEST_F(AsciiGrid, nodes_are_the_middles_of_cells_and_the_first_row_is_the_southe
   EXPECT_DOUBLE_EQ(read(replaced(good, "xllcorner", "xllcenter")).west, 1000);
 }
 
-TEST_F(AsciiGrid, a_missing_value_may_be_nan_where_the_header_says_so) {
+TEST_F(AsciiGrid, what_is_not_a_number_is_missing_whatever_the_header_says) {
   const HeightField f = read(replaced(replaced(good, "value -9", "value nan"), "5 -9", "NaN -9"));
   EXPECT_TRUE(std::isnan(f.height(1, 0)));
   EXPECT_DOUBLE_EQ(f.height(2, 0), -9);
-  EXPECT_THROW(read(replaced(good, "5 -9", "nan -9")), InputError);
+  for (const char* word : {"nan", "-nan", "NaN", "nan(ind)", "1.#QNAN", "-1.#IND"})
+    EXPECT_TRUE(std::isnan(read(replaced(good, "4 5", std::string(word) + " 5")).height(0, 0)));
+}
+
+TEST_F(AsciiGrid, missing_values_are_compared_in_single_precision_as_gdal_does) {
+  for (const auto& [header, word] : std::vector<std::pair<std::string, std::string>>{
+           {"-3.4028234663852886e+38", "-3.40282346638529e+38"},
+           {"-3.4028234663852886e+38", "-3.402823e+38"},
+           {"-340282346638528859811704183484516925440", "-3.4028235e38"},
+           {"-32767.1", "-32767.0996"},
+           {"0", "0.0"}}) {
+    const HeightField f =
+        read(replaced(replaced(good, "value -9", "value " + header), "4 5", word + " 5"));
+    EXPECT_TRUE(std::isnan(f.height(0, 0))) << word;
+    EXPECT_DOUBLE_EQ(f.height(1, 0), 5);
+  }
+}
+
+TEST_F(AsciiGrid, square_cells_may_be_given_along_both_axes) {
+  EXPECT_DOUBLE_EQ(read(replaced(good, "cellsize 10", "dx 10\nDY 10.0")).cell, 10);
+}
+
+TEST_F(AsciiGrid, tells_what_it_assumed) {
+  write_plainly(path("a.asc"),
+                "ncols 2\nnrows 2\nxllcorner 0,5\nyllcorner 0\ncellsize 1\n"
+                "1,25 2\n3 -9999\n");
+  AsciiGridFacts facts;
+  const HeightField f = read_ascii_grid(path("a.asc"), &facts);
+  EXPECT_DOUBLE_EQ(f.height(0, 1), 1.25);
+  EXPECT_DOUBLE_EQ(f.west, 1);
+  EXPECT_EQ(facts.decimal_commas, 2u);
+  EXPECT_EQ(facts.undeclared_missing, 1u);
 }
 
 TEST_F(AsciiGrid, lines_may_break_anywhere) {
@@ -60,6 +91,13 @@ TEST_F(AsciiGrid, refuses_what_is_no_grid) {
            {"xllcorner 1000\n", ""},
            {"4 5", "4 five"},
            {"4 5", "4 1e9"},
+           {"4 5", "4, 5"},
+           {"4 5", "4,5,6 5"},
+           {"4 5", "inf 5"},
+           {"NCOLS 3", "ncols 49999\nnrows 49999"},
+           {"cellsize 10", "dx 10"},
+           {"cellsize 10", "dx 10\ndy 11"},
+           {"cellsize 10", "cellsize 10\ndx 10\ndy 10"},
            {"4 5", "4 5 6"},
            {"4 5 -9", "4"}})
     EXPECT_THROW(read(replaced(good, old, by)), InputError) << by;

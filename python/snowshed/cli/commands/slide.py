@@ -35,6 +35,11 @@ PATH = click.Path(path_type=Path)
 @click.option("--avaframe", type=PATH, help="An AvaFrame project, run as AvaFrame 2.1 does.")
 @click.option("--example", is_flag=True, help="A slide on a slope that is made for it.")
 @click.option("--compatible", is_flag=True, help="Do step by step what AvaFrame 2.1 does.")
+@click.option("--band", type=int, help="Band of the terrain, where a GeoTIFF has several.")
+@click.option("--thickness-band", type=int, help="Band of the raster of thickness.")
+@click.option("--max-slope", type=float, help="Steepest cliff under the release that is believed.")
+@click.option("--max-thickness", type=float, help="Largest thickness of snow that is believed [m].")
+@click.option("--max-cells", type=int, help="How many cells the terrain may have.")
 @click.option("--max-time", type=float, help="Longest duration of the slide [s].")
 @click.option("--particles-at", metavar="STEPS", help="Write the particles after these steps.")
 @range_options
@@ -52,6 +57,11 @@ def slide(
     avaframe: Optional[Path],
     example: bool,
     compatible: bool,
+    band: Optional[int],
+    thickness_band: Optional[int],
+    max_slope: Optional[float],
+    max_thickness: Optional[float],
+    max_cells: Optional[int],
     max_time: Optional[float],
     particles_at: Optional[str],
     **settings: Any,
@@ -68,8 +78,15 @@ def slide(
     ranges = RangeOptions.taken_from(settings)
     steps = _steps(particles_at)
     given = {name: value for name, value in settings.items() if value is not None}
+    limits = {"max_slope": max_slope, "max_thickness": max_thickness, "max_cells": max_cells}
     if compatible:
         given["mode"] = "compatible"
+    beliefs = {"--band": band, "--thickness-band": thickness_band, **{
+        f"--{name.replace('_', '-')}": value for name, value in limits.items()
+    }}  # fmt: skip
+    for option, value in beliefs.items():
+        if value is not None and (example or avaframe is not None):
+            raise InputError(f"{option}: only with --terrain")
     if avaframe is not None:
         if terrain is not None or release is not None or thickness_raster is not None or example:
             raise InputError(WAYS)
@@ -87,13 +104,14 @@ def slide(
         )  # fmt: skip
         return
     files = SlideFiles(
-        terrain, release, thickness_raster, entrainment_areas, resistance_areas, thickness
-    )
+        terrain, release, thickness_raster, entrainment_areas, resistance_areas, thickness,
+        band, thickness_band,
+    )  # fmt: skip
     with removing_copies(folder):
         if resume and not files.any() and ranges.sample is None:
             ready = ResolvedScene.load(folder / "scene.json")
         else:
-            scene = files.scene(folder, example=example, settings=given)
+            scene = files.scene(folder, example=example, settings=given, limits=limits)
             if max_time is not None:
                 scene.set("events.max_time", max_time)
             if ranges.sample is not None:

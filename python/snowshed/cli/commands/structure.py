@@ -54,6 +54,7 @@ STRUCTURES = {
 MEANINGS = {
     "axis_height": "Height of the axis above the ground, m.",
     "azimuth": "Where snow slides to on the map, degrees from north, clockwise.",
+    "band": "Which band of a GeoTIFF, from 1; needed where it has several.",
     "condition": "What snow that touches the terrain may do.",
     "count": "Number of panels.",
     "dimension": "2 or 3; in 2 the section of the mesh at y = 0 counts.",
@@ -69,6 +70,7 @@ MEANINGS = {
     "layers": "Layers of triangles by which snow is built up on the mesh.",
     "length": "Length along the slope, m.",
     "lip": "Height of the frame above the face at each module's lower end, m.",
+    "max_slope": "Steepest cliff beside elevations of 0 that is believed, degrees.",
     "module_length": "Length of a module along the slope, m.",
     "modules": "Number of modules up the slope.",
     "origin": "East and north of the scene's x = y = 0 on the map, m.",
@@ -176,6 +178,7 @@ def _option(argument: inspect.Parameter) -> click.Option:
     needed = argument.default is inspect.Parameter.empty
     kinds: dict[str, dict[str, Any]] = {
         "int": {"type": int},
+        "Optional[int]": {"type": int},
         "Span": {"type": float, "nargs": 2},
         "Condition": {"type": click.Choice(get_args(Condition))},
         "Sequence[float]": {"callback": _listed},

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.io.limits import RASTER_CELLS
 from snowshed.io.map_areas import read_areas
 from snowshed.io.paths import PathLike
 from snowshed.io.raster import GEOTIFF, read_raster, write_ascii_grid
@@ -150,6 +151,7 @@ def _scene(
         settings=SlideSettings.from_data(project.values),
         ascii_copy=ascii_copy,
         title=f"{root.resolve().name} (AvaFrame)",
+        max_cells=RASTER_CELLS,
     )
     if scene.terrain is not None:
         for area in (*(scene.terrain.release or ()), *(scene.terrain.entrainment or ())):

@@ -8,23 +8,27 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.io.limits import TERRAIN_CELLS
 from snowshed.io.map_areas import MapArea, read_areas
+from snowshed.io.notes import recorded
 from snowshed.io.paths import PathLike
-from snowshed.io.raster import GEOTIFF, Raster, is_single, read_raster, write_ascii_grid
-from snowshed.io.release_raster import areas_of_depth
+from snowshed.io.raster import Raster, is_single, read_raster, write_ascii_grid
+from snowshed.io.release_raster import areas_of_depth, snow_part
 from snowshed.methods.slide import SlideSettings
 from snowshed.scene.builders.hillside import hillside
 from snowshed.scene.builders.terrain_checks import (
+    MAX_SLOPE,
     check_apart,
     check_place,
-    check_terrain,
     common_system,
+    read_terrain,
 )
 from snowshed.scene.components import Area, Events, Hole, ResistanceArea, Terrain
 from snowshed.scene.scene import Scene
 
 MAX_TIME = 400.0  # s, as AvaFrame has it
 THINNEST = 0.01  # m, of snow that is worth a slide
+MAX_THICKNESS = 10.0  # m, of snow that is believed; as of the core
 
 
 def slide_scene(
@@ -39,6 +43,11 @@ def slide_scene(
     settings: Optional[SlideSettings] = None,
     ascii_copy: Optional[PathLike] = None,
     title: str = "",
+    band: Optional[int] = None,
+    thickness_band: Optional[int] = None,
+    max_slope: Optional[float] = None,
+    max_thickness: Optional[float] = None,
+    max_cells: Optional[int] = None,
 ) -> Scene:
     """Return the scene of a slide on terrain.
 
@@ -60,10 +69,19 @@ def slide_scene(
     settings
         Settings of the method; None: its defaults.
     ascii_copy
-        Where a GeoTIFF's copy as an ASCII grid goes, which the scene names; that of a raster of
-        thickness goes beside it.
+        Where the copy of terrain as an ASCII grid in metres goes, which the scene names, if the
+        file is none; that of a raster of thickness goes beside it.
     title
         What this scene is.
+    band, thickness_band
+        Which band of the raster of elevations and of that of thickness, from 1; needed where a
+        GeoTIFF has several.
+    max_slope
+        Steepest cliff that is believed under the release [degrees]; None: 70.
+    max_thickness
+        Largest thickness of snow that is believed [m]; None: 10.
+    max_cells
+        How many cells the raster of elevations may have; None: 2.5 million.
 
     Raises
     ------
@@ -73,25 +91,25 @@ def slide_scene(
     OSError
         If a file cannot be read, or the copy not be written.
     """
-    terrain = read_raster(raster)
-    check_terrain(terrain)
-    depth = read_raster(thickness_raster) if thickness_raster is not None else None
-    areas = _release_areas(release, thickness, depth)
-    eroded = read_areas(entrainment) if entrainment is not None else []
-    held = read_areas(resistance) if resistance is not None else []
+    with recorded() as notes:
+        steepest = MAX_SLOPE if max_slope is None else max_slope
+        terrain = read_terrain(raster, band, steepest, max_cells or TERRAIN_CELLS)
+        depth = None
+        if thickness_raster is not None:
+            depth = read_raster(thickness_raster, thickness_band)
+        areas = _release_areas(release, thickness, depth)
+        eroded = read_areas(entrainment) if entrainment is not None else []
+        held = read_areas(resistance) if resistance is not None else []
     check_place(terrain, areas)
     check_apart(areas)
     files = [(str(raster), terrain.crs), *((area.file, area.crs) for area in areas + eroded + held)]
     if depth is not None:
         files.append((depth.name, depth.crs))
     crs = common_system(files)
-    rings = [_snow_area(area, thickness, depth) for area in areas]
+    most = MAX_THICKNESS if max_thickness is None else max_thickness
+    rings = [_snow_area(area, thickness, most, depth) for area in areas]
     file = _as_text(Path(raster), terrain, ascii_copy)
-    map_file = None
-    if depth is not None:
-        beside = Path(ascii_copy) if ascii_copy is not None else None
-        copy = beside.with_name(f"{beside.stem}-thickness.asc") if beside is not None else None
-        map_file = str(_as_text(Path(depth.name), depth, copy).resolve())
+    map_file = None if depth is None else str(_thickness_file(depth, ascii_copy).resolve())
     return Scene(
         method="slide",
         dimension=3,
@@ -100,10 +118,13 @@ def slide_scene(
             file=file.resolve(),
             crs=crs,
             # GeoTIFF keeps double precision, AvaFrame reads text in single.
-            single_precision=None if file == Path(raster) or is_single(terrain) else False,
+            single_precision=None if terrain.plain or is_single(terrain) else False,
             thickness_file=map_file,
+            max_thickness=max_thickness,
+            max_slope=max_slope,
+            notes="\n".join(notes) or None,
             release=rings,
-            entrainment=[_snow_area(area, entrained_thickness) for area in eroded] or None,
+            entrainment=[_snow_area(area, entrained_thickness, most) for area in eroded] or None,
             resistance=[
                 ResistanceArea(name=area.name, outline=area.outline, holes=_holes(area))
                 for area in held
@@ -143,12 +164,20 @@ def example_slide(folder: PathLike) -> Scene:
 
 def _as_text(file: Path, raster: Raster, copy: Optional[PathLike]) -> Path:
     """Return an ASCII grid of a raster: itself, or its copy."""
-    if file.suffix.lower() not in GEOTIFF:
+    if raster.plain:
         return file
     if copy is None:
         raise InputError(f"{file}: say where its copy as an ASCII grid shall go (ascii_copy)")
     write_ascii_grid(copy, raster, exact=True)
     return Path(copy)
+
+
+def _thickness_file(depth: Raster, ascii_copy: Optional[PathLike]) -> Path:
+    """Return an ASCII grid of a raster of thickness; a copy has only the part with snow."""
+    copy = None
+    if ascii_copy is not None:
+        copy = Path(ascii_copy).with_name(f"{Path(ascii_copy).stem}-thickness.asc")
+    return _as_text(Path(depth.name), depth if depth.plain else snow_part(depth), copy)
 
 
 def _release_areas(
@@ -157,15 +186,16 @@ def _release_areas(
     if depth is not None:
         if thickness is not None:
             raise InputError("give one of a thickness and a raster of thickness")
-        if not (depth.heights > 0).any():
-            raise InputError(f"{depth.name}: holds no thickness above 0")
+        snow_part(depth)  # which refuses what is no thickness
         return areas_of_depth(depth) if release is None else read_areas(release)
     if release is None:
         raise InputError("give the release: polygons or a raster of thickness")
     return read_areas(release)
 
 
-def _snow_area(area: MapArea, thickness: Optional[float], depth: Optional[Raster] = None) -> Area:
+def _snow_area(
+    area: MapArea, thickness: Optional[float], most: float, depth: Optional[Raster] = None
+) -> Area:
     snow = thickness if thickness is not None else area.thickness
     if depth is not None:  # the scene's raster goes before it
         snow = float(np.nanmax(depth.heights))
@@ -173,6 +203,11 @@ def _snow_area(area: MapArea, thickness: Optional[float], depth: Optional[Raster
         raise InputError(f"{area.name}: the file gives no thickness; give one (--thickness)")
     if snow < THINNEST:
         raise InputError(f"{area.name}: {snow:g} m of snow; at least {THINNEST:g} m are needed")
+    if snow > most and depth is None:  # of a raster the core knows which cells count
+        raise InputError(
+            f"{area.name}: {snow:g} m of snow; at most {most:g} m are believed; is it in "
+            "centimetres? If not, allow more (--max-thickness)"
+        )
     return Area(name=area.name, outline=area.outline, holes=_holes(area), thickness=snow)
 
 

@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Union
+from typing import Optional, Union
 
 import numpy as np
 
@@ -19,10 +19,11 @@ from snowshed._core import InputError, Simulation
 from snowshed.io.arrays import Floats, Integers
 from snowshed.io.atomic import replacing
 from snowshed.io.paths import PathLike
-from snowshed.io.raster import Raster, read_raster
+from snowshed.io.raster import Raster
 from snowshed.methods.mpm import MpmSettings
 from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.slope import check_positive
+from snowshed.scene.builders.terrain_checks import MAX_SLOPE, check_terrain, read_terrain
 from snowshed.scene.components import Body, Condition, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
@@ -45,6 +46,8 @@ def on_terrain(
     spacing: float = 0.1,
     condition: Condition = "sticky",
     friction: float = 0.3,
+    band: Optional[int] = None,
+    max_slope: float = MAX_SLOPE,
 ) -> Scene:
     """Return a scene whose ground is terrain.
 
@@ -58,7 +61,7 @@ def on_terrain(
     scene
         Anything; it stays as it is.
     raster
-        Terrain, or its file (`read_raster`).
+        Terrain, or its file, which `snowshed.scene.builders.terrain_checks.read_terrain` reads.
     file
         Where to write the grid of distances (.npy); the scene names it by its absolute path.
     origin
@@ -72,11 +75,16 @@ def on_terrain(
         raster is coarser.
     condition, friction
         Of the terrain.
+    band
+        Which band of a GeoTIFF, from 1; needed where it has several.
+    max_slope
+        Steepest cliff beside elevations of 0 that is believed [degrees].
 
     Raises
     ------
     InputError
-        If the raster does not cover the part asked for, or the grid would be too large.
+        If the raster is none in metres, does not cover the part asked for, or the grid would be too
+        large.
 
     Examples
     --------
@@ -91,7 +99,7 @@ def on_terrain(
     ('grid', None)
     """
     check_positive(spacing=spacing)
-    terrain = raster if isinstance(raster, Raster) else read_raster(raster)
+    terrain = _checked(raster, band, max_slope)
     flat = scene.dimension == 2
     xs, ys = _axis("x", x, spacing), np.zeros(1) if flat else _axis("y", y, spacing)
     place = panel_edge(scene.to_data()).x if scene.panel is not None else 0.0
@@ -108,6 +116,13 @@ def on_terrain(
         "obstacles",
         Obstacle(name="terrain", shape=shape, condition=condition, friction=friction),
     )
+
+
+def _checked(raster: Union[Raster, PathLike], band: Optional[int], max_slope: float) -> Raster:
+    if not isinstance(raster, Raster):
+        return read_terrain(raster, band, max_slope)
+    check_terrain(raster, max_slope)
+    return raster
 
 
 def signed_distances(

@@ -1,43 +1,126 @@
-"""Terrain and areas of slides that cannot be: in feet, beside each other, on top of each other."""
+"""The one reader of terrain, and what it refuses: elevations and areas that cannot be."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, Optional
 
 import numpy as np
 
-from snowshed._core import InputError
+from snowshed._core import InputError, impossible_cliff
 from snowshed.io.coordinate_systems import are_same, is_in_feet
 from snowshed.io.extras import require
+from snowshed.io.limits import PACKED, PACKED_CELLS, RASTER_CELLS
 from snowshed.io.map_areas import MapArea
-from snowshed.io.raster import Raster
+from snowshed.io.paths import PathLike
+from snowshed.io.raster import Raster, read_raster
 
 LOWEST, HIGHEST = -430.0, 8850.0  # m, of the Earth's land
 SMALLEST_CELL, LARGEST_CELL = 0.05, 100.0  # m, of terrain that a slide can be seen on
 STEEPEST = 65.0  # degrees, the median of terrain that is in metres
+MAX_SLOPE = 70.0  # degrees, of cliffs that are believed under a release and beside elevations of 0
 FOOT = 0.3048  # m
 METRE_CELLS = (0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 25.0, 30.0)  # m, of usual rasters
+SAMPLE = 1_000_000  # cells of which the median slope is taken
 
 
-def check_terrain(terrain: Raster) -> None:
-    """Refuse elevations and cells that cannot be in metres."""
-    known = terrain.heights[~np.isnan(terrain.heights)]
-    if known.size == 0:
+def read_terrain(
+    path: PathLike,
+    band: Optional[int] = None,
+    max_slope: float = MAX_SLOPE,
+    max_cells: int = RASTER_CELLS,
+) -> Raster:
+    """Read elevations, and refuse those that cannot be in metres.
+
+    Parameters
+    ----------
+    path
+        An ESRI ASCII grid or a GeoTIFF, on a projected map.
+    band
+        Which band of a GeoTIFF; needed where it has several.
+    max_slope
+        Degrees from the horizontal: what `check_terrain` believes.
+    max_cells
+        How many cells it may have.
+
+    Raises
+    ------
+    InputError
+        If it is no such raster, or `check_terrain` refuses it.
+    OSError
+        If the file cannot be read.
+    """
+    terrain = read_raster(path, band)
+    cells, size = terrain.heights.size, Path(path).stat().st_size
+    if cells > max_cells:
+        raise InputError(
+            f"{path}: has {cells} cells; at most {max_cells} are allowed, because a slide takes "
+            "400 bytes and more for each; crop it, make them larger, or allow more (--max-cells)"
+        )
+    if cells > PACKED_CELLS and cells > PACKED * size:
+        raise InputError(
+            f"{path}: {size} bytes hold {cells} cells, closer than elevations can be packed; crop "
+            f"it to at most {PACKED_CELLS} cells"
+        )
+    check_terrain(terrain, max_slope)
+    return terrain
+
+
+def check_terrain(terrain: Raster, max_slope: float = MAX_SLOPE) -> None:
+    """Refuse elevations and cells that cannot be in metres, and missing ones that look like some.
+
+    Neighbouring elevations may differ by 100 m where the ground between is no steeper than 80
+    degrees, or than `max_slope`; beside exactly 0 m by 10 m where it is no steeper than that.
+    """
+    _check_elevations(terrain)
+    _check_cells(terrain)
+    cliff = impossible_cliff(terrain.heights, terrain.east, terrain.north, terrain.cell, max_slope)
+    if cliff:
+        raise InputError(
+            f"{terrain.name}: elevations of {cliff}; are some missing? Declare the value that "
+            "stands for them as NODATA; if there are such cliffs, give a steeper max_slope"
+        )
+    slope = _median_slope(terrain)
+    if slope > STEEPEST:
+        raise InputError(
+            f"{terrain.name}: half of the ground is steeper than {slope:.0f} degrees; are the "
+            "elevations in feet, or the cells in kilometres?"
+        )
+
+
+def _check_elevations(terrain: Raster) -> None:
+    if terrain.numbers in ("uint8", "int8"):
+        raise InputError(
+            f"{terrain.name}: numbers of 8 bits are those of a picture, such as a hillshade; give "
+            "the elevations (as other numbers: gdal_translate -ot Int16)"
+        )
+    z = terrain.heights
+    if np.isnan(z).all():
         raise InputError(f"{terrain.name}: holds no elevation")
-    low, high = float(known.min()), float(known.max())
+    low, high = float(np.nanmin(z)), float(np.nanmax(z))
     if low < LOWEST or high > HIGHEST:
+        at = np.nanargmin(z) if low < LOWEST else np.nanargmax(z)
+        row, column = np.unravel_index(at, z.shape)
+        x, y = terrain.east + column * terrain.cell, terrain.north + row * terrain.cell
         raise InputError(
             f"{terrain.name}: elevations from {low:g} to {high:g} m are none of the Earth "
-            f"({LOWEST:g} to {HIGHEST:g} m); are they in feet?"
+            f"({LOWEST:g} to {HIGHEST:g} m), as that at ({x:.10g}, {y:.10g}); are they in feet, or "
+            "is it a missing value that the file does not declare as NODATA?"
         )
-    if is_in_feet(terrain.crs):
-        raise InputError(f"{terrain.name}: its map is in feet ({terrain.crs}); bring it to metres")
+
+
+def _check_cells(terrain: Raster) -> None:
     cell = terrain.cell
+    if is_in_feet(terrain.crs):
+        raise InputError(
+            f"{terrain.name}: its map is in feet ({terrain.crs}); bring it to a map in metres, for "
+            "example by gdalwarp -t_srs EPSG:..."
+        )
     if not SMALLEST_CELL <= cell <= LARGEST_CELL:
         raise InputError(
-            f"{terrain.name}: cells of {cell:g} m; a slide needs {SMALLEST_CELL:g} to "
+            f"{terrain.name}: cells of {cell:g} m; terrain needs {SMALLEST_CELL:g} to "
             f"{LARGEST_CELL:g} m; are they in degrees or feet?"
         )
     for metres in METRE_CELLS:
@@ -46,12 +129,6 @@ def check_terrain(terrain: Raster) -> None:
                 f"{terrain.name}: cells of {cell:g} are {metres:g} m in feet; bring the raster to "
                 "metres"
             )
-    slope = _median_slope(terrain)
-    if slope > STEEPEST:
-        raise InputError(
-            f"{terrain.name}: half of the ground is steeper than {slope:.0f} degrees; are the "
-            "elevations in feet, or the cells in kilometres?"
-        )
 
 
 def check_place(terrain: Raster, areas: Sequence[MapArea]) -> None:
@@ -104,12 +181,13 @@ def common_system(named: Sequence[tuple[str, str]]) -> str:
 
 
 def _median_slope(terrain: Raster) -> float:
-    """Return the median slope between neighbouring nodes, degrees."""
+    """Return the median slope between neighbouring nodes, degrees; from some rows if many."""
     z = terrain.heights
     if min(z.shape) < 2:
         return 0.0
-    east, north = np.diff(z, axis=1)[:-1], np.diff(z, axis=0)[:, :-1]
-    steepness = np.hypot(east, north)
+    first = np.arange(0, len(z) - 1, max(1, z.size // SAMPLE))
+    south, north = z[first], z[first + 1]
+    steepness = np.hypot(np.diff(south, axis=1), (north - south)[:, :-1])
     steepness = steepness[~np.isnan(steepness)]
     if steepness.size == 0:
         return 0.0

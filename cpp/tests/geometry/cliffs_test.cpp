@@ -1,0 +1,51 @@
+#include "snowshed/geometry/cliffs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "geometry/terrain_testing.hpp"
+
+namespace snowshed {
+namespace {
+
+/// A slope of 17 degrees with one node of another height.
+HeightField with_node(double height, double cell = 5, double low = 900) {
+  HeightField f = terrain_of(20, 20, cell, [=](double x, double) { return low - 0.3 * x; });
+  f.heights[f.index(10, 8)] = height;
+  return f;
+}
+
+Polygon square(double west, double south, double side) {
+  return {{{west, south}, {west + side, south}, {west + side, south + side}, {west, south + side}},
+          {}};
+}
+
+TEST(Cliffs, elevations_that_are_missing_are_no_ground) {
+  const std::string found = impossible_cliff(with_node(0), 70);
+  EXPECT_NE(found.find("beside 0 m within 5 m, at ("), std::string::npos) << found;
+  EXPECT_NE(impossible_cliff(with_node(0, 5, 60), 70), "");  // 45 m, to exactly 0
+  EXPECT_EQ(impossible_cliff(with_node(1, 5, 60), 70), "");  // a pit
+  EXPECT_NE(impossible_cliff(with_node(1), 70), "");         // 884 m
+  EXPECT_EQ(impossible_cliff(with_node(800), 70), "");       // a face of 85 m
+  EXPECT_EQ(impossible_cliff(with_node(0, 5, 20), 70), "");  // the sea
+  EXPECT_EQ(impossible_cliff(with_node(std::nan("")), 70), "");
+  EXPECT_EQ(impossible_cliff(with_node(0), 90), "");
+}
+
+TEST(Cliffs, count_where_an_area_lies) {
+  const HeightField f = with_node(860);  // 25 m lower than its neighbours at (50, 40)
+  EXPECT_EQ(impossible_cliff(f, 70), "");
+  EXPECT_NE(cliff_under(square(30, 30, 30), f, 70), "");
+  EXPECT_NE(cliff_under(square(30, 30, 16), f, 70), "");  // beside it
+  EXPECT_EQ(cliff_under(square(60, 60, 20), f, 70), "");
+  EXPECT_EQ(cliff_under(square(30, 30, 30), f, 80), "");
+  EXPECT_EQ(cliff_under(square(30, 30, 30), with_node(878), 50), "");  // 9 m: a rock
+}
+
+TEST(Cliffs, an_area_may_reach_beyond_the_field) {
+  EXPECT_EQ(cliff_under(square(-1e9, -1e9, 2e9), with_node(885), 70), "");
+}
+
+}  // namespace
+}  // namespace snowshed

@@ -1,0 +1,124 @@
+"""The one reader of terrain: elevations that cannot be are refused, whoever asks for them."""
+
+import numpy as np
+import pytest
+from raster_files import CELL, SLOPE, grid_text, in_unit, scaled, write_geotiff
+
+from snowshed import InputError
+from snowshed.io.raster import Raster
+from snowshed.scene.builders import on_terrain, single_panel, slide_scene
+from snowshed.scene.builders.terrain_checks import check_terrain, read_terrain
+
+pytest.importorskip("rasterio")
+
+
+def sloping(change=None, fall=0.3, low=900.0, cell=CELL):
+    heights = low - fall * cell * np.arange(20.0)[None, :] * np.ones((20, 1))
+    if change is not None:
+        heights[10, 10] = change
+    return Raster(heights, 0.0, 0.0, cell, "dem")
+
+
+@pytest.mark.parametrize(
+    ("terrain", "message"),
+    [
+        (sloping(0.0), r"of 885 m beside 0 m within 5 m, at \(50, 45\) and \(50, 50\); are some"),
+        (sloping(0.0, low=60.0), "elevations of 45 m beside 0 m"),
+        (sloping(-100.0, low=100.0), "are some missing"),
+        (sloping(1200.0), "beside 1200 m within 5 m"),
+        (sloping(-9999.0), r"elevations from -9999 to 900 m are none .* as that at \(50, 50\)"),
+        (sloping(9999.0), "a missing value that the file does not declare as NODATA"),
+    ],
+    ids=["zero", "low zero", "below", "spike", "-9999", "9999"],
+)
+def test_missing_elevations_are_no_ground(terrain, message):
+    with pytest.raises(InputError, match=message):
+        check_terrain(terrain)
+
+
+@pytest.mark.parametrize(
+    "terrain",
+    [
+        sloping(), sloping(860.0), sloping(0.0, low=14.0), sloping(841.0, cell=20.0, low=1000.0),
+        sloping(np.nan), sloping(fall=0.9),
+    ],
+    ids=["slope", "pit of 25 m", "low shore", "face of 100 m", "hole", "42 degrees"],
+)  # fmt: skip
+def test_ground_that_can_be_is_accepted(terrain):
+    check_terrain(terrain)
+
+
+def test_a_steeper_slope_may_be_believed():
+    check_terrain(sloping(0.0, low=60.0), max_slope=88.0)
+    check_terrain(sloping(0.0), max_slope=90.0)
+
+
+@pytest.mark.filterwarnings("ignore::snowshed.SnowshedNote")
+@pytest.mark.parametrize(
+    ("form", "message"),
+    [
+        ({"crs": "EPSG:2232"}, "its map is in feet .*gdalwarp -t_srs"),
+        ({"crs": "EPSG:4326"}, "its map is in degrees"),
+        ({"bands": np.stack([SLOPE, SLOPE])}, "has 2 bands"),
+        ({"bands": SLOPE % 200, "dtype": "uint8"}, "numbers of 8 bits are those of a picture"),
+        ({"bands": np.where(SLOPE[5, 5] == SLOPE, 0, SLOPE)}, "are some missing"),
+        ({"bands": SLOPE / 0.3048 * 12}, "none of the Earth"),
+    ],
+    ids=["feet", "degrees", "bands", "picture", "zero", "inches"],
+)
+def test_slides_and_structures_refuse_the_same(tmp_path, form, message):
+    file = write_geotiff(tmp_path / "dem.tif", **form)
+    panel = single_panel(height=0.8, length=1.0, tilt=45.0, snow=0.15, dx=0.1)
+    origin = {"origin": (500_030.0, 6_700_030.0), "azimuth": 90.0, "x": (-3, 4)}
+    with pytest.raises(InputError, match=message):
+        on_terrain(panel, file, tmp_path / "ground.npy", **origin)
+    with pytest.raises(InputError, match=message):
+        slide_scene(file, tmp_path / "none.gpkg", thickness=0.5)
+    assert not (tmp_path / "ground.npy").exists()
+
+
+@pytest.mark.filterwarnings("ignore::snowshed.SnowshedNote")
+@pytest.mark.parametrize(
+    ("bands", "change", "band"),
+    [
+        (SLOPE * 100, scaled(0.01), None),
+        (SLOPE / 0.3048, in_unit("ft"), None),
+        (np.stack([SLOPE * 0, SLOPE]), None, 2),
+    ],
+)
+def test_structures_stand_on_the_same_ground_whatever_its_unit(tmp_path, bands, change, band):
+    panel = single_panel(height=0.8, length=1.0, tilt=45.0, snow=0.15, dx=0.1)
+    origin = {"origin": (500_030.0, 6_700_030.0), "azimuth": 90.0, "x": (-3, 4)}
+    grounds = []
+    for file, how in (
+        (write_geotiff(tmp_path / "plain.tif"), {}),
+        (write_geotiff(tmp_path / "other.tif", bands, change=change), {"band": band}),
+    ):
+        on_terrain(panel, file, tmp_path / "ground.npy", **origin, **how)
+        grounds.append(np.load(tmp_path / "ground.npy"))
+    # Whether the highest samples are above the ground's highest point depends on rounding.
+    np.testing.assert_allclose(*(ground[..., :25] for ground in grounds), atol=1e-4)
+
+
+def test_elevations_given_in_memory_are_checked_too(tmp_path):
+    panel = single_panel(height=0.8, length=1.0, tilt=45.0, snow=0.15, dx=0.1)
+    with pytest.raises(InputError, match="are some missing"):
+        on_terrain(
+            panel, sloping(0.0), tmp_path / "a.npy", origin=(50.0, 50.0), azimuth=90.0, x=(-3, 4)
+        )
+
+
+def test_a_packed_plane_of_many_cells_is_refused(tmp_path):
+    """A kilobyte of one elevation, as a slide's maps of a gigabyte begin with."""
+    flat = np.full((2100, 2100), 500.0)
+    file = write_geotiff(tmp_path / "dem.tif", flat, "float32", compress="deflate")
+    with pytest.raises(
+        InputError, match="hold 4410000 cells, closer than elevations can be packed"
+    ):
+        read_terrain(file)
+
+
+def test_a_grid_of_text_is_read_by_the_same_reader(tmp_path):
+    (tmp_path / "dem.asc").write_text(grid_text(np.where(SLOPE[5, 5] == SLOPE, 0, SLOPE)))
+    with pytest.raises(InputError, match=r"dem\.asc: elevations of .* are some missing"):
+        read_terrain(tmp_path / "dem.asc")
