@@ -104,6 +104,8 @@ def content_hash(scene: Mapping[str, Any]) -> str:
         If a file that the scene names cannot be read.
     """
     content = {key: value for key, value in scene.items() if key not in WITHOUT_EFFECT}
+    if not content.get("sample", {}).get("split_labels", True):  # as before there was this choice
+        content["sample"] = {k: v for k, v in content["sample"].items() if k != "split_labels"}
     if scene.get("snowshed") != 1:
         content = _as_version_1(content)
     content["numerics"] = {
