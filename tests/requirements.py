@@ -38,6 +38,7 @@ MODULES_OF = {
     "scipy": "scipy",
     "shapely": "shapely",
     "threadpoolctl": "threadpoolctl",
+    "tifffile": "tifffile",
     "tomli": "tomli",
     "xarray": "xarray",
 }

@@ -159,6 +159,8 @@ int run(const Options& o) {
   setting_up = 0;
   if (const char* slow = snowshed::slow_kernels_note(); *slow && !o.quiet)
     std::fprintf(stderr, "note: %s\n", slow);
+  if (const std::string note = sequence.simulation().label_note(); !note.empty() && !o.quiet)
+    std::fprintf(stderr, "note: %s\n", note.c_str());
   if (!run_all(sequence, o.quiet)) {
     return fail(
         "interrupted; go on with: snowshed-run " + o.scene + " -o " + o.folder + " --resume", 130);

@@ -1,7 +1,10 @@
 // What only a simulation of grains tells.
 #include <pybind11/numpy.h>
 
+#include <algorithm>
+
 #include "array_copies.hpp"
+#include "bindings.hpp"
 #include "simulation_class.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/run/loading_curve.hpp"
@@ -40,12 +43,52 @@ py::tuple spheres(const Simulation& sim) {
                         column<std::int64_t>(sim.grains().sphere_grains()));
 }
 
+std::string note_on_sample(const Simulation& sim) { return sim.label_note(); }
+
+using LabelArray = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
+
+/// An image of labels (nz, ny, nx).
+LabelImage image_of(const LabelArray& labels) {
+  if (labels.ndim() != 3) throw InputError("labels", "(nz, ny, nx) is needed");
+  LabelImage image;
+  for (int axis = 0; axis < 3; ++axis)
+    image.size[std::size_t(axis)] = std::size_t(labels.shape(2 - axis));
+  image.labels.assign(labels.data(), labels.data() + labels.size());
+  return image;
+}
+
+std::string checked_label_note(const LabelArray& labels, bool split) {
+  const LabelPieces found = count_pieces(image_of(labels));
+  check_labels(found);
+  return label_note(found, split);
+}
+
+py::array_t<std::int32_t> split_labels(const LabelArray& labels) {
+  LabelImage image = image_of(labels);
+  split_pieces(image);
+  py::array_t<std::int32_t> found({labels.shape(0), labels.shape(1), labels.shape(2)});
+  std::copy(image.labels.begin(), image.labels.end(), found.mutable_data());
+  return found;
+}
+
 }  // namespace
+
+void bind_grain_sizes(py::module_& m) {
+  m.attr("smallest_grain") = smallest_grain;
+  m.attr("largest_grain") = largest_grain;
+  m.def("check_grain_diameter", &check_grain_diameter, py::arg("median"),
+        "InputError unless the median diameter of grains (m) is that of snow.");
+  m.def("label_note", &checked_label_note, py::arg("labels"), py::arg("split"),
+        "What should be known of labels (nz, ny, nx), or nothing; InputError if they are none.");
+  m.def("split_labels", &split_labels, py::arg("labels"),
+        "Labels of which each piece has a number of its own.");
+}
 
 void bind_grains(SimulationClass& c) {
   c.reads("grains_curve", &curve);
   c.reads("grains_contacts", &contacts);
   c.reads("grains_spheres", &spheres);
+  c.reads("label_note", &note_on_sample);
 }
 
 }  // namespace snowshed

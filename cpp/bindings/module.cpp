@@ -14,4 +14,5 @@ PYBIND11_MODULE(_core, m) {
   snowshed::bind_event_sequence(m);
   snowshed::bind_film(m);
   snowshed::bind_material(m);
+  snowshed::bind_grain_sizes(m);
 }

@@ -163,7 +163,7 @@ def test_an_empty_folder_is_refused(tmp_path):
 def test_pages_that_differ_are_refused(tmp_path):
     pages = [Image.fromarray(VOXELS[0]), Image.fromarray(VOXELS[1, 1:])]
     pages[0].save(tmp_path / "a.tif", save_all=True, append_images=pages[1:])
-    with pytest.raises(InputError, match=r"page 2: 7 x 5 pixels; the first page has 7 x 6"):
+    with pytest.raises(InputError, match=r"page 2: 7 x 5 pixels; a.tif, page 1 has 7 x 6"):
         open_voxels(tmp_path / "a.tif").layers(0, 2)
 
 

@@ -62,7 +62,7 @@ class Good:
         from mutate import mutated
         from readers import REFUSED
 
-        content = mutated(self.content, seed)
+        content = (self.reader.change or mutated)(self.content, seed)
         self.file.write_bytes(content)
         try:
             found = self.reader.read(self.file)

@@ -13,7 +13,7 @@ import pandas as pd
 from conftest import tiny_mps, tiny_scene
 from grain_files import write_labels
 from slide_files import plane, write_polygons
-from voxel_files import VOXELS, save_slices
+from voxel_files import VOXELS, save_metaimage, save_slices
 
 from snowshed import Scene, _core, run_events
 from snowshed.io.raster import write_ascii_grid
@@ -225,6 +225,43 @@ def image(name: str, save: Callable[[Path, Any], Any]) -> Callable[[Path], Path]
         return folder / name
 
     return make
+
+
+def save_columns_first(file: Path, voxels: Any) -> None:
+    np.save(file, np.asfortranarray(voxels))
+
+
+def save_packed(file: Path, voxels: Any) -> None:
+    save_metaimage(file, voxels, compress=True)
+
+
+def save_as_text(file: Path, voxels: Any) -> None:
+    save_metaimage(file, voxels, "BinaryData = False")
+    head = file.read_bytes()[: -voxels.size]
+    file.write_bytes(head + " ".join(map(str, voxels.ravel())).encode())
+
+
+def save_plain(file: Path, voxels: Any) -> None:
+    _save_tiff(file, voxels, metadata=None)
+
+
+def save_tiles(file: Path, voxels: Any) -> None:
+    options = {"tile": (16, 16), "compression": "deflate", "predictor": 2}
+    _save_tiff(file, voxels.astype(np.uint16), metadata=None, **options)
+
+
+def save_imagej(file: Path, voxels: Any) -> None:
+    _save_tiff(file, voxels, imagej=True, metadata={"axes": "ZYX", "spacing": 5.0, "unit": "um"})
+
+
+def save_ome(file: Path, voxels: Any) -> None:
+    _save_tiff(file, voxels, ome=True, bigtiff=True, metadata={"axes": "ZYX"})
+
+
+def _save_tiff(file: Path, voxels: Any, **options: Any) -> None:
+    import tifffile
+
+    tifffile.imwrite(file, voxels, photometric="minisblack", **options)
 
 
 def slice_of(ending: str) -> Callable[[Path], Path]:

@@ -21,6 +21,7 @@ from typing import Any
 
 import click
 import good_files as good
+import hostile_images as hostile
 import numpy as np
 import weather_files
 from bad_scenes import CLOSED_MESH
@@ -53,6 +54,7 @@ class Reader:
     read: Callable[[Path], Any]
     exact: bool = False
     share: float = 1.0  # of the tries that other readers get: those that start a process get fewer
+    change: Callable[[bytes, int], bytes] | None = None  # by a seed; None: `mutated`
 
 
 # --- reading -------------------------------------------------------------------------------
@@ -287,7 +289,21 @@ READERS = {
     "scene of a run": Reader(good.result("scene.json"), _as_scene_of_run, exact=True, share=0.5),
     "image npy": Reader(good.image("a.npy", np.save), _as_image),
     "image mha": Reader(good.image("a.mha", save_metaimage), _as_image),
+    "image npy columns first": Reader(good.image("a.npy", good.save_columns_first), _as_image),
+    "image mha packed": Reader(good.image("a.mha", good.save_packed), _as_image),
+    "image mha as text": Reader(good.image("a.mha", good.save_as_text), _as_image),
     "image tiff": Reader(good.image("a.tif", save_pages), _as_image),
+    "image tiff packed": Reader(good.image("a.tif", good.save_tiles), _as_image),
+    "image tiff of imagej": Reader(good.image("a.tif", good.save_imagej), _as_image),
+    "image tiff of ome": Reader(good.image("a.tif", good.save_ome), _as_image),
+    "hostile npy": Reader(good.image("a.npy", np.save), _as_image, change=hostile.npy),
+    "hostile mha": Reader(good.image("a.mha", save_metaimage), _as_image, change=hostile.mha),
+    "hostile tiff": Reader(good.image("a.tif", good.save_plain), _as_image, change=hostile.tiff),
+    "hostile packed tiff": Reader(
+        good.image("a.tif", good.save_tiles), _as_image, change=hostile.tiff
+    ),
+    "hostile png": Reader(good.slice_of("png"), _as_slice, change=hostile.png),
+    "hostile bmp": Reader(good.slice_of("bmp"), _as_slice, change=hostile.bmp),
     "slice png": Reader(good.slice_of("png"), _as_slice),
     "slice bmp": Reader(good.slice_of("bmp"), _as_slice),
     "slice tiff": Reader(good.slice_of("tif"), _as_slice),

@@ -8,8 +8,10 @@ import pytest
 from grain_files import VOXEL, column_of_grains, write_labels
 
 from snowshed import GrainsSettings, InputError, LoadingStage
+from snowshed.io.notes import recorded
 from snowshed.io.vtp import read_particles
-from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.curve import LoadingCurve, carried_stress
+from snowshed.methods.grains.image.sphere_snow import sphere_snow
 from snowshed.run.grains import run_grains
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.sequence import open_sequence
@@ -134,6 +136,58 @@ def test_snapshots_hold_the_spheres_of_the_grains(scene, tmp_path):
     labels = column_of_grains()
     assert (np.bincount(found["grain"]) == (labels == 1).sum() - 8).all()
     assert (found["bonded_grains"][found["grain"] == 1] == 2).all()
+
+
+def test_the_strength_is_that_of_a_finely_sampled_run(scene, tmp_path):
+    """Many short stages have a row for nearly each step of a long one; both take the same steps."""
+    snow = sphere_snow((16, 16, 16), VOXEL, diameter=5e-4, density=300, seed=1)
+    write_labels(tmp_path, snow.labels)
+    scene.set("loading.0.strain", 0.04)
+    coarse = run_grains(scene, tmp_path / "coarse", pictures=False)
+    curve = LoadingCurve.read(tmp_path / "coarse/curve.csv")
+    parts = 50
+    stage = {**scene.resolve().data["loading"][0], "strain": 0.04 / parts}
+    run_grains(scene.set("loading", [stage] * parts), tmp_path / "fine", pictures=False)
+    rows = LoadingCurve.read(tmp_path / "fine/curve.csv")
+    assert len(rows) > 10 * len(curve)
+    finest = carried_stress(rows, "compress").max()
+    sampled = carried_stress(curve, "compress").max()
+    assert coarse.strength_pa > 1.001 * sampled
+    assert coarse.strength_pa == pytest.approx(finest, rel=2e-3)
+
+
+def test_plates_that_never_touch_the_snow_leave_nulls(scene, tmp_path):
+    labels = column_of_grains()
+    labels[:2] = labels[-2:] = 0
+    write_labels(tmp_path, labels)
+    summary = run_grains(scene, tmp_path / "out")
+    stored = json.loads((tmp_path / "out/grains.json").read_text())
+    assert stored["strength_pa"] is stored["tangent_modulus_pa"] is summary.strength_pa is None
+    assert "the plates never touched the snow" in " ".join(stored["notes"])
+
+
+def test_labels_in_several_places_are_told_and_stored(scene, tmp_path):
+    labels = column_of_grains()
+    labels[labels == 3] = 1
+    write_labels(tmp_path, labels)
+    short = scene.set("loading.0.strain", 1e-5)
+    with recorded() as told:
+        summary = run_grains(short, tmp_path / "out", pictures=False)
+    assert told == list(summary.sample_notes)
+    assert "1 of 2 labels lie in several places, 3 pieces in all" in told[0]
+    assert json.loads((tmp_path / "out/grains.json").read_text())["sample_notes"] == told
+    split = run_grains(short.set("sample.split_labels", True), tmp_path / "split", pictures=False)
+    assert (summary.grains, split.grains) == (2, 3)
+
+
+def test_a_scene_of_an_earlier_version_is_resumed(scene, tmp_path):
+    """It does not have the key of split labels."""
+    short = scene.set("loading.0.strain", 1e-5)
+    run_grains(short, tmp_path / "out", pictures=False)
+    data = json.loads((tmp_path / "out/scene.json").read_text())
+    del data["sample"]["split_labels"]
+    (tmp_path / "out/scene.json").write_text(json.dumps(data))
+    run_grains(tmp_path / "out/scene.json", tmp_path / "out", resume=True, pictures=False)
 
 
 def test_the_example_draws_its_pictures(tmp_path):

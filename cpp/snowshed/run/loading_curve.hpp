@@ -1,6 +1,7 @@
 // What a loading test measures, as a table that grows while the test runs.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ class BinaryWriter;
 /// and where a stage ends. The strains are (k / points)^2 of that at which the stage ends: a
 /// brittle sample is elastic for a thousandth of it only. The rows depend on the steps alone:
 /// neither on the number of threads nor on whether the run was resumed.
+///
+/// Each row also has the strains and stresses of the step, since the row before, in which the
+/// sample carried most: the strength is the largest stress of all steps, not that of the rows.
+/// What counts as carried depends on the stage: the smaller stress of the two plates (`compress`,
+/// `isotropic`, `unload`, `hold`; of `stretch` the smaller tension), the shear stress, the force on
+/// the cone.
 class LoadingCurve {
  public:
   static constexpr int points = 300;
@@ -34,6 +41,8 @@ class LoadingCurve {
 
  private:
   double next_time() const;
+  double carried(const LoadingStresses&) const;
+  void watch(const LoadingStresses&);
   void add_row(const GrainsMethod&);
 
   std::vector<LoadingStage> stages_;
@@ -41,9 +50,10 @@ class LoadingCurve {
   bool energy_;
   std::vector<std::string> columns_;
   std::vector<double> values_;
-  int stage_ = 0;         // that is being loaded
-  double begun_ = 0;      // s, when it began
-  int points_done_ = -1;  // of it; before the beginning of the test -1
+  int stage_ = 0;                        // that is being loaded
+  double begun_ = 0;                     // s, when it began
+  int points_done_ = -1;                 // of it; before the beginning of the test -1
+  std::optional<LoadingStresses> peak_;  // of the steps since the last row, if there was one
 };
 
 }  // namespace snowshed

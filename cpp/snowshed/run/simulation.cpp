@@ -111,6 +111,11 @@ const LoadingCurve& Simulation::loading_curve() const {
   return *curve_;
 }
 
+std::string Simulation::label_note() const {
+  if (!scene_.sample) return "";
+  return snowshed::label_note(surroundings_.sample.pieces, scene_.sample->split_labels);
+}
+
 const EnergyHistory& Simulation::energy_history() const {
   if (!energies_)
     throw InputError("/output/energy", curve_ ? "the energies of grains stand in their curve"

@@ -116,6 +116,8 @@ class Simulation {
   /// The same of grains, and what their loading has measured so far.
   const GrainsMethod& grains() const;
   const LoadingCurve& loading_curve() const;
+  /// What should be known of the labels of their image; empty where there is nothing.
+  std::string label_note() const;
   /// The energies over time while `run` ran; throws InputError where the scene does not keep them,
   /// and of grains, whose curve has them.
   const EnergyHistory& energy_history() const;

@@ -35,7 +35,13 @@ GrainSample build_sample(const SampleSpec& spec, const std::filesystem::path& ba
   image.labels = std::move(array.values);
   try {
     check_size(image);
-    return make_sample(image);
+    const LabelPieces pieces = count_pieces(image);
+    check_labels(pieces);
+    if (spec.split_labels) split_pieces(image);
+    GrainSample sample = make_sample(image);
+    sample.pieces = pieces;
+    check_grain_diameter(median_diameter(sample));
+    return sample;
   } catch (const InputError& error) {
     throw InputError(file.string(), error.what());
   }

@@ -16,6 +16,9 @@ void describe(V& v, SampleSpec& s) {
          "Segmented image: an NPY file of integers (nz, ny, nx), 0 air and any other number a "
          "grain; relative to the scene file");
   v.number("voxel_size", s.voxel_size, "m", between(1e-9, 1.0).required(), "Edge of a voxel");
+  v.flag("split_labels", s.split_labels,
+         "Whether each piece of a label that lies in several places is a grain; else all of them "
+         "are one rigid grain");
 }
 
 template <class V>

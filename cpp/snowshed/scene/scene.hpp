@@ -134,8 +134,9 @@ struct TerrainSpec {
 
 /// Segmented snow to be loaded.
 struct SampleSpec {
-  std::string file;       // NPY, integers (nz, ny, nx): 0 air, any other number a grain
-  double voxel_size = 0;  // m
+  std::string file;           // NPY, integers (nz, ny, nx): 0 air, any other number a grain
+  double voxel_size = 0;      // m
+  bool split_labels = false;  // whether each piece of a label is a grain
 };
 
 struct Seeding {

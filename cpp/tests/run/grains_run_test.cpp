@@ -7,6 +7,7 @@
 #include "io/forged_archive.hpp"
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/run/grains_cost.hpp"
 #include "snowshed/run/loading_curve.hpp"
@@ -97,6 +98,61 @@ TEST_F(GrainsRun, AResumedRunHasTheSameBitsAndTheSameCurve) {
   EXPECT_TRUE(second->solver().state().velocities == whole.solver().state().velocities);
 }
 
+double carried(const LoadingStresses& s) { return std::min(s.top_stress, s.bottom_stress); }
+
+TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
+  Scene s = scene();
+  s.loading.resize(1);
+  Simulation sim(s);
+  sim.begin_event();
+  std::vector<double> largest{carried(sim.grains().stresses())};  // by row, of each step
+  std::size_t rows = 1;
+  while (!*sim.solver().at_rest()) {
+    if (largest.size() == rows) largest.push_back(-1e300);
+    sim.step();
+    largest.back() = std::max(largest.back(), carried(sim.grains().stresses()));
+    rows = column(sim, "time_s").size();
+  }
+  const auto top = column(sim, "peak_top_stress_pa"), bottom = column(sim, "peak_bottom_stress_pa");
+  ASSERT_EQ(top.size(), largest.size());
+  for (std::size_t row = 0; row < top.size(); ++row)
+    EXPECT_EQ(std::min(top[row], bottom[row]), largest[row]) << row;
+  EXPECT_EQ(top[0], column(sim, "top_stress_pa")[0]);
+  // Somewhere a step between two rows carries more than both, or there would be nothing to keep.
+  const auto at_rows = column(sim, "top_stress_pa");
+  EXPECT_GT(*std::max_element(largest.begin(), largest.end()), 0);
+  EXPECT_LT(at_rows.size(), std::size_t(sim.solver().counters().steps));
+}
+
+TEST_F(GrainsRun, ACurveOfAVersionWithoutPeaksIsItsOwnPeak) {
+  const std::vector<LoadingStage> stages = {{LoadingKind::compress, 0.02, 1e-3, 0}};
+  const NamedEnergies energies = {{"kinetic_j", 0.0}};
+  constexpr std::size_t measured = 15;
+  std::vector<double> values;
+  for (int row = 0; row < 3; ++row)
+    for (std::size_t c = 0; c < measured + energies.size(); ++c)
+      values.push_back(100 * row + double(c));
+  BinaryWriter out;
+  out.add("curve/values", values);
+  out.add("curve/stage", std::vector<std::int64_t>{0, 7});
+  out.add("curve/begun", std::vector<double>{0.0});
+  out.save(path("old"));
+  LoadingCurve curve(stages, 1e-3, energies);
+  curve.load(BinaryReader::load(path("old")));
+  const auto& names = curve.columns();
+  ASSERT_EQ(curve.values().size(), 3 * names.size());
+  for (std::size_t row = 0; row < 3; ++row) {
+    const double* now = &curve.values()[row * names.size()];
+    const double* then = &values[row * (measured + energies.size())];
+    EXPECT_TRUE(std::equal(then, then + measured, now));
+    EXPECT_EQ(now[names.size() - 1], then[measured]);  // the energy
+    for (std::size_t c = measured; c + 1 < names.size(); ++c) {
+      const auto own = std::find(names.begin(), names.end(), names[c].substr(5)) - names.begin();
+      EXPECT_EQ(now[c], now[own]) << names[c];
+    }
+  }
+}
+
 TEST_F(GrainsRun, ResumingWithAnotherImageIsRefused) {
   Simulation sim(scene());
   sim.begin_event();
@@ -119,6 +175,31 @@ TEST_F(GrainsRun, ADamagedCurveIsRefused) {
     const std::string said = message_of<InputError>([&] { Simulation::load(path("forged")); });
     EXPECT_NE(said.find("not that of this loading"), std::string::npos) << said;
   }
+}
+
+TEST_F(GrainsRun, VoxelsOfAnotherUnitAreRefused) {
+  for (const double voxel : {0.1, 1e-7}) {
+    Scene s = scene();
+    s.sample->voxel_size = voxel;
+    const std::string said = message_of<InputError>([&] { Simulation sim(s); });
+    EXPECT_NE(said.find("labels.npy: wrongly scaled"), std::string::npos) << said;
+  }
+}
+
+TEST_F(GrainsRun, LabelsInSeveralPlacesAreToldOrSplit) {
+  Scene s = scene();
+  auto labels = two_grains();
+  for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = i / 16 % 2 == 0 ? 1 : 2;  // layers
+  write_labels(labels);
+  Simulation whole(s);
+  whole.begin_event();
+  EXPECT_EQ(whole.solver().size(), 2u);
+  EXPECT_NE(whole.label_note().find("2 of 2 labels lie in several places, 4 pieces"),
+            std::string::npos);
+  s.sample->split_labels = true;
+  Simulation split(s);
+  split.begin_event();
+  EXPECT_EQ(split.solver().size(), 4u);
 }
 
 TEST_F(GrainsRun, AnImageWithoutGrainsIsRefused) {

@@ -83,8 +83,8 @@ inline auto tied(const Domain& s) {
   return std::tie(a, b);
 }
 inline auto tied(const SampleSpec& s) {
-  auto& [a, b] = s;
-  return std::tie(a, b);
+  auto& [a, b, c] = s;
+  return std::tie(a, b, c);
 }
 inline auto tied(const LoadingStage& s) {
   auto& [a, b, c, d] = s;

@@ -31,7 +31,7 @@ def read_regular(path: Path) -> bytes:
     ...
     snowshed._core.InputError: /dev/zero: not a regular file
     """
-    with _opened(path) as file:
+    with open_regular(path) as file:
         size = os.fstat(file.fileno()).st_size
         if size > _memory() / 2:
             raise InputError(f"{path}: {size / 1e9:.3g} GB do not fit into memory")
@@ -48,17 +48,59 @@ def first_bytes(path: Path, count: int) -> bytes:
     ...     first_bytes(Path(file.name), 4)
     b''
     """
-    with _opened(path) as file:
+    with open_regular(path) as file:
         return file.read(count)
 
 
-def _opened(path: Path) -> BinaryIO:
-    """Open a regular file without waiting, as for the writer of a pipe."""
+def open_regular(path: Path) -> BinaryIO:
+    """Return an open file that is no device and no pipe, for which nobody waits.
+
+    Raises
+    ------
+    InputError
+        If it is no regular file.
+    OSError
+        If it cannot be opened.
+
+    Examples
+    --------
+    >>> open_regular(Path("/dev/null"))
+    Traceback (most recent call last):
+    ...
+    snowshed._core.InputError: /dev/null: not a regular file
+    """
     file = open(path, "rb", opener=_open_at_once)  # noqa: SIM115 - the caller closes it
     if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
         file.close()
         raise InputError(f"{path}: not a regular file")
     return file
+
+
+def stored_bytes(file: BinaryIO, enough: int) -> int:
+    """Return how many bytes of a file are not holes, counted no farther than `enough`.
+
+    Holes read as zeros and take no room on the disk, so a file may claim any size.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryFile() as file:
+    ...     _ = file.seek(1 << 30), file.write(b"end"), file.flush()
+    ...     stored_bytes(file, 1 << 20) < 1 << 20
+    True
+    """
+    found, at, end = 0, 0, os.fstat(file.fileno()).st_size
+    place = file.tell()
+    try:
+        while at < end and found < enough:
+            data = os.lseek(file.fileno(), at, os.SEEK_DATA)
+            at = os.lseek(file.fileno(), data, os.SEEK_HOLE)
+            found += at - data
+    except OSError:  # no data behind this place
+        pass
+    finally:
+        file.seek(place)
+    return found
 
 
 def _open_at_once(path: str, flags: int) -> int:

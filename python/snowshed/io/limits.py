@@ -44,3 +44,15 @@ PACKED_CELLS, PACKED = 1_000_000, 20
 #: Cells of snow in a raster of thickness, corners of the areas that they make, and cells times
 #: corners, because each cell and each particle is compared with each corner when snow is laid.
 SNOW_CELLS, RELEASE_CORNERS, CELLS_TIMES_CORNERS = 4_000_000, 5000, 200_000_000
+#: Pages of a TIFF file, and slices in a folder: each takes some 0.1 ms to look at. Tomographs make
+#: some thousand.
+PAGES = 16_384
+#: Bytes of a tag of a TIFF file. The longest are lists of strips, and descriptions as XML.
+TAG = 16 * MB
+#: Numbers of an image that are read at once; they are held up to five times, in 8 bytes each.
+VOXELS_AT_ONCE = 4 * MB
+#: Numbers as text, bytes: some 20 million voxels, whose numbers take eight times as much.
+VOXELS_AS_TEXT = 64 * MB
+#: How many times as large an image may become when it is unpacked, if it is larger than this then.
+#: Segmented snow shrinks to a tenth or a fiftieth; what shrinks more shows nothing.
+UNPACKED_RATIO, UNPACKED_FREELY = 200, 256 * MB

@@ -110,7 +110,7 @@ def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) 
     shown = strain <= max(BEGINNING * limit, 1e-3 * float(strain.max()))
     unit = _unit_of_strain(float(strain[shown].max(initial=0.0)))
     axes.plot(unit[1] * strain[shown], stress[shown] / 1e3, ".-", color=INK, lw=1.0, ms=4)
-    title = "Beginning"
+    title = f"Beginning: {phases.unknown}" if phases.unknown else "Beginning"
     waves = phases.linearity is not None and phases.linearity < LINEAR
     if waves:
         title += f": not linear (R² {phases.linearity:.2f}), waves"

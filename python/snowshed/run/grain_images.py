@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Optional, Union
 
 import numpy as np
 
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.arrays import AnyIntegers
 from snowshed.io.atomic import replacing, write_text
@@ -35,12 +36,7 @@ from snowshed.methods.grains.image.grain_table import (
     grain_table,
 )
 from snowshed.methods.grains.image.ice_image import IceImage
-from snowshed.methods.grains.image.microstructure import (
-    LARGEST_GRAIN,
-    SMALLEST_GRAIN,
-    Microstructure,
-    measure,
-)
+from snowshed.methods.grains.image.microstructure import Microstructure, measure
 from snowshed.methods.grains.image.sample_folder import LABELS, NUMBERS, SNOW
 from snowshed.methods.grains.image.segmentation import Segmentation
 from snowshed.methods.grains.image.surface_mesh import write_surface
@@ -48,7 +44,7 @@ from snowshed.methods.grains.image.surface_mesh import write_surface
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Fact = Union[str, float, int, bool, None]
+Fact = Union[str, float, int, bool, None, list[str]]
 
 
 @dataclass(frozen=True)
@@ -156,12 +152,10 @@ def write_grains(
 
 
 def _check_sizes(image: IceImage, numbers: SampleNumbers) -> None:
-    diameter = numbers.grains.median_diameter_m if numbers.grains else 0.0
-    if not SMALLEST_GRAIN <= diameter <= LARGEST_GRAIN:
-        raise InputError(
-            f"{image.source}: wrongly scaled: its grains measure {diameter:.3g} m; those of snow "
-            f"measure {SMALLEST_GRAIN:g} to {LARGEST_GRAIN:g} m; is the voxel size in m?"
-        )
+    try:
+        _core.check_grain_diameter(numbers.grains.median_diameter_m if numbers.grains else 0.0)
+    except InputError as error:
+        raise InputError(f"{image.source}: {error}") from None
 
 
 def _write_array(path: Path, array: AnyIntegers) -> None:

@@ -3,8 +3,9 @@
 Beside what every run writes (``snowshed.run.results``), the folder holds
 
 ================== ==========================================================================
-curve.csv          stresses, strains, bonds and contacts at 300 strains of each stage
-                   (`snowshed.methods.grains.curve.COLUMNS`); it grows while the test runs
+curve.csv          stresses, strains, bonds and contacts at 300 strains of each stage, and the
+                   peaks of all time steps between them (`snowshed.methods.grains.curve`); it
+                   grows while the test runs
 contacts.csv       grains that touch at the end, with the force between them
 grains.json        the figures of `snowshed.methods.grains.summary.GrainsSummary`
 grains.png         the curve with its phases, broken bonds, coordination and energies
@@ -26,6 +27,7 @@ from typing import Any, Optional
 import snowshed._core as _core
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table
+from snowshed.io.notes import tell
 from snowshed.methods.grains.contacts import GrainContacts
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.image.sample_folder import LABELS, SYNTHETIC, find_sample
@@ -33,7 +35,13 @@ from snowshed.methods.grains.summary import GrainsSummary, summarise
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.sequence import NotePasser, open_sequence, run_sequence, seal_files
+from snowshed.run.sequence import (
+    NotePasser,
+    open_sequence,
+    run_sequence,
+    say_note,
+    seal_files,
+)
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
 CURVE, SUMMARY, ENERGY = "curve.csv", "grains.json", "energy.csv"
@@ -110,6 +118,9 @@ def run_grains(
     with sequence, deferred_interrupts() as interrupt:
         sequence.describe_machine(machine_facts())
         simulation = sequence.simulation
+        sample_notes = [note] if (note := simulation.label_note()) else []
+        for note in sample_notes:
+            say_note(sequence, note)
         recorder = _Recorder(sequence, folder, interrupt, progress)
         try:
             run_sequence(sequence, recorder, folder)
@@ -122,7 +133,7 @@ def run_grains(
         data = json.loads(simulation.scene)
         summary = summarise(
             curve, data, ended=facts["ended"], grains=simulation.particle_count,
-            spheres=len(contacts.spheres), synthetic=_synthetic(data),
+            spheres=len(contacts.spheres), synthetic=_synthetic(data), sample_notes=sample_notes,
         )  # fmt: skip
         write_text(folder / SUMMARY, json.dumps(asdict(summary), indent=2) + "\n")
         write_text(folder / "contacts.csv", contacts.text())

@@ -8,6 +8,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.io.formatting import duration, number
+from snowshed.io.notes import recorded
 from snowshed.io.paths import PathLike
 from snowshed.io.voxels.voxel_file import VoxelFile
 from snowshed.methods.grains.image.microstructure import measure
@@ -83,25 +84,27 @@ def segment_image(
     wanted = image_settings or ImageSettings()
     _, seconds = segmentation_plan(file, wanted)
 
-    def tell(part: float, doing: str) -> None:
+    def report(part: float, doing: str) -> None:
         if progress is not None:
             progress(Progress(part, int(part), 1, "images", doing, expected_s=seconds))
 
-    tell(0.0, "reading")
-    read = read_ice(file, wanted)
+    report(0.0, "reading")
+    with recorded() as told:
+        read = read_ice(file, wanted)
     measure(read.image)  # what cannot be snow is refused before the long part
     found = segment(
-        read.image, settings, lambda part, doing: tell(READ + (FOUND - READ) * part, doing)
+        read.image, settings, lambda part, doing: report(READ + (FOUND - READ) * part, doing)
     )
-    tell(FOUND, "writing")
+    report(FOUND, "writing")
     facts: dict[str, Fact] = {
         "threshold": read.threshold,
         "threshold_from": read.chosen,
         "unconnected_ice": read.lost,
         "downscale": wanted.downscale,
+        "notes": [*file.notes, *told],
     }
     numbers = write_grains(folder, found, facts, surface=surface)
-    tell(1.0, "")
+    report(1.0, "")
     return numbers, read
 
 

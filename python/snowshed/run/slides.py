@@ -388,9 +388,7 @@ def _summary(
     )
     settings = json.loads(simulation.scene)["numerics"]
     left = validity_notes(areas, settings, asdict(summary))
-    return replace(
-        summary, notes=(*_of_files(simulation), *sequence.notes, *summary.notes, *left)
-    )
+    return replace(summary, notes=(*_of_files(simulation), *sequence.notes, *summary.notes, *left))
 
 
 def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:

@@ -25,10 +25,14 @@ class Sample(Record):
         relative to the scene file. Required.
     voxel_size : float
         Edge of a voxel [m]. 1e-09 <= value <= 1; required.
+    split_labels : bool
+        Whether each piece of a label that lies in several places is a grain; else all of them are
+        one rigid grain. Default False.
     """
 
     file: Optional[PathLike] = None
     voxel_size: Optional[float] = None
+    split_labels: Optional[bool] = None
 
 
 @dataclass

@@ -108,6 +108,8 @@ def content_hash(scene: Mapping[str, Any]) -> str:
     content = {key: value for key, value in scene.items() if key not in WITHOUT_EFFECT}
     if content.get("misplaced_snow") == "refuse":  # the default, which was no key once
         del content["misplaced_snow"]
+    if not content.get("sample", {}).get("split_labels", True):  # as before there was this choice
+        content["sample"] = {k: v for k, v in content["sample"].items() if k != "split_labels"}
     if scene.get("snowshed") != 1:
         content = _as_version_1(content)
     content["numerics"] = {

@@ -43,7 +43,7 @@ def test_what_is_too_small_or_no_sample_is_named(snow, tmp_path):
         snow.middle(0.2)
     np.save(tmp_path / "floats.npy", np.zeros((8, 8, 8)))
     (tmp_path / "text.npy").write_text("no array")
-    for name, message in (("floats", "no labels"), ("text", "no NPY file")):
+    for name, message in (("floats", "no labels"), ("text", "damaged: no NPY file")):
         with pytest.raises(InputError, match=f"{name}.npy: {message}"):
             LabelledSample.read(tmp_path / f"{name}.npy", 1e-4)
 

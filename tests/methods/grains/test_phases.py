@@ -53,6 +53,66 @@ def test_a_knock_of_the_plate_is_no_strength():
     assert found.strength == find_phases(curve).strength
 
 
+def test_strength_is_the_peak_of_all_steps_not_of_the_rows():
+    curve = brittle()
+    names = ("axial_strain", "top_stress_pa", "bottom_stress_pa")
+    peaks = {f"peak_{name}": curve[name].copy() for name in names}
+    row = int(np.argmax(curve["top_stress_pa"][STRAIN < 0.05]))
+    peaks["peak_top_stress_pa"][row + 1] = peaks["peak_bottom_stress_pa"][row + 1] = 2.5e4
+    found = find_phases(LoadingCurve({**curve.columns, **peaks}))
+    assert found.strength == 2.5e4
+    assert found.tangent_modulus == find_phases(curve).tangent_modulus
+    peaks["peak_axial_strain"][row + 1] = 0.06  # beyond the brittle phase
+    assert find_phases(LoadingCurve({**curve.columns, **peaks})).strength < 2.5e4
+
+
+def test_a_peak_in_the_stage_before_is_none_of_the_next():
+    columns = {name: np.zeros(4) for name in COLUMNS}
+    columns["stage"] = np.array([1.0, 1.0, 2.0, 2.0])
+    columns["peak_top_stress_pa"] = np.array([0.0, 9.0, 1.0, 2.0])
+    curve = LoadingCurve(columns)
+    assert curve.of_stage(1).peaks["top_stress_pa"].tolist() == [0.0, 9.0]
+    assert curve.of_stage(2).peaks["top_stress_pa"].tolist() == [0.0, 1.0, 2.0]
+    assert curve["peak_top_stress_pa"][1] == 9.0  # the whole curve is as it was
+
+
+IDLE = np.zeros_like(STRAIN)
+
+
+@pytest.mark.parametrize(
+    ("kind", "columns", "reason"),
+    [
+        ("compress", {}, "the plates never touched the snow"),
+        ("stretch", {}, "the plates never touched the snow"),
+        ("isotropic", {"side_stress_pa": 1e4 * STRAIN}, "the plates never touched the snow"),
+        ("compress", {"top_stress_pa": 1e4 * STRAIN, "bottom_stress_pa": IDLE},
+         "the bottom plate never touched the snow"),
+        ("compress", {"bottom_stress_pa": IDLE + 5.0}, "the top plate never touched the snow"),
+        ("shear", {"top_stress_pa": IDLE + 5.0}, "the top plate never dragged the snow along"),
+        ("penetrate", {}, "the cone never touched the snow"),
+    ],
+)  # fmt: skip
+def test_what_never_touched_the_snow_tells_nothing_of_it(kind, columns, reason):
+    curve = curve_of(**columns)
+    summary = summarise(curve, scene_of(kind), ended="rest", grains=2000, spheres=9)
+    figures = ("strength_pa", "tangent_modulus_pa", "linearity", "elastic_limit_strain",
+               "mean_stress_5_10_pa", "mean_stress_25_30_pa", "hardening_rate")  # fmt: skip
+    if kind == "penetrate":
+        assert summary.largest_cone_force_n is None
+    else:
+        assert [getattr(summary, name) for name in figures] == [None] * len(figures)
+    assert any(note.startswith(reason) for note in summary.notes)
+
+
+def test_snow_that_is_touched_late_has_the_modulus_of_what_follows():
+    stress = np.where(STRAIN > 0.02, 2e7 * (STRAIN - 0.02), 0.0)
+    broken = np.where(STRAIN > 0.03, 5.0, 0.0)
+    curve = curve_of(top_stress_pa=stress, broken_in_shear=broken)
+    assert find_phases(curve).tangent_modulus == pytest.approx(2e7, rel=0.02)
+    summary = summarise(curve, scene_of(), ended="rest", grains=2000, spheres=9)
+    assert any("nothing touched the snow before a strain of 1.9" in note for note in summary.notes)
+
+
 def test_a_plateau_does_not_harden():
     phases = find_phases(curve_of(top_stress_pa=np.full_like(STRAIN, 5e3)))
     assert phases.hardening_onset is None and phases.hardening_rate is None

@@ -1,10 +1,13 @@
 #include "snowshed/methods/grains/clumps.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 #include <unordered_map>
 
+#include "snowshed/core/angles.hpp"
 #include "snowshed/core/errors.hpp"
 
 namespace snowshed {
@@ -134,6 +137,24 @@ SampleSize measure_sample(const LabelImage& image) {
   // What the solver holds, and as much again for pairs while it looks for them, as measured.
   size.bytes = 160 * size.spheres + 450 * size.bonds + 1500 * size.grains;
   return size;
+}
+
+void check_grain_diameter(double median) {
+  if (median >= smallest_grain && median <= largest_grain) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "wrongly scaled: its grains measure %.3g m; those of snow measure %g to %g m; is "
+                "the voxel size in m?",
+                median, smallest_grain, largest_grain);
+  throw InputError("", text);
+}
+
+double median_diameter(const GrainSample& sample) {
+  std::vector<double> volumes;
+  for (const Clump& c : sample.clumps) volumes.push_back(c.volume);
+  const auto middle = volumes.begin() + std::ptrdiff_t(volumes.size() / 2);
+  std::nth_element(volumes.begin(), middle, volumes.end());
+  return std::cbrt(6 / pi * *middle);
 }
 
 GrainSample make_sample(const LabelImage& image) {

@@ -6,6 +6,7 @@
 
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/grains/label_image.hpp"
+#include "snowshed/methods/grains/label_pieces.hpp"
 
 namespace snowshed {
 
@@ -30,6 +31,7 @@ struct GrainSample {
   std::vector<Clump> clumps;
   std::vector<Vec3> spheres;  // m, centres in space
   std::vector<BondedPair> bonds;
+  LabelPieces pieces;  // of the image, if they were counted
 };
 
 /// How large the sample of an image will be, to be told before it is made.
@@ -37,6 +39,16 @@ struct SampleSize {
   std::size_t grains = 0, spheres = 0, bonds = 0, bytes = 0;
 };
 SampleSize measure_sample(const LabelImage&);
+
+/// Diameters of grains of snow, m: no grain of real snow is smaller or larger.
+inline constexpr double smallest_grain = 2e-5, largest_grain = 1e-2;
+
+/// Throws InputError unless the median diameter of grains, m, is that of snow. It is not where the
+/// size of a voxel is in another unit than metres.
+void check_grain_diameter(double median);
+
+/// The median over the grains of the diameter of spheres with their volumes, m.
+double median_diameter(const GrainSample&);
 
 /// Every voxel at an interface, with air or another grain, becomes a sphere of the voxel's size
 /// with the voxel's centre; bonds join voxels of two grains that share a face. Mass and inertia are

@@ -6,15 +6,11 @@
 
 namespace snowshed {
 
-LoadingMeasures GrainsSolver::measures() const {
+LoadingStresses GrainsSolver::stresses() const {
   const GrainsBoundary& b = state_.boundary;
   const double height = model_.box.z();
-  LoadingMeasures m;
-  m.stage = state_.loading.stage;
-  m.strain = state_.loading.displacement / height;
-  const double r = model_.radius;
-  const double shortened = (height + r - b.plate[1].z()) + (b.plate[0].z() + r);
-  m.axial_strain = shortened / height;
+  LoadingStresses m;
+  m.axial_strain = shortened_by() / height;
   m.shear_strain = (b.plate[1].x() - b.plate[0].x()) / height;
   m.top_stress = b.plate_force[1].z() / model_.area();
   m.bottom_stress = -b.plate_force[0].z() / model_.area();
@@ -22,10 +18,26 @@ LoadingMeasures GrainsSolver::measures() const {
   const double sides[2] = {model_.box.y() * height, model_.box.x() * height};
   for (int s = 0; s < 4; ++s) m.side_stress += 0.25 * b.side_force[s] / sides[s / 2];
   m.cone_force = b.cone_force.z();
+  return m;
+}
+
+/// How much nearer the plates are than at the beginning, m.
+double GrainsSolver::shortened_by() const {
+  const GrainsBoundary& b = state_.boundary;
+  const double r = model_.radius;
+  return (model_.box.z() + r - b.plate[1].z()) + (b.plate[0].z() + r);
+}
+
+LoadingMeasures GrainsSolver::measures() const {
+  const GrainsBoundary& b = state_.boundary;
+  const double height = model_.box.z();
+  LoadingMeasures m{stresses()};
+  m.stage = state_.loading.stage;
+  m.strain = state_.loading.displacement / height;
   m.bonds = state_.bonds;
   m.broken_in_tension = state_.broken_in_tension;
   m.broken_in_shear = state_.broken_in_shear;
-  m.solid_fraction = model_.solid_volume / (b.period(0) * b.period(1) * (height - shortened));
+  m.solid_fraction = model_.solid_volume / (b.period(0) * b.period(1) * (height - shortened_by()));
   if (size() == 0) return m;
   for_each_touching(model_, state_,
                     [&](const PairGroup&, std::size_t, const PairGeometry&) { ++m.contacts; });

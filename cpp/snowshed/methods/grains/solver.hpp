@@ -24,18 +24,22 @@ struct GrainsOptions {
   bool energy = false;  // whether to keep the energy balance
 };
 
-/// What a loading test measures, now. Stresses are positive in compression, over the initial area;
-/// they are those of the present moment, no means over time.
-struct LoadingMeasures {
-  int stage = 0;            // that is being loaded; the number of stages when all are done
-  double strain = 0;        // of this stage: displacement over the initial height
+/// Strains and stresses, now. Stresses are positive in compression, over the initial area; they are
+/// those of the present moment, no means over time.
+struct LoadingStresses {
   double axial_strain = 0;  // shortening over the initial height, since the beginning
   double shear_strain = 0;
   double top_stress = 0, bottom_stress = 0;  // Pa, along z
-  double shear_stress = 0;                   // Pa, of the top plate along x
   double side_stress = 0;                    // Pa, mean over the four sides
+  double shear_stress = 0;                   // Pa, of the top plate along x
   double cone_force = 0;                     // N
-  std::int64_t bonds = 0;                    // pairs of spheres still bonded
+};
+
+/// What a loading test measures, now.
+struct LoadingMeasures : LoadingStresses {
+  int stage = 0;           // that is being loaded; the number of stages when all are done
+  double strain = 0;       // of this stage: displacement over the initial height
+  std::int64_t bonds = 0;  // pairs of spheres still bonded
   std::int64_t broken_in_tension = 0, broken_in_shear = 0;
   std::int64_t contacts = 0;  // pairs of spheres that touch
   double coordination = 0;    // mean number of grains that a grain touches
@@ -56,6 +60,7 @@ class GrainsMethod : public Method {
   virtual std::vector<ParticleBatch> seed() const = 0;
   virtual std::size_t count_spheres() const = 0;
   virtual LoadingMeasures measures() const = 0;
+  virtual LoadingStresses stresses() const = 0;                  ///< of measures(), at once
   virtual int stage() const = 0;                                 ///< measures().stage, at once
   virtual std::vector<GrainContact> grain_contacts() const = 0;  ///< ordered by grains
   virtual std::vector<Vec3> sphere_positions() const = 0;        ///< m, in the order of the sample

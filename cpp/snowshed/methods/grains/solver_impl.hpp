@@ -42,6 +42,7 @@ class GrainsSolver final : public GrainsMethod {
   std::vector<ParticleBatch> seed() const override;
   std::size_t count_spheres() const override { return model_.spheres.offsets.size(); }
   LoadingMeasures measures() const override;
+  LoadingStresses stresses() const override;
   int stage() const override { return state_.loading.stage; }
   std::vector<GrainContact> grain_contacts() const override;
   std::vector<Vec3> sphere_positions() const override;
@@ -57,6 +58,7 @@ class GrainsSolver final : public GrainsMethod {
 
   GrainsState with_batches(const std::vector<ParticleBatch>&) const;
   void accept(GrainsState, GrainsWork);
+  double shortened_by() const;
   void require_sound() const;
   void require_grains() const;
   void drift(double dt);

@@ -90,7 +90,7 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the base is not computed.
+        If the base is not computed, or has no stress.
 
     Examples
     --------
@@ -105,6 +105,9 @@ def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
 
     if BASE not in set(table["variant"]):
         raise InputError("no test of the base is computed yet")
+    base = table.loc[table["variant"] == BASE, [name for name in STRESSES if name in table]]
+    if not (base.astype(float) > 0).any(axis=None):
+        raise InputError("the tests of the base have no stress; did the plates touch the snow?")
     rows = []
     for variant in dict.fromkeys(table["variant"]):
         own = table[table["variant"] == variant]

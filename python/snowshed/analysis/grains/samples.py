@@ -8,17 +8,21 @@ from typing import Optional
 
 import numpy as np
 
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.array_arguments import positive
-from snowshed.io.arrays import AnyIntegers
+from snowshed.io.arrays import AnyIntegers, Labels
 from snowshed.io.atomic import replacing
+from snowshed.io.notes import tell
 from snowshed.io.paths import PathLike
+from snowshed.io.voxels.array_files import open_npy
 from snowshed.methods.grains.image.downscaling import downscaled
 from snowshed.methods.grains.image.ice_image import IceImage
 from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
 
 #: Voxels along an edge without which a sample is none.
 LEAST_VOXELS = 6
+LARGEST_LABEL = 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,9 @@ class LabelledSample:
     source: str = ""
 
     @classmethod
-    def read(cls, path: PathLike, voxel_size: Optional[float] = None) -> LabelledSample:
+    def read(
+        cls, path: PathLike, voxel_size: Optional[float] = None, *, split_labels: bool = False
+    ) -> LabelledSample:
         """Read the labels of a sample.
 
         Parameters
@@ -53,11 +59,14 @@ class LabelledSample:
             NPY file.
         voxel_size
             Edge of a voxel, m; None: as the folder says.
+        split_labels
+            Whether each piece of a label that lies in several places is a grain.
 
         Raises
         ------
         InputError
-            If there are no labels, or nothing says how large a voxel is.
+            If there are no labels, or nothing says how large a voxel is, or its grains are not as
+            large as those of snow.
         OSError
             If the file cannot be read.
         """
@@ -66,14 +75,14 @@ class LabelledSample:
         if size is None:
             raise InputError(f"{found.file}: how large is a voxel? Give its edge in m (--voxel)")
         positive("voxel size", size)
-        try:
-            labels = np.load(found.file, mmap_mode="r", allow_pickle=False)
-        except (ValueError, EOFError) as error:
-            raise InputError(f"{found.file}: no NPY file: {error}") from None
-        if not isinstance(labels, np.ndarray) or labels.ndim != 3 or labels.dtype.kind not in "iu":
+        opened = open_npy(found.file)
+        if opened.dtype.kind not in "iu":
             raise InputError(f"{found.file}: no labels; they are whole numbers (nz, ny, nx)")
+        labels = opened.layers(0, opened.shape[0])
+        labels = _checked_labels(found.file, labels, split_labels)
+        _check_voxel_size(found.file, labels, size)
         named = found.file.resolve().parent if found.file.name == LABELS else found.file
-        return cls(named.stem, np.asarray(labels), size, found.source)
+        return cls(named.stem, labels, size, found.source)
 
     @property
     def ice_fraction(self) -> float:
@@ -169,6 +178,32 @@ class LabelledSample:
         elif not np.array_equal(np.load(file, mmap_mode="r"), self.labels):
             raise InputError(f"{file}: holds another sample; take a new folder")
         return file.resolve()
+
+
+def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
+    """Return labels as the core takes them; tell where one lies in several places."""
+    if int(labels.min()) < 0 or int(labels.max()) > LARGEST_LABEL:
+        raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {LARGEST_LABEL:,}")
+    known = labels.astype(np.int32)
+    try:
+        note = _core.label_note(known, split)
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
+    if note:
+        tell(f"{file}: {note}")
+    return _core.split_labels(known) if split else known
+
+
+def _check_voxel_size(file: Path, labels: AnyIntegers, voxel_size: float) -> None:
+    """Raise InputError unless grains are as large as those of snow, as every test checks."""
+    voxels = np.unique(labels[labels > 0], return_counts=True)[1]
+    if not len(voxels):
+        raise InputError(f"{file}: no grain in the image: every voxel is 0, which is air")
+    volume = float(np.median(voxels)) * voxel_size**3
+    try:
+        _core.check_grain_diameter(float(np.cbrt(6 / np.pi * volume)))
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
 
 
 def _most_frequent(blocks: AnyIntegers) -> AnyIntegers:

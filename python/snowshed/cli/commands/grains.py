@@ -56,7 +56,8 @@ def loading_command(
 
     def run(
         folder: Path, resume: bool, quiet: bool, labels: Path, voxel: Optional[float], energy: bool,
-        snapshots: float, speed: float, strain: float, stress: float = 0.0, **values: Any,
+        snapshots: float, split_labels: bool, speed: float, strain: float, stress: float = 0.0,
+        **values: Any,
     ) -> None:  # fmt: skip
         cone = _given({"radius": values.pop("radius", None),
                        "half_angle": values.pop("half_angle", None)})  # fmt: skip
@@ -68,6 +69,7 @@ def loading_command(
             cone=Cone(**cone) if cone else None,
             settings=GrainsSettings(**_given(values)),
             output=Output(energy=energy, snapshot_interval=snapshots),
+            split_labels=split_labels or None,
         )
         run_scene(scene.resolve(), folder, resume, quiet)
 
@@ -84,6 +86,8 @@ def loading_command(
                      help="Way over the sample's height at which the test ends."),
         click.option("--speed", type=float, default=speed, show_default=True,
                      help="Speed of what moves [m/s]."),
+        click.option("--split-labels", is_flag=True,
+                     help="Make each piece of a label that lies in several places a grain."),
         click.option("--voxel", type=float,
                      help="Edge of a voxel; a folder of `grains segment` knows it [m]."),
     ):  # fmt: skip

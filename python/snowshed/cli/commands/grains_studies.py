@@ -30,6 +30,8 @@ def study_options(command: Command) -> Command:
     command = settings_options("grains", without=("threads",))(command)
     for option in (
         click.option("--voxel", type=float, help=VOXEL),
+        click.option("--split-labels", is_flag=True,
+                     help="Make each piece of a label that lies in several places a grain."),
         click.option("--coarser", type=click.IntRange(1, 64), default=1, show_default=True,
                      help="Voxels of the samples along the edge of a sphere; ice fraction kept."),
         click.option("--turned", is_flag=True,
@@ -52,9 +54,9 @@ def study_options(command: Command) -> Command:
 @click.option("--finer", is_flag=True, help="Vary towards finer spheres, too: ten times the time.")
 @study_options
 def sensitivity(
-    labels: Sequence[Path], voxel: Optional[float], coarser: int, turned: bool, speed: float,
-    strain: float, finer: bool, folder: Path, jobs: Optional[int], plan_only: bool, quiet: bool,
-    **values: Any,
+    labels: Sequence[Path], voxel: Optional[float], split_labels: bool, coarser: int,
+    turned: bool, speed: float, strain: float, finer: bool, folder: Path, jobs: Optional[int],
+    plan_only: bool, quiet: bool, **values: Any,
 ) -> None:  # fmt: skip
     """Find what matters for the strength in compression, compared with the scatter of samples.
 
@@ -72,7 +74,7 @@ def sensitivity(
     from snowshed.cli.display.grains_studies import print_comparison
     from snowshed.scene.loading import LoadingStage
 
-    samples = read_samples(labels, voxel, turned=turned)
+    samples = read_samples(labels, voxel, turned=turned, split_labels=split_labels)
     stage = LoadingStage(kind="compress", speed=speed, strain=strain)
     comparison = sensitivity_variants(
         samples, folder / SAMPLES, stage, study_settings(values), coarser=coarser, finer=finer
@@ -90,12 +92,12 @@ def sensitivity(
 
 
 def read_samples(
-    paths: Sequence[Path], voxel: Optional[float], *, turned: bool
+    paths: Sequence[Path], voxel: Optional[float], *, turned: bool, split_labels: bool
 ) -> list[LabelledSample]:
     """Return samples of one voxel size; refuse two of one name."""
     from snowshed.analysis.grains.samples import LabelledSample
 
-    samples = [LabelledSample.read(path, voxel) for path in paths]
+    samples = [LabelledSample.read(path, voxel, split_labels=split_labels) for path in paths]
     names = [one.name for one in samples]
     for one in samples:
         if names.count(one.name) > 1:
@@ -117,9 +119,9 @@ def study_settings(values: dict[str, Any]) -> GrainsSettings:
 @click.option("--modulus", type=float, help="Young's modulus of the snow, for longer steps [Pa].")
 @study_options
 def material(
-    labels: Sequence[Path], voxel: Optional[float], coarser: int, turned: bool,
-    modulus: Optional[float], folder: Path, jobs: Optional[int], plan_only: bool, quiet: bool,
-    **values: Any,
+    labels: Sequence[Path], voxel: Optional[float], split_labels: bool, coarser: int,
+    turned: bool, modulus: Optional[float], folder: Path, jobs: Optional[int], plan_only: bool,
+    quiet: bool, **values: Any,
 ) -> None:  # fmt: skip
     """Fit the snow of the material point method to loading tests: for panel --snow FILE.
 
@@ -139,7 +141,8 @@ def material(
 
     if modulus is not None:
         positive("--modulus", modulus)
-    samples = [one.coarser(coarser) for one in read_samples(labels, voxel, turned=turned)]
+    given = read_samples(labels, voxel, turned=turned, split_labels=split_labels)
+    samples = [one.coarser(coarser) for one in given]
     files = MaterialFolder(folder, study_settings(values), modulus)
     fits = []
     for tests in (files.tests(group) for group in by_density(samples)):

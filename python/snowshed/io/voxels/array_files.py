@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+import os
 from math import prod
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.lib import format as npy_format
+from numpy.typing import NDArray
 
 from snowshed._core import InputError
 from snowshed.io.damage import DAMAGED
+from snowshed.io.input_file import open_regular, stored_bytes
 from snowshed.io.messages import quoted
-from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_type
+from snowshed.io.notes import tell
+from snowshed.io.voxels.turned import Turn, turned
+from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_type, check_unpacked
 
 #: Names of types as people write them; a trailing "-be" is big-endian.
-TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
+TYPES = (
+    "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"
+)  # fmt: skip
 LONGEST_HEADER = 10_000
+COLUMNS_FIRST = Turn((2, 1, 0))
 
 
 def open_npy(path: Path) -> VoxelFile:
@@ -29,7 +37,7 @@ def open_npy(path: Path) -> VoxelFile:
     OSError
         If it cannot be read.
     """
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         try:
             version = npy_format.read_magic(file)
             read = {(1, 0): npy_format.read_array_header_1_0}.get(
@@ -39,7 +47,10 @@ def open_npy(path: Path) -> VoxelFile:
         except DAMAGED as error:
             raise InputError(f"{path}: damaged: no NPY file: {error}") from None
         start = file.tell()
-    return _mapped(path, tuple(map(int, shape)), dtype, start, "F" if columns_first else "C")
+    shape = tuple(map(int, shape))
+    if not columns_first:
+        return numbers_of(path, path, shape, dtype, start)
+    return turned(numbers_of(path, path, shape[::-1], dtype, start), COLUMNS_FIRST)
 
 
 def open_raw(path: Path, shape: tuple[int, int, int], kind: str, offset: int = 0) -> VoxelFile:
@@ -63,7 +74,7 @@ def open_raw(path: Path, shape: tuple[int, int, int], kind: str, offset: int = 0
     OSError
         If it cannot be read.
     """
-    return _mapped(path, shape, number_type(kind), offset, "C")
+    return numbers_of(path, path, shape, number_type(kind), offset)
 
 
 def number_type(kind: str) -> np.dtype[Any]:
@@ -82,18 +93,56 @@ def number_type(kind: str) -> np.dtype[Any]:
     return np.dtype(name).newbyteorder(">" if big else "<")
 
 
-def _mapped(
-    path: Path, shape: tuple[int, ...], dtype: np.dtype[Any], start: int, order: str
+def numbers_of(
+    name: Path, data: Path, shape: tuple[int, ...], dtype: np.dtype[Any], start: int
 ) -> VoxelFile:
-    check_size(str(path), shape)
-    check_type(str(path), dtype)
-    expected = start + prod(shape) * dtype.itemsize
-    size = path.stat().st_size
-    if size < expected or (size > expected and start == 0):
-        raise InputError(
-            f"{path}: damaged: {size:,} bytes; {' x '.join(map(str, shape))} voxels of type "
-            f"{dtype.name} take {expected:,}"
-        )
-    numbers = np.memmap(path, dtype, "r", start, shape, order)  # type: ignore[call-overload]
+    """Return an image whose numbers stand in a file one after another, the last axis fastest.
+
+    Parameters
+    ----------
+    name
+        What the image is called in messages.
+    data
+        The file.
+    shape
+        Of the image.
+    dtype
+        Of the numbers.
+    start
+        Bytes before the first number. Where there are some, what comes after the last number is
+        left out and told.
+
+    Raises
+    ------
+    InputError
+        If the file is shorter, or longer without a header, or most of it is holes.
+    OSError
+        If it cannot be read.
+    """
+    check_size(str(name), shape)
+    check_type(str(name), dtype)
+    count = prod(shape) * dtype.itemsize
+    with open_regular(data) as file:
+        size = os.fstat(file.fileno()).st_size
+        if size < start + count or (size > start + count and start == 0):
+            raise InputError(
+                f"{data}: damaged: {size:,} bytes; {' x '.join(map(str, shape))} voxels of type "
+                f"{dtype.name} take {start + count:,}"
+            )
+        check_unpacked(str(data), count, stored_bytes(file, count))
+    if size > start + count:
+        tell(f"{data}: {size - start - count:,} bytes after the image are left out")
     nz, ny, nx = shape
-    return VoxelFile(str(path), (nz, ny, nx), dtype, lambda low, high: np.array(numbers[low:high]))
+    layer = ny * nx
+
+    def read(low: int, high: int) -> NDArray[Any]:
+        with open_regular(data) as file:
+            file.seek(start + low * layer * dtype.itemsize)
+            found = np.fromfile(file, dtype, (high - low) * layer)
+        if len(found) < (high - low) * layer:
+            raise InputError(f"{data}: damaged: it has become shorter")
+        if dtype.kind == "b":  # a byte may hold anything
+            found = found.view(np.uint8) != 0
+        return found.reshape(high - low, ny, nx)
+
+    return VoxelFile(str(name), (nz, ny, nx), dtype, read)

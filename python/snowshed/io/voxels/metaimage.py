@@ -1,23 +1,26 @@
-"""Images in MetaImage files: a text header (.mhd) beside raw numbers, or before them (.mha)."""
+"""Images in MetaImage files: a text header (.mhd) beside the numbers, or before them (.mha).
+
+The fields mean what ITK takes them for (MetaIO, https://itk.org/Wiki/ITK/MetaIO/Documentation).
+Each field that changes the numbers or their places is honoured, or the file is refused.
+"""
 
 from __future__ import annotations
 
-import math
 import re
-import zlib
 from math import prod
 from pathlib import Path
-from typing import Any
+from typing import Optional
 
 import numpy as np
 
-from snowshed._core import InputError
-from snowshed.io.messages import quoted
-from snowshed.io.voxels.array_files import number_type, open_raw
+from snowshed.io.notes import tell
+from snowshed.io.voxels.array_files import number_type, numbers_of
+from snowshed.io.voxels.metaimage_fields import Fields
+from snowshed.io.voxels.packed_numbers import packed_numbers
+from snowshed.io.voxels.text_numbers import text_numbers
+from snowshed.io.voxels.turned import Turn, turned
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size
 
-LONGEST_HEADER = 1 << 16
-MM = 1e-3
 #: ElementType of the format, and what it is here.
 ELEMENTS = {
     "MET_UCHAR": "uint8",
@@ -26,141 +29,178 @@ ELEMENTS = {
     "MET_SHORT": "int16",
     "MET_UINT": "uint32",
     "MET_INT": "int32",
+    "MET_ULONG": "uint32",
+    "MET_LONG": "int32",
+    "MET_ULONG_LONG": "uint64",
+    "MET_LONG_LONG": "int64",
     "MET_FLOAT": "float32",
     "MET_DOUBLE": "float64",
 }
+#: Units of ElementSpacing, m. Without DistanceUnits it is in mm, as ITK's programs take it.
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
+MATRICES = ("TransformMatrix", "Rotation", "Orientation")
+SPACINGS = ("ElementSpacing", "ElementSize")
+CUBIC = 1.0001  # largest over smallest edge of what counts as a cube
 
 
 def open_metaimage(path: Path) -> VoxelFile:
-    """Return the image of a .mhd or .mha file; its ElementSpacing is in mm, as ITK has it.
+    """Return the image of a .mhd or .mha file; its ElementSpacing is in mm unless it says.
 
     Raises
     ------
     InputError
-        If it is damaged, or not a three-dimensional image of one number per voxel on cubes.
+        If it is damaged, or not a three-dimensional image of one number per voxel on cubes along
+        the axes.
     OSError
         If it cannot be read.
     """
-    fields, start = _header(path)
-    if _flag(fields, "ElementNumberOfChannels", "1") != "1":
-        raise InputError(f"{path}: several numbers per voxel (colours?); one is needed")
-    sizes = _numbers(path, fields, "DimSize")
+    fields = Fields.read(path)
+    shape = _shape(fields)
+    kind = _kind(fields)
+    opened = _numbers(fields, shape, kind)
+    _tell_of_scale(fields)
+    spacing = _spacing(fields)
+    image = VoxelFile(str(path), opened.shape, opened.dtype, opened.read_layers, spacing)
+    turn = _turn(fields)
+    if not turn.is_none:
+        tell(f"{path}: the image is turned as its {fields.given(*MATRICES)} says")
+    return turned(image, turn)
+
+
+def _shape(fields: Fields) -> tuple[int, int, int]:
+    """Return the voxels (nz, ny, nx)."""
+    object_type = fields.text("ObjectType", "Image")
+    if object_type != "Image":
+        raise fields.wrong("ObjectType", "Image is needed")
+    if fields.whole("NDims", 3) != 3:
+        raise fields.wrong("NDims", "an image of snow has 3")
+    if fields.whole("ElementNumberOfChannels", 1) != 1:
+        raise fields.wrong(
+            "ElementNumberOfChannels", "several numbers per voxel (colours?); one is needed"
+        )
+    sizes = fields.numbers("DimSize", 3)
     if any(size != int(size) for size in sizes):
-        raise InputError(f"{path}: DimSize {sizes}: not whole numbers")
-    shape = tuple(int(size) for size in reversed(sizes))  # x first in the file
-    check_size(str(path), shape)
-    nz, ny, nx = shape
-    element = fields.get("ElementType", "")
+        raise fields.wrong("DimSize", "whole numbers are needed")
+    nx, ny, nz = map(int, sizes)
+    check_size(str(fields.path), (nz, ny, nx))
+    return nz, ny, nx
+
+
+def _kind(fields: Fields) -> str:
+    """Return the name of the type of the numbers."""
+    element = fields.text("ElementType", "")
     if element not in ELEMENTS:
-        raise InputError(
-            f"{path}: ElementType {quoted(element)}; {', '.join(ELEMENTS)} are allowed"
+        raise fields.wrong("ElementType", f"{', '.join(ELEMENTS)} are allowed")
+    orders = {
+        fields.flag(name, False)
+        for name in ("ElementByteOrderMSB", "BinaryDataByteOrderMSB")
+        if fields.has(name)
+    }
+    if len(orders) > 1:
+        raise fields.wrong("ElementByteOrderMSB", "BinaryDataByteOrderMSB says something else")
+    return ELEMENTS[element] + ("-be" if True in orders else "")
+
+
+def _numbers(fields: Fields, shape: tuple[int, int, int], kind: str) -> VoxelFile:
+    """Return the image before it has a size or a place."""
+    path, dtype = fields.path, number_type(kind)
+    packed = fields.flag("CompressedData", False)
+    as_text = not fields.flag("BinaryData", True)
+    data = _data_file(fields)
+    start = fields.end if data == path else 0
+    if fields.has("HeaderSize"):
+        start = _header_size(fields, data, start, None if packed or as_text else shape, kind)
+    if packed and as_text:
+        raise fields.wrong("CompressedData", "numbers as text (BinaryData = False) are not packed")
+    if packed:
+        size = fields.whole("CompressedDataSize", 0)
+        return packed_numbers(path, data, shape, dtype, start, size)
+    if as_text:
+        return text_numbers(path, data, shape, dtype, start)
+    return numbers_of(path, data, shape, dtype, start)
+
+
+def _data_file(fields: Fields) -> Path:
+    """Return the file of the numbers, which is the same or beside it."""
+    path, name = fields.path, fields.text("ElementDataFile", "")
+    if name.upper() == "LOCAL":
+        return path
+    if not name or name.split()[0] == "LIST" or "%" in name:
+        raise fields.wrong(
+            "ElementDataFile", "one file is needed; join slices into one, or open their folder"
         )
-    big = "True" in (
-        _flag(fields, "ElementByteOrderMSB", "False"),
-        _flag(fields, "BinaryDataByteOrderMSB", "False"),
-    )
-    kind = ELEMENTS[element] + ("-be" if big else "")
-    data, offset = _data_file(path, fields, start)
-    if _flag(fields, "CompressedData", "False") == "True":
-        opened = _compressed(path, data, offset, (nz, ny, nx), kind)
-    else:
-        if data != path and "HeaderSize" in fields:
-            offset = _header_size(path, fields, data, (nz, ny, nx), kind)
-        opened = open_raw(data, (nz, ny, nx), kind, offset)
-    return VoxelFile(
-        str(path), opened.shape, opened.dtype, opened.read_layers, _spacing(path, fields)
-    )
-
-
-def _header(path: Path) -> tuple[dict[str, str], int]:
-    """Return the fields of the header, and where it ends."""
-    with path.open("rb") as file:
-        head = file.read(LONGEST_HEADER)
-    fields: dict[str, str] = {}
-    position = 0
-    while "ElementDataFile" not in fields:
-        end = head.find(b"\n", position)
-        line = head[position : end if end >= 0 else len(head)]
-        name, equals, value = line.decode("utf-8", "replace").partition("=")
-        if not equals or (end < 0 and len(head) == LONGEST_HEADER):
-            raise InputError(f"{path}: damaged: no line ElementDataFile = ... in its header")
-        fields[name.strip()] = value.strip()
-        position = end + 1 if end >= 0 else len(head)
-        if position >= len(head) and "ElementDataFile" not in fields:
-            raise InputError(f"{path}: damaged: its header ends before ElementDataFile")
-    return fields, position
-
-
-def _flag(fields: dict[str, str], name: str, default: str) -> str:
-    value = fields.get(name, default)
-    return value.capitalize() if value.lower() in ("true", "false") else value
-
-
-def _numbers(path: Path, fields: dict[str, str], name: str) -> list[float]:
-    try:
-        numbers = [float(word) for word in fields[name].split()]
-    except (KeyError, ValueError):
-        raise InputError(
-            f"{path}: {name} {quoted(fields.get(name, ''))}: three numbers are needed"
-        ) from None
-    if len(numbers) != 3 or not all(math.isfinite(number) for number in numbers):
-        raise InputError(f"{path}: {name} {quoted(fields[name])}: three numbers are needed")
-    return numbers
-
-
-def _spacing(path: Path, fields: dict[str, str]) -> float | None:
-    if "ElementSpacing" not in fields:
-        return None
-    spacing = _numbers(path, fields, "ElementSpacing")
-    if min(spacing) <= 0 or max(spacing) > 1.0001 * min(spacing):
-        raise InputError(
-            f"{path}: ElementSpacing {fields['ElementSpacing']}: voxels must be cubes; resample "
-            "the image"
-        )
-    return spacing[0] * MM
-
-
-def _data_file(path: Path, fields: dict[str, str], start: int) -> tuple[Path, int]:
-    """Return the file of the numbers, which is the same or beside it, and where they begin."""
-    name = fields["ElementDataFile"]
-    if name == "LOCAL":
-        return path, start
-    if not name or name.startswith("LIST") or "%" in name:
-        raise InputError(f"{path}: ElementDataFile {quoted(name)}: one file is needed")
-    if Path(name).name != name or name in (".", "..") or "\\" in name:
-        raise InputError(f"{path}: ElementDataFile {quoted(name)}: must be in the same folder")
-    return path.with_name(name), 0
+    inside = Path(name).name == name and name not in (".", "..") and "\\" not in name
+    if inside:
+        data = path.with_name(name)
+        inside = data.resolve().parent == path.parent.resolve() or not data.exists()
+    if not inside:
+        raise fields.wrong("ElementDataFile", "it must be in the same folder")
+    return data
 
 
 def _header_size(
-    path: Path, fields: dict[str, str], data: Path, shape: tuple[int, int, int], kind: str
+    fields: Fields, data: Path, start: int, shape: Optional[tuple[int, int, int]], kind: str
 ) -> int:
-    """Return how many bytes of the raw file come before the numbers; -1 means: all others."""
-    size = fields["HeaderSize"]
-    if not re.fullmatch(r"-1|[0-9]{1,15}", size):
-        raise InputError(f"{path}: HeaderSize {quoted(size)}: a number of bytes is needed")
-    if int(size) >= 0:
-        return int(size)
-    return max(data.stat().st_size - prod(shape) * np.dtype(kind.partition("-")[0]).itemsize, 0)
+    """Return how many bytes come before the numbers; -1 means: all but the numbers."""
+    text = fields.text("HeaderSize", "")
+    if not re.fullmatch(r"-1|[0-9]{1,15}", text):
+        raise fields.wrong("HeaderSize", "a number of bytes is needed")
+    if int(text) == 0:
+        return start
+    if int(text) > 0:
+        return int(text)
+    if shape is None:
+        raise fields.wrong("HeaderSize", "it must be known where packed numbers begin")
+    size = data.stat().st_size - prod(shape) * number_type(kind).itemsize
+    return max(size, start)
 
 
-def _compressed(
-    path: Path, data: Path, offset: int, shape: tuple[int, int, int], kind: str
-) -> VoxelFile:
-    """Return an image that zlib compressed; no more is unpacked than its header says."""
-    dtype = number_type(kind)
-    expected = prod(shape) * dtype.itemsize
-    unpacker = zlib.decompressobj()
-    with data.open("rb") as file:
-        file.seek(offset)
-        packed = file.read(expected + (1 << 20))  # zlib never makes data much longer
-    try:
-        numbers = unpacker.decompress(packed, expected)
-    except zlib.error as error:
-        raise InputError(f"{path}: damaged: {error}") from None
-    if len(numbers) < expected:
-        raise InputError(
-            f"{path}: damaged: {len(numbers):,} bytes unpacked; its header says {expected:,}"
+def _tell_of_scale(fields: Fields) -> None:
+    """Say that the numbers are those of the file, where it has another scale for them."""
+    (slope,) = fields.numbers("ElementToIntensityFunctionSlope", 1, [1.0])
+    (offset,) = fields.numbers("ElementToIntensityFunctionOffset", 1, [0.0])
+    if slope <= 0:
+        raise fields.wrong("ElementToIntensityFunctionSlope", "only positive ones are read")
+    if (slope, offset) != (1.0, 0.0):
+        tell(
+            f"{fields.path}: numbers, and thresholds, are those that are stored, without "
+            f"ElementToIntensityFunctionSlope {slope:g} and Offset {offset:g}"
         )
-    array: np.ndarray[Any, Any] = np.frombuffer(numbers, dtype).reshape(shape)
-    return VoxelFile(str(path), shape, dtype, lambda low, high: array[low:high])
+
+
+def _spacing(fields: Fields) -> Optional[float]:
+    """Return the edge of a voxel, m."""
+    name = fields.given(*SPACINGS)
+    if name is None:
+        return None
+    if name == "ElementSize":
+        tell(f"{fields.path}: ElementSize is taken for the spacing, as there is no ElementSpacing")
+    unit = fields.text("DistanceUnits", "mm").lower()
+    unit = {"?": "mm", "\N{MICRO SIGN}m": "um", "\N{GREEK SMALL LETTER MU}m": "um"}.get(unit, unit)
+    if unit not in UNITS:
+        raise fields.wrong("DistanceUnits", f"{', '.join(UNITS)} are allowed")
+    edges = fields.numbers(name, 3)
+    if min(edges) <= 0 or max(edges) > CUBIC * min(edges):
+        raise fields.wrong(name, "voxels must be cubes; resample the image")
+    return float(f"{edges[0] * UNITS[unit]:.12g}")
+
+
+def _turn(fields: Fields) -> Turn:
+    """Return how the axes follow from those of the file.
+
+    Three numbers are where an axis of the file points to, x first.
+    """
+    name = fields.given(*MATRICES)
+    if name is None:
+        return Turn()
+    matrix = np.array(fields.numbers(name, 9)).reshape(3, 3)  # axis of the file, x y z
+    steps = np.rint(matrix)
+    whole = np.abs(matrix - steps).max() < 1e-4 and (np.abs(steps).sum(axis=0) == 1).all()
+    if not whole or not (np.abs(steps).sum(axis=1) == 1).all():
+        raise fields.wrong(name, "the axes must be along x, y and z; resample the image")
+    axes, mirrored = [], []
+    for axis in (2, 1, 0):  # of the image: z, y, x
+        own = int(np.flatnonzero(steps[:, axis])[0])  # of the file, x first
+        axes.append(2 - own)
+        mirrored.append(bool(steps[own, axis] < 0))
+    return Turn((axes[0], axes[1], axes[2]), (mirrored[0], mirrored[1], mirrored[2]))

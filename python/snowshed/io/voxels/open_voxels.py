@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.io.notes import recorded
 from snowshed.io.paths import PathLike
 from snowshed.io.voxels.array_files import open_npy, open_raw
 from snowshed.io.voxels.metaimage import open_metaimage
@@ -52,7 +54,12 @@ def open_voxels(
     ...     open_voxels(folder + "/snow.npy").shape
     (2, 3, 4)
     """
-    file = Path(path)
+    with recorded() as told:
+        opened = _opened(Path(path), shape, kind)
+    return replace(opened, notes=tuple(told))
+
+
+def _opened(file: Path, shape: Optional[tuple[int, int, int]], kind: Optional[str]) -> VoxelFile:
     ending = file.suffix.lower()
     if (ending == RAW) != (shape is not None and kind is not None):
         raise InputError(

@@ -1,37 +1,28 @@
-"""Images in TIFF stacks and in folders of numbered TIFF, PNG or BMP slices, read by Pillow."""
+"""Images in TIFF stacks and in folders of numbered TIFF, PNG or BMP slices."""
 
 from __future__ import annotations
 
 import re
-import struct
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
+from math import isclose
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.damage import DAMAGED
-from snowshed.io.extras import require
-from snowshed.io.voxels.voxel_file import VoxelFile, check_size
+from snowshed.io.limits import PAGES
+from snowshed.io.notes import tell
+from snowshed.io.voxels.picture import Picture, stacked
+from snowshed.io.voxels.plain_pictures import open_picture
+from snowshed.io.voxels.tiff_description import Description, described
+from snowshed.io.voxels.tiff_pages import contiguous_copies, is_big_endian, page_picture
+from snowshed.io.voxels.tiff_tags import Tags, read_pages
+from snowshed.io.voxels.voxel_file import VoxelFile
 
-if TYPE_CHECKING:
-    from PIL.Image import Image
-
-#: What the ending of a slice says, and what Pillow calls it.
+#: What the ending of a slice says.
 FORMATS = {".tif": "TIFF", ".tiff": "TIFF", ".png": "PNG", ".bmp": "BMP"}
-#: Pillow's modes with one number per pixel.
-TYPES = {
-    "1": "uint8", "L": "uint8", "P": "uint8", "I": "int32", "F": "float32",
-    "I;16": "<u2", "I;16L": "<u2", "I;16B": ">u2", "I;16N": "=u2",
-}  # fmt: skip
-SAMPLE_FORMAT, SIGNED = 339, 2  # TIFF
-BITS_PER_SAMPLE = 258
-IMAGE_DESCRIPTION = 270
-MOST_SLICES = 1 << 16
+#: Units of the tag ResolutionUnit, m.
+INCH, UNITS = 0.0254, {2: 0.0254, 3: 0.01}
+#: Dots per inch that programs write without knowing what a picture shows.
+USUAL_DPI = (1, 72, 96, 100, 150, 200, 300, 600, 1200)
 
 
 def open_stack(path: Path) -> VoxelFile:
@@ -40,36 +31,22 @@ def open_stack(path: Path) -> VoxelFile:
     Raises
     ------
     InputError
-        If it is damaged, has colours, or its pages differ.
+        If it is damaged, has colours, its pages differ or are no slices of one stack.
     OSError
         If it cannot be read.
     """
-    with _opened(path) as image:
-        count = getattr(image, "n_frames", 1)
-        width, height = image.size
-        shape = (count, height, width)
-        check_size(str(path), shape)
-        described = str(getattr(image, "tag_v2", {}).get(IMAGE_DESCRIPTION, ""))
-        dtype = _type(image, str(path))
-        mode = image.mode
-    slices = re.search(r"^images=(\d+)", described, re.MULTILINE)
-    if slices and count == 1 and int(slices[1]) > 1:
-        raise InputError(
-            f"{path}: ImageJ wrote {slices[1]} slices as one page (a stack beyond 4 GB); save it "
-            "as an image sequence or as raw"
-        )
-
-    def read(low: int, high: int) -> NDArray[Any]:
-        found = np.empty((high - low, height, width), dtype=dtype.newbyteorder("="))
-        with _opened(path) as image:
-            for number in range(low, high):
-                image.seek(number)
-                name = f"{path}, page {number + 1}"
-                _check_slice(image, name, (width, height), mode, "the first page")
-                found[number - low] = _pixels(image, name)
-        return found
-
-    return VoxelFile(str(path), shape, dtype, read)
+    pictures, description, printed = _pages(path)
+    if description.slices not in (None, len(pictures)):
+        if len(pictures) == 1:
+            pictures = contiguous_copies(pictures[0], description.slices or 0)
+        else:
+            tell(
+                f"{path}: its description speaks of {description.slices} slices; it has "
+                f"{len(pictures)} pages, which are read"
+            )
+    for note in description.notes:
+        tell(f"{path}: {note}")
+    return stacked(str(path), pictures, description.voxel_size, printed)
 
 
 def open_slices(folder: Path) -> VoxelFile:
@@ -84,23 +61,52 @@ def open_slices(folder: Path) -> VoxelFile:
         If they cannot be read.
     """
     paths = _numbered(folder)
-    with _opened(paths[0]) as image:
-        size, mode, dtype = image.size, image.mode, _type(image, str(paths[0]))
-    width, height = size
-    check_size(str(folder), (len(paths), height, width))
-    for path in paths[1:]:  # the headers alone
-        with _opened(path) as image:
-            _check_slice(image, str(path), size, mode, paths[0].name)
+    sizes: list[tuple[Optional[float], Optional[float]]] = []
+    pictures = []
+    for path in paths:
+        kind = FORMATS[path.suffix.lower()]
+        if kind == "TIFF":
+            pages, description, printed = _pages(path)
+            if len(pages) != 1 or (description.slices or 1) != 1:
+                raise InputError(f"{path}: {len(pages)} pages; a slice has one")
+            picture = pages[0]
+            sizes.append((description.voxel_size, printed))
+        else:
+            picture = open_picture(path, kind)
+        pictures.append(picture)
+    voxel_size, printed = sizes[0] if len(set(sizes)) == 1 else (None, None)
+    return stacked(str(folder), pictures, voxel_size, printed)
 
-    def read(low: int, high: int) -> NDArray[Any]:
-        found = np.empty((high - low, height, width), dtype=dtype.newbyteorder("="))
-        for number, path in enumerate(paths[low:high]):
-            with _opened(path) as image:
-                _check_slice(image, str(path), size, mode, paths[0].name)
-                found[number] = _pixels(image, str(path))
-        return found
 
-    return VoxelFile(str(folder), (len(paths), height, width), dtype, read)
+def _pages(path: Path) -> tuple[list[Picture], Description, Optional[float]]:
+    """Return the pages of a TIFF file, its description, and the size of its pixels in print."""
+    big_endian = is_big_endian(path)
+    told: list[tuple[Description, Optional[float]]] = []
+
+    def look(tags: Tags) -> Picture:
+        picture = page_picture(path, tags, big_endian)
+        if not told:
+            text = described(str(path), tags.text(270), tags.ratio(282))
+            told.append((text, _printed_size(tags)))
+        return picture
+
+    pictures = read_pages(path, look)
+    if not pictures:
+        raise InputError(f"{path}: damaged: not read as TIFF: it has no pages")
+    return (pictures, *told[0])
+
+
+def _printed_size(tags: Tags) -> Optional[float]:
+    """Return the edge of a pixel by the tags of resolution, unless it is one of no meaning."""
+    unit, across, along = UNITS.get(tags.number(296, 2)), tags.ratio(282), tags.ratio(283)
+    if unit is None or across is None or along is None:
+        return None
+    if not isclose(across, along, rel_tol=1e-3):
+        tell(f"{tags.name}: its tags of resolution say that pixels are no squares; not applied")
+        return None
+    if any(isclose(across * INCH / unit, usual, rel_tol=1e-2) for usual in USUAL_DPI):
+        return None
+    return unit / across
 
 
 def _numbered(folder: Path) -> list[Path]:
@@ -109,14 +115,15 @@ def _numbered(folder: Path) -> list[Path]:
     for path in folder.iterdir():
         if path.suffix.lower() in FORMATS and not path.name.startswith("."):
             paths.append(path)
-        if len(paths) > MOST_SLICES:
-            raise InputError(f"{folder}: more than {MOST_SLICES:,} slices")
+        if len(paths) > PAGES:
+            raise InputError(f"{folder}: more than {PAGES:,} slices")
     if not paths:
         raise InputError(f"{folder}: no slices in it; {', '.join(FORMATS)} are read")
     kinds = {FORMATS[path.suffix.lower()] for path in paths}
     if len(kinds) > 1:
         raise InputError(f"{folder}: slices of mixed types: {', '.join(sorted(kinds))}")
     numbers: dict[int, Path] = {}
+    words: dict[str, Path] = {}
     for path in sorted(paths):
         found = re.search(r"(\d{1,12})\D*$", path.stem)
         if found is None:
@@ -125,72 +132,15 @@ def _numbered(folder: Path) -> list[Path]:
         if number in numbers:
             raise InputError(f"{path}: has the number of {numbers[number].name}, {number}")
         numbers[number] = path
+        words.setdefault(path.stem[: found.start(1)] + "*" + path.stem[found.end(1) :], path)
+    if len(words) > 1:
+        one, other = [path.name for path in words.values()][:2]
+        tell(f"{folder}: its slices have several names, as {one} and {other}; all are one stack")
     order = sorted(numbers)
-    for one, following in zip(order, order[1:]):
-        if following != one + 1:
+    for one_number, following in zip(order, order[1:]):
+        if following != one_number + 1:
             raise InputError(
-                f"{folder}: slice {one + 1} is missing, between {numbers[one].name} and "
-                f"{numbers[following].name}"
+                f"{folder}: slice {one_number + 1} is missing, between "
+                f"{numbers[one_number].name} and {numbers[following].name}"
             )
     return [numbers[number] for number in order]
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[Image]:
-    """Yield a picture as its ending says, whose errors say that it is damaged."""
-    pillow = require("PIL.Image", "images", "reading pictures")
-
-    kind = FORMATS[path.suffix.lower()]
-    with path.open("rb"):  # a missing file is told as such
-        pass
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # sizes are checked, and damage is an error
-            with pillow.open(path, formats=[kind]) as image:
-                yield image
-    except InputError:
-        raise
-    except pillow.DecompressionBombError as error:
-        raise InputError(f"{path}: {error}") from None
-    except (OSError, struct.error, *DAMAGED) as error:
-        raise InputError(f"{path}: damaged: not read as {kind}: {error}") from None
-
-
-def _check_slice(image: Image, name: str, size: tuple[int, int], mode: str, first: str) -> None:
-    if image.size != size:
-        raise InputError(
-            f"{name}: {image.size[0]} x {image.size[1]} pixels; {first} has {size[0]} x {size[1]}"
-        )
-    if image.mode != mode:
-        raise InputError(f"{name}: pixels of type {image.mode}; {first} has {mode}")
-
-
-def _type(image: Image, name: str) -> np.dtype[Any]:
-    if image.mode not in TYPES or (image.mode == "P" and not _is_grey(image)):
-        raise InputError(f"{name}: has colours ({image.mode}); convert it to shades of grey")
-    return np.dtype("int8") if _signed_bytes(image) else np.dtype(TYPES[image.mode])
-
-
-def _pixels(image: Image, name: str) -> NDArray[Any]:
-    if image.mode == "P" and not _is_grey(image):
-        raise InputError(f"{name}: has colours; convert it to shades of grey")
-    shown = image.convert("L") if image.mode == "P" else image
-    pixels = np.asarray(shown)
-    if image.mode == "1":
-        return pixels.astype(np.uint8)
-    return pixels.view(np.int8) if _signed_bytes(image) else pixels
-
-
-def _is_grey(image: Image) -> bool:
-    """Return whether the colours of a palette are shades of grey."""
-    colours = np.asarray(image.getpalette("RGB") or [], dtype=np.int64).reshape(-1, 3)
-    return bool((colours == colours[:, :1]).all())
-
-
-def _signed_bytes(image: Image) -> bool:
-    tags = getattr(image, "tag_v2", {})
-    return (
-        image.mode == "L"
-        and tags.get(SAMPLE_FORMAT, (1,))[0] == SIGNED
-        and tags.get(BITS_PER_SAMPLE, (8,))[0] == 8
-    )

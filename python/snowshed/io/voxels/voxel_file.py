@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.io.formatting import number
+from snowshed.io.limits import MB, UNPACKED_FREELY, UNPACKED_RATIO, VOXELS_AT_ONCE
 from snowshed.io.messages import shortened
 
 MOST_VOXELS = 1 << 32
@@ -35,6 +37,11 @@ class VoxelFile:
         Called with the first layer and the one after the last; returns (n, ny, nx).
     voxel_size
         Edge of a voxel as the file says, m; None: it does not say.
+    printed_size
+        Edge of a pixel by a resolution that may be meant for printers, m; None: there is none. It
+        is compared with the voxel size that is given, and never taken for it.
+    notes
+        What was told when it was opened.
     """
 
     name: str
@@ -42,10 +49,18 @@ class VoxelFile:
     dtype: np.dtype[Any]
     read_layers: Callable[[int, int], NDArray[Any]]
     voxel_size: Optional[float] = None
+    printed_size: Optional[float] = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_size(self.name, self.shape)
         check_type(self.name, self.dtype)
+
+    @property
+    def layers_at_once(self) -> int:
+        """How many layers to read at once, so that they take little memory."""
+        _, ny, nx = self.shape
+        return max(1, VOXELS_AT_ONCE // (ny * nx))
 
     def layers(self, low: int, high: int) -> NDArray[Any]:
         """Return some layers, in the byte order of this machine.
@@ -78,4 +93,31 @@ def check_type(name: str, dtype: np.dtype[Any]) -> None:
         raise InputError(
             f"{name}: values of type {shortened(str(dtype))}; whole numbers and floating-point "
             "numbers of up to 8 bytes are allowed"
+        )
+
+
+def check_unpacked(name: str, unpacked: int, stored: int) -> None:
+    """Raise InputError where a file unpacks to far more than any image of snow would.
+
+    Parameters
+    ----------
+    name
+        Of the file.
+    unpacked
+        Bytes of its numbers.
+    stored
+        Bytes that it takes on the disk.
+
+    Examples
+    --------
+    >>> check_unpacked("a.mha", 1 << 30, 1 << 20)  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    snowshed._core.InputError: a.mha: 1.05 MB unpack to 1,070 MB, more than 200 times as much, ...
+    """
+    if unpacked > UNPACKED_FREELY and unpacked > UNPACKED_RATIO * stored:
+        raise InputError(
+            f"{name}: {number(stored / 1e6)} MB unpack to {number(unpacked / 1e6)} MB, more than "
+            f"{UNPACKED_RATIO} times as much, as no image of snow does; crop it, or save it "
+            f"uncompressed (up to {UNPACKED_FREELY // MB} MB, any compression is read)"
         )

@@ -36,6 +36,18 @@ COLUMNS = (
     "coordination",
     "solid_fraction",
 )
+#: Of these a curve also has what they were, since the row before, in the step in which the sample
+#: carried most: `PEAK` and the name. Curves of earlier versions do not.
+PEAKED = (
+    "axial_strain",
+    "shear_strain",
+    "top_stress_pa",
+    "bottom_stress_pa",
+    "side_stress_pa",
+    "shear_stress_pa",
+    "cone_force_n",
+)
+PEAK = "peak_"
 #: Columns of whole numbers.
 COUNTS = ("stage", "bonds", "broken_in_tension", "broken_in_shear", "contacts")
 
@@ -47,8 +59,9 @@ class LoadingCurve:
     Attributes
     ----------
     columns
-        Arrays of equal length by name: `COLUMNS`, and energies in joules if they were kept. Stages
-        count from 1; a row where a stage ends belongs to it. Stresses are positive in compression.
+        Arrays of equal length by name: `COLUMNS`, `PEAKED` of the peaks between rows, and energies
+        in joules if they were kept. Stages count from 1; a row where
+        a stage ends belongs to it. Stresses are positive in compression.
     """
 
     columns: Mapping[str, Floats]
@@ -81,7 +94,27 @@ class LoadingCurve:
         """
         own = np.flatnonzero(self["stage"] == stage)
         rows = np.arange(max(own[0] - 1, 0), own[-1] + 1) if own.size else own
-        return LoadingCurve({name: values[rows] for name, values in self.columns.items()})
+        columns = {name: values[rows] for name, values in self.columns.items()}
+        for name in PEAKED:
+            if own.size and own[0] > 0 and PEAK + name in columns:
+                columns[PEAK + name][0] = columns[name][0]  # its peak was in the stage before
+        return LoadingCurve(columns)
+
+    @property
+    def peaks(self) -> LoadingCurve:
+        """The same rows with the strains and stresses of the peaks that they end with.
+
+        Rows of earlier versions, which knew no peaks, are as they are.
+
+        Examples
+        --------
+        >>> columns = {name: np.zeros(2) for name in COLUMNS}
+        >>> curve = LoadingCurve({**columns, "peak_top_stress_pa": np.array([0.0, 5.0])})
+        >>> curve.peaks["top_stress_pa"].tolist()
+        [0.0, 5.0]
+        """
+        peaks = {name: self.columns.get(PEAK + name, self.columns[name]) for name in PEAKED}
+        return LoadingCurve({**self.columns, **peaks})
 
     @classmethod
     def read(cls, path: PathLike) -> LoadingCurve:
@@ -147,6 +180,34 @@ def carried_stress(curve: LoadingCurve, kind: str) -> Floats:
         return stress
     other = curve["bottom_stress_pa"]
     return np.asarray(np.minimum(stress, -other if kind == "stretch" else other))
+
+
+def untouched(curve: LoadingCurve, kind: str) -> str:
+    """Return why a stage tells nothing of the snow: what loads it never touched it; else nothing.
+
+    Examples
+    --------
+    >>> curve = LoadingCurve({name: np.zeros(3) for name in COLUMNS})
+    >>> untouched(curve, "compress")
+    'the plates never touched the snow'
+    """
+
+    def is_felt(name: str) -> bool:
+        return bool(np.any(curve[name] != 0.0) or np.any(curve.peaks[name] != 0.0))
+
+    if kind in ("hold", "unload"):
+        return ""
+    if kind == "penetrate":
+        return "" if is_felt("cone_force_n") else "the cone never touched the snow"
+    plates = ("top_stress_pa", "bottom_stress_pa")
+    idle = [name.partition("_")[0] for name in plates if not is_felt(name)]
+    if len(idle) == len(plates):
+        return "the plates never touched the snow"
+    if idle:
+        return f"the {idle[0]} plate never touched the snow"
+    if kind == "shear" and not is_felt("shear_stress_pa"):
+        return "the top plate never dragged the snow along"
+    return ""
 
 
 def stage_strain(curve: LoadingCurve, kind: str) -> Floats:

@@ -9,13 +9,19 @@ numbers is our own choice, and stands with each function.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional
 
 import numpy as np
 
 from snowshed.io.arrays import Floats
-from snowshed.methods.grains.curve import LoadingCurve, carried_stress, stage_strain, stage_stress
+from snowshed.methods.grains.curve import (
+    LoadingCurve,
+    carried_stress,
+    stage_strain,
+    stage_stress,
+    untouched,
+)
 
 BIN = 0.01  # of strain, over which stresses are averaged before hardening is looked for
 DOUBLED = math.log(2.0)  # the rise by which hardening counts as such
@@ -45,8 +51,12 @@ class Phases:
     hardening_rate
         Its growth: stress ~ exp(rate * strain).
     strength
-        Largest stress that the sample carries from plate to plate, Pa: in compression that below a
-        strain of 5 %.
+        Largest stress of all time steps that the sample carries from plate to plate, Pa: in
+        compression that below a strain of 5 %.
+    touched_from
+        Strain before which nothing touched the snow.
+    unknown
+        Why nothing is known, if that is so.
     """
 
     elastic_limit: Optional[float]
@@ -55,6 +65,8 @@ class Phases:
     hardening_onset: Optional[float]
     hardening_rate: Optional[float]
     strength: Optional[float]
+    touched_from: float = 0.0
+    unknown: str = ""
 
 
 def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
@@ -80,15 +92,22 @@ def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
     >>> round(phases.tangent_modulus), round(phases.hardening_onset, 2)
     (10000000, 0.2)
     """
+    nothing = Phases(None, None, None, None, None, None)
     if len(curve) < 2:
-        return Phases(None, None, None, None, None, None)
+        return nothing
+    if reason := untouched(curve, kind):
+        return replace(nothing, unknown=reason)
     strain, stress = stage_strain(curve, kind), stage_stress(curve, kind)
-    limit, modulus, linearity = _elastic(strain, stress, curve.broken)
+    felt = np.flatnonzero(stress != 0.0)
+    first = max(int(felt[0]) - 1, 0) if felt.size else 0
+    limit, modulus, linearity = _elastic(strain[first:], stress[first:], curve.broken[first:])
     hardens = kind in ("compress", "isotropic")
     onset, rate = _hardening(strain, stress, limit or 0.0) if hardens else (None, None)
-    below = strain <= (PEAK_BELOW if hardens else math.inf)
-    strength = float(carried_stress(curve, kind)[below].max())
-    return Phases(limit, modulus, linearity, onset, rate, strength)
+    peaks = curve.peaks
+    below = stage_strain(peaks, kind) <= (PEAK_BELOW if hardens else math.inf)
+    strength = float(carried_stress(peaks, kind)[below].max())
+    known = strength if strength > 0.0 else None
+    return Phases(limit, modulus, linearity, onset, rate, known, float(strain[first]))
 
 
 def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Optional[float]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
 import numpy as np
 
-from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress
+from snowshed.io.formatting import percent
+from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress, untouched
 from snowshed.methods.grains.phases import LINEAR, MEANS, Phases, find_phases, mean_stress
 
 #: Grains below which one sample hardly stands for its snow.
@@ -43,18 +45,20 @@ class GrainsSummary:
     elastic_limit_strain, tangent_modulus_pa, linearity
         Of the first stage: strain before the first broken bond, slope up to there and its R2.
     strength_pa
-        Largest stress that the sample carries from plate to plate in the first stage, in
-        compression below a strain of 5 %.
+        Largest stress of all time steps that the sample carries from plate to plate in the first
+        stage, in compression below a strain of 5 %.
     mean_stress_5_10_pa, mean_stress_10_15_pa, mean_stress_25_30_pa
         Its mean stress between two strains in percent.
     hardening_onset_strain, hardening_rate
         Where its stress begins to grow like exp(rate * strain), and this rate.
     largest_cone_force_n
-        Largest force on the cone.
+        Largest force on the cone of all time steps; None where it never touched the snow.
     synthetic
         How the sample was made, if it is known to be synthetic; else None.
     notes
         What should be known of these figures.
+    sample_notes
+        What should be known of the sample, which was told when the test began.
     """
 
     ended: str
@@ -79,9 +83,10 @@ class GrainsSummary:
     mean_stress_25_30_pa: Optional[float]
     hardening_onset_strain: Optional[float]
     hardening_rate: Optional[float]
-    largest_cone_force_n: float
+    largest_cone_force_n: Optional[float]
     synthetic: Optional[str] = None
     notes: tuple[str, ...] = ()
+    sample_notes: tuple[str, ...] = ()
 
 
 def summarise(
@@ -92,6 +97,7 @@ def summarise(
     grains: int,
     spheres: int,
     synthetic: str = "",
+    sample_notes: Sequence[str] = (),
 ) -> GrainsSummary:
     """Return the figures of a loading test.
 
@@ -107,12 +113,14 @@ def summarise(
         How many there are.
     synthetic
         How the sample was made, if it is known to be synthetic.
+    sample_notes
+        What should be known of the sample.
     """
     kind = str(scene["loading"][0]["kind"])
     first = curve.of_stage(1)
     phases = find_phases(first, kind) if kind != "penetrate" else NO_PHASES
     strain, stress = stage_strain(first, kind), stage_stress(first, kind)
-    means = [mean_stress(strain, stress, *ends) for ends in MEANS]
+    means = [None if phases.unknown else mean_stress(strain, stress, *ends) for ends in MEANS]
     density = float(scene["numerics"]["density"])
     return GrainsSummary(
         ended=ended,
@@ -137,10 +145,19 @@ def summarise(
         mean_stress_25_30_pa=means[2],
         hardening_onset_strain=phases.hardening_onset,
         hardening_rate=phases.hardening_rate,
-        largest_cone_force_n=float(np.abs(curve["cone_force_n"]).max()),
+        largest_cone_force_n=_cone_force(curve, scene),
         synthetic=synthetic or None,
         notes=tuple(_notes(curve, first, kind, scene, grains)),
+        sample_notes=tuple(sample_notes),
     )
+
+
+def _cone_force(curve: LoadingCurve, scene: dict[str, Any]) -> Optional[float]:
+    """Return the largest force on the cone; None if one moved and never touched the snow."""
+    kinds = [str(stage["kind"]) for stage in scene["loading"]]
+    if "penetrate" in kinds and untouched(curve, "penetrate"):
+        return None
+    return float(max(np.abs(one["cone_force_n"]).max() for one in (curve, curve.peaks)))
 
 
 NO_PHASES = Phases(None, None, None, None, None, None)
@@ -163,7 +180,18 @@ def _notes(
                 f"the stresses on the two plates differ by {100 * apart / mean:.0f} % of their "
                 "mean: the test is not quasi-static; load more slowly, or with less density_scaling"
             )
-    linearity = find_phases(first, kind).linearity if kind != "penetrate" else None
+    kinds = [str(stage["kind"]) for stage in scene["loading"]]
+    if "penetrate" in kinds and (reason := untouched(curve, "penetrate")):
+        notes.append(f"{reason}: there is no force on it")
+    phases = find_phases(first, kind) if kind != "penetrate" else NO_PHASES
+    if phases.unknown:
+        notes.append(f"{phases.unknown}: modulus, strength and mean stresses are not known")
+    if phases.touched_from > 0.0:
+        notes.append(
+            f"nothing touched the snow before a strain of {percent(phases.touched_from)}, from "
+            "which on the modulus is fitted; all strains count from the beginning"
+        )
+    linearity = phases.linearity
     if linearity is not None and linearity < LINEAR:
         notes.append(
             f"the stress is not linear before the first bond breaks (R2 {linearity:.2f}), as waves "

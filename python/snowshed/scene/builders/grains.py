@@ -32,6 +32,7 @@ def grains_scene(
     settings: Optional[GrainsSettings] = None,
     output: Optional[Output] = None,
     title: str = "",
+    split_labels: Optional[bool] = None,
 ) -> Scene:
     """Return the scene of a loading test on segmented snow.
 
@@ -52,6 +53,8 @@ def grains_scene(
         What is written during the run.
     title
         What this scene is; empty: how the sample was made, if it is known to be synthetic.
+    split_labels
+        Whether each piece of a label that lies in several places is a grain; None: it is not.
 
     Raises
     ------
@@ -80,7 +83,7 @@ def grains_scene(
         method="grains",
         dimension=3,
         title=title or sample.source,
-        sample=Sample(file=file.resolve(), voxel_size=size),
+        sample=Sample(file=file.resolve(), voxel_size=size, split_labels=split_labels),
         loading=list(loading),
         cone=cone,
         numerics=settings or GrainsSettings(),

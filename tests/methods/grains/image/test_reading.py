@@ -1,14 +1,18 @@
 """From an image to ice: thresholds, crops, coarser voxels; and the numbers of the ice."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from snowshed import InputError
+from snowshed.io.notes import recorded
 from snowshed.io.voxels.open_voxels import open_voxels
 from snowshed.methods.grains.image.downscaling import downscaled
 from snowshed.methods.grains.image.gaussian_snow import gaussian_snow
 from snowshed.methods.grains.image.ice_image import IceImage
 from snowshed.methods.grains.image.microstructure import mean_chords, measure
+from snowshed.methods.grains.image.parts import largest_part
 from snowshed.methods.grains.image.threshold import ImageSettings, read_ice
 
 VOXEL = 5e-5
@@ -100,9 +104,74 @@ def test_other_factors_are_refused(factor):
         downscaled(SNOW, factor)
 
 
+def labels_of_blocks(kind):
+    """Return blocks of 5 voxels a voxel apart, each with a number of its own."""
+    at = np.indices((36, 36, 36))
+    z, y, x = at // 6
+    return np.where((at % 6 < 5).all(axis=0), (36 * z + 6 * y + x) % 200 + 1, 0).astype(kind)
+
+
+@pytest.mark.parametrize("kind", ["uint8", "int32", "int64"])
+def test_labels_are_no_grey_values(tmp_path, kind):
+    labels = labels_of_blocks(kind)
+    with pytest.raises(InputError, match="labels of grains, not grey values"):
+        read_ice(opened(tmp_path, labels), settings())
+    read = read_ice(opened(tmp_path, labels), settings(threshold=0.5, connected=False))
+    assert (read.image.ice == (labels > 0)).all()
+    spread = np.where(labels, labels.astype(np.int64) * 1000, 0)  # beyond small whole numbers
+    with pytest.raises(InputError, match="labels of grains, not grey values"):
+        read_ice(opened(tmp_path, spread), settings())
+
+
+@pytest.mark.parametrize("stated", [5e-5, 1e-4])
+def test_another_voxel_size_than_the_file_says_is_told(tmp_path, stated):
+    file = replace(opened(tmp_path, SNOW.ice), voxel_size=stated)
+    with recorded() as notes:
+        read = read_ice(file, settings())
+    assert read.image.voxel_size == VOXEL
+    assert notes == ([] if stated == VOXEL else [
+        f"{file.name}: voxels of 5e-05 m, as given; the file says 0.0001 m"
+    ])  # fmt: skip
+    printed = replace(file, voxel_size=None, printed_size=1e-4)
+    with recorded() as notes:
+        read_ice(printed, settings())
+    assert "its resolution says 0.0001 m" in notes[0]
+    with pytest.raises(InputError, match=r"its tags of resolution would mean 0\.0001 m"):
+        read_ice(printed, settings(voxel_size=None))
+
+
+@pytest.mark.parametrize("kind", ["uint32", "uint64", "int64", "int8"])
+def test_the_whole_range_of_a_type(tmp_path, kind):
+    low, high = np.iinfo(kind).min, np.iinfo(kind).max
+    voxels = np.where(SNOW.ice, high - 9, high - 99 if kind == "int8" else low + 9).astype(kind)
+    voxels[0, 0, 0] += 3  # not two values
+    read = read_ice(opened(tmp_path, voxels), settings())
+    assert (read.image.ice == largest_part(SNOW.ice)).all()
+
+
+@pytest.mark.parametrize("factor", [1e300, 1e-290, 1.0])
+def test_otsu_does_not_depend_on_the_size_of_the_values(tmp_path, factor):
+    voxels = grey("float64", 4.0, 2.0, 0.2) * factor
+    read = read_ice(opened(tmp_path, voxels), settings())
+    assert (read.image.ice == SNOW.ice).all()
+
+
+def test_single_values_next_to_each_other_have_a_threshold(tmp_path):
+    voxels = np.where(SNOW.ice, np.float32(1), np.nextafter(np.float32(1), np.float32(0)))
+    voxels[0, 0, 0] = np.nextafter(np.float32(1), np.float32(2))
+    read = read_ice(opened(tmp_path, voxels.astype(np.float32)), settings())
+    assert (read.image.ice == largest_part(SNOW.ice)).all() or read.chosen == "Otsu"
+
+
 @pytest.mark.parametrize(
     ("voxels", "options", "message"),
     [
+        (np.where(SNOW.ice, 1e308, -1e308) * np.linspace(0.5, 1, 40), {}, "have no histogram"),
+        (
+            np.where(SNOW.ice, 3e-322, 0) + 1e-322 * (np.indices((40, 40, 40))[0] == 0),
+            {},
+            "have no histogram",
+        ),
         (np.zeros((9, 9, 9)), {}, "empty: every voxel has the value 0"),
         (np.full((9, 9, 9), 255, dtype=np.uint8), {}, "empty: every voxel has the value 255"),
         (grey(), {"threshold": 65_535}, "no ice"),

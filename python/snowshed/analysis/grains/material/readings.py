@@ -15,7 +15,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.grains.material.law import Elasticity
 from snowshed.io.arrays import Floats
-from snowshed.methods.grains.curve import LoadingCurve
+from snowshed.methods.grains.curve import LoadingCurve, untouched
 from snowshed.methods.grains.phases import LEAST_ROWS, PEAK_BELOW
 
 #: Strain from which on a peak counts: before, it is that of the plate's impact.
@@ -105,11 +105,17 @@ def elasticity(curve: LoadingCurve) -> tuple[Elasticity, float]:
     spread = np.sum((along - along.mean()) ** 2)
     linearity = 1.0 - np.sum((along - slope * strain) ** 2) / spread if spread > 0 else 0.0
     if not slope > 0:
-        raise InputError("the stress does not grow in the elastic phase: no stiffness to be read")
+        what = "the stress does not grow in the elastic phase"
+        raise InputError(_unknown(curve, "compress", what))
     ratio = max(float(strain @ curve["side_stress_pa"][rows] / (strain @ along)), 0.0)
     nu = min(ratio / (1 + ratio), LARGEST_POISSON)
     modulus = float(slope) * (1 + nu) * (1 - 2 * nu) / (1 - nu)
     return Elasticity(modulus, nu), float(linearity)
+
+
+def _unknown(curve: LoadingCurve, kind: str, what: str) -> str:
+    """Return that something cannot be read, and why if that is known."""
+    return f"{what}: {untouched(curve, kind) or 'nothing to be read'}"
 
 
 def isotropic_yield(curve: LoadingCurve) -> float:
@@ -120,19 +126,32 @@ def isotropic_yield(curve: LoadingCurve) -> float:
     InputError
         If there is no pressure.
     """
-    strain = curve["axial_strain"]
-    counted = (strain >= PEAK_FROM) & (strain <= PEAK_BELOW)
-    pressure = invariants(curve, isotropic=True)[0][counted]
-    peak = float(pressure.max(initial=0.0))
+    peak = 0.0
+    for rows in (curve, curve.peaks):
+        strain = rows["axial_strain"]
+        counted = (strain >= PEAK_FROM) & (strain <= PEAK_BELOW)
+        pressure = invariants(rows, isotropic=True)[0][counted]
+        peak = max(peak, float(pressure.max(initial=0.0)))
     if not peak > 0:
-        raise InputError("no pressure in isotropic compression: no strength to be read")
+        raise InputError(_unknown(curve, "isotropic", "no pressure in isotropic compression"))
     return peak
 
 
 def confined_peak(curve: LoadingCurve) -> float:
-    """Return the largest stress of confined compression, Pa, that is no impact."""
-    counted = curve["axial_strain"] >= PEAK_FROM
-    return float(axial_stress(curve)[counted].max(initial=0.0))
+    """Return the largest stress of confined compression, Pa, that is no impact.
+
+    Raises
+    ------
+    InputError
+        If there is no stress.
+    """
+    peak = 0.0
+    for rows in (curve, curve.peaks):
+        counted = rows["axial_strain"] >= PEAK_FROM
+        peak = max(peak, float(axial_stress(rows)[counted].max(initial=0.0)))
+    if not peak > 0:
+        raise InputError(_unknown(curve, "compress", "no stress in confined compression"))
+    return peak
 
 
 def shear_strength(curve: LoadingCurve) -> tuple[float, float]:
@@ -146,6 +165,7 @@ def shear_strength(curve: LoadingCurve) -> tuple[float, float]:
     InputError
         If there is no shear stress.
     """
+    curve = curve.peaks
     shear = np.where(curve["shear_strain"] >= PEAK_FROM, curve["shear_stress_pa"], -np.inf)
     row = int(np.argmax(shear))
     if not shear[row] > 0:
@@ -162,6 +182,7 @@ def tension(curve: LoadingCurve) -> tuple[float, float]:
     InputError
         If there is no tension.
     """
+    curve = curve.peaks
     along = np.where(curve["axial_strain"] <= -PEAK_FROM, axial_stress(curve), np.inf)
     row = int(np.argmin(along))
     if not along[row] < 0:

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.methods.grains.image.crofton import SLAB, surface_density
 from snowshed.methods.grains.image.ice_image import ICE_DENSITY, IceImage, check_phases
 
-#: Diameters of grains of snow, m: no grain of real snow is smaller or larger.
-SMALLEST_GRAIN, LARGEST_GRAIN = 2e-5, 1e-2
+SMALLEST_GRAIN, LARGEST_GRAIN = _core.smallest_grain, _core.largest_grain  # m, diameters
 
 
 @dataclass(frozen=True)

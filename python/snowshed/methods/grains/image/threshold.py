@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 
 from snowshed._core import InputError
 from snowshed.io.array_arguments import finite, positive
-from snowshed.io.extras import require
-from snowshed.io.formatting import number
+from snowshed.io.notes import tell
 from snowshed.io.voxels.voxel_file import VoxelFile
 from snowshed.methods.grains.image.downscaling import downscaled
+from snowshed.methods.grains.image.found_threshold import found_threshold
 from snowshed.methods.grains.image.ice_image import IceImage, check_phases
 from snowshed.methods.grains.image.parts import largest_part
 
-LAYERS = 16  # at a time
-BINS = 1024  # of a histogram of anything but small whole numbers
+#: Difference of the voxel sizes of file and options that is told.
+OTHER_SIZE = 0.01
 Crop = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
 
 
@@ -105,15 +105,14 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
     (0.125, 'two values')
     """
     wanted = settings or ImageSettings()
-    size = wanted.voxel_size if wanted.voxel_size is not None else file.voxel_size
-    if size is None:
-        raise InputError(f"{file.name}: its voxel size is not known; give the edge of a voxel in m")
-    positive("voxel size", size)
+    size = _voxel_size(file, wanted.voxel_size)
     crop = _checked_crop(file, wanted.crop)
     if wanted.threshold is not None:
         threshold, chosen = finite("threshold", wanted.threshold), "given"
     else:
-        threshold, chosen = _found_threshold(file, crop)
+        threshold, chosen = found_threshold(
+            file.name, lambda: (part for _, part in _parts(file, crop))
+        )
     ice = np.empty([high - low for low, high in crop], dtype=bool)
     for low, part in _parts(file, crop):
         above = part > threshold
@@ -129,6 +128,24 @@ def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadI
         lost = 1.0 - float(np.count_nonzero(kept) / np.count_nonzero(image.ice))
         image = image.with_ice(kept)
     return ReadImage(image, threshold, chosen, lost)
+
+
+def _voxel_size(file: VoxelFile, given: Optional[float]) -> float:
+    """Return the edge of a voxel, m; tell where the file says something else."""
+    if given is None:
+        if file.voxel_size is None:
+            hint = ""
+            if file.printed_size is not None:
+                hint = f"; its tags of resolution would mean {file.printed_size:.4g} m"
+            raise InputError(
+                f"{file.name}: its voxel size is not known; give the edge of a voxel in m{hint}"
+            )
+        return positive("voxel size", file.voxel_size)
+    size = positive("voxel size", given)
+    for stated, source in ((file.voxel_size, "the file"), (file.printed_size, "its resolution")):
+        if stated is not None and abs(stated - size) > OTHER_SIZE * size:
+            tell(f"{file.name}: voxels of {size:g} m, as given; {source} says {stated:.4g} m")
+    return size
 
 
 def cropped_shape(file: VoxelFile, crop: Optional[Crop]) -> tuple[int, int, int]:
@@ -158,41 +175,8 @@ def _checked_crop(file: VoxelFile, crop: Optional[Crop]) -> Crop:
 def _parts(file: VoxelFile, crop: Crop) -> Iterator[tuple[int, NDArray[Any]]]:
     """Yield the first layer in the crop, and the numbers of some layers from there."""
     (z0, z1), (y0, y1), (x0, x1) = crop
-    for low in range(z0, z1, LAYERS):
-        part = file.layers(low, min(low + LAYERS, z1))[:, y0:y1, x0:x1]
+    for low in range(z0, z1, file.layers_at_once):
+        part = file.layers(low, min(low + file.layers_at_once, z1))[:, y0:y1, x0:x1]
         if part.dtype.kind == "f" and not np.isfinite(part).all():
             raise InputError(f"{file.name}: values that are not finite in layers from {low}")
         yield low - z0, part
-
-
-def _found_threshold(file: VoxelFile, crop: Crop) -> tuple[float, str]:
-    """Return what separates ice and air, and how it was found."""
-    lowest, highest = np.inf, -np.inf
-    for _, part in _parts(file, crop):
-        lowest, highest = min(lowest, float(part.min())), max(highest, float(part.max()))
-    if lowest == highest:
-        raise InputError(
-            f"{file.name}: empty: every voxel has the value {number(lowest)}; there is no ice "
-            "among air"
-        )
-    whole = file.dtype.kind in "bui" and highest - lowest < 1 << 16
-    bins = int(highest - lowest) + 1 if whole else BINS
-    counts, two = np.zeros(bins, dtype=np.int64), True
-    for _, part in _parts(file, crop):
-        two = two and bool(((part == lowest) | (part == highest)).all())
-        counts += _counts(part, lowest, highest, bins, whole)
-    if two:
-        return 0.5 * (lowest + highest), "two values"
-    filters = require("skimage.filters", "images", "Otsu's threshold")
-    width = 1.0 if whole else (highest - lowest) / bins
-    centres = lowest + width * (np.arange(bins) + (0.0 if whole else 0.5))
-    return float(filters.threshold_otsu(hist=(counts, centres))), "Otsu"
-
-
-def _counts(
-    part: NDArray[Any], lowest: float, highest: float, bins: int, whole: bool
-) -> NDArray[np.int64]:
-    if whole:
-        shifted = part.ravel().astype(np.int64) - int(lowest)
-        return np.bincount(shifted, minlength=bins)
-    return np.histogram(part, bins, (lowest, highest))[0].astype(np.int64)

@@ -1,0 +1,31 @@
+// Labels whose voxels lie in several places: numbers that were wrapped, or given twice.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "snowshed/methods/grains/label_image.hpp"
+
+namespace snowshed {
+
+/// How many labels an image has, and of how many pieces they are. Voxels of one label are one piece
+/// where they share a face, an edge or a corner.
+struct LabelPieces {
+  std::size_t labels = 0;
+  std::size_t pieces = 0;
+  std::size_t scattered = 0;  // labels of several pieces
+  std::size_t voxels = 0;     // of all labels
+};
+LabelPieces count_pieces(const LabelImage&);
+
+/// Throws InputError where what should be labels are grey values, which change from voxel to voxel.
+void check_labels(const LabelPieces&);
+
+/// What should be known of them, with or without `split_pieces`; empty where each label is one
+/// piece.
+std::string label_note(const LabelPieces&, bool split);
+
+/// Makes each piece a label of its own, from 1 on in the order of storage.
+void split_pieces(LabelImage&);
+
+}  // namespace snowshed

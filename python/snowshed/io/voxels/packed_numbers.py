@@ -1,0 +1,112 @@
+"""Numbers that zlib packed, unpacked a few layers at a time."""
+
+from __future__ import annotations
+
+import os
+import zlib
+from math import prod
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from snowshed._core import InputError
+from snowshed.io.input_file import open_regular
+from snowshed.io.limits import MB
+from snowshed.io.voxels.voxel_file import VoxelFile, check_unpacked
+
+PIECE = MB  # packed bytes that are read at once
+EITHER = 47  # of zlib: a stream of zlib or of gzip, told by its head
+
+
+def packed_numbers(
+    name: Path, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int, size: int
+) -> VoxelFile:
+    """Return an image whose numbers are one stream of zlib; it is unpacked no farther than asked.
+
+    Parameters
+    ----------
+    name
+        What the image is called in messages.
+    data
+        The file.
+    shape
+        Voxels (nz, ny, nx).
+    dtype
+        Of the numbers.
+    start
+        Where the stream begins, bytes.
+    size
+        How long it is; 0: as long as the file.
+
+    Raises
+    ------
+    InputError
+        If it unpacks to more than any image of snow would.
+    OSError
+        If it cannot be read.
+    """
+    with open_regular(data) as file:
+        there = max(os.fstat(file.fileno()).st_size - start, 0)
+    if size > there:
+        raise InputError(f"{name}: damaged: {there:,} packed bytes; its header says {size:,}")
+    check_unpacked(str(name), prod(shape) * dtype.itemsize, size or there)
+    return VoxelFile(str(name), shape, dtype, _PackedLayers(str(name), data, shape, dtype, start))
+
+
+class _PackedLayers:
+    """Reads layers; those that follow on the last ones are unpacked without beginning anew."""
+
+    def __init__(
+        self, name: str, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int
+    ) -> None:
+        self.name, self.data, self.start = name, data, start
+        self.shape, self.dtype = shape, dtype
+        self.stream = _Stream(name, start)
+
+    def __call__(self, low: int, high: int) -> NDArray[Any]:
+        _, ny, nx = self.shape
+        layer = ny * nx * self.dtype.itemsize
+        if self.stream.done > low * layer:
+            self.stream = _Stream(self.name, self.start)
+        with open_regular(self.data) as file:
+            while self.stream.done < low * layer:
+                self.stream.take(file, min(low * layer - self.stream.done, PIECE))
+            found = self.stream.take(file, (high - low) * layer)
+        return np.frombuffer(found, self.dtype).reshape(high - low, ny, nx)
+
+
+class _Stream:
+    """What a stream unpacks to, from its beginning on.
+
+    Attributes
+    ----------
+    done
+        How many bytes were taken.
+    """
+
+    def __init__(self, name: str, start: int) -> None:
+        self.name = name
+        self.done = 0
+        self._next = start  # packed byte in the file
+        self._unpacker = zlib.decompressobj(EITHER)
+
+    def take(self, file: BinaryIO, count: int) -> bytearray:
+        """Return the next bytes."""
+        file.seek(self._next)
+        found = bytearray()
+        while len(found) < count:
+            packed = self._unpacker.unconsumed_tail or file.read(PIECE)
+            if not packed or self._unpacker.eof:
+                raise InputError(
+                    f"{self.name}: damaged: {self.done + len(found):,} bytes unpacked; its header "
+                    "says more"
+                )
+            try:
+                found += self._unpacker.decompress(packed, count - len(found))
+            except zlib.error as error:
+                raise InputError(f"{self.name}: damaged: {error}") from None
+        self._next = file.tell()
+        self.done += count
+        return found

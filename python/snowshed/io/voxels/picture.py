@@ -1,0 +1,126 @@
+"""Images that are stacks of pictures: the pages of a file, or the files of a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from snowshed._core import InputError
+from snowshed.io.notes import tell
+from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_unpacked
+
+#: What the tag Orientation says: whether the stored picture is transposed, and then mirrored along
+#: y and x (TIFF 6.0, page 36; the same in Exif).
+ORIENTATIONS = {
+    1: (False, False, False), 2: (False, False, True), 3: (False, True, True),
+    4: (False, True, False), 5: (True, False, False), 6: (True, False, True),
+    7: (True, True, True), 8: (True, True, False),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture of one number per pixel whose size is known, and which is read when it is needed.
+
+    Attributes
+    ----------
+    name
+        For messages.
+    size
+        Pixels along y and x, as stored.
+    dtype
+        Of the numbers.
+    kind
+        What else all pictures of a stack must have in common, in words.
+    read
+        Returns the numbers as stored.
+    orientation
+        Where the stored rows and columns belong, one of `ORIENTATIONS`; None: it does not say, so
+        it is as the first picture.
+    stored
+        Bytes that it takes in its file.
+    notes
+        What was assumed.
+    """
+
+    name: str
+    size: tuple[int, int]
+    dtype: np.dtype[Any]
+    kind: str
+    read: Callable[[], NDArray[Any]]
+    orientation: Optional[int] = None
+    stored: int = 0
+    notes: tuple[str, ...] = ()
+
+
+def stacked(
+    name: str,
+    pictures: Sequence[Picture],
+    voxel_size: Optional[float] = None,
+    printed_size: Optional[float] = None,
+) -> VoxelFile:
+    """Return the image of pictures that lie one on another, and tell what was assumed of them.
+
+    Raises
+    ------
+    InputError
+        If they differ, or are larger than any image of snow.
+    """
+    first = pictures[0]
+    for one in pictures[1:]:
+        _check_same(one, first)
+    height, width = first.size
+    check_size(name, (len(pictures), height, width))
+    unpacked = len(pictures) * height * width * first.dtype.itemsize
+    check_unpacked(name, unpacked, sum(one.stored for one in pictures))
+    orientation = first.orientation or 1
+    transposed = ORIENTATIONS[orientation][0]
+    shape = (len(pictures), width, height) if transposed else (len(pictures), height, width)
+    for note in first.notes:
+        tell(f"{name}: {note}")
+    if orientation != 1:
+        tell(f"{name}: turned as the tag Orientation ({orientation}) says")
+
+    def read(low: int, high: int) -> NDArray[Any]:
+        found = np.empty((high - low, *shape[1:]), dtype=first.dtype.newbyteorder("="))
+        for number, picture in enumerate(pictures[low:high]):
+            pixels = picture.read()
+            if pixels.shape != picture.size:
+                raise InputError(f"{picture.name}: damaged: {pixels.shape} pixels")
+            found[number] = oriented(pixels, orientation)
+        return found
+
+    return VoxelFile(name, shape, first.dtype, read, voxel_size, printed_size)
+
+
+def oriented(pixels: NDArray[Any], orientation: int) -> NDArray[Any]:
+    """Return a picture as its tag Orientation says it is seen.
+
+    Examples
+    --------
+    >>> oriented(np.array([[1, 2, 3], [4, 5, 6]]), 6).tolist()
+    [[4, 1], [5, 2], [6, 3]]
+    """
+    transposed, upward, leftward = ORIENTATIONS[orientation]
+    pixels = pixels.T if transposed else pixels
+    return pixels[:: -1 if upward else 1, :: -1 if leftward else 1]
+
+
+def _check_same(one: Picture, first: Picture) -> None:
+    known = Path(first.name).name
+    if one.size != first.size:
+        raise InputError(
+            f"{one.name}: {one.size[1]} x {one.size[0]} pixels; {known} has "
+            f"{first.size[1]} x {first.size[0]}"
+        )
+    if (one.kind, one.dtype) != (first.kind, first.dtype):
+        raise InputError(f"{one.name}: pixels of type {one.kind}; {known} has {first.kind}")
+    if (one.orientation or first.orientation or 1) != (first.orientation or 1):
+        raise InputError(
+            f"{one.name}: Orientation {one.orientation}; {known} has {first.orientation or 1}"
+        )

@@ -1,0 +1,291 @@
+"""Pages of TIFF files as pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from snowshed._core import InputError
+from snowshed.io.input_file import open_regular
+from snowshed.io.voxels import tiff_segments as segments
+from snowshed.io.voxels.picture import ORIENTATIONS, Picture
+from snowshed.io.voxels.tiff_segments import Coding, decoded, read_at
+from snowshed.io.voxels.tiff_tags import Tags
+from snowshed.io.voxels.voxel_file import check_size
+
+WHITE_IS_ZERO, BLACK_IS_ZERO, PALETTE = 0, 1, 3
+WHITE_NOTE = (
+    "numbers are taken as they are stored; its tag PhotometricInterpretation (WhiteIsZero) has the "
+    "larger ones shown darker. If ice is the smaller ones, give --dark-ice"
+)
+#: The sample formats of TIFF, by NumPy's letter for the kind.
+KINDS = {1: "u", 2: "i", 3: "f", 4: "u"}
+UNDEFINED = 4
+LARGEST_TILE = 1 << 20  # pixels, of an image that is smaller
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where the numbers of a page are.
+
+    Attributes
+    ----------
+    size
+        Pixels along y and x.
+    piece
+        The same of a strip or tile.
+    tiled
+        Whether they are tiles, all of which are whole; the last strip may have fewer rows.
+    places, counts
+        First byte, and number of bytes, of each strip or tile, row by row.
+    coding
+        How they are packed.
+    """
+
+    size: tuple[int, int]
+    piece: tuple[int, int]
+    tiled: bool
+    places: tuple[int, ...]
+    counts: tuple[int, ...]
+    coding: Coding
+
+    def rows_of(self, number: int) -> int:
+        """Return how many rows a strip or tile has."""
+        if self.tiled:
+            return self.piece[0]
+        return min(self.piece[0], self.size[0] - number * self.piece[0])
+
+
+def page_picture(path: Path, tags: Tags, big_endian: bool) -> Picture:
+    """Return a page as a picture.
+
+    Raises
+    ------
+    InputError
+        If it is damaged, has colours, or is packed in a way that is not read.
+    """
+    name = tags.name
+    height, width = tags.number(257, 0), tags.number(256, 0)
+    check_size(name, (1, height, width))
+    _check_one_number(tags)
+    dtype, notes = _dtype(tags, big_endian)
+    photometric = tags.number(262, BLACK_IS_ZERO)
+    palette: Optional[NDArray[Any]] = None
+    if photometric == PALETTE:
+        palette, seen = _palette(tags, dtype)
+        notes += seen
+        dtype = palette.dtype
+    elif photometric == WHITE_IS_ZERO:
+        notes += (WHITE_NOTE,)
+    elif photometric != BLACK_IS_ZERO:
+        raise InputError(
+            f"{name}: has colours (PhotometricInterpretation {photometric}); convert it to shades "
+            "of grey"
+        )
+    orientation = tags.number(274, 0) or None
+    if orientation not in (None, *ORIENTATIONS):
+        raise InputError(f"{name}: Orientation {orientation}; 1 to 8 are allowed")
+    layout = _layout(path, tags, (height, width), big_endian)
+    shades = {WHITE_IS_ZERO: ", WhiteIsZero", PALETTE: ", palette"}.get(photometric, "")
+    return Picture(
+        name,
+        (height, width),
+        dtype,
+        f"{layout.coding.bits} bits, {dtype.name}{shades}",
+        _Reader(path, name, layout, palette),
+        orientation,
+        sum(layout.counts),
+        notes,
+    )
+
+
+def _check_one_number(tags: Tags) -> None:
+    samples = tags.number(277, 1)
+    if samples != 1:
+        raise InputError(
+            f"{tags.name}: has {samples} numbers per pixel (colours, transparency?); convert it "
+            "to shades of grey"
+        )
+    if tags.number(32997, 1) != 1:
+        raise InputError(f"{tags.name}: several layers in one page (ImageDepth) are not read")
+
+
+def _dtype(tags: Tags, big_endian: bool) -> tuple[np.dtype[Any], tuple[str, ...]]:
+    """Return the type of the numbers, in the byte order of the file, and what was assumed."""
+    bits, sample_format = tags.number(258, 1), tags.number(339, 1)
+    kind = KINDS.get(sample_format, "")
+    known = {"u": (1, 2, 4, 8, 16, 32, 64), "i": (8, 16, 32, 64), "f": (16, 32, 64)}
+    if bits not in known.get(kind, ()):
+        raise InputError(
+            f"{tags.name}: numbers of {bits} bits, SampleFormat {sample_format}: whole numbers of "
+            "1, 2, 4, 8, 16, 32 or 64 bits and floating-point numbers of 16, 32 or 64 are read"
+        )
+    order = ">" if big_endian else "<"
+    notes = ("SampleFormat is undefined: numbers are taken as whole and not negative",)
+    dtype = np.dtype(f"{order}{kind}{max(bits // 8, 1)}")
+    return dtype, notes if sample_format == UNDEFINED else ()
+
+
+def _palette(tags: Tags, dtype: np.dtype[Any]) -> tuple[NDArray[Any], tuple[str, ...]]:
+    """Return the shade of grey that each number of a palette stands for."""
+    count = 1 << tags.number(258, 1)
+    colours = np.array(tags.numbers(320), dtype=np.int64)
+    if dtype.kind != "u" or count > 1 << 16 or len(colours) != 3 * count:
+        raise InputError(f"{tags.name}: damaged: no palette for its numbers")
+    red, green, blue = colours.reshape(3, count)
+    if (red != green).any() or (red != blue).any():
+        raise InputError(
+            f"{tags.name}: has colours (a palette); convert it to shades of grey, or take the "
+            "look-up table away"
+        )
+    if (red < 0).any() or (red > 0xFFFF).any():
+        raise InputError(f"{tags.name}: damaged: its palette is not of 16 bits")
+    shades = (red >> 8).astype(np.uint8) if count <= 256 else red.astype(np.uint16)
+    if (shades == np.arange(count)).all():
+        return shades, ()
+    return shades, ("the shades of its palette are taken for its numbers",)
+
+
+def _layout(path: Path, tags: Tags, size: tuple[int, int], big_endian: bool) -> Layout:
+    tiled = bool(tags.numbers(322))
+    height, width = size
+    if tiled:
+        piece = (tags.number(323, 0), tags.number(322, 0))
+        places, counts = tags.numbers(324), tags.numbers(325)
+    else:
+        piece = (min(tags.number(278, height), height), width)
+        places, counts = tags.numbers(273), tags.numbers(279)
+    most_pixels = max(4 * height * width, LARGEST_TILE)
+    if min(piece) < 1 or piece[0] * piece[1] > most_pixels:
+        raise InputError(f"{tags.name}: damaged: strips or tiles of {piece[1]} x {piece[0]} pixels")
+    coding = _coding(tags, big_endian)
+    across, down = -(-width // piece[1]), -(-height // piece[0])
+    layout = Layout(size, piece, tiled, places, counts, coding)
+    if len(places) != across * down:
+        raise InputError(f"{tags.name}: damaged: {len(places)} strips or tiles for {across * down}")
+    whole = tuple(
+        layout.rows_of(number) * coding.row_bytes(piece[1]) for number in range(len(places))
+    )
+    if coding.compression == segments.NONE:
+        counts = whole
+    if len(counts) != len(places):
+        raise InputError(f"{tags.name}: damaged: no lengths of its strips or tiles")
+    end = path.stat().st_size
+    most = coding.longest(*piece)
+    for place, count in zip(places, counts):
+        if place < 8 or count < 1 or place + count > end or count > most:
+            raise InputError(
+                f"{tags.name}: damaged: a strip or tile of {count:,} bytes at {place:,} in a file "
+                f"of {end:,}"
+            )
+    return Layout(size, piece, tiled, places, counts, coding)
+
+
+def _coding(tags: Tags, big_endian: bool) -> Coding:
+    compression = tags.number(259, segments.NONE)
+    bits, predictor = tags.number(258, 1), tags.number(317, segments.NO_PREDICTOR)
+    dtype, _ = _dtype(tags, big_endian)
+    if compression not in segments.READ or (compression == segments.JPEG and bits != 8):
+        raise InputError(
+            f"{tags.name}: compression {compression} of {bits} bits is not read; save the image "
+            "uncompressed, or with LZW or deflate"
+        )
+    needed = {
+        segments.NO_PREDICTOR: True,
+        segments.DIFFERENCES: bits >= 8,
+        segments.FLOAT_DIFFERENCES: dtype.kind == "f",
+    }
+    if compression in (segments.NONE, segments.JPEG, *segments.FAX):
+        predictor = segments.NO_PREDICTOR
+    if not needed.get(predictor, False):
+        raise InputError(f"{tags.name}: Predictor {predictor} of {bits} bits is not read")
+    fill = tags.number(266, 1)
+    if fill not in (1, 2):
+        raise InputError(f"{tags.name}: damaged: FillOrder {fill}")
+    tables = tags.value(347)
+    options = tags.number(292 if compression == 3 else 293, 0)
+    return Coding(
+        compression,
+        predictor,
+        bits,
+        dtype,
+        fill == 2,
+        bytes(tables) if isinstance(tables, bytes) else None,
+        options,
+    )
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """Reads the numbers of a page."""
+
+    path: Path
+    name: str
+    layout: Layout
+    palette: Optional[NDArray[Any]]
+
+    def __call__(self) -> NDArray[Any]:
+        layout = self.layout
+        (height, width), (rows, columns) = layout.size, layout.piece
+        across = -(-width // columns)
+        found: Optional[NDArray[Any]] = None
+        with open_regular(self.path) as file:
+            for number, (place, count) in enumerate(zip(layout.places, layout.counts)):
+                packed = read_at(file, place, count, self.name)
+                y, x = number // across * rows, number % across * columns
+                there = layout.rows_of(number)
+                part = decoded(layout.coding, packed, there, columns, self.name)
+                if part.shape != (there, columns):
+                    raise InputError(f"{self.name}: damaged: a strip of {part.shape} pixels")
+                if found is None:
+                    found = np.empty((height, width), part.dtype.newbyteorder("="))
+                part = part[: height - y, : width - x]
+                found[y : y + part.shape[0], x : x + part.shape[1]] = part
+        if found is None:
+            raise InputError(f"{self.name}: damaged: it has no numbers")
+        return found if self.palette is None else self.palette[found]
+
+
+def is_big_endian(path: Path) -> bool:
+    """Return whether a TIFF file has the highest byte of its numbers first."""
+    with open_regular(path) as file:
+        return file.read(2) == b"MM"
+
+
+def contiguous_copies(picture: Picture, count: int) -> list[Picture]:
+    """Return pictures that lie one after another in a file, of which the first alone is a page.
+
+    Raises
+    ------
+    InputError
+        If its numbers are packed or do not lie in one piece, or the file ends before.
+    """
+    reader = picture.read
+    if not isinstance(reader, _Reader):
+        raise TypeError("a page of a TIFF file is needed")
+    layout = reader.layout
+    begins = layout.places[0]
+    ends = [place + length for place, length in zip(layout.places, layout.counts)]
+    whole = [*layout.places[1:], ends[-1]] == ends and layout.piece[1] == layout.size[1]
+    length = ends[-1] - begins
+    if layout.coding.compression != segments.NONE or not whole:
+        raise InputError(
+            f"{picture.name}: {count} slices in one page, which are read only uncompressed and in "
+            "one piece; save the image as a sequence of images, or as raw"
+        )
+    there = reader.path.stat().st_size
+    if begins + count * length > there:
+        raise InputError(
+            f"{picture.name}: damaged: {count} slices end at byte {begins + count * length:,} of "
+            f"{there:,}"
+        )
+    pictures = []
+    for number in range(count):
+        places = tuple(place + number * length for place in layout.places)
+        moved = replace(reader, layout=replace(layout, places=places))
+        pictures.append(replace(picture, read=moved))
+    return pictures

@@ -1,0 +1,167 @@
+"""The pages of a TIFF file: their tags, as tifffile reads them, and what is made of them."""
+
+from __future__ import annotations
+
+import io
+import logging
+import os
+import struct
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO, Optional, TypeVar
+
+from snowshed._core import InputError
+from snowshed.io.damage import DAMAGED
+from snowshed.io.extras import require
+from snowshed.io.input_file import open_regular
+from snowshed.io.limits import PAGES, TAG
+from snowshed.io.messages import shortened
+
+if TYPE_CHECKING:
+    from tifffile import TiffFile, TiffPage
+
+Page = TypeVar("Page")
+
+#: Dialects whose own structures tifffile would follow; here every file is read as plain TIFF.
+DIALECTS = (
+    "is_lsm", "is_ndpi", "is_philips", "is_scanimage", "is_nih", "is_stk", "is_svs", "is_ome",
+    "is_imagej", "is_micromanager", "is_mmstack", "is_sis", "is_fluoview", "is_tvips", "is_eer",
+)  # fmt: skip
+#: How often the bytes of a file may be read to find its pages: thrice do.
+READ_OFTEN = 4
+
+
+class Tags:
+    """The tags of a page, as numbers and texts; what a damaged file has in their place is refused.
+
+    Parameters
+    ----------
+    page
+        As tifffile has it.
+    name
+        For messages.
+    """
+
+    def __init__(self, page: TiffPage, name: str) -> None:
+        self.name = name
+        self.offset = int(page.offset)
+        self._tags = page.tags
+
+    def value(self, code: int) -> Any:
+        """Return the value of a tag as it is; None: the page does not have it."""
+        tag = self._tags.get(code)
+        return None if tag is None else tag.value
+
+    def numbers(self, code: int) -> tuple[int, ...]:
+        """Return the whole numbers of a tag; none if the page does not have it."""
+        value = self.value(code)
+        if value is None:
+            return ()
+        many = value if isinstance(value, (tuple, list)) else (value,)
+        if not all(isinstance(one, int) for one in many):
+            raise InputError(f"{self.name}: damaged: tag {code} holds {shortened(repr(value))}")
+        return tuple(map(int, many))
+
+    def number(self, code: int, default: int) -> int:
+        """Return the whole number of a tag, the same in all of its values."""
+        numbers = set(self.numbers(code)) or {default}
+        if len(numbers) > 1:
+            raise InputError(f"{self.name}: tag {code} holds {shortened(str(sorted(numbers)))}")
+        return numbers.pop()
+
+    def ratio(self, code: int) -> Optional[float]:
+        """Return the positive ratio of a tag; None: the page does not have it."""
+        value = self.value(code)
+        try:
+            above, below = value
+            return float(above) / float(below) if above > 0 and below > 0 else None
+        except (TypeError, ValueError):
+            return None
+
+    def text(self, code: int) -> str:
+        """Return the text of a tag; empty if the page does not have it."""
+        value = self.value(code)
+        if isinstance(value, bytes):
+            return value.decode("utf-8", "replace")
+        return value if isinstance(value, str) else ""
+
+
+@contextmanager
+def tiff_errors(path: Path) -> Iterator[None]:
+    """Turn the errors of tifffile into InputError, and keep its log from stderr."""
+    tifffile = require("tifffile", "images", "reading TIFF files")
+    log = logging.getLogger("tifffile")
+    level = log.level
+    log.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    except InputError:
+        raise
+    except (OSError, struct.error, tifffile.TiffFileError, *DAMAGED) as error:
+        text = shortened(str(error) or type(error).__name__, 200)
+        raise InputError(f"{path}: damaged: not read as TIFF: {text}") from None
+    finally:
+        log.setLevel(level)
+
+
+def read_pages(path: Path, look: Callable[[Tags], Page]) -> list[Page]:
+    """Return what is made of the tags of each page of a TIFF file, while it is open.
+
+    Raises
+    ------
+    InputError
+        If it is damaged, or has more than `PAGES` pages.
+    OSError
+        If it cannot be read.
+    """
+    tifffile = require("tifffile", "images", "reading TIFF files")
+    with open_regular(path) as file, tiff_errors(path):
+        off = dict.fromkeys(DIALECTS, False)
+        with tifffile.TiffFile(_Bounded(file), name=path.name, **off) as tiff:
+            return [look(tags) for tags in _tags(tiff, path)]
+
+
+def _tags(tiff: TiffFile, path: Path) -> Iterator[Tags]:
+    places: set[int] = set()
+    while True:
+        name = f"{path}, page {len(places) + 1}"
+        try:
+            page = tiff.pages[len(places)]
+        except IndexError:
+            return
+        if len(places) == PAGES:
+            raise InputError(f"{path}: more than {PAGES:,} pages")
+        tags = Tags(page, name)  # type: ignore[arg-type]
+        if tags.offset in places:
+            raise InputError(f"{name}: damaged: it is an earlier page again")
+        places.add(tags.offset)
+        yield tags
+
+
+class _Bounded(io.RawIOBase):
+    """A file of which no tag beyond `TAG` is read, and no byte too often."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._left = READ_OFTEN * os.fstat(file.fileno()).st_size + TAG
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def tell(self) -> int:
+        return self._file.tell()
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET, /) -> int:
+        return self._file.seek(offset, whence)
+
+    def read(self, size: Optional[int] = -1, /) -> bytes:
+        if size is None or not 0 <= size <= TAG:
+            raise InputError(f"a tag of {size} bytes; up to {TAG:,} are read")
+        self._left -= size
+        if self._left < 0:
+            raise InputError("its tags take more bytes than it has")
+        return self._file.read(size)

@@ -1,0 +1,77 @@
+"""Images whose axes are stored in another order, or from the other end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from snowshed.io.voxels.voxel_file import VoxelFile
+
+
+@dataclass(frozen=True)
+class Turn:
+    """How the axes of an image follow from those of its file, both along z, y, x.
+
+    Attributes
+    ----------
+    axes
+        The axis of the file (0, 1, 2) that each axis of the image is.
+    mirrored
+        Whether it runs from the other end.
+    """
+
+    axes: tuple[int, int, int] = (0, 1, 2)
+    mirrored: tuple[bool, bool, bool] = (False, False, False)
+
+    @property
+    def is_none(self) -> bool:
+        """Whether the image is as its file has it."""
+        return self == Turn()
+
+    def of(self, array: NDArray[Any]) -> NDArray[Any]:
+        """Return an array turned so; a view.
+
+        Examples
+        --------
+        >>> Turn((0, 2, 1), (False, True, False)).of(np.arange(6).reshape(1, 2, 3)).tolist()
+        [[[2, 5], [1, 4], [0, 3]]]
+        """
+        steps = tuple(slice(None, None, -1 if one else 1) for one in self.mirrored)
+        return np.transpose(array, self.axes)[steps]
+
+
+def turned(file: VoxelFile, turn: Turn) -> VoxelFile:
+    """Return an image turned; of its file no more is held than some layers.
+
+    Where layers of the image are not layers of the file, each reading passes through all of it.
+    """
+    if turn.is_none:
+        return file
+    nz, ny, nx = (file.shape[axis] for axis in turn.axes)
+    same_layers = turn.axes[0] == 0
+    read: Callable[[int, int], NDArray[Any]]
+
+    def within(low: int, high: int) -> tuple[int, int]:
+        """Return the places in the file of some layers of the image."""
+        return (nz - high, nz - low) if turn.mirrored[0] else (low, high)
+
+    def layers(low: int, high: int) -> NDArray[Any]:
+        return turn.of(file.layers(*within(low, high)))
+
+    def cuts(low: int, high: int) -> NDArray[Any]:
+        first, end = within(low, high)
+        cut = [slice(None)] * 3
+        cut[turn.axes[0]] = slice(first, end)
+        shape = [high - low if axis == turn.axes[0] else file.shape[axis] for axis in range(3)]
+        found = np.empty(shape, dtype=file.dtype.newbyteorder("="))
+        for start in range(0, file.shape[0], file.layers_at_once):
+            stop = min(start + file.layers_at_once, file.shape[0])
+            found[start:stop] = file.layers(start, stop)[tuple(cut)]
+        return turn.of(found)
+
+    read = layers if same_layers else cuts
+    return VoxelFile(file.name, (nz, ny, nx), file.dtype, read, file.voxel_size, file.printed_size)
