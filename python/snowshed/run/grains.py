@@ -27,7 +27,6 @@ from typing import Any, Optional
 import snowshed._core as _core
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table
-from snowshed.io.notes import tell
 from snowshed.methods.grains.contacts import GrainContacts
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.image.sample_folder import LABELS, SYNTHETIC, find_sample
