@@ -176,8 +176,9 @@ std::vector<std::string> Simulation::check_placement_of(
     bodies.push_back(
         {body.path, &snow.batches[i].positions, body.shape, body.is_of_slab && event_ > 0});
   }
-  OccupiedSpace space{
-      surroundings_.obstacles, solver_->time(), {}, particle_distance(scene_), event_ + 1};
+  OccupiedSpace space{surroundings_.obstacles,   surroundings_.resolved,
+                      solver_->time(),           {},
+                      particle_distance(scene_), event_ + 1};
   if (reseeding) {
     const std::vector<Vec3>& stack = reseeding->after.positions;
     notes = check_placement(scene_, {{"the stack, seeded anew", &stack, nullptr, true}}, space);
@@ -224,9 +225,9 @@ void Simulation::add_snow(ParticleBatch batch) {
   batch.event = std::max(event_, 1);
   std::vector<std::string> notes;
   if (scene_.uses<MpmSettings>() || scene_.uses<MpsSettings>())
-    notes = check_placement(
-        scene_, {{"positions", &batch.positions}},
-        {surroundings_.obstacles, solver_->time(), positions(), particle_distance(scene_), event_});
+    notes = check_placement(scene_, {{"positions", &batch.positions}},
+                            {surroundings_.obstacles, surroundings_.resolved, solver_->time(),
+                             positions(), particle_distance(scene_), event_});
   solver_->add(batch);
   notes_.insert(notes_.end(), notes.begin(), notes.end());
   event_mass_ += batch.total_mass();

@@ -211,20 +211,17 @@ class Obstacles {
     });
   }
 
-  /// Adds what is to be told of particles that lie only where the grid thickens obstacles.
+  /// Adds what is to be told of particles that lie only where obstacles are made thicker.
   void find_in_thickening(const Particles& snow, std::vector<std::string>& sentences) const {
-    if (!scene_.uses<MpmSettings>()) return;
-    const double dx = resolution(scene_.numerics);
-    for_each_near(snow, dx, [&](std::size_t k, const auto& to_body) {
-      const Obstacle& o = space_.obstacles[k];
-      const Obstacle seen = thick_enough(o, dx);
-      if (seen.shape == o.shape) return;
+    for_each_near(snow, resolution(scene_.numerics), [&](std::size_t k, const auto& to_body) {
+      const Shape& seen = space_.resolved[k].shape;
+      if (seen == space_.obstacles[k].shape) return;
       const std::size_t count = snow.count_others_within(
-          depth_, [&](const Vec3& x) { return seen.shape->distance(to_body(x)); });
+          depth_, [&](const Vec3& x) { return seen->distance(to_body(x)); });
       if (count == 0) return;
       const std::string name = words_[k].substr(std::string("inside ").size());
       sentences.push_back(percent(snow.share_of(count)) + " of its particles lie beside " + name +
-                          ", where the grid sees it thicker than it is, and are pushed out");
+                          ", where it is made thicker than it is, and are pushed out");
     });
   }
 

@@ -23,18 +23,19 @@ struct PlacedBody {
 
 /// What new snow must keep out of.
 struct OccupiedSpace {
-  const std::vector<Obstacle>& obstacles;
-  double time = 0;               // s, at which moving obstacles are met
-  std::vector<Vec3> particles;   // m, of the snow that is there already
-  double particle_distance = 0;  // m, mean, between these
-  int event = 1;                 // that the new snow is of
+  const std::vector<Obstacle>& obstacles;  // as they are given
+  const std::vector<Obstacle>& resolved;   // the same, as the method sees them
+  double time = 0;                         // s, at which moving obstacles are met
+  std::vector<Vec3> particles;             // m, of the snow that is there already
+  double particle_distance = 0;            // m, mean, between these
+  int event = 1;                           // that the new snow is of
 };
 
 /// Looks for particles of new snow that lie more than a thousandth of the scene's resolution inside
 /// an obstacle, beyond the sides of the domain, or in another new body, and for those that old snow
 /// surrounds. (Old snow has no surface. What reaches less than half the distance of two particles
 /// into it is not seen.) Returns a sentence for each body that has such particles, and for those
-/// that lie only where the MPM thickens a thin obstacle: from there they are pushed out.
+/// that lie only where a thin obstacle is made thicker: from there they are pushed out.
 ///
 /// Throws InputError with share and place where it is more than `most_misplaced` of a body's
 /// particles, not counting the thickening, unless the scene allows that or the body is told only.
