@@ -75,7 +75,7 @@ def read_input(path: Path, largest: int = TEXT) -> bytes:
         if not stat.S_ISREG(status.st_mode):
             content = _awaited(file.fileno(), path, largest)
         elif status.st_size <= largest:
-            content = file.read(largest + 1)
+            content = file.read(largest + 1) or b""  # None of what has nothing to say yet
         if status.st_size > largest or len(content) > largest:
             limit = f"{largest} bytes" if largest % MB else f"{largest // MB} MB"
             raise InputError(f"{path}: longer than {limit}")

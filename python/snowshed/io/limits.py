@@ -22,8 +22,9 @@ COLUMNS = 1000
 LINE = 1 * MB
 #: Rows of a table, and of one that people write, whose rows are kept as texts.
 ROWS, WRITTEN_ROWS = 4_000_000, 300_000
-#: Lines of a weather file: ten-minute values of 15 years, or 150 years of daily elements.
-WEATHER_LINES = 1_000_000
+#: Bytes of a line of a weather file, and its lines: ten-minute values of 15 years, or 150 years of
+#: daily elements.
+WEATHER_LINE, WEATHER_LINES = 64 * KB, 1_000_000
 #: Members or streams of a packed file; programs that pack in parallel write one per 64 KB and more.
 MEMBERS = 10_000
 #: Bytes that unpacking may need besides what it yields; the strongest level of xz has 65 MB.

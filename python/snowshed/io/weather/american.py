@@ -172,7 +172,11 @@ def read_acis(name: str, lines: Sequence[str]) -> Station:
     rows, notes = days.rows()
     title = lines[0].strip().strip('"') if start else ""
     notes.append("temperatures in °F, depths in inches")
-    return Station("ACIS", title, rows, notes, columns=COLUMNS)
+    titles: dict[str, list[str]] = {}
+    for i, (_, quantity) in columns.items():
+        titles.setdefault(quantity.name, []).append(head[i])
+    named = {name: " and ".join(own) for name, own in titles.items()}
+    return Station("ACIS", title, rows, notes, columns=named)
 
 
 def _is_head(line: str) -> bool:

@@ -10,6 +10,7 @@ from snowshed.io.weather.observation import Observation, Quantity
 
 HOURS = {"precipitation": "precipitation_hours", "snowfall": "snowfall_hours"}
 ENOUGH = 0.9  # of the values of the fullest column; then the earlier in the list is taken
+MOST_KNOWN = 50_000  # texts of a column that are remembered
 WORDS = {
     "temperature": "the temperature",
     "precipitation": "precipitation",
@@ -24,6 +25,36 @@ class Column(NamedTuple):
     place: int
     title: str
     quantity: Quantity
+
+
+class Cells:
+    """The cells of some columns, of which each text is read once: most values come again.
+
+    Parameters
+    ----------
+    columns
+        To read.
+    missing
+        Texts that stand for a missing value.
+    """
+
+    def __init__(self, columns: Sequence[Column], missing: Sequence[str]) -> None:
+        self.missing = missing
+        self.known: list[tuple[Column, dict[str, Optional[float]]]] = [
+            (column, {}) for column in columns
+        ]
+
+    def read(self, cells: Sequence[str], place: str) -> list[Optional[float]]:
+        """Return the values of a row; raises InputError naming the place and the column."""
+        values = []
+        for (i, title, quantity), known in self.known:
+            text = cells[i]
+            if text not in known:
+                if len(known) >= MOST_KNOWN:
+                    known.clear()
+                known[text] = quantity.read(text, f"{place}, column {title}", self.missing)
+            values.append(known[text])
+        return values
 
 
 class Reading(NamedTuple):

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 from statistics import median
-from typing import Any, Optional
+from typing import Optional
 
 from snowshed.io.weather.amounts import HOUR, hours_before
-from snowshed.io.weather.observation import Observation, Station
+from snowshed.io.weather.observation import Observation, Station, changed
 
 #: A quantity, the field of its hours, its unit in notes, and what it is called there.
 AMOUNTS = (
@@ -54,7 +54,7 @@ def _drop_first(rows: list[Observation], first: int, fields: tuple[str, str]) ->
     """Drop a 0 of the day before the first row, of which the file has nothing else."""
     row, (name, hours) = rows[first], fields
     if getattr(row, name) == 0.0 and row.time.date() not in row.shares(getattr(row, hours)):
-        rows[first] = _with(row, {name: None, hours: None})
+        rows[first] = changed(row, **{name: None, hours: None})
 
 
 def _fill_in(
@@ -73,7 +73,7 @@ def _fill_in(
         )
     for n, (i, span) in enumerate(zip(own, hours_before(times))):
         amount = values[n] if added is None else added[n]
-        rows[i] = _with(rows[i], {name: amount, hours: span})
+        rows[i] = changed(rows[i], **{name: amount, hours: span})
     return notes
 
 
@@ -109,10 +109,6 @@ def added_to_counter(times: Sequence[datetime], values: Sequence[float]) -> Opti
     return added
 
 
-def _with(row: Observation, changed: dict[str, Any]) -> Observation:
-    return replace(row, **changed)
-
-
 def _overlap(times: Sequence[datetime], hours: Sequence[float]) -> bool:
     """Return whether most rows follow one another faster than their amounts gather."""
     steps = [
@@ -128,7 +124,7 @@ def _thin_out(
     left = 0
     for i, span in zip(own, hours):
         if last is not None and (rows[i].time - last) / HOUR < span - MINUTE:
-            rows[i] = _with(rows[i], {"precipitation": None, "precipitation_hours": None})
+            rows[i] = changed(rows[i], precipitation=None, precipitation_hours=None)
         else:
             last, left = rows[i].time, left + 1
     return (

@@ -12,14 +12,14 @@ from typing import Any, NamedTuple, Optional
 from snowshed._core import InputError
 from snowshed.io.weather.amounts import usual_step
 from snowshed.io.weather.columns import HOURS, WORDS
-from snowshed.io.weather.observation import RANGES, Observation, Station
+from snowshed.io.weather.observation import RANGES, Observation, Station, changed
 from snowshed.io.weather.plain import read_plain
 from snowshed.io.weather.recognise import read_station
 
 MOST_FILES = 200
 FAR, HIGHER = 2.0, 100.0  # km and m between the positions of what should be one station
 DEGREE = 111.2  # km of latitude
-TEMPERATURE = "temperature"
+TEMPERATURE, DEPTH = "temperature", "snow_depth"
 
 
 class _File(NamedTuple):
@@ -72,7 +72,7 @@ def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> 
     files, notes = _alike(files)
     own = -1 if temperature is not None else None
     values = [value for name in RANGES for value in _of_quantity(files, name, own)]
-    rows = _rows(values)
+    rows = _rows(values, _series_of_depth(files))
     _check_common_days(files, values)
     return _station(files, rows, values, notes)
 
@@ -133,7 +133,7 @@ def _on_clock(station: Station, offset: Optional[float]) -> Station:
         return station
     shift = timedelta(hours=offset - (station.utc_offset or 0.0))
     rows = [
-        replace(row, time=row.time + shift, end=row.end and row.end + shift) for row in station.rows
+        changed(row, time=row.time + shift, end=row.end and row.end + shift) for row in station.rows
     ]
     return replace(station, rows=rows, utc_offset=offset)
 
@@ -163,8 +163,31 @@ def _days(row: Observation, name: str) -> set[date]:
     return set(row.shares(hours))
 
 
-def _rows(values: Sequence[_Value]) -> list[Observation]:
-    """Return one row for each time; it is a seam where the depth comes from another file."""
+def _series_of_depth(files: Sequence[_File]) -> list[int]:
+    """Return for each file the first of the same series of depths: one sensor, year by year.
+
+    It has the same station and column, and the same values wherever both have one.
+    """
+    told = [
+        {row.time: row.snow_depth for row in file.station.rows if row.snow_depth is not None}
+        for file in files
+    ]
+    series = list(range(len(files)))
+    for n, file in enumerate(files):
+        for i in range(n):
+            other = files[i].station
+            same = (other.name, other.columns.get(DEPTH)) == (
+                file.station.name,
+                file.station.columns.get(DEPTH),
+            )
+            if same and all(told[i][time] == told[n][time] for time in told[i].keys() & told[n]):
+                series[n] = series[i]
+                break
+    return series
+
+
+def _rows(values: Sequence[_Value], series: Sequence[int]) -> list[Observation]:
+    """Return one row for each time; it is a seam where the depth is of another series."""
     by_time: dict[datetime, list[_Value]] = {}
     for value in values:
         by_time.setdefault(value.row.time, []).append(value)
@@ -176,9 +199,9 @@ def _rows(values: Sequence[_Value]) -> list[Observation]:
             if name in HOURS:
                 given[HOURS[name]] = getattr(row, HOURS[name])
                 given["end"] = given["end"] or row.end
-            if name == "snow_depth":
-                given["seam"] = row.seam or source not in (None, number)
-                source = number
+            if name == DEPTH:
+                given["seam"] = row.seam or source not in (None, series[number])
+                source = series[number]
         rows.append(Observation(min(value.row.line for value in own), time, **given))
     return rows
 

@@ -10,7 +10,7 @@ from typing import NamedTuple, Optional
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import LINE, MB, WEATHER_LINES
+from snowshed.io.limits import KB, WEATHER_LINE, WEATHER_LINES
 from snowshed.io.packed import unpacked
 from snowshed.io.weather import american, energy, ncei, smet, swiss
 from snowshed.io.weather.clock import on_one_clock
@@ -93,8 +93,8 @@ def _lines(content: bytes, path: Path) -> list[str]:
         raise InputError(f"{path}: more than {WEATHER_LINES} lines; cut it into parts")
     lines = re.split("\r\n|\n|\r", _text(content).rstrip("\r\n"))
     longest = max(range(len(lines)), key=lambda i: len(lines[i]))
-    if len(lines[longest]) > LINE:
-        raise InputError(f"{path}, line {longest + 1}: longer than {LINE // MB} MB")
+    if len(lines[longest]) > WEATHER_LINE:
+        raise InputError(f"{path}, line {longest + 1}: longer than {WEATHER_LINE // KB} KB")
     return lines
 
 

@@ -17,7 +17,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
 from snowshed.io.number_text import number_in
-from snowshed.io.weather.columns import Column, Reading, observations
+from snowshed.io.weather.columns import Cells, Column, Reading, observations
 from snowshed.io.weather.observation import (
     DAY,
     ZERO_CELSIUS,
@@ -198,7 +198,7 @@ def _station(
         Column(place, fields[place], quantities[place])
         for place in sorted(quantities, key=lambda place: order.index(fields[place]))
     ]
-    readings = []
+    of_columns, readings = Cells(columns, missing), []
     for number, line in enumerate(lines[header.start + 1 :], header.start + 2):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -206,9 +206,7 @@ def _station(
         cells = cells_of(line, fields, place, separator)
         if cells == fields:  # some writers of iCSV name the columns once more
             continue
-        values = [
-            one.read(cells[i], f"{place}, column {title}", missing) for i, title, one in columns
-        ]
+        values = of_columns.read(cells, place)
         readings.append(Reading(number, _time(cells[when], place, clock), values))
     rows, titles, notes = observations(columns, readings)
     title = header.values.get("station_name") or header.values.get("station_id", "")

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from snowshed._core import InputError
 from snowshed.io.messages import quoted
-from snowshed.io.weather.columns import Column, Reading, observations
+from snowshed.io.weather.columns import Cells, Column, Reading, observations
 from snowshed.io.weather.observation import Quantity, Station, cells_of, time_of
 
 TEN_MINUTES, HOURLY, DAILY = 1.0 / 6.0, 1.0, 24.0  # over which amounts gather
@@ -95,10 +95,13 @@ def _read(
         raise InputError(
             f"{name}, line {start + 1}, column {' or '.join(parameters)}: all are missing"
         )
+    of_columns, begin = Cells(columns, MISSING), lines[start].split(separator)[0]
     readings, station = [], ""
     for number, line in enumerate(lines[start + 1 :], start + 2):
         place = f"{name}, line {number}"
-        if not line.strip() or [_title(cell) for cell in line.split(separator)] == head:
+        if not line.strip():
+            continue
+        if line.startswith(begin) and [_title(cell) for cell in line.split(separator)] == head:
             continue  # orders of IDAWEB name the columns again above every part
         cells = cells_of(line, head, place, separator)
         if station and cells[0] != station:
@@ -107,9 +110,7 @@ def _read(
                 f"{quoted(station)}"
             )
         station = cells[0]
-        values = [
-            one.read(cells[i], f"{place}, column {title}", MISSING) for i, title, one in columns
-        ]
+        values = of_columns.read(cells, place)
         time = time_of(cells[when], f"{place}, column {head[when]}", *formats)
         readings.append(Reading(number, time, values))
     rows, titles, notes = observations(columns, readings)

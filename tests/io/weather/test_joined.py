@@ -1,0 +1,137 @@
+"""Several files of one station."""
+
+from datetime import datetime, timedelta
+
+import pandas as pd
+import pytest
+from made import ghcn, meteoswiss, smet
+from weather_files import EPW
+
+from snowshed import InputError
+from snowshed.io.weather import read_stations
+from snowshed.run.season import read_season
+from snowshed.run.season.weather import read_weather
+
+BEGIN = datetime(2022, 12, 1)
+SNOW = meteoswiss("rre150d0;hns000d0;hto000d0", ["5.0;12;30", "0.0;0;30", "0;0;30"] * 4,
+                  BEGIN, 24.0)  # fmt: skip
+WARM = meteoswiss("tre200h0;rre150h0;htoauths", [f"{-4 + n % 2};0.5;" for n in range(288)], BEGIN)
+
+
+def test_snow_and_temperature_of_a_station_in_two_files(written):
+    snow, warm = written(SNOW, "nime.csv"), written(WARM, "smn.csv")
+    with pytest.raises(InputError, match="no air temperature in any row"):
+        read_season(snow)
+    for rows, notes in (read_weather([snow, warm]), read_weather(snow, temperature=warm)):
+        assert [row.date for row in rows] == [BEGIN + timedelta(n) for n in range(12)]
+        assert sum(row.snowfall for row in rows) == pytest.approx(0.48)
+        assert {row.temperature for row in rows} == {-3.5}
+        assert {row.snow_depth for row in rows} == {0.3}
+        for note in (
+            "the temperature is from tre200h0 of smn.csv on 12 days",
+            "precipitation is from rre150d0 of nime.csv on 12 days",
+            "new snow is from hns000d0 of nime.csv on 12 days",
+        ):
+            assert note in notes
+    assert read_season((str(snow), str(warm))) == rows
+
+
+def test_no_water_counts_twice_where_two_files_have_it(written):
+    snow, warm = written(SNOW, "nime.csv"), written(WARM, "smn.csv")
+    for files, total in (((snow, warm), 20.0), ((warm, snow), 144.0)):
+        rows = read_stations(files).rows
+        assert sum(row.precipitation or 0.0 for row in rows) == pytest.approx(total)
+
+
+def test_years_in_files_of_their_own_follow_one_another(written):
+    rows = ["-5.0;5.0;12;30"] * 3
+    one, other, third = (
+        written(meteoswiss("tre200d0;rre150d0;hns000d0;hto000d0", rows, begin, 24.0), f"{n}.csv")
+        for n, begin in enumerate((BEGIN, BEGIN + timedelta(3), BEGIN + timedelta(5)))
+    )
+    read = read_stations([other, one, third])
+    assert [row.time.day for row in read.rows] == [1, 2, 3, 4, 5, 6, 7, 8]
+    assert sum(row.snowfall for row in read.rows) == pytest.approx(8 * 0.12)
+    assert not any(row.seam for row in read.rows)  # one series of depths
+    parts = "hns000d0 of 1.csv on 3 days, hns000d0 of 0.csv on 3 days, hns000d0 of 2.csv on 2 days"
+    assert f"new snow is from {parts}" in read.notes
+
+
+def test_the_source_of_the_depth_changes_at_a_seam(written):
+    hand = written(smet("HS", ["0.30", "0.32"], begin=BEGIN, step=24.0), "hand.smet")
+    sensor = written(smet("TA HS", ["268.15 0.60"] * 4, begin=BEGIN, step=24.0), "sensor.smet")
+    read = read_stations([hand, sensor])
+    assert [(row.snow_depth, row.seam) for row in read.rows] == [
+        (0.30, False), (0.32, False), (0.60, True), (0.60, False),
+    ]  # fmt: skip
+    assert read.columns["snow_depth"] == "HS of hand.smet and HS of sensor.smet"
+
+
+def test_another_thermometer_comes_first_if_it_is_asked_for(written):
+    first = written(smet("TA HS", ["268.15 0.3"] * 3, step=24.0), "a.smet")
+    other = written(smet("TA HS", ["263.15 0.9"] * 2, step=24.0), "b.smet")
+    read = read_stations([first], temperature=other)
+    assert [row.temperature for row in read.rows] == pytest.approx([-10.0, -10.0, -5.0])
+    assert {row.snow_depth for row in read.rows} == {0.3}
+    with pytest.raises(InputError, match=r"c.smet: no temperature of the air in any row"):
+        read_stations([first], temperature=written(smet("HS", ["0.3"]), "c.smet"))
+
+
+@pytest.mark.parametrize(
+    ("column", "cell"), [("temperature_c", -4.0), ("temperature_c,snow_depth_m", "-4.0,0.3")]
+)
+def test_a_plain_table_completes_a_station(column, cell, written):
+    snow = written(ghcn(*((day, "SNOW", 51 * (day % 2)) for day in range(1, 7))), "snow.csv")
+    table = f"# by hand\ndate,{column}\n" + "".join(
+        f"2024-01-{day:02d},{cell}\n" for day in range(1, 7)
+    )
+    rows, _ = read_weather(snow, temperature=written(table, "warm.csv"))
+    assert {row.temperature for row in rows} == {-4.0}
+    assert sum(row.snowfall for row in rows) == pytest.approx(0.153)
+    with pytest.raises(InputError, match=r"line 2: .* unknown column 'warmth'; allowed: date,"):
+        read_weather(snow, temperature=written(table.replace("temperature_c", "warmth"), "w.csv"))
+    with pytest.raises(InputError, match=r"line 3, column temperature_c: '-4.0x' is not a number"):
+        read_weather(snow, temperature=written(table.replace("-4.0", "-4.0x", 1), "w.csv"))
+
+
+def test_periods_without_a_common_day_are_refused(written):
+    later = meteoswiss("tre200h0", ["-4"] * 48, BEGIN + timedelta(400))
+    with pytest.raises(InputError, match=r"have no day in common: a\.csv from 2022-12-01 to"):
+        read_stations([written(SNOW, "a.csv"), written(later, "b.csv")])
+
+
+def test_names_and_positions_that_differ_are_told(written):
+    snow = written(smet("HS", ["0.30"] * 3, step=24.0), "a.smet")
+    text = smet("TA", ["268.15"] * 3, step=24.0)
+    text = text.replace("= made", "= Other").replace("46.5", "46.6").replace("2000", "2300")
+    notes = read_stations([snow, written(text, "b.smet")]).notes
+    assert "b.smet is of Other, and a.smet of made; they are taken as one station" in notes
+    assert "the stations of a.smet and b.smet are 11.1 km apart" in notes
+    assert "the altitudes of a.smet and b.smet differ by 300 m" in notes
+
+
+def test_hours_are_moved_to_the_clock_of_the_first_file(written):
+    hours = [f"{268.15 + n % 24:.2f}" for n in range(48)]
+    snow = written(smet("HS", ["0.3"] * 48), "a.smet")  # UTC+1
+    text = smet("TA", hours).replace("tz = 1", "tz = 0")
+    read = read_stations([snow, written(text, "b.smet")])
+    assert read.rows[0].temperature is None and read.rows[1].temperature == pytest.approx(-5.0)
+    assert any("b.smet is moved from UTC+0 h to the clock of a.smet, UTC+1 h" in n
+               for n in read.notes)  # fmt: skip
+
+
+def test_what_goes_with_nothing_else_is_refused(written):
+    epw, snow = written(EPW, "a.epw"), written(SNOW, "nime.csv")
+    with pytest.raises(InputError, match=r"a.epw: a typical year of the format EPW"):
+        read_stations([epw, snow])
+    with pytest.raises(InputError, match="201 weather files; at most 200"):
+        read_stations([snow] * 201)
+    frame = pd.DataFrame({"date": ["2024-01-01"], "snowfall_m": [0.1], "temperature_c": [-3.0]})
+    with pytest.raises(InputError, match="goes with weather files only"):
+        read_weather(frame, temperature=snow)
+
+
+def test_a_file_that_adds_nothing_is_told(written):
+    both = smet("TA HS", ["268.15 0.3"] * 3, step=24.0)
+    notes = read_stations([written(both, "a.smet"), written(both, "b.smet")]).notes
+    assert "b.smet adds nothing" in notes
