@@ -43,7 +43,7 @@ def file_mark(path: Path) -> tuple[int, str]:
     ...     path = Path(folder) / "a.csv"
     ...     _ = path.write_text("a\n1\n")
     ...     file_mark(path)
-    (4, '07b25cbc')
+    (4, '89c12400')
     """
     content = read_regular(path)
     return len(content), _checksum(content)

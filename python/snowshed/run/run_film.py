@@ -9,6 +9,7 @@ from typing import Any
 
 from snowshed._core import InputError
 from snowshed.io.film import Film
+from snowshed.io.json_file import is_number
 
 
 def run_film(path: Path, record: Mapping[str, Any]) -> Film:
@@ -51,7 +52,8 @@ def _check_mark(film: Film, known: Mapping[str, Any], *, finished: bool) -> None
 def _check_end(film: Film, record: Mapping[str, Any]) -> None:
     """Check by the times of the events that no frame is missing at the end."""
     events = record.get("finished_events")
-    times = [event.get("sim_time_s") for event in events or [] if isinstance(event, Mapping)]
+    facts = [event for event in events or [] if isinstance(event, Mapping)]
+    times = [float(one["sim_time_s"]) for one in facts if is_number(one.get("sim_time_s"))]
     if not film.whole or not film.frames:
         raise InputError(f"{film.path}: damaged: cut off, though the run is finished")
     if times and not math.isclose(film.frames[-1].time, math.fsum(times), rel_tol=1e-9):
