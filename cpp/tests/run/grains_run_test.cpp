@@ -103,6 +103,9 @@ double carried(const LoadingStresses& s) { return std::min(s.top_stress, s.botto
 TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   Scene s = scene();
   s.loading.resize(1);
+  GrainsSettings settings;  // some thousand steps
+  settings.threads = 1;
+  s.numerics = settings;
   Simulation sim(s);
   sim.begin_event();
   std::vector<double> largest{carried(sim.grains().stresses())};  // by row, of each step
@@ -118,10 +121,8 @@ TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   for (std::size_t row = 0; row < top.size(); ++row)
     EXPECT_EQ(std::min(top[row], bottom[row]), largest[row]) << row;
   EXPECT_EQ(top[0], column(sim, "top_stress_pa")[0]);
-  // Somewhere a step between two rows carries more than both, or there would be nothing to keep.
-  const auto at_rows = column(sim, "top_stress_pa");
-  EXPECT_GT(*std::max_element(largest.begin(), largest.end()), 0);
-  EXPECT_LT(at_rows.size(), std::size_t(sim.solver().counters().steps));
+  EXPECT_LT(2 * top.size(), std::size_t(sim.solver().counters().steps));
+  EXPECT_NE(top, column(sim, "top_stress_pa"));  // some steps carry more than the rows around them
 }
 
 TEST_F(GrainsRun, ACurveOfAVersionWithoutPeaksIsItsOwnPeak) {
