@@ -203,6 +203,19 @@ TEST_F(GrainsRun, LabelsInSeveralPlacesAreToldOrSplit) {
   EXPECT_EQ(split.solver().size(), 4u);
 }
 
+TEST_F(GrainsRun, FilesOfHolesThatClaimManyLabelsAreRefused) {
+  const Scene s = scene();
+  for (const auto& [shape, size] : {std::pair("(600, 600, 600)", std::uintmax_t(216000000)),
+                                    std::pair("(900, 900, 900)", std::uintmax_t(729000000))}) {
+    write_plainly(path("labels.npy"), npy_file(1, npy_header("|u1", shape), ""));
+    const auto head = std::filesystem::file_size(path("labels.npy"));
+    std::filesystem::resize_file(path("labels.npy"), head + size);
+    const std::string said = message_of<InputError>([&] { Simulation sim(s); });
+    EXPECT_NE(said.find("labels"), std::string::npos) << said;
+    EXPECT_EQ(said.find("no grain"), std::string::npos) << said;
+  }
+}
+
 TEST_F(GrainsRun, AnImageWithoutGrainsIsRefused) {
   const Scene s = scene();
   write_labels(std::vector<std::uint8_t>(edge * edge * edge, 0));
