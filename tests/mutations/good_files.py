@@ -251,7 +251,8 @@ def save_tiles(file: Path, voxels: Any) -> None:
 
 
 def save_imagej(file: Path, voxels: Any) -> None:
-    _save_tiff(file, voxels, imagej=True, metadata={"axes": "ZYX", "spacing": 5.0, "unit": "um"})
+    size = {"axes": "ZYX", "spacing": 50.0, "unit": "um"}
+    _save_tiff(file, voxels, imagej=True, resolution=(0.02, 0.02), metadata=size)
 
 
 def save_ome(file: Path, voxels: Any) -> None:

@@ -176,7 +176,7 @@ def carried_stress(curve: LoadingCurve, kind: str) -> Floats:
     grains next to it, which the sample's strength has no part in.
     """
     stress = stage_stress(curve, kind)
-    if kind not in ("compress", "stretch"):
+    if kind in ("shear", "penetrate"):
         return stress
     other = curve["bottom_stress_pa"]
     return np.asarray(np.minimum(stress, -other if kind == "stretch" else other))
