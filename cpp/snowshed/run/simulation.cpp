@@ -104,7 +104,7 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
     reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_, stop);
   const double lift = lift_of_next_slab(reseeding);
   SeededSnow snow = seed_next_event(lift, stop);
-  change_snow(reseeding, std::move(snow.batches));
+  change_snow(reseeding, std::move(snow.batches), stop);
   event_mass_ = snow.mass;
   laid_height_ += snow.height_on_panel;
   ++event_;
@@ -116,7 +116,7 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
 }
 
 SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) const {
-  if (scene_.uses<SlideSettings>()) return seeded(slide().seed());
+  if (scene_.uses<SlideSettings>()) return seeded(slide().seed(stop));
   if (scene_.uses<GrainsSettings>()) return seeded(grains().seed());
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
@@ -129,7 +129,9 @@ void Simulation::advance() {
 
 /// The only change that beginning an event makes to the particles, so that it is all or nothing.
 void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
-                             std::vector<ParticleBatch> added) try {
+                             std::vector<ParticleBatch> added, const StopRequest& stop) try {
+  if (!reseeding && scene_.uses<SlideSettings>())
+    return static_cast<SlideMethod&>(*solver_).release(added, stop);
   if (!reseeding) return solver_->add(added);
   added.insert(added.begin(), reseeding->batches.begin(), reseeding->batches.end());
   solver_->replace(added);

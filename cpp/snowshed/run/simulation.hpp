@@ -146,7 +146,8 @@ class Simulation {
   double lift_of_next_slab(const std::optional<Reseeding>&) const;
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
   SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
-  void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
+  void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added,
+                   const StopRequest& stop);
   void advance();
   void record();
   bool is_at_rest();

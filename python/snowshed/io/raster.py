@@ -15,6 +15,7 @@ from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.io.coordinate_systems import read_prj
 from snowshed.io.extras import require
+from snowshed.io.gdal_fence import fenced_rasterio
 from snowshed.io.paths import PathLike
 
 GEOTIFF = (".tif", ".tiff")
@@ -183,7 +184,7 @@ def _read_geotiff(path: Path) -> Raster:
         with warnings.catch_warnings():
             # A raster without a place on the map is refused below.
             warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
-            with rasterio.open(path, driver="GTiff") as source:
+            with fenced_rasterio(), rasterio.open(path, driver="GTiff") as source:
                 _check_band(source, path)
                 heights = source.read(1, masked=True).astype(np.float64).filled(np.nan)
                 transform, crs = source.transform, source.crs
