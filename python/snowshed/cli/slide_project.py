@@ -7,12 +7,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.same_command import same_command
 from snowshed.cli.slide_files import refuse_changed_areas, removing_copies, terrain_copy
 from snowshed.cli.terminal import say
+from snowshed.run.interrupt import deferred_interrupts
 from snowshed.scene.scene import ResolvedScene
 
 if TYPE_CHECKING:
@@ -52,7 +54,9 @@ def run_project(
         if max_time is not None:
             for simulation in simulations:
                 simulation.scene.set("events.max_time", max_time)
-        ready = [_resolved(simulation) for simulation in simulations]  # all before the first runs
+        ready = [_resolved(simulation) for simulation in simulations]
+        if not resume:
+            _check_others(simulations[1:], ready[1:])
         with _naming_this_command(folder):
             for number, simulation in enumerate(simulations):
                 results = folder if number == 0 else folder / simulation_name(simulation)
@@ -61,14 +65,25 @@ def run_project(
                 goes_on = resume and (number == 0 or (results / "scene.json").exists())
                 if goes_on:
                     refuse_changed_areas(ready[number], results, simulation.files)
-                with _of_the_ini(simulation):
+                with _of_the_ini(simulation), deferred_interrupts() as interrupt:
                     run_scene(ready[number], results, goes_on, quiet)
+                if interrupt.requested:  # while its pictures were drawn
+                    raise KeyboardInterrupt
                 _write_outputs(simulation, folder, results, ready[number], steps)
 
 
 def _resolved(simulation: AvaFrameSimulation) -> ResolvedScene:
     with _of_the_ini(simulation):
         return simulation.scene.resolve()
+
+
+def _check_others(
+    simulations: Sequence[AvaFrameSimulation], ready: Sequence[ResolvedScene]
+) -> None:
+    """Refuse what a later simulation cannot run with before the first has its results."""
+    for simulation, scene in zip(simulations, ready):
+        with _of_the_ini(simulation):
+            _core.Simulation(scene.json, scene.base_dir)
 
 
 @contextmanager

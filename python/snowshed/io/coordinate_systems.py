@@ -8,6 +8,7 @@ rasterio, of the extra snowshed[terrain]; it is given plain descriptions only
 from __future__ import annotations
 
 import importlib
+import re
 from pathlib import Path
 from typing import Any, Optional
 
@@ -18,6 +19,7 @@ from snowshed.io.limits import COORDINATE_SYSTEM
 from snowshed.io.plain_systems import first_part, plain_system
 
 DEGREES = ("EPSG:4326", "OGC:CRS84")
+OF_ETRS89 = re.compile(r'DATUM\["(ETRS89|ETRF|European_Terrestrial_Reference_System_1989)')
 ALLOWED = "allowed: WKT, a code such as EPSG:31287, a proj string without files"
 
 
@@ -71,7 +73,8 @@ def write_prj(raster: Path, words: str) -> None:
 def are_same(one: str, other: str) -> bool:
     """Return whether two names are of the same coordinate system on the map.
 
-    Compound systems are compared without their heights.
+    Compound systems are compared without their heights. National realisations of ETRS89, which
+    lie within centimetres, are taken as one: compound systems of a country often name its own.
 
     Examples
     --------
@@ -83,7 +86,9 @@ def are_same(one: str, other: str) -> bool:
     first, second = horizontal_system(one), horizontal_system(other)
     if first is None or second is None:
         return False
-    return bool(first == second) or _words(first) == _words(second)
+    if first == second or _words(first) == _words(second):
+        return True
+    return _is_of_etrs89(first) and _is_of_etrs89(second) and first.to_proj4() == second.to_proj4()
 
 
 def is_in_degrees(words: str) -> bool:
@@ -132,6 +137,10 @@ def system_of(words: str) -> Optional[Any]:
         return rasterio.crs.CRS.from_user_input(plain)
     except rasterio.errors.CRSError:
         return None
+
+
+def _is_of_etrs89(system: Any) -> bool:
+    return OF_ETRS89.search(str(system.to_wkt())) is not None
 
 
 def _rasterio() -> Optional[Any]:

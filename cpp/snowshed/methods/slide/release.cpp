@@ -304,8 +304,8 @@ double mass_per_particle(const SlideSettings& s, double cell) {
 
 void check_effort(const SlideSettings& s, const Terrain& terrain,
                   const std::vector<SlideArea>& areas) {
-  constexpr double most_particles = 2e6;     // they take a gigabyte and some seconds
-  constexpr double most_comparisons = 1e10;  // of a particle with a corner, some seconds
+  constexpr double most_particles = 2e6;    // they take a gigabyte and some seconds
+  constexpr double most_comparisons = 3e9;  // of a particle with a corner, some seconds
   const double cell = terrain.cell();
   double particles = 0, corners = 0;
   const HeightField* map = nullptr;  // all areas share one
