@@ -133,7 +133,7 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   const double lift = lift_of_next_slab(reseeding);
   SeededSnow snow = seed_next_event(lift, stop);
   std::vector<std::string> notes = check_placement_of(snow, reseeding);
-  change_snow(reseeding, std::move(snow.batches));
+  change_snow(reseeding, std::move(snow.batches), stop);
   event_mass_ = snow.mass;
   laid_height_ += snow.height_on_panel;
   ++event_;
@@ -146,13 +146,13 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
 }
 
 SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) const {
-  if (scene_.uses<SlideSettings>()) return seed_slide();
+  if (scene_.uses<SlideSettings>()) return seed_slide(stop);
   if (scene_.uses<GrainsSettings>()) return seeded(grains().seed());
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
 
-SeededSnow Simulation::seed_slide() const {
-  SeededSnow snow = seeded(slide().seed());
+SeededSnow Simulation::seed_slide(const StopRequest& stop) const {
+  SeededSnow snow = seeded(slide().seed(stop));
   const std::vector<OffTerrain> off =
       find_off_terrain(slide().terrain(), surroundings_.areas.release);
   for (std::size_t i = 0; i < off.size(); ++i)
@@ -213,7 +213,9 @@ void Simulation::advance() {
 
 /// The only change that beginning an event makes to the particles, so that it is all or nothing.
 void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
-                             std::vector<ParticleBatch> added) try {
+                             std::vector<ParticleBatch> added, const StopRequest& stop) try {
+  if (!reseeding && scene_.uses<SlideSettings>())
+    return static_cast<SlideMethod&>(*solver_).release(added, stop);
   if (!reseeding) return solver_->add(added);
   added.insert(added.begin(), reseeding->batches.begin(), reseeding->batches.end());
   solver_->replace(added);

@@ -164,12 +164,13 @@ class Simulation {
   double lift_of_next_slab(const std::optional<Reseeding>&) const;
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
   SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
-  SeededSnow seed_slide() const;
+  SeededSnow seed_slide(const StopRequest& stop) const;
   std::vector<std::string> check_placement_of(const SeededSnow&,
                                               const std::optional<Reseeding>&) const;
   std::vector<Vec3> positions() const;
-  void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
   void check_cost() const;
+  void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added,
+                   const StopRequest& stop);
   void advance();
   void record();
   bool is_at_rest();

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
 
@@ -17,7 +17,10 @@ WAYS = "give --terrain and --release, or --avaframe, or --example"
 
 @dataclass(frozen=True)
 class SlideFiles:
-    """Files of a slide, their bands, and the thickness of its release, m; None: not given."""
+    """Files of a slide, their bands, and the thickness of its release, m; None: not given.
+
+    `layers` are those of `snowshed.scene.builders.slide_scene`.
+    """
 
     terrain: Optional[Path]
     release: Optional[Path]
@@ -27,6 +30,7 @@ class SlideFiles:
     thickness: Optional[float]
     band: Optional[int] = None
     thickness_band: Optional[int] = None
+    layers: Mapping[str, str] = field(default_factory=dict)
 
     def any(self) -> bool:
         """Return whether there are any."""
@@ -80,6 +84,7 @@ class SlideFiles:
             thickness_raster=self.thickness_raster,
             entrainment=self.entrainment,
             resistance=self.resistance,
+            layers=self.layers,
             settings=SlideSettings.from_data(dict(settings)),
             ascii_copy=terrain_copy(folder),
             title=f"Slide on {self.terrain.name}",

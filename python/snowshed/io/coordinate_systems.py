@@ -1,12 +1,14 @@
 """Coordinate systems of maps: read, compared, and handed on beside ASCII grids.
 
 They are kept in words, such as "EPSG:31287" or WKT. What needs to know more than the words asks
-rasterio, of the extra snowshed[terrain].
+rasterio, of the extra snowshed[terrain]; it is given plain descriptions only
+(`snowshed.io.plain_systems`).
 """
 
 from __future__ import annotations
 
 import importlib
+import re
 from pathlib import Path
 from typing import Any, Optional
 
@@ -14,8 +16,11 @@ from snowshed._core import InputError
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
 from snowshed.io.limits import COORDINATE_SYSTEM
+from snowshed.io.plain_systems import first_part, plain_system
 
 DEGREES = ("EPSG:4326", "OGC:CRS84")
+OF_ETRS89 = re.compile(r'DATUM\["(ETRS89|ETRF|European_Terrestrial_Reference_System_1989)')
+ALLOWED = "allowed: WKT, a code such as EPSG:31287, a proj string without files"
 
 
 def read_prj(raster: Path) -> str:
@@ -27,36 +32,49 @@ def read_prj(raster: Path) -> str:
         If the file is no coordinate system, or one in degrees.
     """
     file = next((f for f in map(raster.with_suffix, (".prj", ".PRJ")) if f.is_file()), None)
-    if file is None:
-        return ""
-    text = read_input(file, COORDINATE_SYSTEM).decode("utf-8", errors="replace").strip()
+    text = "" if file is None else read_system(file)
     if not text:
         return ""
-    system = _system(text)
+    system = system_of(text)
     if system is None and _rasterio() is not None:
-        raise InputError(f"{file}: not a coordinate system")
+        raise InputError(f"{file}: not a coordinate system; {ALLOWED}")
     words = text if system is None else _words(system)
     if is_in_degrees(words):
         raise InputError(f"{file}: its map is in degrees ({words}); project it to metres first")
     return words
 
 
+def read_system(file: Path) -> str:
+    """Return the description in a .prj; empty where the file is.
+
+    Raises
+    ------
+    InputError
+        If it holds anything else, such as an address or the name of a file.
+    """
+    text = read_input(file, COORDINATE_SYSTEM).decode("utf-8-sig", errors="replace").strip()
+    if text and not plain_system(text):
+        raise InputError(f"{file}: not a coordinate system; {ALLOWED}")
+    return text
+
+
 def write_prj(raster: Path, words: str) -> None:
     """Write the .prj of a raster; nothing where its coordinate system is not known."""
-    if not words:
-        return
-    system = _system(words)
+    system = horizontal_system(words)
     if system is not None:
         text = str(system.to_wkt(version="WKT1_ESRI"))
-    elif words.lstrip().upper().startswith(("PROJCS", "PROJCRS", "COMPD")):
-        text = words
+    elif plain_system(words).upper().startswith(("PROJCS", "PROJCRS", "COMPD")):
+        text = first_part(words)
     else:
         return  # a name that only rasterio can put into WKT
     write_text(raster.with_suffix(".prj"), text + "\n")
 
 
 def are_same(one: str, other: str) -> bool:
-    """Return whether two names are of the same coordinate system.
+    """Return whether two names are of the same coordinate system on the map.
+
+    Compound systems are compared without their heights. National realisations of ETRS89, which
+    lie within centimetres, are taken as one: compound systems of a country often name its own.
 
     Examples
     --------
@@ -65,10 +83,12 @@ def are_same(one: str, other: str) -> bool:
     """
     if one.casefold() == other.casefold():
         return True
-    first, second = _system(one), _system(other)
+    first, second = horizontal_system(one), horizontal_system(other)
     if first is None or second is None:
         return False
-    return bool(first == second) or _words(first) == _words(second)
+    if first == second or _words(first) == _words(second):
+        return True
+    return _is_of_etrs89(first) and _is_of_etrs89(second) and first.to_proj4() == second.to_proj4()
 
 
 def is_in_degrees(words: str) -> bool:
@@ -79,35 +99,54 @@ def is_in_degrees(words: str) -> bool:
     >>> is_in_degrees("EPSG:4326")
     True
     """
-    if words.upper() in DEGREES or words.lstrip().upper().startswith(("GEOGCS", "GEOGCRS")):
+    plain = first_part(plain_system(words)).upper()
+    if plain in DEGREES or plain.startswith(("GEOGCS", "GEOGCRS")):
         return True
-    system = _system(words) if words else None
+    system = horizontal_system(words)
     return system is not None and bool(system.is_geographic)
 
 
 def is_in_feet(words: str) -> bool:
-    """Return whether a coordinate system is known to be in feet."""
-    system = _system(words) if words else None
+    """Return whether the map of a coordinate system is known to be in feet."""
+    system = horizontal_system(words)
     if system is None or system.is_geographic:
         return False
     return "foot" in str(system.linear_units).lower() or "feet" in str(system.linear_units).lower()
+
+
+def horizontal_system(words: str) -> Optional[Any]:
+    """Return rasterio's view of a coordinate system without its heights, as `system_of` does."""
+    system = system_of(words)
+    if system is None:
+        return None
+    wkt = str(system.to_wkt())
+    horizontal = first_part(wkt)
+    return system if horizontal == wkt else system_of(horizontal)
+
+
+def system_of(words: str) -> Optional[Any]:
+    """Return rasterio's view of a coordinate system; None if it is not there or knows none.
+
+    Descriptions that are not plain (`snowshed.io.plain_systems`) are none.
+    """
+    rasterio = _rasterio()
+    plain = plain_system(words)
+    if rasterio is None or not plain:
+        return None
+    try:
+        return rasterio.crs.CRS.from_user_input(plain)
+    except rasterio.errors.CRSError:
+        return None
+
+
+def _is_of_etrs89(system: Any) -> bool:
+    return OF_ETRS89.search(str(system.to_wkt())) is not None
 
 
 def _rasterio() -> Optional[Any]:
     try:
         return importlib.import_module("rasterio")
     except ImportError:
-        return None
-
-
-def _system(words: str) -> Optional[Any]:
-    """Return rasterio's view of a coordinate system; None if it is not there or knows none."""
-    rasterio = _rasterio()
-    if rasterio is None:
-        return None
-    try:
-        return rasterio.crs.CRS.from_user_input(words)
-    except rasterio.errors.CRSError:
         return None
 
 

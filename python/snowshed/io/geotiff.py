@@ -19,6 +19,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans, Floats
 from snowshed.io.extras import require
+from snowshed.io.gdal_fence import fenced_rasterio
 from snowshed.io.input_file import read_regular
 from snowshed.io.limits import RASTER_BLOCK, RASTER_CELLS
 from snowshed.io.messages import quoted
@@ -96,7 +97,7 @@ def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any
     """Open the bytes of a GeoTIFF, beside which there are those of other files by their endings."""
     rasterio: Any = require("rasterio", "terrain", "reading a GeoTIFF")
     folder = str(uuid.uuid4())
-    with ExitStack() as stack:
+    with fenced_rasterio(), ExitStack() as stack:
         try:
             stack.enter_context(warnings.catch_warnings())
             # A raster without a place on the map is refused by its reader.

@@ -7,7 +7,7 @@ than a gigabyte and some seconds.
 
 from __future__ import annotations
 
-KB, MB = 1 << 10, 1 << 20
+KB, MB, GB = 1 << 10, 1 << 20, 1 << 30
 
 #: Bytes of what people write: scenes, studies, lists, and of a table. A table is in memory three
 #: times while it is read.
@@ -56,3 +56,24 @@ VOXELS_AS_TEXT = 64 * MB
 #: How many times as large an image may become when it is unpacked, if it is larger than this then.
 #: Segmented snow shrinks to a tenth or a fiftieth; what shrinks more shows nothing.
 UNPACKED_RATIO, UNPACKED_FREELY = 200, 256 * MB
+#: Polygons of a file, and corners of all of them, each of which costs some 0.15 ms in a slide.
+POLYGONS, CORNERS = 10_000, 50_000
+#: Rings of one polygon: GDAL compares every ring with every other.
+RINGS = 5_000
+#: Bytes of a GeoJSON file; as objects of Python it takes up to 25 times as much.
+GEOJSON = 32 * MB
+#: Bytes of a value in a GeoPackage, and of one that is being written elsewhere, which is copied.
+GEOPACKAGE_VALUE, GEOPACKAGE_COPY = 64 * MB, 1024 * MB
+#: Instructions of SQLite while a GeoPackage is read, some seconds of them: ten thousand columns and
+#: a hundred thousand polygons take a tenth.
+SQL_STEPS = 100_000_000
+#: Layers, and columns of a layer.
+LAYERS = 1000
+#: Files of an AvaFrame project, bytes of all of them, which are copied, and depth of its folders.
+PROJECT_FILES, PROJECT_BYTES, PROJECT_DEPTH = 10_000, 2 * GB, 8
+#: Bytes of an ini.
+INI = MB
+#: Times at which maps are saved beside the end, and cells of all these maps: 20 bytes each on disk.
+SAVED_TIMES, SAVED_CELLS = 10_000, 1_000_000_000
+#: Cells of terrain that is resampled, which takes some 50 bytes each.
+RESAMPLED_CELLS = 10_000_000

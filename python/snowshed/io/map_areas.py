@@ -5,24 +5,26 @@ They need the extra snowshed[terrain].
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
 
+import numpy as np
+
 from snowshed._core import InputError
 from snowshed.io.coordinate_systems import is_in_degrees
 from snowshed.io.extras import require
-from snowshed.io.messages import quoted
-from snowshed.io.number_text import number_in
+from snowshed.io.messages import shortened
+from snowshed.io.notes import tell
 from snowshed.io.paths import PathLike
+from snowshed.io.polygons import read_layer
+from snowshed.io.polygons.layer import PolygonLayer
+from snowshed.io.thickness_field import ThicknessField, thickness_fields, thickness_of
 
 Ring = Sequence[Sequence[float]]
 
-#: Names under which files give the thickness of the snow, m; AvaFrame's first.
-THICKNESS = ("thickness", "d0")
-LARGEST = 100_000  # polygons of a file
+LONGEST_NAME = 200  # characters
 
 
 @dataclass(frozen=True)
@@ -53,84 +55,99 @@ class MapArea:
     file: str = ""
 
 
-def read_areas(path: PathLike) -> list[MapArea]:
+def read_areas(
+    path: PathLike,
+    layer: Optional[str] = None,
+    *,
+    option: str = "--layer",
+    with_thickness: bool = True,
+) -> list[MapArea]:
     """Return the polygons of a file; parts of a feature become areas of their own.
+
+    Parameters
+    ----------
+    path
+        A GeoPackage, a shapefile (its .shp) or GeoJSON, on a projected map.
+    layer
+        Name of the layer of a GeoPackage; None: the only one.
+    option
+        What names a layer, for the message where there are several.
+    with_thickness
+        Whether the thickness of snow is read; else it is None.
 
     Raises
     ------
     InputError
-        If the file holds no polygons, one crosses itself, its coordinates are in degrees, or the
-        libraries that read it are missing.
+        If the file holds no polygons, has several layers, one polygon crosses itself, its
+        coordinates are in degrees, or the libraries that read it are missing.
     OSError
         If there is no such file.
     """
     path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(2, "No such file or directory", str(path))
-    pyogrio: Any = require("pyogrio", "terrain", "reading polygons")
     shapely: Any = require("shapely", "terrain", "reading polygons")
-    try:
-        meta, _, shapes, columns = pyogrio.raw.read(path, max_features=LARGEST + 1)
-        shapes = [shapely.from_wkb(shape) for shape in shapes]
-    except (
-        pyogrio.errors.DataSourceError,
-        pyogrio.errors.DataLayerError,
-        shapely.errors.ShapelyError,
-        ValueError,
-    ) as error:
-        raise InputError(f"{path}: not a file of polygons: {error}") from None
-    if len(shapes) > LARGEST:
-        raise InputError(f"{path}: more than {LARGEST} polygons")
-    crs = meta["crs"] or ""
-    _check_projected(crs, path, pyogrio)
-    records = [dict(zip(meta["fields"], row)) for row in zip(*columns)] or [{}] * len(shapes)
-    areas = [
-        area
-        for number, (shape, record) in enumerate(zip(shapes, records), 1)
-        for area in _areas_of(shape, record, number, crs, path, shapely)
-    ]
+    found = read_layer(path, layer, option)
+    if is_in_degrees(found.crs):
+        raise InputError(
+            f"{path}: its coordinates are in degrees ({found.crs}); project it to metres"
+        )
+    fields = thickness_fields(found.fields, str(path)) if with_thickness else []
+    _check_shapes(found.shapes, path, shapely)
+    areas = list(_areas(found, fields, path, shapely))
     if not areas:
         raise InputError(f"{path}: holds no polygon")
+    if not found.crs:
+        tell(f"{path}: has no coordinate system; it is taken to be that of the terrain")
     return areas
 
 
-def _check_projected(crs: str, path: Path, pyogrio: Any) -> None:
-    if is_in_degrees(crs):
-        raise InputError(f"{path}: its coordinates are in degrees ({crs}); project it to metres")
-
-
-def _areas_of(
-    shape: Any, record: dict[str, Any], number: int, crs: str, path: Path, shapely: Any
+def _areas(
+    layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path, shapely: Any
 ) -> Iterator[MapArea]:
-    where = f"{path}, feature {number}"
-    if shape is None or shape.geom_type not in ("Polygon", "MultiPolygon"):
-        raise InputError(f"{where}: not a polygon")
-    if not shape.is_valid:
-        reason = shapely.is_valid_reason(shape)
-        raise InputError(f"{where}: no valid outline: {reason}; draw it without crossings")
-    named = {str(key).lower(): value for key, value in record.items()}
-    name = str(named.get("name") or f"area {number}")
-    thickness = _thickness(named, where)
-    for part in shapely.get_parts(shape):
-        if part.is_empty:
-            continue
-        holes = tuple(_ring(hole) for hole in part.interiors)
-        yield MapArea(name, _ring(part.exterior), holes, thickness, crs, str(path))
+    """Return the areas, the parts of each feature in its place."""
+    named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
+    facts = [
+        (
+            shortened(str(record.get(named) or f"area {number}"), LONGEST_NAME),
+            thickness_of(fields, record, f"{path}, feature {number}"),
+        )
+        for number, record in enumerate(layer.records, 1)
+    ]
+    parts, owners = shapely.get_parts(layer.shapes, return_index=True)
+    rings = _rings(parts, shapely)
+    for part, owner in enumerate(owners.tolist()):
+        if rings[part]:
+            name, thickness = facts[owner]
+            outline, *holes = rings[part]
+            yield MapArea(name, outline, tuple(holes), thickness, layer.crs, str(path))
 
 
-def _ring(ring: Any) -> Ring:
-    return [(float(x), float(y)) for x, y, *_ in ring.coords[:-1]]
+def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:
+    """Return the rings of each polygon, the outline first; none where it is empty.
+
+    Corners that repeat the one before are left out, as programs of maps pass over them.
+    """
+    rings, owners = shapely.get_rings(polygons, return_index=True)
+    corners, of_ring = shapely.get_coordinates(rings, return_index=True)
+    repeated = np.zeros(len(corners), dtype=bool)
+    repeated[1:] = (of_ring[1:] == of_ring[:-1]) & (corners[1:] == corners[:-1]).all(axis=1)
+    corners, of_ring = corners[~repeated], of_ring[~repeated]
+    x, y = corners.T.tolist()
+    points = list(zip(x, y))
+    found: list[list[Ring]] = [[] for _ in polygons]
+    end = 0
+    for owner, count in zip(owners.tolist(), np.bincount(of_ring, minlength=len(rings)).tolist()):
+        found[owner].append(points[end : end + count - 1])
+        end += count
+    return found
 
 
-def _thickness(named: dict[str, Any], where: str) -> Optional[float]:
-    for key in THICKNESS:
-        value = named.get(key)
-        if value is None or str(value).strip() in ("", "None", "nan"):
-            continue
-        number = number_in(str(value))
-        if math.isnan(number):
-            raise InputError(f"{where}: {key} {quoted(str(value))} is not a number")
-        if not number > 0:
-            raise InputError(f"{where}: {key} is {number:g} m; give one above 0")
-        return number
-    return None
+def _check_shapes(shapes: Sequence[Any], path: Path, shapely: Any) -> None:
+    """Refuse what are no polygons, and polygons that cross themselves."""
+    kinds, valid = shapely.get_type_id(shapes), shapely.is_valid(shapes)
+    for number, (kind, is_valid) in enumerate(zip(kinds, valid), 1):
+        where = f"{path}, feature {number}"
+        if kind not in (shapely.GeometryType.POLYGON, shapely.GeometryType.MULTIPOLYGON):
+            raise InputError(f"{where}: not a polygon")
+        if not is_valid:
+            reason = shapely.is_valid_reason(shapes[number - 1])
+            raise InputError(f"{where}: no valid outline: {reason}; draw it without crossings")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from snowshed.io.atomic import replacing
-from snowshed.io.coordinate_systems import write_prj
+from snowshed.io.coordinate_systems import system_of, write_prj
 from snowshed.io.extras import require
 from snowshed.io.paths import PathLike
 from snowshed.io.raster import Raster, write_ascii_grid
@@ -46,7 +46,7 @@ def _write_geotiff(file: Path, raster: Raster) -> None:
         "width": columns,
         "count": 1,
         "dtype": "float64",
-        "crs": raster.crs or None,
+        "crs": system_of(raster.crs),
         "transform": transform,
         "nodata": np.nan,
         "compress": "lzw",

@@ -21,24 +21,25 @@ import hashlib
 import io
 import json
 import math
-import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain, product
 from pathlib import Path
 from typing import Any
 
 import snowshed._core as _core
 from snowshed.io.arrays import Floats
 from snowshed.io.atomic import write_text
-from snowshed.io.printable import csv_cell
+from snowshed.io.printable import csv_cell, printable
 from snowshed.io.raster import GEOTIFF, Raster, read_raster
 from snowshed.io.raster_output import write_raster
 from snowshed.methods.slide_maps import SlideMaps
 from snowshed.run.slides import SlideSummary, slide_maps
-from snowshed.scene.builders.avaframe import RASTERS, AvaFrameSimulation
+from snowshed.scene.builders.avaframe import AvaFrameSimulation
 from snowshed.scene.scene import ResolvedScene
 
 MODULES = ("com1DFA", "com5SnowSlide")
+STEPS_AT_ONCE = 20
 #: Settings under AvaFrame's names.
 NUMERICS: Mapping[str, str] = {
     "dt": "time_step",
@@ -92,21 +93,23 @@ def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results
     summary = SlideSummary(**json.loads((results / "slide.json").read_text(encoding="utf-8")))
     time_step = float(_data(ready)["numerics"]["time_step"])
     last = round(summary.duration_s / time_step)
+    ending = ".tif" if simulation.terrain.suffix.lower() in GEOTIFF else ".asc"
+    peaks = [folder / "Outputs" / module / "peakFiles" for module in MODULES]
+    for each in peaks:
+        (each / "timeSteps").mkdir(parents=True, exist_ok=True)
+    final = _final_maps(results, ready)
+    kinds = simulation.project.result_types
     # AvaFrame names the end by the step after it.
-    maps = {(last + 1) * time_step: _final_maps(results, ready)}
-    maps.update(_earlier_maps(simulation, ready, last))
-    ending = _ending(simulation.folder)
+    at_end = [((last + 1) * time_step, final)]
+    for time, fields in chain(_earlier_maps(simulation, ready, last), at_end):
+        for each, kind in product(peaks, kinds):
+            write_raster(each / "timeSteps" / f"{name}_{kind}_t{time:.2f}{ending}", fields[kind])
     configuration = _configuration(simulation, ready)
-    for module in MODULES:
-        outputs = folder / "Outputs" / module
-        peaks, moments = outputs / "peakFiles", outputs / "peakFiles" / "timeSteps"
-        moments.mkdir(parents=True, exist_ok=True)
-        for kind in simulation.project.result_types:
-            write_raster(peaks / f"{name}_{kind}{ending}", maps[(last + 1) * time_step][kind])
-            for time, fields in maps.items():
-                write_raster(moments / f"{name}_{kind}_t{time:.2f}{ending}", fields[kind])
-        write_text(outputs / f"mass_{name}.txt", _mass_text(summary))
-        _write_configuration(outputs / "configurationFiles", name, configuration, summary, last)
+    for each in peaks:
+        for kind in kinds:
+            write_raster(each / f"{name}_{kind}{ending}", final[kind])
+        write_text(each.parent / f"mass_{name}.txt", _mass_text(summary))
+        _write_configuration(each.parent / "configurationFiles", name, configuration, summary, last)
     return name
 
 
@@ -121,47 +124,32 @@ def _final_maps(results: Path, ready: ResolvedScene) -> dict[str, Raster]:
 
 def _earlier_maps(
     simulation: AvaFrameSimulation, ready: ResolvedScene, last: int
-) -> dict[float, dict[str, Raster]]:
-    """Return the maps by time and type at the times that are asked for, but the end."""
+) -> Iterator[tuple[float, dict[str, Raster]]]:
+    """Return the maps by type at the times that are asked for, but the end; one time after another.
+
+    They are made as they are asked for: a terrain's maps at thousands of times fit into no memory.
+    """
     time_step = float(_data(ready)["numerics"]["time_step"])
     steps = {_step_at(time, time_step): time for time in simulation.project.saved_times}
-    steps = {step: time for step, time in steps.items() if step <= last}
-    if not steps:
-        return {}
     crs = _crs(ready)
-    return {
-        steps[step]: {
-            kind: maps.raster(values, crs) for kind, values in _fields(ready, maps).items()
-        }
-        for step, maps in maps_at(ready, list(steps)).items()
-    }
+    for step, maps in maps_at(ready, [step for step in steps if step <= last]):
+        fields = _fields(ready, maps)
+        yield steps[step], {kind: maps.raster(values, crs) for kind, values in fields.items()}
 
 
-def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> dict[int, SlideMaps]:
-    """Return the maps of a slide after some numbers of steps, in ascending order."""
+def maps_at(ready: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int, SlideMaps]]:
+    """Return the maps of a slide after some numbers of steps, one after another."""
+    if not steps:
+        return
     simulation = _core.Simulation(ready.json, ready.base_dir)
     simulation.begin_event()
-    found: dict[int, SlideMaps] = {}
     done = 0
     for step in sorted(steps):
-        simulation.step(step - done)
-        done = step
-        found[step] = slide_maps(simulation)
-    return found
-
-
-def copy_inputs(project: Path, folder: Path) -> None:
-    """Copy a project's Inputs beside the outputs, so that tools find the terrain and their lines.
-
-    What AvaFrame keeps there for itself (remeshedRasters) is left out.
-    """
-    if (folder / "Inputs").resolve() != (project / "Inputs").resolve():
-        shutil.copytree(
-            project / "Inputs",
-            folder / "Inputs",
-            ignore=shutil.ignore_patterns("remeshedRasters"),
-            dirs_exist_ok=True,
-        )
+        while done < step:  # an interrupt is heard between the parts
+            part = min(step - done, STEPS_AT_ONCE)
+            simulation.step(part)
+            done += part
+        yield step, slide_maps(simulation)
 
 
 def _name(simulation: AvaFrameSimulation, ready: ResolvedScene) -> str:
@@ -176,12 +164,6 @@ def _name(simulation: AvaFrameSimulation, ready: ResolvedScene) -> str:
 def _step_at(time: float, time_step: float) -> int:
     """Return the first step that ends at a time or after it."""
     return math.ceil((time - 1e-8) / time_step)
-
-
-def _ending(project: Path) -> str:
-    inputs = project / "Inputs"
-    (terrain,) = (file for pattern in RASTERS for file in inputs.glob(pattern))
-    return ".tif" if terrain.suffix.lower() in GEOTIFF else ".asc"
 
 
 def _data(ready: ResolvedScene) -> dict[str, Any]:
@@ -265,7 +247,9 @@ def _write_configuration(
     for place in ("", "configurationFilesDone", "configurationFilesLatest"):
         (folder / place).mkdir(parents=True, exist_ok=True)
     text = "".join(
-        f"[{section}]\n" + "".join(f"{key} = {value}\n" for key, value in keys.items()) + "\n"
+        f"[{section}]\n"
+        + "".join(f"{key} = {_on_one_line(value)}\n" for key, value in keys.items())
+        + "\n"
         for section, keys in sections.items()
     )
     write_text(folder / f"{name}.ini", text)
@@ -278,6 +262,10 @@ def _write_configuration(
     row.update(dict.fromkeys(TIMINGS, ""))
     for table in ("allConfigurations.csv", "latestSims.csv"):
         _add_row(folder / table, row)
+
+
+def _on_one_line(value: str) -> str:
+    return printable(" ".join(value.split("\n")))
 
 
 def _add_row(file: Path, row: Mapping[str, str]) -> None:

@@ -36,7 +36,8 @@ class InterruptRequest:
 def deferred_interrupts() -> Iterator[InterruptRequest]:
     """Turn Ctrl-C (SIGINT), SIGTERM and SIGHUP into a request; a second one acts at once.
 
-    A signal that is ignored stays so: SIGHUP of a command started with nohup.
+    A signal that is ignored stays so: SIGHUP of a command started with nohup. Where one block is
+    within another, both are requested to stop.
 
     Outside the main thread, which alone may handle signals, nothing is changed.
     """
@@ -55,6 +56,11 @@ def deferred_interrupts() -> Iterator[InterruptRequest]:
     def note(number: int, frame: Optional[FrameType]) -> None:
         request.requested = True
         restore()
+        outer = before[number]
+        if callable(outer) and getattr(outer, "defers", False):
+            outer(number, frame)
+
+    note.defers = True  # type: ignore[attr-defined]
 
     for number in before:
         signal.signal(number, note)

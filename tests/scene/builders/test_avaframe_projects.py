@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from slide_files import WITH_HOLE, box, plane, write_polygons, write_project
 
-from snowshed import InputError
+from snowshed import InputError, _core
 from snowshed.io.raster import read_raster
 from snowshed.scene.builders import avaframe_scene
 from snowshed.scene.builders.avaframe import avaframe_simulations
@@ -59,6 +59,67 @@ def test_each_law_of_friction_has_a_coefficient_of_its_own(tmp_path):
 def test_bad_inis_are_named(tmp_path, ini, message):
     with pytest.raises(InputError, match=re.escape(message)):
         avaframe_scene(write_project(tmp_path, ini))
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("meshCellSize = nan", "meshcellsize: 'nan'; allowed: at least 0 and at most 1e+06"),
+        ("meshCellSize = -5", "meshcellsize: '-5'; allowed: at least 0"),
+        ("meshCellSize = 1e-300", "meshcellsize: /numerics/cell: 1e-300 m makes inf cells"),
+        ("meshCellSize = 0.001", "meshcellsize: /numerics/cell: 0.001 m makes"),
+        ("dt = 1e-300", "dt: '1e-300'; allowed: at least 1e-06 and at most 1"),
+        ("dt = inf", "dt: 'inf'; allowed: at least 1e-06 and at most 1"),
+        ("rho = 0", "rho: '0'; allowed: above 0 and at most 1000"),
+        ("muvoellmy = nan", "muvoellmy: 'nan'; allowed: at least 0"),
+        ("tEnd = inf", "tend: 'inf'; allowed: above 0 and at most 1e+09"),
+        ("tEnd = nan", "tend: 'nan'; allowed: above 0"),
+        ("tSteps = 0:inf", "tsteps: '0:inf' is neither start:interval nor times"),
+        ("tSteps = nan:1", "tsteps: 'nan:1' is neither"),
+        ("tSteps = 1|inf", "tsteps: '1|inf' is neither"),
+        ("tSteps = 0:1e-9", "tsteps: '0:1e-9' are 4e+11 times until 400 s; allowed: 10000"),
+        ("tSteps = 0:1e-320", "tsteps: '0:1e-320' are inf times until 400 s"),
+        ("tSteps = " + "1|" * 20000 + "1", "are 2e+04 times until 400 s"),
+        ("relThFromFile = False\nrelTh = nan", "relth: 'nan'; allowed: above 0 and at most 100"),
+        ("entThFromFile = False\nentTh = -1", "entth: '-1'; allowed: above 0 and at most 100"),
+        ("simTypeList = \x1b[31m", r"simtypelist: '\x1b[31m' is not available"),
+        ("\x1b[31m = 1", "?[31m: none of the keys that are known here"),
+    ],
+)
+def test_numbers_that_cannot_be_are_refused_at_their_line(tmp_path, line, message):
+    project = write_project(tmp_path, f"tAnything = 1\n{line}\n".replace("tAnything", "seed"))
+    with pytest.raises(InputError, match=re.escape(message)) as refused:
+        avaframe_scene(project, ascii_copy=tmp_path / "copy.asc")
+    number = 4 + line.count("\n")
+    assert f"com5SnowSlideCfg.ini, line {number}: " in str(refused.value)
+    assert not (tmp_path / "copy.asc").exists()
+
+
+def test_a_setting_that_the_scene_refuses_is_located(tmp_path):
+    project = write_project(tmp_path, "meshCellSize = 2\ndeltaTh = 1e-12\n")
+    (simulation,) = avaframe_simulations(project)
+    ready = simulation.scene.resolve()
+    with pytest.raises(InputError, match=r"1e-12 m makes .* particles; at most 2e") as refused:
+        _core.Simulation(ready.json, ready.base_dir)
+    located = simulation.project.located(refused.value)
+    assert "com5SnowSlideCfg.ini, line 4: deltath: /numerics/layer_thickness" in str(located)
+
+
+def test_maps_that_would_fill_the_disk_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("snowshed.scene.builders.avaframe.SAVED_CELLS", 10_000)
+    project = write_project(tmp_path, "tSteps = 0|1\n")
+    assert avaframe_simulations(project)
+    write_project(tmp_path, "tSteps = 0|1|2\n")
+    with pytest.raises(InputError, match=r"line 3: tsteps: 9 maps have 1\.08e\+04 cells"):
+        avaframe_simulations(project)
+
+
+def test_an_ini_that_is_too_long_is_refused(tmp_path):
+    project = write_project(tmp_path, "rho = 200\n")
+    ini = project / "Inputs/CFGs/com5SnowSlideCfg.ini"
+    ini.write_text(ini.read_text() + "#\n" * 600_000)
+    with pytest.raises(InputError, match="longer than 1 MB"):
+        avaframe_scene(project)
 
 
 def test_an_ini_without_sections_is_none(tmp_path):

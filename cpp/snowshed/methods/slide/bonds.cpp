@@ -15,16 +15,19 @@ constexpr double longest_ratio = 1.1;
 
 class MapPoints {
  public:
-  MapPoints(const SlideParticles& particles, std::size_t begin, double reach)
-      : points_(points_of(particles, begin)), grid_(points_, reach), reach_(reach) {}
+  MapPoints(const SlideParticles& particles, std::size_t begin, double reach,
+            const StopRequest& stop)
+      : points_(points_of(particles, begin)), grid_(points_, reach, stop), reach_(reach) {}
 
   /// Calls visit(triangle, longest side) for the Delaunay triangles with no side beyond the reach,
   /// each once. A triangle belongs to the triangulation where no other point lies within its
   /// circumscribed circle.
   template <class Visit>
-  void for_each_triangle(Visit visit) const {
+  void for_each_triangle(Visit visit, const StopRequest& stop) const {
+    StopCheck give_up(stop);
     std::vector<std::uint32_t> near;
     for (std::uint32_t a = 0; a < points_.size(); ++a) {
+      give_up();
       near.clear();
       grid_.for_each_near(points_[a], [&](std::uint32_t b, const Vec3& p) {
         if (b > a && (p - points_[a]).norm() <= reach_) near.push_back(b);
@@ -125,19 +128,21 @@ class PairSet {
 }  // namespace
 
 Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double spacing,
-                    const std::vector<SlideArea>* areas) {
+                    const std::vector<SlideArea>* areas, const StopRequest& stop) {
+  StopCheck give_up(stop);
   Bonds bonds;
   if (particles.size() < begin + 3) return bonds;
-  const MapPoints points(particles, begin, longest_ratio * spacing * (1 + 1e-6));
+  const MapPoints points(particles, begin, longest_ratio * spacing * (1 + 1e-6), stop);
   std::vector<std::pair<Triangle, double>> triangles;
   points.for_each_triangle(
-      [&](const Triangle& t, double longest) { triangles.push_back({t, longest}); });
+      [&](const Triangle& t, double longest) { triangles.push_back({t, longest}); }, stop);
   double shortest = spacing;
   for (const auto& [t, longest] : triangles) shortest = std::min(shortest, longest);
 
   PairSet known(particles.size() - begin);
   const auto connect = [&](std::uint32_t a, std::uint32_t b) {
     if (!known.insert(a, b)) return;
+    give_up();
     const std::size_t i = begin + a, j = begin + b;
     if (areas &&
         crosses_outline(*areas, {particles.x[i], particles.y[i]}, {particles.x[j], particles.y[j]}))

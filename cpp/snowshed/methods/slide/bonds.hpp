@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/particles.hpp"
 #include "snowshed/methods/slide/settings.hpp"
@@ -31,8 +32,9 @@ struct Bonds {
 /// Returns bonds along the edges of the Delaunay triangulation of the particles from `begin` on, as
 /// seen from above. Only triangles count whose longest side is at most 1.1 times the shortest of
 /// all the longest sides. With `areas`, bonds that cross the outline of one of them are left out.
+/// Throws Stopped on request.
 Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double spacing,
-                    const std::vector<SlideArea>* areas);
+                    const std::vector<SlideArea>* areas, const StopRequest& stop = {});
 
 /// Removes the bonds of particles that are gone and renumbers the rest: `new_place[i]` is where
 /// particle i is stored now, `gone` where it is not.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "snowshed/core/errors.hpp"
@@ -58,7 +59,9 @@ double projected_share(const Terrain& terrain, const std::vector<double>& thickn
 }
 
 std::vector<ParticleBatch> seed_as_avaframe(const SlideSettings& s, const Terrain& terrain,
-                                            const std::vector<SlideArea>& areas) {
+                                            const std::vector<SlideArea>& areas,
+                                            const StopRequest& stop) {
+  StopCheck give_up(stop);
   const double cell = terrain.cell();
   const std::vector<double> thickness = thickness_at_nodes(areas, terrain, Reach::one_cell);
   const double share = projected_share(terrain, thickness);
@@ -82,6 +85,7 @@ std::vector<ParticleBatch> seed_as_avaframe(const SlideSettings& s, const Terrai
       const double mass = terrain.node(column, row).area * h * s.density / points;
       for_lattice_points_near(
           column, row, cell, lattice_side(cell * cell, points), [&](double x, double y) {
+            give_up();
             const bool kept = std::any_of(outlines.begin(), outlines.end(),
                                           [&](const Ring& ring) { return contains(ring, {x, y}); });
             if (kept) place_on_ground(terrain, x, y, mass, batch);
@@ -124,6 +128,21 @@ double thickness_at(const SlideArea& area, double x, double y) {
   const int column = std::clamp(node_of(x, m.west, m.cell), 0, m.columns - 1);
   const int row = std::clamp(node_of(y, m.south, m.cell), 0, m.rows - 1);
   return m.height(column, row);
+}
+
+/// The snow of a raster of thickness: the thickest, m, and that of all its cells, m3.
+struct SnowOfMap {
+  double thickest = 0, volume = 0;
+};
+
+SnowOfMap snow_of(const HeightField& map) {
+  SnowOfMap snow;
+  for (const double h : map.heights)
+    if (h > 0) {
+      snow.thickest = std::max(snow.thickest, h);
+      snow.volume += h * map.cell * map.cell;
+    }
+  return snow;
 }
 
 /// The mean of a map's thickness over an area. Throws where it does not say it everywhere.
@@ -262,7 +281,8 @@ void refuse_overlap(const Terrain& terrain, const std::vector<SlideArea>& areas,
 }
 
 ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const SlideArea& area,
-                        std::size_t index) {
+                        std::size_t index, const StopRequest& stop) {
+  StopCheck give_up(stop);
   const double cell = terrain.cell();
   const Ground ground = ground_under(terrain, area.polygon);
   const double thickness = mean_thickness(area, terrain, index);
@@ -274,6 +294,7 @@ ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const Sl
   double seeded = 0;
   for_lattice_points(area.polygon.outline, centroid(area.polygon.outline), ground,
                      lattice_side(cell * cell, points), [&](double x, double y) {
+                       give_up();
                        const GridPlace p = terrain.place(x, y);
                        if (!p.inside() || !contains(area.polygon, {x, y})) return;
                        const double share = thickness_at(area, x, y) / terrain.normal(p).z();
@@ -303,6 +324,39 @@ double mass_per_particle(const SlideSettings& s, double cell) {
   return s.density * cell * cell * s.layer_thickness;
 }
 
+void check_effort(const SlideSettings& s, const Terrain& terrain,
+                  const std::vector<SlideArea>& areas) {
+  constexpr double most_particles = 2e6;    // they take a gigabyte and some seconds
+  constexpr double most_comparisons = 3e9;  // of a particle with a corner, some seconds
+  const double cell = terrain.cell();
+  double particles = 0, corners = 0;
+  const HeightField* map = nullptr;  // all areas share one
+  SnowOfMap snow;
+  for (const SlideArea& area : areas) {
+    const double on_map = map_area(area.polygon);
+    double volume = on_map * area.thickness;
+    if (area.map) {
+      if (area.map.get() != map) snow = snow_of(*area.map);
+      map = area.map.get();
+      volume = std::min(on_map * snow.thickest, snow.volume);
+    }
+    particles += std::max(on_map, volume / s.layer_thickness) / (cell * cell);
+    corners += double(area.polygon.outline.size());
+    for (const Ring& hole : area.polygon.holes) corners += double(hole.size());
+  }
+  std::ostringstream text;
+  if (particles > most_particles) {
+    text << s.layer_thickness << " m makes " << particles << " particles; at most "
+         << most_particles << " are allowed: give thicker layers";
+    throw InputError("/numerics/layer_thickness", text.str());
+  }
+  if (particles * corners > most_comparisons) {
+    text << corners << " corners and " << particles << " particles; their product may be at most "
+         << most_comparisons << ": simplify the outlines";
+    throw InputError("/terrain/release", text.str());
+  }
+}
+
 double lattice_spacing(const ParticleBatch& batch) {
   const std::size_t n = batch.positions.size();
   const std::size_t samples = std::min<std::size_t>(n, 64);
@@ -321,17 +375,18 @@ double lattice_spacing(const ParticleBatch& batch) {
 }
 
 std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,
-                                        const std::vector<SlideArea>& areas) {
+                                        const std::vector<SlideArea>& areas,
+                                        const StopRequest& stop) {
   if (areas.empty()) throw InputError("/terrain/release", "names no area");
   std::vector<ParticleBatch> batches;
   if (settings.mode == SlideMode::compatible) {
-    batches = seed_as_avaframe(settings, terrain, areas);
+    batches = seed_as_avaframe(settings, terrain, areas, stop);
     for (std::size_t i = 1; i < areas.size(); ++i)
       refuse_overlap(terrain, areas, i, batches.front());
     return batches;
   }
   for (std::size_t i = 0; i < areas.size(); ++i) {
-    batches.push_back(seed_area(settings, terrain, areas[i], i));
+    batches.push_back(seed_area(settings, terrain, areas[i], i, stop));
     refuse_overlap(terrain, areas, i, batches.back());
   }
   return batches;

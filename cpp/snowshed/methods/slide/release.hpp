@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/settings.hpp"
@@ -26,6 +27,11 @@ struct OffTerrain {
 /// Looks at points half a cell apart.
 std::vector<OffTerrain> find_off_terrain(const Terrain& terrain, const std::vector<SlideArea>&);
 
+/// Throws InputError where the release would be more particles than a slide is set up with in
+/// seconds and a gigabyte, or has so many corners that they take longer.
+void check_effort(const SlideSettings& settings, const Terrain& terrain,
+                  const std::vector<SlideArea>& areas);
+
 /// Returns the particles of all release areas, on triangular lattices, a batch for each area.
 ///
 /// Improved mode: the lattice of each area begins at its centre and follows its mean slope, so the
@@ -37,7 +43,10 @@ std::vector<OffTerrain> find_off_terrain(const Terrain& terrain, const std::vect
 /// the number of particles per cell. The particles of a cell share its mass. All are in one batch.
 ///
 /// Throws InputError where an area holds no particle, or, in compatible mode, is too thin for one.
+///
+/// Throws Stopped on request.
 std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,
-                                        const std::vector<SlideArea>& areas);
+                                        const std::vector<SlideArea>& areas,
+                                        const StopRequest& stop = {});
 
 }  // namespace snowshed

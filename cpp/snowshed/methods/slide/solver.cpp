@@ -80,6 +80,7 @@ std::unique_ptr<SlideMethod> make_slide(SlideOptions options) {
 SlideSolver::SlideSolver(SlideOptions o)
     : model_(o.settings, o.gravity, o.terrain, std::move(o.areas), o.energy), state_(model_) {
   check_on_terrain(model_.terrain, model_.areas.release, "release");
+  check_effort(model_.settings, model_.terrain, model_.areas.release);
   state_.counters.smallest_dt = model_.settings.time_step;
 }
 
@@ -88,7 +89,8 @@ void SlideSolver::require_sound() const {
 }
 
 /// Appends a batch and bonds its particles with each other.
-void SlideSolver::append(SlideState& state, const ParticleBatch& batch) const {
+void SlideSolver::append(SlideState& state, const ParticleBatch& batch,
+                         const StopRequest& stop) const {
   check_batch(batch, 1);
   SlideParticles& p = state.particles;
   const std::size_t old = p.size();
@@ -116,7 +118,7 @@ void SlideSolver::append(SlideState& state, const ParticleBatch& batch) const {
   if (!model_.settings.bonds) return;
   // Compatible mode has bonds across gaps of the release.
   const Bonds bonds = bonds_between(p, old, lattice_spacing(batch),
-                                    model_.compatible() ? nullptr : &model_.areas.release);
+                                    model_.compatible() ? nullptr : &model_.areas.release, stop);
   state.bonds.reserve(state.bonds.size() + bonds.size());
   for (std::size_t b = 0; b < bonds.size(); ++b)
     state.bonds.add(bonds.first[b], bonds.second[b], bonds.rest_length[b]);
@@ -162,10 +164,10 @@ void SlideSolver::accept(SlideState next) {
   order_known_ = false;
 }
 
-void SlideSolver::add(const std::vector<ParticleBatch>& batches) {
+void SlideSolver::release(const std::vector<ParticleBatch>& batches, const StopRequest& stop) {
   require_sound();
   SlideState next = state_;
-  for (const ParticleBatch& batch : batches) append(next, batch);
+  for (const ParticleBatch& batch : batches) append(next, batch, stop);
   next.stopped = false;
   next.peak_kinetic = 0;
   accept(std::move(next));
@@ -180,7 +182,7 @@ void SlideSolver::replace(const std::vector<ParticleBatch>& batches) {
   next.peaks = state_.peaks;
   next.erodible = state_.erodible;
   next.energy = state_.energy;
-  for (const ParticleBatch& batch : batches) append(next, batch);
+  for (const ParticleBatch& batch : batches) append(next, batch, {});
   accept(std::move(next));
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "snowshed/core/stop_request.hpp"
 #include "snowshed/geometry/height_field.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/slide/areas.hpp"
@@ -24,8 +25,11 @@ struct SlideOptions {
 /// A slide as a method, and what only a slide has.
 class SlideMethod : public Method {
  public:
-  /// The particles of the release areas; see `seed_release`.
-  virtual std::vector<ParticleBatch> seed() const = 0;
+  /// The particles of the release areas; see `seed_release`. Throws Stopped on request.
+  virtual std::vector<ParticleBatch> seed(const StopRequest& stop) const = 0;
+  std::vector<ParticleBatch> seed() const { return seed({}); }
+  /// Adds particles as `add` does. Throws Stopped on request, and is then as it was.
+  virtual void release(const std::vector<ParticleBatch>&, const StopRequest& stop) = 0;
   /// How many they are.
   virtual std::size_t count_seeds() const = 0;
   virtual const Terrain& terrain() const = 0;

@@ -11,7 +11,8 @@ class SlideSolver final : public SlideMethod {
   explicit SlideSolver(SlideOptions);
 
   using Method::add;
-  void add(const std::vector<ParticleBatch>&) override;
+  void add(const std::vector<ParticleBatch>& batches) override { release(batches, {}); }
+  void release(const std::vector<ParticleBatch>&, const StopRequest&) override;
   void replace(const std::vector<ParticleBatch>&) override;
   void add_velocity(const std::vector<Vec3>&) override;
   void settle(const std::vector<double>& drops, const std::vector<double>& plastic) override;
@@ -38,8 +39,9 @@ class SlideSolver final : public SlideMethod {
   void load(const BinaryReader&) override;
   void check(const BinaryReader&) const override;
 
-  std::vector<ParticleBatch> seed() const override {
-    return seed_release(model_.settings, model_.terrain, model_.areas.release);
+  using SlideMethod::seed;
+  std::vector<ParticleBatch> seed(const StopRequest& stop) const override {
+    return seed_release(model_.settings, model_.terrain, model_.areas.release, stop);
   }
   std::size_t count_seeds() const override {
     std::size_t count = 0;
@@ -54,7 +56,7 @@ class SlideSolver final : public SlideMethod {
   const MassBalance& mass_balance() const override { return state_.balance; }
 
  private:
-  void append(SlideState&, const ParticleBatch&) const;
+  void append(SlideState&, const ParticleBatch&, const StopRequest&) const;
   void accept(SlideState);
   void sort_now_and_then();
   void choose_threads();

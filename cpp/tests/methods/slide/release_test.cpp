@@ -55,6 +55,39 @@ TEST(SlideRelease, particles_lie_on_the_ground_within_the_area) {
     }
 }
 
+TEST(SlideRelease, a_request_to_stop_is_heard_and_leaves_the_slide_as_it_was) {
+  for (const SlideMode mode : {SlideMode::improved, SlideMode::compatible}) {
+    SlideOptions options = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3));
+    options.settings.layer_thickness = 0.01;
+    options.settings.mode = mode;
+    const auto slide = make_slide(options);
+    const StopRequest always = [] { return true; };
+    EXPECT_THROW(slide->seed(always), Stopped);
+    const std::vector<ParticleBatch> snow = slide->seed();
+    EXPECT_THROW(slide->release(snow, always), Stopped);
+    EXPECT_EQ(slide->size(), 0u);
+    slide->release(snow, {});
+    EXPECT_EQ(slide->size(), count(snow));
+  }
+}
+
+TEST(SlideRelease, more_particles_than_can_be_set_up_are_refused_before_any_is_made) {
+  SlideOptions options = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3));
+  options.settings.layer_thickness = 1e-12;
+  EXPECT_THROW(make_slide(options), InputError);
+  options.settings.layer_thickness = 2e-4;  // some 450 000 particles
+  EXPECT_NO_THROW(make_slide(options));
+  Ring& outline = options.areas.release[0].polygon.outline;
+  outline.clear();
+  for (int i = 0; i < 20000; ++i) {
+    const double turn = radians(360) * i / 20000;
+    outline.push_back({40 + 15 * std::cos(turn), 30 + 15 * std::sin(turn)});
+  }
+  EXPECT_THROW(make_slide(options), InputError);
+  options.settings.layer_thickness = 0.25;
+  EXPECT_NO_THROW(make_slide(options));
+}
+
 TEST(SlideRelease, finer_layers_make_more_particles) {
   SlideSettings fine;
   fine.layer_thickness = 0.05;

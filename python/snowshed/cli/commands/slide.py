@@ -32,6 +32,9 @@ PATH = click.Path(path_type=Path)
 @click.option("--thickness-raster", type=PATH, help="The same in the cells of a raster.")
 @click.option("--entrainment-areas", type=PATH, help="Polygons where snow is taken up.")
 @click.option("--resistance-areas", type=PATH, help="Polygons of forest.")
+@click.option("--layer", metavar="NAME", help="Layer of the release's GeoPackage.")
+@click.option("--entrainment-layer", metavar="NAME", help="The same of the areas of entrainment.")
+@click.option("--resistance-layer", metavar="NAME", help="The same of the areas of forest.")
 @click.option("--avaframe", type=PATH, help="An AvaFrame project, run as AvaFrame 2.1 does.")
 @click.option("--example", is_flag=True, help="A slide on a slope that is made for it.")
 @click.option("--compatible", is_flag=True, help="Do step by step what AvaFrame 2.1 does.")
@@ -54,6 +57,9 @@ def slide(
     thickness_raster: Optional[Path],
     entrainment_areas: Optional[Path],
     resistance_areas: Optional[Path],
+    layer: Optional[str],
+    entrainment_layer: Optional[str],
+    resistance_layer: Optional[str],
     avaframe: Optional[Path],
     example: bool,
     compatible: bool,
@@ -87,7 +93,11 @@ def slide(
     for option, value in beliefs.items():
         if value is not None and (example or avaframe is not None):
             raise InputError(f"{option}: only with --terrain")
+    named = {"release": layer, "entrainment": entrainment_layer, "resistance": resistance_layer}
+    layers = {part: name for part, name in named.items() if name is not None}
     if avaframe is not None:
+        if layers:
+            raise InputError("--avaframe: keep one layer in each file of areas")
         if terrain is not None or release is not None or thickness_raster is not None or example:
             raise InputError(WAYS)
         if entrainment_areas is not None or resistance_areas is not None:
@@ -105,7 +115,7 @@ def slide(
         return
     files = SlideFiles(
         terrain, release, thickness_raster, entrainment_areas, resistance_areas, thickness,
-        band, thickness_band,
+        band, thickness_band, layers,
     )  # fmt: skip
     with removing_copies(folder):
         if resume and not files.any() and ranges.sample is None:

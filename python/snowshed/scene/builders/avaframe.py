@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.limits import RASTER_CELLS
+from snowshed.io.limits import RASTER_CELLS, RESAMPLED_CELLS, SAVED_CELLS
 from snowshed.io.map_areas import read_areas
+from snowshed.io.messages import quoted
 from snowshed.io.paths import PathLike
 from snowshed.io.raster import GEOTIFF, read_raster, write_ascii_grid
 from snowshed.io.raster_resampling import resampled_raster
 from snowshed.methods.slide import SlideSettings
+from snowshed.scene.builders.avaframe_files import InputFile, check_own_file, project_inputs
 from snowshed.scene.builders.avaframe_ini import SIM_TYPES, ProjectSettings, read_ini
 from snowshed.scene.builders.slides import slide_scene
 from snowshed.scene.scene import Scene
@@ -42,6 +44,10 @@ class AvaFrameSimulation:
         The project folder.
     files
         Files of the areas, by the part of a scene's terrain that they make; None without such.
+    inputs
+        Files in the project's folder Inputs, which belong to the results.
+    terrain
+        The file of the terrain.
     """
 
     scene: Scene
@@ -50,6 +56,8 @@ class AvaFrameSimulation:
     project: ProjectSettings
     folder: Path
     files: Mapping[str, Optional[Path]]
+    inputs: Sequence[InputFile]
+    terrain: Path
 
 
 def avaframe_simulations(
@@ -80,7 +88,8 @@ def avaframe_simulations(
     Raises
     ------
     InputError
-        If the folder is no such project, or asks for what com5SnowSlide does not do here.
+        If the folder is no such project, asks for what com5SnowSlide does not do here, or holds
+        links to files that are not its own.
     OSError
         If a file cannot be read.
     """
@@ -88,6 +97,7 @@ def avaframe_simulations(
     inputs = root / "Inputs"
     if not inputs.is_dir():
         raise InputError(f"{root}: no AvaFrame project: it has no folder Inputs")
+    own = project_inputs(root)
     project = read_ini(_ini_of(root, inputs / "CFGs", inputs))
     project.values.update(settings or {})
     project.values["mode"] = "compatible"
@@ -98,15 +108,19 @@ def avaframe_simulations(
         "ent": _one_if_any(inputs / "ENT", "entrainment"),
         "res": _one_if_any(inputs / "RES", "resistance"),
     }
-    terrain = _terrain(_one(inputs, RASTERS, "terrain"), project, ascii_copy)
+    raster = _one(inputs, RASTERS, "terrain")
+    terrain = _terrain(raster, project, ascii_copy)
+    _check_saved_maps(terrain, project)
     return [
         AvaFrameSimulation(
-            _scene(root, terrain, release, areas, sim_type, project, ascii_copy),
+            _scene(root, raster, terrain, release, areas, sim_type, project, ascii_copy),
             release.stem,
             sim_type,
             project,
             root,
             {"release": release, "entrainment": areas["ent"], "resistance": areas["res"]},
+            own,
+            raster,
         )
         for release in _releases(inputs / "REL", project)
         for sim_type in _sim_types(project, areas, inputs)
@@ -132,6 +146,7 @@ def avaframe_scene(
 
 def _scene(
     root: Path,
+    raster: Path,
     terrain: Path,
     release: Path,
     areas: Mapping[str, Optional[Path]],
@@ -158,7 +173,7 @@ def _scene(
             if area.holes:
                 raise InputError(f"{area.name}: has a hole, which AvaFrame does not allow")
         # AvaFrame reads GeoTIFF in double precision, also one that it has resampled.
-        if _one(root / "Inputs", RASTERS, "terrain").suffix.lower() in GEOTIFF:
+        if raster.suffix.lower() in GEOTIFF:
             scene.terrain.single_precision = False
     return scene.set("events.max_time", project.max_time)
 
@@ -180,10 +195,31 @@ def _terrain(file: Path, project: ProjectSettings, ascii_copy: Optional[PathLike
     if abs(original.cell - cell) <= SAME_CELL:
         project.values["cell"] = original.cell
         return file
+    cells = original.heights.size * (original.cell / cell) * (original.cell / cell)
+    if cells > RESAMPLED_CELLS:
+        raise project.located(
+            InputError(
+                f"/numerics/cell: {cell:g} m makes {cells:.3g} cells of {file}; at most "
+                f"{RESAMPLED_CELLS} are allowed"
+            )
+        )
     if ascii_copy is None:
         raise InputError(f"{file}: say where its copy on cells of {cell:g} m shall go (ascii_copy)")
     write_ascii_grid(ascii_copy, resampled_raster(file, cell), exact=True)
     return Path(ascii_copy)
+
+
+def _check_saved_maps(terrain: Path, project: ProjectSettings) -> None:
+    """Refuse maps over time that would fill the disk."""
+    if not project.saved_times:
+        return
+    maps = len(project.saved_times) * len(project.result_types)
+    cells = maps * read_raster(terrain).heights.size
+    if cells > SAVED_CELLS:
+        raise InputError(
+            f"{project.places['saved_times']}: {maps} maps have {cells:.3g} cells; at most "
+            f"{SAVED_CELLS:.0e} are allowed"
+        )
 
 
 def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
@@ -197,7 +233,7 @@ def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
     if project.release_scenario:
         found = [file for file in found if file.stem == project.release_scenario]
         if not found:
-            raise InputError(f"{folder}: no release area {project.release_scenario!r}")
+            raise InputError(f"{folder}: no release area {quoted(project.release_scenario)}")
     if not found:
         raise InputError(f"{folder}: no file of a release area ({', '.join(POLYGONS)})")
     return found
@@ -237,7 +273,10 @@ def _ini_of(*folders: Path) -> Optional[Path]:
     found = [file for folder in folders for file in sorted(folder.glob("*com5SnowSlideCfg.ini"))]
     if len(found) > 1:
         raise InputError(f"{folders[0]}: {len(found)} ini files of com5SnowSlide; keep one")
-    return found[0] if found else None
+    if not found:
+        return None
+    check_own_file(found[0], folders[0])
+    return found[0]
 
 
 def _files(folder: Path, patterns: tuple[str, ...]) -> list[Path]:

@@ -7,117 +7,32 @@ from __future__ import annotations
 
 import configparser
 import math
-from collections.abc import Mapping
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 from snowshed._core import InputError
 from snowshed.io.input_file import read_input
-from snowshed.io.messages import suggestion
+from snowshed.io.limits import INI, SAVED_TIMES
+from snowshed.io.messages import quoted, shortened, suggestion
+from snowshed.io.printable import printable
+from snowshed.scene.builders.avaframe_keys import (
+    FIXED,
+    FRICTION,
+    OTHER_FRICTION,
+    OWN_KEYS,
+    SETTINGS,
+    VARIATIONS,
+    WITHOUT_EFFECT,
+)
+from snowshed.scene.schema import schema_of_method
 
 MAX_TIME = 400.0  # s
+SHORTEST_STEP = 1e-6  # s; in shorter ones snow moves by less than numbers can tell
+THICKEST = 100.0  # m, of snow
 SIM_TYPES = ("entres", "ent", "res", "null")
 RESULT_TYPES = ("ppr", "pft", "pfv", "P", "FT", "FV")
-
-#: Keys that are settings here.
-SETTINGS: Mapping[str, str] = {
-    "dt": "time_step",
-    "rho": "density",
-    "meshcellsize": "cell",
-    "deltath": "layer_thickness",
-    "xsivoellmy": "turbulence",
-    "cohesionmaxstrain": "max_strain",
-    "cohesivesurfacetension": "bond_modulus",
-    "mindistcohesion": "min_bond_length",
-    "cresh": "resistance",
-    "subgridmixingfactor": "artificial_viscosity",
-    "rhoent": "entrained_density",
-    "enteroenergy": "erosion_energy",
-    "entshearresistance": "entrainment_shear",
-    "entdefresistance": "entrainment_work",
-    "thresholdmasssplit": "split_ratio",
-    "stopcrit": "stop_ratio",
-}
-#: The key of the Coulomb coefficient of each law of friction, and com5SnowSlide's default of it.
-FRICTION: Mapping[str, tuple[str, float]] = {
-    "voellmy": ("muvoellmy", 0.325),
-    "coulomb": ("mucoulomb", 0.155),
-}
-#: Keys that may only have the value with which com5SnowSlide works here.
-FIXED: Mapping[str, str] = {
-    "adaptsfcdetrainment": "0",
-    "adaptsfcentrainment": "0",
-    "adaptsfcstopped": "0",
-    "centeredposition": "1",
-    "createrangetimediagram": "false",
-    "curvaccinfriction": "1",
-    "curvaccingradient": "0",
-    "curvaccintangent": "0",
-    "defaultconfig": "true",
-    "depmin": "1e-6",
-    "detrainment": "false",
-    "distsplitpart": "0.41",
-    "exportdata": "true",
-    "exportrasters": "false",
-    "gravacc": "9.81",
-    "inistep": "false",
-    "initialiseparticlesfromfile": "false",
-    "initpartdisttype": "triangular",
-    "interpoption": "2",
-    "massperparticledeterminationmethod": "mppdh",
-    "meshcellsizethreshold": "0.001",
-    "methodmeshnormal": "1",
-    "minrkern": "0.001",
-    "modeltype": "ssl",
-    "reprojectioniterations": "5",
-    "reprojmethodforce": "2",
-    "reprojmethodposition": "2",
-    "resistancemodel": "default",
-    "sphkernelradiustimestepping": "false",
-    "sphoption": "1",
-    "splitoption": "0",
-    "stopcrittype": "kinenergy",
-    "thresholdpointinpoly": "0.001",
-    "timedependentrelease": "false",
-    "trackparticles": "false",
-    "velmagmin": "1e-6",
-    "viscoption": "1",
-    "writeparttocsv": "false",
-}
-#: Variations of a thickness, one simulation for each value.
-VARIATIONS = tuple(
-    f"{area}th{kind}variation"
-    for area in ("rel", "ent", "secondaryrel")
-    for kind in ("percent", "range", "rangefromci", "dist")
-)
-#: Keys that change nothing with the values above: of pictures, of random numbers, of what is
-#: switched off.
-WITHOUT_EFFECT = (
-    "adaptdemplot", "additionallyfixedfactor", "appk", "bufferzonefactor", "centertrackpartpoint",
-    "cleanremeshedrasters", "cmax", "cmaxnmass", "cmaxnppk", "cminmass", "cminnppk",
-    "contourrestype", "cpice", "cvmaxsediment", "cvsediment", "detk", "dissdam", "dtini",
-    "enthref", "enttempref", "exportparticleproperties", "forestthmax", "forestthmin",
-    "forestvmax", "forestvmin", "ftoptionini", "hmin", "massperpart", "maxiterations",
-    "niterdam", "nppk0", "nsplit", "particlefile", "particleproperties", "radius",
-    "resizethreshold", "restitutioncoefficient", "rhosediment", "saveparticlesini", "scenario",
-    "secondaryrelth", "secondaryrelthfromfile", "seed", "sizesediment", "sphkr0", "sphoptionini",
-    "stopcritini", "stopcritinismall", "subgridmixingfactorini", "thfromini",
-    "thresholdadaptsfc", "thresholdpointinrel", "thresholdprojection", "thresholdvalue",
-    "timedependentreleasescenarios", "timestepdistance", "tini", "ttdiagram",
-    "uflowingthreshold", "usecompression", "visuparticleproperties", "volclassmedium",
-    "volclasssmall",
-)  # fmt: skip
-#: Ends of keys that belong to laws of friction which no simulation here has chosen.
-OTHER_FRICTION = (
-    "samosat", "samosatsmall", "samosatmedium", "voellmyminshear", "coulombminshear", "wetsnow",
-    "obrienandjulien", "herschelandbulkley", "bingham",
-)  # fmt: skip
-OWN_KEYS = (
-    "dam", "entth", "entthfromfile", "entthifmissinginshp", "explicitfriction", "frictmodel",
-    "releasescenario", "relth", "relthfromfile", "restype", "secrelarea", "simtypelist",
-    "snowslide", "sphkernelradius", "tend", "tsteps", *(key for key, _ in FRICTION.values()),
-)  # fmt: skip
 
 
 @dataclass
@@ -142,6 +57,8 @@ class ProjectSettings:
         Maps to write, and when beside the end, s.
     with_dam, with_secondary_release
         Whether to take dams and secondary release areas where there are any.
+    places
+        Where the ini sets the values, by their names.
     """
 
     values: dict[str, object] = field(default_factory=lambda: {"cell": 2.0, "time_step": 0.01})
@@ -155,6 +72,13 @@ class ProjectSettings:
     saved_times: tuple[float, ...] = ()
     with_dam: bool = True
     with_secondary_release: bool = True
+    places: dict[str, str] = field(default_factory=dict)
+
+    def located(self, error: InputError) -> InputError:
+        """Return an error of a scene with the place in the ini that sets what it is about."""
+        about = re.match(r"/numerics/(\w+)", str(error))
+        place = self.places.get(about[1]) if about else None
+        return InputError(f"{place}: {error}") if place else error
 
 
 def read_ini(file: Optional[Path]) -> ProjectSettings:
@@ -174,7 +98,8 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
     project = ProjectSettings()
     for key, name in SETTINGS.items():
         if key in given:
-            project.values[name] = given.number(key)
+            project.values[name] = given.setting(key, name)
+            project.places[name] = given.where(key)
     if given.is_blank("meshcellsize"):
         project.values["cell"] = 0.0
     project.values.update(_friction(given))
@@ -182,14 +107,15 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
         project.values["bonds"] = given.switch("snowslide")
     if "explicitfriction" in given:
         project.values["explicit_friction"] = given.switch("explicitfriction")
-    project.max_time = given.number("tend", MAX_TIME)
+    project.max_time = given.number("tend", MAX_TIME, above=0, most=1e9)
     project.sim_types = given.words("simtypelist", ("available", *SIM_TYPES), ("available",))
     project.release_thickness = _forced_thickness(given, "relth")
     project.entrained_thickness = _forced_thickness(given, "entth")
-    project.default_entrained_thickness = given.number("entthifmissinginshp", 0.3)
+    project.default_entrained_thickness = given.thickness("entthifmissinginshp", 0.3)
     project.release_scenario = given.text("releasescenario").removesuffix(".shp")
     project.result_types = _result_types(given)
     project.saved_times = _saved_times(given, project.max_time)
+    project.places["saved_times"] = given.where("tsteps")
     project.with_dam = given.switch("dam", True)
     project.with_secondary_release = given.switch("secrelarea", True)
     _check_kernel_radius(given, project.values["cell"])
@@ -202,7 +128,7 @@ class _Keys:
 
     def __init__(self, file: Optional[Path]) -> None:
         self.file = file
-        keys = _keys_of(file)
+        keys, self._lines = _keys_of(file)
         self._blank = {key for key, text in keys.items() if not text.strip()}
         self._found = {key: text for key, text in keys.items() if text.strip()}
 
@@ -216,15 +142,53 @@ class _Keys:
         return self._found.get(key, "").strip()
 
     def where(self, key: str) -> str:
-        return f"{self.file}: {key}"
+        line = f", line {self._lines[key]}" if key in self._lines else ""
+        return f"{self.file}{line}: {shortened(printable(key))}"
 
-    def number(self, key: str, default: float = math.nan) -> float:
+    def number(
+        self,
+        key: str,
+        default: float = math.nan,
+        *,
+        least: float = -math.inf,
+        above: float = -math.inf,
+        most: float = math.inf,
+    ) -> float:
+        """Return a number of a range; the default where it is not given."""
         if key not in self:
             return default
+        text = self.text(key)
         try:
-            return float(self.text(key))
+            value = float(text)
         except ValueError:
-            raise InputError(f"{self.where(key)}: {self.text(key)!r} is not one number") from None
+            raise InputError(f"{self.where(key)}: {quoted(text)} is not one number") from None
+        if not (math.isfinite(value) and value >= least and value > above and value <= most):
+            bounds = [
+                *([f"above {above:g}"] if math.isfinite(above) else []),
+                *([f"at least {least:g}"] if math.isfinite(least) else []),
+                *([f"at most {most:g}"] if math.isfinite(most) else []),
+            ]
+            allowed = " and ".join(bounds) or "a finite number"
+            raise InputError(f"{self.where(key)}: {quoted(text)}; allowed: {allowed}")
+        return value
+
+    def setting(self, key: str, name: str, default: float = math.nan) -> float:
+        """Return a number of the range that a setting of the method has."""
+        schema: Any = schema_of_method("slide")
+        (settings,) = schema["properties"]["numerics"]["anyOf"]
+        range_ = settings["properties"][name]
+        least = range_.get("minimum", -math.inf)
+        return self.number(
+            key,
+            default,
+            least=max(least, SHORTEST_STEP) if name == "time_step" else least,
+            above=range_.get("exclusiveMinimum", -math.inf) if name != "time_step" else -math.inf,
+            most=range_.get("maximum", math.inf),
+        )
+
+    def thickness(self, key: str, default: float = math.nan) -> float:
+        """Return a thickness of snow, m."""
+        return self.number(key, default, above=0, most=THICKEST)
 
     def switch(self, key: str, default: bool = False) -> bool:
         if key not in self:
@@ -232,7 +196,9 @@ class _Keys:
         states = configparser.ConfigParser.BOOLEAN_STATES
         word = self.text(key).lower()
         if word not in states:
-            raise InputError(f"{self.where(key)}: {self.text(key)!r} is neither True nor False")
+            raise InputError(
+                f"{self.where(key)}: {quoted(self.text(key))} is neither True nor False"
+            )
         return states[word]
 
     def words(
@@ -244,7 +210,8 @@ class _Keys:
         for word in found:
             if word not in allowed:
                 raise InputError(
-                    f"{self.where(key)}: {word!r} is not available; allowed: {', '.join(allowed)}"
+                    f"{self.where(key)}: {quoted(word)} is not available; allowed: "
+                    f"{', '.join(allowed)}"
                 )
         return found
 
@@ -253,7 +220,7 @@ class _Keys:
             if key in FIXED:
                 if not _is_same(text, FIXED[key]):
                     raise InputError(
-                        f"{self.where(key)}: {text!r} is not available; allowed: {FIXED[key]}"
+                        f"{self.where(key)}: {quoted(text)} is not available; allowed: {FIXED[key]}"
                     )
             elif key in VARIATIONS:
                 raise InputError(
@@ -270,23 +237,37 @@ class _Keys:
                 raise InputError(f"{self.where(key)}: none of the keys that are known here{near}")
 
 
-def _keys_of(file: Optional[Path]) -> dict[str, str]:
+def _keys_of(file: Optional[Path]) -> tuple[dict[str, str], dict[str, int]]:
+    """Return the values of the keys, and the lines that they stand in."""
     if file is None:
-        return {}
+        return {}, {}
+    if not file.is_file():
+        raise InputError(f"{file}: not a regular file")
     parser = configparser.ConfigParser(interpolation=None)
     try:
-        parser.read_string(read_input(file).decode("utf-8"), str(file))
+        text = read_input(file, INI).decode("utf-8-sig")
+        parser.read_string(text, str(file))
     except (configparser.Error, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: not an ini file: {error}") from None
+        why = shortened(" ".join(printable(error).split()), 300)
+        raise InputError(f"{file}: not an ini file: {why}") from None
     found: dict[str, str] = {}
     for section in parser.sections():
         if section != "GENERAL" and not section.endswith("_override"):
             raise InputError(
-                f"{file}: the section [{section}] is none of com5SnowSlide; allowed: [GENERAL], "
-                "[com1DFA_com1DFA_override]"
+                f"{file}: the section [{shortened(printable(section))}] is none of com5SnowSlide; "
+                "allowed: [GENERAL], [com1DFA_com1DFA_override]"
             )
         found.update(parser.items(section))
-    return found
+    return found, _lines_of(text)
+
+
+def _lines_of(text: str) -> dict[str, int]:
+    """Return the line of each key, from 1; the last one counts, as for its value."""
+    lines: dict[str, int] = {}
+    for number, line in enumerate(text.splitlines(), 1):
+        if key := re.match(r"([^\s#;\[=:][^=:]*?)\s*[=:]", line):
+            lines[key[1].lower()] = number
+    return lines
 
 
 def _friction(given: _Keys) -> dict[str, object]:
@@ -294,11 +275,11 @@ def _friction(given: _Keys) -> dict[str, object]:
     law = (given.text("frictmodel") or "voellmy").lower()
     if law not in FRICTION:
         raise InputError(
-            f"{given.where('frictmodel')}: {given.text('frictmodel')!r} is not available; allowed: "
-            "Voellmy, Coulomb"
+            f"{given.where('frictmodel')}: {quoted(given.text('frictmodel'))} is not available; "
+            "allowed: Voellmy, Coulomb"
         )
     key, default = FRICTION[law]
-    return {"friction_law": law, "friction": given.number(key, default)}
+    return {"friction_law": law, "friction": given.setting(key, "friction", default)}
 
 
 def _forced_thickness(given: _Keys, key: str) -> Optional[float]:
@@ -313,9 +294,9 @@ def _forced_thickness(given: _Keys, key: str) -> Optional[float]:
         return None
     if key not in given:
         if key == "entth":
-            return given.number("entthifmissinginshp", 0.3)
+            return given.thickness("entthifmissinginshp", 0.3)
         raise InputError(f"{given.where(key)}: missing, though {key}fromfile is False")
-    return given.number(key)
+    return given.thickness(key)
 
 
 def _result_types(given: _Keys) -> tuple[str, ...]:
@@ -331,27 +312,46 @@ def _saved_times(given: _Keys, end: float) -> tuple[float, ...]:
         return ()
     try:
         if ":" in text:
-            start, interval = (float(part) for part in text.split(":"))
+            start, interval = (_finite(part) for part in text.split(":"))
             if not interval > 0:
                 raise ValueError
-            count = max(0, math.floor((end - start) / interval + 1e-9) + 1)
-            times = [start + k * interval for k in range(count)]
+            count = max(0.0, (end - start) / interval + 1e-9 + 1)
+            if count <= SAVED_TIMES:
+                times = [start + k * interval for k in range(math.floor(count))]
         else:
-            times = sorted(float(part) for part in text.split("|"))
+            count = text.count("|") + 1
+            times = (
+                sorted(_finite(part) for part in text.split("|")) if count <= SAVED_TIMES else []
+            )
     except ValueError:
         raise InputError(
-            f"{given.where('tsteps')}: {text!r} is neither start:interval nor times such as 1|5"
+            f"{given.where('tsteps')}: {quoted(text)} is neither start:interval nor times such as "
+            "1|5"
         ) from None
+    if count > SAVED_TIMES:
+        raise InputError(
+            f"{given.where('tsteps')}: {quoted(text)} are {count:.3g} times until {end:g} s; "
+            f"allowed: {SAVED_TIMES}"
+        )
     if times and times[0] < 0:
         raise InputError(f"{given.where('tsteps')}: {times[0]:g} s is before the start")
     return tuple(times)
+
+
+def _finite(text: str) -> float:
+    """Return a finite number; anything else is a ValueError."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
 
 
 def _check_kernel_radius(given: _Keys, cell: object) -> None:
     text = given.text("sphkernelradius")
     if text and text.lower() != "meshcellsize" and not _is_same(text, str(cell)):
         raise InputError(
-            f"{given.where('sphkernelradius')}: {text!r} is not available; allowed: meshCellSize"
+            f"{given.where('sphkernelradius')}: {quoted(text)} is not available; allowed: "
+            "meshCellSize"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Optional
 
@@ -29,6 +30,12 @@ from snowshed.scene.scene import Scene
 MAX_TIME = 400.0  # s, as AvaFrame has it
 THINNEST = 0.01  # m, of snow that is worth a slide
 MAX_THICKNESS = 10.0  # m, of snow that is believed; as of the core
+#: What names the layer of a file on the command line.
+LAYER_OPTIONS = {
+    "release": "--layer",
+    "entrainment": "--entrainment-layer",
+    "resistance": "--resistance-layer",
+}
 
 
 def slide_scene(
@@ -40,6 +47,7 @@ def slide_scene(
     entrainment: Optional[PathLike] = None,
     entrained_thickness: Optional[float] = None,
     resistance: Optional[PathLike] = None,
+    layers: Optional[Mapping[str, str]] = None,
     settings: Optional[SlideSettings] = None,
     ascii_copy: Optional[PathLike] = None,
     title: str = "",
@@ -66,6 +74,9 @@ def slide_scene(
         Polygons of areas where snow is taken up, and of forest.
     entrained_thickness
         Thickness of the snow that can be taken up [m], in place of the file's.
+    layers
+        Layers of GeoPackages that hold several, by what they are read for: "release",
+        "entrainment", "resistance".
     settings
         Settings of the method; None: its defaults.
     ascii_copy
@@ -97,9 +108,10 @@ def slide_scene(
         depth = None
         if thickness_raster is not None:
             depth = read_raster(thickness_raster, thickness_band)
-        areas = _release_areas(release, thickness, depth)
-        eroded = read_areas(entrainment) if entrainment is not None else []
-        held = read_areas(resistance) if resistance is not None else []
+        polygons = _Polygons(layers)
+        areas = _release_areas(release, thickness, depth, polygons)
+        eroded = polygons.areas(entrainment, "entrainment")
+        held = polygons.areas(resistance, "resistance")
     check_place(terrain, areas)
     check_apart(areas)
     files = [(str(raster), terrain.crs), *((area.file, area.crs) for area in areas + eroded + held)]
@@ -180,17 +192,41 @@ def _thickness_file(depth: Raster, ascii_copy: Optional[PathLike]) -> Path:
     return _as_text(Path(depth.name), depth if depth.plain else snow_part(depth), copy)
 
 
+class _Polygons:
+    """Reads files of polygons, of each the layer that is named for it."""
+
+    def __init__(self, layers: Optional[Mapping[str, str]]) -> None:
+        self.layers = layers or {}
+        for part in self.layers:
+            if part not in LAYER_OPTIONS:
+                raise InputError(f"layers: {part!r} is none of {', '.join(LAYER_OPTIONS)}")
+
+    def areas(self, file: Optional[PathLike], part: str) -> list[MapArea]:
+        """Return the areas of a file; none without one. Forest has no thickness."""
+        if file is None:
+            return []
+        return read_areas(
+            file,
+            self.layers.get(part),
+            option=LAYER_OPTIONS[part],
+            with_thickness=part != "resistance",
+        )
+
+
 def _release_areas(
-    release: Optional[PathLike], thickness: Optional[float], depth: Optional[Raster]
+    release: Optional[PathLike],
+    thickness: Optional[float],
+    depth: Optional[Raster],
+    polygons: _Polygons,
 ) -> list[MapArea]:
     if depth is not None:
         if thickness is not None:
             raise InputError("give one of a thickness and a raster of thickness")
         snow_part(depth)  # which refuses what is no thickness
-        return areas_of_depth(depth) if release is None else read_areas(release)
+        return areas_of_depth(depth) if release is None else polygons.areas(release, "release")
     if release is None:
         raise InputError("give the release: polygons or a raster of thickness")
-    return read_areas(release)
+    return polygons.areas(release, "release")
 
 
 def _snow_area(

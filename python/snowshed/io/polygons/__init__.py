@@ -1,0 +1,56 @@
+"""Files of polygons: GeoPackage, ESRI Shapefile, GeoJSON; which one a file is, its content says.
+
+No other format is read. GDAL knows dozens, tells them by content whatever a file is called, and
+some are requests to other machines or names of other files. GeoPackage and GeoJSON are therefore
+read without GDAL, and a shapefile reaches it only after its head and index have been checked.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Optional
+
+from snowshed._core import InputError
+from snowshed.io.messages import quoted
+from snowshed.io.polygons.geojson import read_geojson
+from snowshed.io.polygons.geopackage import SQLITE, read_geopackage
+from snowshed.io.polygons.layer import PolygonLayer
+from snowshed.io.polygons.shapefile import SHAPEFILE, read_shapefile
+
+FORMATS = "allowed: GeoPackage, ESRI Shapefile (its .shp), GeoJSON"
+
+
+def read_layer(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
+    """Return the polygons of a file of a format that is read.
+
+    Parameters
+    ----------
+    path
+        The file.
+    layer
+        Name of the layer to read; None: the only one.
+    option
+        What names a layer, for the message where there are several.
+
+    Raises
+    ------
+    InputError
+        If it is no regular file, no such format, damaged, or has several layers.
+    OSError
+        If there is no such file, or it cannot be read.
+    """
+    if not path.exists():
+        raise FileNotFoundError(2, "No such file or directory", str(path))
+    if not path.is_file():
+        raise InputError(f"{path}: not a regular file")
+    with path.open("rb") as file:
+        begin = file.read(1024)
+    if begin.startswith(SQLITE):
+        return read_geopackage(path, layer, option)
+    if layer is not None and layer != path.stem:
+        raise InputError(f"{path}: has one layer, {quoted(path.stem)}; {option} {quoted(layer)}")
+    if begin.startswith(SHAPEFILE):
+        return read_shapefile(path)
+    if begin.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
+        return read_geojson(path)
+    raise InputError(f"{path}: not a file of polygons; {FORMATS}")

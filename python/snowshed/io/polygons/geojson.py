@@ -1,0 +1,197 @@
+"""Polygons of a GeoJSON file (RFC 7946, and the coordinate systems of the standard before it).
+
+A coordinate system that is a link is never followed.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.arrays import Floats, Integers
+from snowshed.io.extras import require
+from snowshed.io.input_file import read_input
+from snowshed.io.limits import CORNERS, GEOJSON, POLYGONS
+from snowshed.io.messages import quoted, shortened
+from snowshed.io.plain_systems import plain_system
+from snowshed.io.polygons.layer import PolygonLayer, is_wanted
+
+GEOMETRIES = (
+    *("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon"),
+    "GeometryCollection",
+)
+#: Names of coordinate systems that stand for a code: URNs and the addresses of the standard, which
+#: are names and are not opened.
+CODES = re.compile(
+    r"(?:urn:(?:x-)?ogc:def:crs:|https?://www\.opengis\.net/(?:def/crs/|gml/srs/))"
+    r"(EPSG|ESRI|OGC)(?:[:/][\w.]*[:/]|\.xml#)(CRS84|CRS27|CRS83|\d{1,9})",
+    re.IGNORECASE,
+)
+DEGREES = "OGC:CRS84"
+NUMBERS = {int, float}
+HOW = (
+    'write it in metres with a member "crs", or as a GeoPackage or shapefile (QGIS: Export, Save '
+    "Features As)"
+)
+
+
+def read_geojson(path: Path) -> PolygonLayer:
+    """Return the polygons of a file; see `snowshed.io.polygons.read_layer`."""
+    content = _content(path)
+    features = _features(content, path)
+    if len(features) > POLYGONS:
+        raise InputError(f"{path}: more than {POLYGONS} polygons")
+    outlines = _Outlines(path)
+    records = []
+    fields: dict[str, None] = {}
+    for number, feature in enumerate(features, 1):
+        properties = feature.get("properties") or {}
+        if not isinstance(properties, dict):
+            raise InputError(f"{path}, feature {number}: its properties are no object")
+        fields.update(dict.fromkeys(properties))
+        records.append({key: value for key, value in properties.items() if is_wanted(key)})
+        outlines.add(feature.get("geometry"), f"{path}, feature {number}")
+    corners = outlines.corners()
+    farthest = np.abs(corners).max(axis=0, initial=0.0)
+    crs = _crs(content, farthest, path)
+    return PolygonLayer(outlines.shapes(corners), records, list(fields), crs)
+
+
+def _content(path: Path) -> dict[str, Any]:
+    def refuse(word: str) -> None:
+        raise ValueError(f"{word} is not a number")
+
+    try:
+        content = json.loads(read_input(path, GEOJSON).decode("utf-8-sig"), parse_constant=refuse)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not GeoJSON: {shortened(str(error), 200)}") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: not GeoJSON: no object")
+    return content
+
+
+def _features(content: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]:
+    kind = content.get("type")
+    if kind == "FeatureCollection":
+        features = content.get("features")
+        if not isinstance(features, list) or not all(isinstance(one, dict) for one in features):
+            raise InputError(f"{path}: not GeoJSON: its features are no list of objects")
+        return features
+    if kind == "Feature":
+        return [content]
+    if kind in GEOMETRIES:
+        return [{"geometry": content}]
+    why = "it has no type" if kind is None else f"its type is {quoted(str(kind))}"
+    if "geometryType" in content or "spatialReference" in content:
+        why = "it is Esri JSON; export it as GeoJSON"
+    raise InputError(f"{path}: not GeoJSON: {why}")
+
+
+class _Outlines:
+    """Collects the corners of rings, and makes all polygons at once."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.x: list[float] = []
+        self.y: list[float] = []
+        self.ring_sizes: list[int] = []
+        self.polygon_rings: list[int] = []  # how many rings each has
+        self.feature_parts: list[int] = []  # how many polygons each has; -1 without a geometry
+
+    def add(self, geometry: object, where: str) -> None:
+        """Take the polygon, or polygons, of a feature."""
+        if geometry is None:
+            self.feature_parts.append(-1)
+            return
+        kind = geometry.get("type") if isinstance(geometry, dict) else None
+        if kind not in GEOMETRIES or not isinstance(geometry, dict):
+            raise InputError(f"{where}: its geometry is none of GeoJSON")
+        coordinates = geometry.get("coordinates")
+        if kind not in ("Polygon", "MultiPolygon"):
+            raise InputError(f"{where}: not a polygon but a {kind}")
+        parts = [coordinates] if kind == "Polygon" else coordinates
+        if not isinstance(parts, list):
+            raise InputError(f"{where}: its coordinates are no list")
+        parts = [part for part in parts if part != []]
+        for part in parts:
+            if not isinstance(part, list):
+                raise InputError(f"{where}: its coordinates are no list of rings")
+            for ring in part:
+                self._add_ring(ring, where)
+            self.polygon_rings.append(len(part))
+        self.feature_parts.append(len(parts))
+
+    def _add_ring(self, ring: object, where: str) -> None:
+        if not isinstance(ring, list) or len(ring) < 3 or set(map(type, ring)) != {list}:
+            raise InputError(f"{where}: a ring is no list of three corners or more")
+        if len(self.x) + len(ring) > CORNERS:
+            raise InputError(f"{self.path}: more than {CORNERS} corners; simplify the outlines")
+        if min(map(len, ring)) < 2 or not set(map(type, chain.from_iterable(ring))) <= NUMBERS:
+            raise InputError(f"{where}: a corner is no list of two numbers or more")
+        self.x += [corner[0] for corner in ring]
+        self.y += [corner[1] for corner in ring]
+        self.ring_sizes.append(len(ring))
+
+    def corners(self) -> Floats:
+        """Return the corners of all rings."""
+        try:
+            corners = np.array([self.x, self.y], dtype=np.float64).T
+        except OverflowError:
+            corners = np.full((1, 2), np.inf)
+        if not np.isfinite(corners).all():
+            raise InputError(f"{self.path}: a corner that is not finite")
+        return corners
+
+    def shapes(self, corners: Floats) -> list[Any]:
+        """Return the geometry of every feature; None where it has none."""
+        shapely: Any = require("shapely", "terrain", "reading polygons")
+        try:
+            rings = shapely.linearrings(corners, indices=_numbers(self.ring_sizes))
+            polygons = shapely.polygons(rings, indices=_numbers(self.polygon_rings))
+        except (ValueError, shapely.errors.ShapelyError) as error:
+            raise InputError(f"{self.path}: not a polygon: {error}") from None
+        found, first = [], 0
+        for parts in self.feature_parts:
+            own = polygons[first : first + max(parts, 0)]
+            first += max(parts, 0)
+            found.append(None if parts < 0 else own[0] if parts == 1 else shapely.MultiPolygon(own))
+        return found
+
+
+def _numbers(counts: Sequence[int]) -> Integers:
+    """Return the number of the whole for each part, where wholes have so many parts."""
+    numbers: Integers = np.repeat(np.arange(len(counts)), counts)
+    return numbers
+
+
+def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
+    if "crs" not in content:
+        if farthest[0] > 180 or farthest[1] > 90:
+            raise InputError(
+                f"{path}: has no coordinate system; its numbers are not the degrees that GeoJSON "
+                f"has without one; {HOW}"
+            )
+        return DEGREES
+    system = content["crs"]
+    if system is None:  # known to be none
+        return ""
+    kind = system.get("type") if isinstance(system, dict) else None
+    properties = system.get("properties") if isinstance(system, dict) else None
+    if not isinstance(properties, dict):
+        raise InputError(f"{path}: crs: not as GeoJSON has it; {HOW}")
+    if kind == "link":
+        raise InputError(f"{path}: crs: a link, which is not followed; {HOW}")
+    name = properties.get("name" if kind == "name" else "code")
+    words = f"EPSG:{name}" if kind == "EPSG" else str(name)
+    code = CODES.fullmatch(words)
+    plain = plain_system(f"{code[1]}:{code[2]}" if code else words)
+    if not plain:
+        raise InputError(f"{path}: crs: {quoted(words)} is no code such as EPSG:31287")
+    return plain

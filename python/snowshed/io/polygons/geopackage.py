@@ -1,0 +1,246 @@
+"""Polygons of a GeoPackage, read with SQLite alone: tables as they are, and nothing that computes.
+
+Views, triggers, virtual tables and generated columns are programs in the file. None is run.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Optional
+
+from snowshed._core import InputError
+from snowshed.io.coordinate_systems import system_of
+from snowshed.io.extras import require
+from snowshed.io.limits import (
+    CORNERS,
+    GEOPACKAGE_COPY,
+    GEOPACKAGE_VALUE,
+    LAYERS,
+    MB,
+    POLYGONS,
+    SQL_STEPS,
+)
+from snowshed.io.messages import quoted
+from snowshed.io.notes import tell
+from snowshed.io.plain_systems import plain_system
+from snowshed.io.polygons.layer import PolygonLayer, is_wanted
+from snowshed.io.polygons.wkb import count_corners
+
+SQLITE = b"SQLite format 3\0"
+#: How files begin in which SQLite keeps changes: those to come, and those to take back.
+LOG = (b"\x37\x7f\x06\x82", b"\x37\x7f\x06\x83")
+JOURNAL = (b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7",)
+TABLES = ("gpkg_contents", "gpkg_geometry_columns", "gpkg_spatial_ref_sys")
+#: Types of layers that may hold polygons.
+SURFACES = (
+    *("POLYGON", "MULTIPOLYGON", "GEOMETRY", "GEOMETRYCOLLECTION", "SURFACE"),
+    *("CURVEPOLYGON", "MULTISURFACE"),
+)
+#: What statements may do; everything else is denied.
+ACTIONS = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA)
+FUNCTIONS = ("length", "typeof", "lower", "substr")
+#: Bytes that precede a geometry, by the code of its envelope.
+ENVELOPES = {0: 8, 1: 40, 2: 56, 3: 56, 4: 72}
+
+
+def read_geopackage(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
+    """Return the polygons of a layer; see `snowshed.io.polygons.read_layer`."""
+    try:
+        with _opened(path) as connection:
+            return _Package(path, connection).read(layer, option)
+    except sqlite3.Error as error:
+        why = "reading it takes too long" if "interrupt" in str(error) else str(error)
+        raise InputError(f"{path}: not a GeoPackage that can be read: {why}") from None
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[sqlite3.Connection]:
+    """Open a file so that nothing beside it is written; changes that wait in its log count."""
+    with TemporaryDirectory() as folder:
+        log = _companion(path, "-wal", LOG)
+        if _companion(path, "-journal", JOURNAL) is not None:
+            raise InputError(
+                f"{path}: a program that wrote to it was cut off ({path.name}-journal); open and "
+                "close it there once"
+            )
+        file = path
+        if log is not None:  # another program has it open; SQLite would write beside it to read it
+            file = Path(folder) / "copy.gpkg"
+            for source, copy in ((path, file), (log, Path(f"{file}-wal"))):
+                if source.stat().st_size > GEOPACKAGE_COPY:
+                    raise InputError(f"{path}: open in another program; close it there first")
+                shutil.copyfile(source, copy)
+        mode = "mode=ro&immutable=1" if log is None else "mode=rw"
+        with closing(sqlite3.connect(f"{file.absolute().as_uri()}?{mode}", uri=True)) as connection:
+            _restrict(connection)
+            yield connection
+
+
+def _companion(path: Path, ending: str, begin: tuple[bytes, ...]) -> Optional[Path]:
+    """Return the file beside a database that holds changes; None where there are none."""
+    file = path.with_name(path.name + ending)
+    if not file.is_file():
+        return None
+    with file.open("rb") as opened:
+        return file if opened.read(8).startswith(begin) else None
+
+
+def _restrict(connection: sqlite3.Connection) -> None:
+    steps = 0
+    batch = 100_000
+
+    def too_long() -> int:
+        nonlocal steps
+        steps += batch
+        return int(steps > SQL_STEPS)
+
+    def allows(action: int, first: Optional[str], second: Optional[str], *_: object) -> int:
+        if action == sqlite3.SQLITE_FUNCTION:
+            return sqlite3.SQLITE_OK if second in FUNCTIONS else sqlite3.SQLITE_DENY
+        return sqlite3.SQLITE_OK if action in ACTIONS else sqlite3.SQLITE_DENY
+
+    connection.text_factory = lambda text: text.decode("utf-8", errors="replace")
+    connection.set_progress_handler(too_long, batch)
+    if hasattr(connection, "setlimit"):  # from Python 3.11 on
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, GEOPACKAGE_VALUE)
+    for setting in ("trusted_schema = OFF", "cell_size_check = ON", "temp_store = MEMORY"):
+        connection.execute(f"PRAGMA {setting}")
+    connection.set_authorizer(allows)
+
+
+class _Package:
+    """A GeoPackage that is open."""
+
+    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+        self.path = path
+        self.connection = connection
+
+    def read(self, layer: Optional[str], option: str) -> PolygonLayer:
+        for table in TABLES:
+            self._check_table(table)
+        table, geometry, system = self._choose(layer, option)
+        self._check_table(table)
+        fields = self._fields(table)
+        wanted = [field for field in fields if field != geometry and is_wanted(field)]
+        shapes, rows = self._features(table, [geometry, *wanted])
+        names = [field for field in fields if field != geometry]
+        return PolygonLayer(shapes, [dict(zip(wanted, r)) for r in rows], names, self._crs(system))
+
+    def _check_table(self, table: str) -> None:
+        """Refuse what is no table that stands in the file."""
+        found = self.connection.execute(
+            "SELECT type, rootpage FROM sqlite_master WHERE lower(name) = lower(?)", (table,)
+        ).fetchone()
+        if found is None:
+            raise InputError(f"{self.path}: not a GeoPackage: it has no table {quoted(table)}")
+        if found[0] != "table" or not found[1]:
+            raise InputError(
+                f"{self.path}: {quoted(table)} is a {found[0] if found[1] == 0 else 'program'}, "
+                "which is not evaluated; save it as a table"
+            )
+
+    def _choose(self, layer: Optional[str], option: str) -> tuple[str, str, object]:
+        """Return table, column of the geometry and coordinate system of the layer to read."""
+        every = self.connection.execute(
+            "SELECT c.table_name, g.column_name, g.geometry_type_name, g.srs_id FROM gpkg_contents "
+            "AS c JOIN gpkg_geometry_columns AS g ON c.table_name = g.table_name "
+            "COLLATE NOCASE WHERE c.data_type = 'features' LIMIT ?",
+            (LAYERS + 1,),
+        ).fetchall()
+        if len(every) > LAYERS:
+            raise InputError(f"{self.path}: more than {LAYERS} layers")
+        names = ", ".join(quoted(str(one[0])) for one in every[:20])
+        if layer is not None:
+            found = [one for one in every if one[0] == layer]
+            if not found:
+                raise InputError(
+                    f"{self.path}: has no layer {quoted(layer)}; it has {names or 'none'}"
+                )
+            return str(found[0][0]), str(found[0][1]), found[0][3]
+        of_polygons = [one for one in every if str(one[2]).upper() in SURFACES]
+        if not of_polygons:
+            raise InputError(f"{self.path}: holds no layer of polygons")
+        if len(of_polygons) > 1:
+            raise InputError(
+                f"{self.path}: has {len(every)} layers: {names}; choose one ({option} NAME)"
+            )
+        if len(every) > 1:
+            tell(
+                f"{self.path}: of its layers {names} the one that may hold polygons is read, "
+                f"{quoted(str(of_polygons[0][0]))}"
+            )
+        return str(of_polygons[0][0]), str(of_polygons[0][1]), of_polygons[0][3]
+
+    def _fields(self, table: str) -> list[str]:
+        """Return the columns of a table that stand in the file."""
+        columns = self.connection.execute(f"PRAGMA table_xinfo({_name(table)})").fetchall()
+        return [str(name) for _, name, _, _, _, _, hidden in columns if not hidden]
+
+    def _features(self, table: str, columns: Sequence[str]) -> tuple[list[Any], list[Any]]:
+        """Return the geometries, and the rows of the other columns."""
+        shapely: Any = require("shapely", "terrain", "reading polygons")
+        names = ", ".join(map(_name, columns))
+        # An index could be one of expressions, which would be evaluated.
+        rows = self.connection.execute(f"SELECT {names} FROM {_name(table)} NOT INDEXED")
+        geometries: list[Optional[bytes]] = []
+        others, corners, room = [], 0, GEOPACKAGE_VALUE
+        for number, row in enumerate(rows, 1):
+            if number > POLYGONS:
+                raise InputError(f"{self.path}: more than {POLYGONS} polygons")
+            where = f"{self.path}, feature {number}"
+            wkb = _wkb(row[0], where)
+            if wkb is not None:
+                corners += count_corners(wkb, where)
+            if corners > CORNERS:
+                raise InputError(f"{self.path}: more than {CORNERS} corners; simplify the outlines")
+            room -= sum(len(value) for value in row if isinstance(value, (bytes, str)))
+            if room < 0:
+                raise InputError(f"{self.path}: more than {GEOPACKAGE_VALUE // MB} MB of polygons")
+            geometries.append(wkb)
+            others.append(row[1:])
+        try:
+            return list(shapely.from_wkb(geometries)), others
+        except shapely.errors.ShapelyError as error:
+            raise InputError(f"{self.path}: a geometry is damaged: {error}") from None
+
+    def _crs(self, system: object) -> str:
+        found = self.connection.execute(
+            "SELECT organization, organization_coordsys_id, definition FROM gpkg_spatial_ref_sys "
+            "WHERE srs_id = ?",
+            (system,),
+        ).fetchone()
+        if found is None:
+            raise InputError(f"{self.path}: does not describe its coordinate system {system}")
+        organization, number, definition = found
+        plain = plain_system(str(definition))
+        if str(organization).upper() == "EPSG" and isinstance(number, int):
+            code = f"EPSG:{number}"
+            return code if not plain or system_of(code) is not None else plain
+        if "undefined" in str(definition).lower()[:60]:
+            return ""
+        if not plain:
+            raise InputError(f"{self.path}: its coordinate system {system} is none that is read")
+        return plain
+
+
+def _name(text: str) -> str:
+    """Return a name as SQL quotes it."""
+    return '"' + text.replace('"', '""') + '"'
+
+
+def _wkb(value: object, where: str) -> Optional[bytes]:
+    """Return the geometry in a value of a GeoPackage; None where there is none."""
+    if value is None:
+        return None
+    if not isinstance(value, bytes) or value[:2] != b"GP" or len(value) < 8:
+        raise InputError(f"{where}: its geometry is none of a GeoPackage")
+    flags = value[3]
+    begin = ENVELOPES.get(flags >> 1 & 7)
+    if begin is None or flags & 0x20:
+        raise InputError(f"{where}: its geometry is of a kind that is not known")
+    return value[begin:]

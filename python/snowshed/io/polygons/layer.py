@@ -1,0 +1,43 @@
+"""The polygons of a file, as every format gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+#: Fields are known by these words at their beginning; others are never read.
+WANTED = ("name", "thick", "d0")
+
+
+@dataclass(frozen=True)
+class PolygonLayer:
+    """Features of a layer.
+
+    Attributes
+    ----------
+    shapes
+        Geometries of shapely, one for each feature; None where it has none.
+    records
+        Values of the fields that are wanted, by field; one for each feature.
+    fields
+        Names of all fields of the file.
+    crs
+        Coordinate system in words; empty where the file has none.
+    """
+
+    shapes: Sequence[Any]
+    records: Sequence[Mapping[str, Any]]
+    fields: Sequence[str]
+    crs: str
+
+
+def is_wanted(field: str) -> bool:
+    """Return whether a field is read.
+
+    Examples
+    --------
+    >>> is_wanted("Thickness_cm"), is_wanted("photo")
+    (True, False)
+    """
+    return field.strip().lower().startswith(WANTED)

@@ -1,0 +1,110 @@
+"""Polygons of an ESRI Shapefile, read by GDAL after its head, index and companions were checked."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from snowshed._core import InputError
+from snowshed.io.coordinate_systems import read_system
+from snowshed.io.extras import require
+from snowshed.io.gdal_fence import fenced_pyogrio
+from snowshed.io.limits import CORNERS, POLYGONS, RINGS
+from snowshed.io.messages import shortened
+from snowshed.io.notes import tell
+from snowshed.io.polygons.layer import PolygonLayer, is_wanted
+
+#: The number of the format, and five that are not used.
+SHAPEFILE = b"\x00\x00\x27\x0a" + bytes(20)
+#: Kinds of shapes: plane, with z, with measures.
+OF_POLYGONS = (5, 15, 25)
+KINDS = {1: "points", 3: "lines", 8: "points", 11: "points", 13: "lines", 18: "points"}
+HEAD = 100  # bytes of the head of a .shp and of its .shx
+
+
+def read_shapefile(path: Path) -> PolygonLayer:
+    """Return the polygons of a file; see `snowshed.io.polygons.read_layer`."""
+    pyogrio: Any = require("pyogrio", "terrain", "reading shapefiles")
+    shapely: Any = require("shapely", "terrain", "reading polygons")
+    companions = _companions(path)
+    _check_sizes(path, companions)
+    if ".prj" in companions:
+        read_system(companions[".prj"])
+    file = path.absolute()
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        try:
+            with fenced_pyogrio():
+                fields = [str(field) for field in pyogrio.read_info(file)["fields"]]
+                wanted = [field for field in fields if is_wanted(field)]
+                meta, _, shapes, columns = pyogrio.raw.read(
+                    file, columns=wanted, max_features=POLYGONS, force_2d=True
+                )
+            shapes = shapely.from_wkb(shapes)
+        except (
+            *(pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError),
+            *(pyogrio.errors.CRSError, pyogrio.errors.FeatureError),
+            *(pyogrio.errors.GeometryError, shapely.errors.ShapelyError, ValueError),
+        ) as error:
+            raise InputError(
+                f"{path}: not a file of polygons: {shortened(str(error), 300)}"
+            ) from None
+    for warning in dict.fromkeys(shortened(str(one.message), 300) for one in said):
+        tell(f"{path}: GDAL says: {warning}")
+    rows = zip(*columns) if columns else [()] * len(shapes)
+    names = [str(name) for name in meta["fields"]]
+    return PolygonLayer(
+        list(shapes), [dict(zip(names, row)) for row in rows], fields, meta["crs"] or ""
+    )
+
+
+def _companions(path: Path) -> dict[str, Path]:
+    """Return the files of the same name beside a .shp, by their endings, lower-case."""
+    if path.suffix.lower() != ".shp":
+        raise InputError(f"{path}: a shapefile's shapes, but its name does not end in .shp")
+    files = {
+        file.suffix.lower(): file
+        for file in sorted(path.parent.glob(f"{_literally(path.stem)}.*"))
+        if file.stem == path.stem
+    }
+    for file in files.values():
+        if not file.is_file():
+            raise InputError(f"{file}: not a regular file")
+    if ".shx" not in files:
+        raise InputError(f"{path}: its index {path.stem}.shx is not beside it")
+    return files
+
+
+def _literally(name: str) -> str:
+    return "".join(f"[{c}]" if c in "*?[" else c for c in name)
+
+
+def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
+    """Refuse what holds no polygons, and too many, before GDAL reads them."""
+    content = np.memmap(path, dtype=np.uint8, mode="r")
+    if len(content) < HEAD:
+        raise InputError(f"{path}: not a file of polygons: cut off")
+    kind = int(content[32:36].view("<i4")[0])
+    if int(content[28:32].view("<i4")[0]) != 1000 or kind not in OF_POLYGONS:
+        raise InputError(f"{path}: not a file of polygons: {KINDS.get(kind, 'other shapes')}")
+    index = companions[".shx"]
+    count = (index.stat().st_size - HEAD) // 8
+    if count > POLYGONS:
+        raise InputError(f"{path}: more than {POLYGONS} polygons")
+    if count < 1:
+        return
+    entries = np.fromfile(index, dtype=">i4", count=2 * count, offset=HEAD)
+    begins = 2 * entries[::2].astype(np.int64)
+    # The number of rings and that of corners stand 44 bytes into a record.
+    whole = (begins >= HEAD) & (begins + 52 <= len(content))
+    places = begins[whole, None] + np.arange(44, 52)
+    rings, corners = content[places].view("<i4").astype(np.int64).T if len(places) else ([0], [0])
+    shapes = content[begins[whole, None] + np.arange(8, 12)].view("<i4").ravel()
+    polygons = np.isin(shapes, OF_POLYGONS)
+    if np.sum(np.asarray(corners)[polygons]) > CORNERS:
+        raise InputError(f"{path}: more than {CORNERS} corners; simplify the outlines")
+    if np.any(np.asarray(rings)[polygons] > RINGS):
+        raise InputError(f"{path}: a polygon of more than {RINGS} rings; simplify it")

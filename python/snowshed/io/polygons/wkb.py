@@ -1,0 +1,75 @@
+"""Well-known binary geometries, checked before a library reads them.
+
+GEOS follows geometries within geometries without an end, and a file can nest millions.
+"""
+
+from __future__ import annotations
+
+import struct
+
+from snowshed._core import InputError
+
+POLYGON, MULTIPOLYGON = 3, 6
+#: Curves: CircularString, CompoundCurve, CurvePolygon, MultiCurve, MultiSurface.
+CURVED = (8, 9, 10, 11, 12)
+
+
+def count_corners(wkb: bytes, where: str) -> int:
+    r"""Return how many corners a polygon or several have.
+
+    Raises
+    ------
+    InputError
+        If it is another geometry, or is cut off.
+
+    Examples
+    --------
+    >>> ring = struct.pack("<I6d", 3, 0, 0, 1, 0, 0, 1)
+    >>> count_corners(b"\x01" + struct.pack("<II", 3, 1) + ring, "here")
+    3
+    """
+    try:
+        kind, place, order, _ = _head(wkb, 0)
+        if kind in CURVED:
+            raise InputError(
+                f"{where}: has curved edges; draw it with straight ones (QGIS: Segmentize)"
+            )
+        if kind == POLYGON:
+            return _rings(wkb, 0)[0]
+        if kind != MULTIPOLYGON:
+            raise InputError(f"{where}: not a polygon")
+        (parts,) = struct.unpack_from(f"{order}I", wkb, place)
+        place, corners = place + 4, 0
+        for _ in range(parts):
+            if _head(wkb, place)[0] != POLYGON:
+                raise InputError(f"{where}: not a polygon")
+            count, place = _rings(wkb, place)
+            corners += count
+    except struct.error:
+        raise InputError(f"{where}: its geometry is damaged") from None
+    return corners
+
+
+def _head(wkb: bytes, place: int) -> tuple[int, int, str, int]:
+    """Return kind, place of what follows, byte order and numbers of a corner."""
+    order = "<" if wkb[place : place + 1] == b"\1" else ">"
+    (code,) = struct.unpack_from(f"{order}I", wkb, place + 1)
+    place += 9 if code & 0x20000000 else 5  # an identifier of the coordinate system
+    base = code & 0x0FFFFFFF
+    numbers = 2 + bool(code & 0x80000000) + bool(code & 0x40000000)
+    numbers += {0: 0, 1: 1, 2: 1, 3: 2}.get(base // 1000, 0)
+    return base % 1000, place, order, numbers
+
+
+def _rings(wkb: bytes, place: int) -> tuple[int, int]:
+    """Return the corners of a polygon, and the place behind it."""
+    _, place, order, numbers = _head(wkb, place)
+    (rings,) = struct.unpack_from(f"{order}I", wkb, place)
+    place, corners = place + 4, 0
+    for _ in range(rings):
+        (count,) = struct.unpack_from(f"{order}I", wkb, place)
+        place += 4 + count * numbers * 8
+        corners += count
+        if place > len(wkb):
+            raise struct.error
+    return corners, place

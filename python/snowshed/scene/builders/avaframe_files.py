@@ -1,0 +1,141 @@
+"""The files of an AvaFrame project: which are its own, and may be read and copied.
+
+Projects are handed from person to person. A link in one could lead to any file of whoever runs it,
+whose content would then stand among the results.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import stat
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from snowshed._core import InputError
+from snowshed.io.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
+from snowshed.io.messages import quoted
+from snowshed.io.notes import tell
+from snowshed.io.printable import printable
+
+#: Endings of files that projects are made of: rasters, polygons and lines, settings, tables.
+KNOWN = (
+    *(".asc", ".tif", ".tiff", ".tfw", ".prj", ".xml"),
+    *(".shp", ".shx", ".dbf", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".gpkg", ".geojson"),
+    *(".ini", ".csv"),
+)
+#: What AvaFrame keeps in Inputs for itself.
+OWN_COPIES = "remeshedRasters"
+
+
+@dataclass(frozen=True)
+class InputFile:
+    """A file of a project.
+
+    Attributes
+    ----------
+    file
+        Where it is.
+    place
+        Its path from the project's folder Inputs.
+    """
+
+    file: Path
+    place: Path
+
+
+def project_inputs(root: Path) -> list[InputFile]:
+    """Return the files in the folder Inputs of a project that may be read and copied.
+
+    Files with other endings than projects have are left out, which is told.
+
+    Raises
+    ------
+    InputError
+        If a file is none of the project: a link that leads out of it, to a folder or to nothing, a
+        device, a pipe; if a name holds what no name should; or if there are too many or too large
+        ones.
+    """
+    inputs = root / "Inputs"
+    _check_own(inputs, root, folder=True)
+    files = [InputFile(file, file.relative_to(inputs)) for file in _files(inputs, root, 0)]
+    if len(files) > PROJECT_FILES:
+        raise InputError(f"{inputs}: more than {PROJECT_FILES} files")
+    size = sum(each.file.stat().st_size for each in files)
+    if size > PROJECT_BYTES:
+        raise InputError(
+            f"{inputs}: {size / GB:.3g} GB of files; at most {PROJECT_BYTES // GB} GB are copied "
+            "to the results"
+        )
+    known = [each for each in files if each.file.suffix.lower() in KNOWN]
+    others = [str(each.place) for each in files if each.file.suffix.lower() not in KNOWN]
+    if others:
+        more = f" and {len(others) - 5} others" if len(others) > 5 else ""
+        tell(f"{inputs}: not copied to the results: {', '.join(others[:5])}{more}")
+    return known
+
+
+def copy_inputs(inputs: Sequence[InputFile], folder: Path) -> None:
+    """Copy the files of a project to the folder Inputs of its results."""
+    for each in inputs:
+        target = folder / "Inputs" / each.place
+        if target.exists() and target.samefile(each.file):
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with open(each.file, "rb", opener=_open_at_once) as source:
+            if not stat.S_ISREG(os.fstat(source.fileno()).st_mode):
+                raise OSError(None, "not a regular file any more", str(each.file))
+            target.unlink(missing_ok=True)  # which may be a link to something else
+            with target.open("xb") as copy:
+                shutil.copyfileobj(source, copy)
+
+
+def check_own_file(file: Path, root: Path) -> None:
+    """Refuse a file of a project that is not its own; see `project_inputs`."""
+    _check_own(file, root, folder=False)
+
+
+def _files(folder: Path, root: Path, depth: int) -> Iterator[Path]:
+    if depth > PROJECT_DEPTH:
+        raise InputError(f"{folder}: folders are nested more than {PROJECT_DEPTH} deep")
+    for entry in sorted(_entries(folder), key=lambda each: each.name):
+        path = folder / entry.name
+        if not entry.name.isprintable() or printable(entry.name) != entry.name:
+            raise InputError(f"{folder}: the name {quoted(entry.name)} holds control characters")
+        if entry.is_dir(follow_symlinks=False):
+            if entry.name != OWN_COPIES:
+                yield from _files(path, root, depth + 1)
+            continue
+        _check_own(path, root, folder=False)
+        yield path
+
+
+def _entries(folder: Path) -> list[os.DirEntry[str]]:
+    with os.scandir(folder) as entries:
+        found = []
+        for entry in entries:
+            found.append(entry)
+            if len(found) > PROJECT_FILES:
+                raise InputError(f"{folder}: more than {PROJECT_FILES} files")
+        return found
+
+
+def _check_own(path: Path, root: Path, *, folder: bool) -> None:
+    """Refuse what lies elsewhere, and what is no regular file, or folder."""
+    try:
+        inside = path.resolve(strict=True).is_relative_to(root.resolve())
+    except (OSError, RuntimeError):  # there is nothing, or links lead in a circle
+        raise InputError(f"{path}: a link that leads to no file") from None
+    if not inside:
+        raise InputError(
+            f"{path}: a link that leads out of the project; copy into the project what it needs"
+        )
+    mode = path.stat().st_mode
+    if not (stat.S_ISDIR(mode) if folder else stat.S_ISREG(mode)):
+        raise InputError(f"{path}: not a regular file")
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    """Open a file without waiting, as for the writer of a pipe."""
+    return os.open(path, flags | os.O_NONBLOCK)

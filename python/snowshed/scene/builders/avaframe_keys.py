@@ -1,0 +1,104 @@
+"""The keys of AvaFrame's com5SnowSlide: which are settings, which are fixed or without effect."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+#: Keys that are settings here.
+SETTINGS: Mapping[str, str] = {
+    "dt": "time_step",
+    "rho": "density",
+    "meshcellsize": "cell",
+    "deltath": "layer_thickness",
+    "xsivoellmy": "turbulence",
+    "cohesionmaxstrain": "max_strain",
+    "cohesivesurfacetension": "bond_modulus",
+    "mindistcohesion": "min_bond_length",
+    "cresh": "resistance",
+    "subgridmixingfactor": "artificial_viscosity",
+    "rhoent": "entrained_density",
+    "enteroenergy": "erosion_energy",
+    "entshearresistance": "entrainment_shear",
+    "entdefresistance": "entrainment_work",
+    "thresholdmasssplit": "split_ratio",
+    "stopcrit": "stop_ratio",
+}
+#: The key of the Coulomb coefficient of each law of friction, and com5SnowSlide's default of it.
+FRICTION: Mapping[str, tuple[str, float]] = {
+    "voellmy": ("muvoellmy", 0.325),
+    "coulomb": ("mucoulomb", 0.155),
+}
+#: Keys that may only have the value with which com5SnowSlide works here.
+FIXED: Mapping[str, str] = {
+    "adaptsfcdetrainment": "0",
+    "adaptsfcentrainment": "0",
+    "adaptsfcstopped": "0",
+    "centeredposition": "1",
+    "createrangetimediagram": "false",
+    "curvaccinfriction": "1",
+    "curvaccingradient": "0",
+    "curvaccintangent": "0",
+    "defaultconfig": "true",
+    "depmin": "1e-6",
+    "detrainment": "false",
+    "distsplitpart": "0.41",
+    "exportdata": "true",
+    "exportrasters": "false",
+    "gravacc": "9.81",
+    "inistep": "false",
+    "initialiseparticlesfromfile": "false",
+    "initpartdisttype": "triangular",
+    "interpoption": "2",
+    "massperparticledeterminationmethod": "mppdh",
+    "meshcellsizethreshold": "0.001",
+    "methodmeshnormal": "1",
+    "minrkern": "0.001",
+    "modeltype": "ssl",
+    "reprojectioniterations": "5",
+    "reprojmethodforce": "2",
+    "reprojmethodposition": "2",
+    "resistancemodel": "default",
+    "sphkernelradiustimestepping": "false",
+    "sphoption": "1",
+    "splitoption": "0",
+    "stopcrittype": "kinenergy",
+    "thresholdpointinpoly": "0.001",
+    "timedependentrelease": "false",
+    "trackparticles": "false",
+    "velmagmin": "1e-6",
+    "viscoption": "1",
+    "writeparttocsv": "false",
+}
+#: Variations of a thickness, one simulation for each value.
+VARIATIONS = tuple(
+    f"{area}th{kind}variation"
+    for area in ("rel", "ent", "secondaryrel")
+    for kind in ("percent", "range", "rangefromci", "dist")
+)
+#: Keys that change nothing with the values above: of pictures, of random numbers, of what is
+#: switched off.
+WITHOUT_EFFECT = (
+    "adaptdemplot", "additionallyfixedfactor", "appk", "bufferzonefactor", "centertrackpartpoint",
+    "cleanremeshedrasters", "cmax", "cmaxnmass", "cmaxnppk", "cminmass", "cminnppk",
+    "contourrestype", "cpice", "cvmaxsediment", "cvsediment", "detk", "dissdam", "dtini",
+    "enthref", "enttempref", "exportparticleproperties", "forestthmax", "forestthmin",
+    "forestvmax", "forestvmin", "ftoptionini", "hmin", "massperpart", "maxiterations",
+    "niterdam", "nppk0", "nsplit", "particlefile", "particleproperties", "radius",
+    "resizethreshold", "restitutioncoefficient", "rhosediment", "saveparticlesini", "scenario",
+    "secondaryrelth", "secondaryrelthfromfile", "seed", "sizesediment", "sphkr0", "sphoptionini",
+    "stopcritini", "stopcritinismall", "subgridmixingfactorini", "thfromini",
+    "thresholdadaptsfc", "thresholdpointinrel", "thresholdprojection", "thresholdvalue",
+    "timedependentreleasescenarios", "timestepdistance", "tini", "ttdiagram",
+    "uflowingthreshold", "usecompression", "visuparticleproperties", "volclassmedium",
+    "volclasssmall",
+)  # fmt: skip
+#: Ends of keys that belong to laws of friction which no simulation here has chosen.
+OTHER_FRICTION = (
+    "samosat", "samosatsmall", "samosatmedium", "voellmyminshear", "coulombminshear", "wetsnow",
+    "obrienandjulien", "herschelandbulkley", "bingham",
+)  # fmt: skip
+OWN_KEYS = (
+    "dam", "entth", "entthfromfile", "entthifmissinginshp", "explicitfriction", "frictmodel",
+    "releasescenario", "relth", "relthfromfile", "restype", "secrelarea", "simtypelist",
+    "snowslide", "sphkernelradius", "tend", "tsteps", *(key for key, _ in FRICTION.values()),
+)  # fmt: skip

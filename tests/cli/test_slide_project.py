@@ -1,0 +1,160 @@
+"""AvaFrame projects on the command line: interrupted and gone on with, and never half refused."""
+
+import json
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from slide_files import box, write_polygons, write_project
+
+from snowshed.cli.main import main
+from snowshed.run import slides
+
+pytest.importorskip("pyogrio")
+pytest.importorskip("shapely")
+pytest.importorskip("rasterio")
+PROGRAM = [sys.executable, "-m", "snowshed"]
+
+
+def slide(project, out, *options):
+    return main(["slide", "--avaframe", str(project), "-o", str(out), *map(str, options)])
+
+
+def interrupted(project, out, number, *options):
+    """Interrupt a project's first slide, and return the command that goes on with it."""
+    words = ["slide", "--avaframe", project, "-o", out, "-q", *options]
+    run = subprocess.Popen([*PROGRAM, *map(str, words)], stderr=subprocess.PIPE, text=True)
+    while not (out / "film.bin").exists() and run.poll() is None:
+        time.sleep(0.01)
+    run.send_signal(number)
+    said = run.communicate()[1]
+    assert run.returncode == 130
+    (hint,) = re.findall(r"interrupted; go on with: (.*)", said)
+    program, *again = shlex.split(hint)
+    assert program == "snowshed" and again == [*map(str, words), "--resume"]
+    return again
+
+
+def test_the_hint_after_an_interrupt_goes_on_with_all_simulations(tmp_path):
+    """Also with what was asked for on the command line."""
+    ini = "tEnd = 20\ndeltaTh = 0.01\n"
+    project = write_project(tmp_path / "a project", ini, releases=("north", "south"))
+    out = tmp_path / "out"
+    options = ["--no-bonds", "--stop-ratio", "0", "--thickness", "0.75"]
+    again = interrupted(project, out, signal.SIGINT, *options)
+    assert not list(out.glob("south_*"))
+    assert subprocess.run([*PROGRAM, *again], capture_output=True).returncode == 0
+    names = {file.name.split("_")[0] for file in out.glob("Outputs/com1DFA/peakFiles/*.asc")}
+    assert names == {"north", "south"}
+    for scene in (out / "scene.json", *out.glob("south_*/scene.json")):
+        (area,) = json.loads(scene.read_text())["terrain"]["release"]
+        assert area["thickness"] == 0.75
+    assert (out / "Inputs/dem.asc").is_file()
+
+
+def test_an_interrupt_while_pictures_are_drawn_keeps_the_next_slide_from_running(
+    tmp_path, capsys, monkeypatch
+):
+    project = write_project(tmp_path / "project", "tEnd = 0.05\n", releases=("a", "b"))
+    draw = slides._draw
+
+    def interrupt(*given):
+        signal.raise_signal(signal.SIGTERM)
+        draw(*given)
+
+    monkeypatch.setattr(slides, "_draw", interrupt)
+    assert slide(project, tmp_path / "out", "-q") == 130
+    assert "interrupted; go on with: " in capsys.readouterr().err
+    assert not list((tmp_path / "out").glob("b_*"))
+    assert (tmp_path / "out/slide.html").is_file()
+
+
+def test_what_a_later_release_cannot_run_with_is_refused_before_the_first(tmp_path, capsys):
+    project = write_project(tmp_path / "project", "tEnd = 0.05\n", releases=("a", "b"))
+    write_polygons(project / "Inputs/REL/b.geojson", box(60, 10, 90, 30), thickness=0.5)
+    assert slide(project, tmp_path / "out", "-q") == 2
+    assert "reaches beyond the terrain" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_settings_that_the_scene_refuses_are_located_in_the_ini(tmp_path, capsys):
+    project = write_project(tmp_path / "project", "deltaTh = 1e-12\n")
+    assert slide(project, tmp_path / "out", "-q") == 2
+    said = capsys.readouterr().err
+    assert "com5SnowSlideCfg.ini, line 3: deltath: /numerics/layer_thickness: 1e-12 m makes" in said
+    assert not (tmp_path / "out").exists()
+
+
+def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, capsys, monkeypatch):
+    from snowshed import InputError
+
+    def fail(*_):
+        raise InputError("no rasterio")
+
+    project = write_project(tmp_path / "project", "tEnd = 0.05\n")
+    monkeypatch.setattr("snowshed.run.avaframe_outputs.write_avaframe_outputs", fail)
+    assert slide(project, tmp_path / "out", "-q") == 3
+    assert (
+        "the slide has ended, its outputs are not written: no rasterio" in capsys.readouterr().err
+    )
+
+
+def test_links_are_refused_before_anything_is_written(tmp_path, capsys):
+    project = write_project(tmp_path / "project", "tEnd = 0.05\n")
+    (project / "Inputs/LINES").symlink_to("/")
+    assert slide(project, tmp_path / "out", "-q") == 2
+    assert "Inputs/LINES: a link that leads out of the project" in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["project"]
+
+
+def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
+    """GDAL's own warnings, too, which are notes."""
+    pyogrio = pytest.importorskip("pyogrio")
+    import numpy as np
+    import shapely
+
+    ring = shapely.to_wkb(shapely.box(10, 10, 30, 30))
+    project = write_project(tmp_path / "project", "tEnd = 0.05\n")
+    (project / "Inputs/REL/rel.geojson").unlink()
+    file = project / "Inputs/REL/rel.shp"
+    pyogrio.raw.write(
+        *(file, np.array([ring], dtype=object), [np.array([0.5])], np.array(["d0"])),
+        crs="EPSG:31287", geometry_type="Polygon",
+    )  # fmt: skip
+    content = bytearray(file.read_bytes())
+    content[36:100] = bytes(64)  # bounds that GDAL warns of, or not: it does not matter which
+    file.write_bytes(content)
+    assert slide(project, tmp_path / "out", "-q") == 0
+    assert not capsys.readouterr().err
+    assert slide(project, tmp_path / "again") == 0
+    assert "note: " in capsys.readouterr().err
+
+
+def test_layers_are_chosen_on_the_command_line(tmp_path, capsys):
+    pyogrio = pytest.importorskip("pyogrio")
+    import numpy as np
+    import shapely
+
+    project = write_project(tmp_path / "project")
+    file = tmp_path / "areas.gpkg"
+    for name, west in (("old", 10), ("new", 40)):
+        ring = shapely.to_wkb(shapely.box(west, 10, west + 10, 30))
+        pyogrio.raw.write(
+            *(file, np.array([ring], dtype=object), [np.array([0.5])], np.array(["thickness"])),
+            crs="EPSG:31287", geometry_type="Polygon", layer=name, append=file.exists(),
+        )  # fmt: skip
+    given = ["slide", "--terrain", project / "Inputs/dem.asc", "--release", file, "-q"]
+    given = [str(word) for word in (*given, "--max-time", 0.05, "-o", tmp_path / "out")]
+    assert main(given) == 2
+    assert "has 2 layers: 'old', 'new'; choose one (--layer NAME)" in capsys.readouterr().err
+    forest = ["--layer", "new", "--resistance-areas", str(file)]
+    assert main([*given, *forest]) == 2
+    assert "choose one (--resistance-layer NAME)" in capsys.readouterr().err
+    assert main([*given, *forest, "--resistance-layer", "old"]) == 0
+    terrain = json.loads((tmp_path / "out/scene.json").read_text())["terrain"]
+    assert terrain["release"][0]["outline"][0][0] in (40, 50)
+    assert terrain["resistance"][0]["outline"][0][0] in (10, 20)

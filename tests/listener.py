@@ -1,0 +1,45 @@
+"""A listener on the loopback address, which files of strangers must not reach."""
+
+import socket
+import threading
+from contextlib import contextmanager
+
+
+class Listener:
+    """A port, and the first bytes of what was sent to it."""
+
+    def __init__(self):
+        self.socket = socket.create_server(("127.0.0.1", 0))
+        self.port = self.socket.getsockname()[1]
+        self.heard = []
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    @property
+    def address(self):
+        """What files name."""
+        return f"http://127.0.0.1:{self.port}"
+
+    def _listen(self):
+        while True:
+            try:
+                connection, _ = self.socket.accept()
+            except OSError:
+                return
+            connection.settimeout(1.0)
+            try:
+                self.heard.append(connection.recv(200))
+                connection.sendall(b"HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n")
+            except OSError:
+                self.heard.append(b"(connected)")
+            connection.close()
+
+
+@contextmanager
+def silence():
+    """Give a listener, and fail where it has heard anything."""
+    listener = Listener()
+    try:
+        yield listener
+    finally:
+        listener.socket.close()
+    assert not listener.heard, listener.heard
