@@ -21,6 +21,7 @@ from snowshed.run.results import read_events
 from snowshed.run.season import SeasonSettings, run_season
 from snowshed.run.season.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
 from snowshed.run.season.results import SeasonFolder
+from snowshed.run.season.source import Source
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.table import read_table
 
@@ -206,6 +207,15 @@ def test_made_winters_have_the_climate_that_they_are_fitted_to():
         assert again.shape * again.scale == pytest.approx(one.shape * one.scale, rel=0.15)
         assert again.deviation == pytest.approx(one.deviation, rel=0.1)
     assert fitted.persistence == pytest.approx(EXAMPLE_CLIMATE.persistence, abs=0.1)
+
+
+def test_a_climate_is_not_fitted_to_days_that_nobody_knows():
+    rows = EXAMPLE_CLIMATE.winters(3, seed=4)
+    unknown = [
+        replace(row, snowfall=0.0, source=Source.MISSING, date=row.date.replace(year=1990))
+        for row in rows[:90]
+    ]
+    assert Climate.fit([*unknown, *rows]) == Climate.fit(rows)
 
 
 def test_the_same_seed_makes_the_same_winters():

@@ -17,6 +17,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans
+from snowshed.run.season.source import Source
 from snowshed.run.season.weather_row import MOST_SNOWFALL, Weather
 
 LEAST_DAYS = 20  # of a month, to fit it
@@ -71,13 +72,14 @@ class Climate:
 
     @classmethod
     def fit(cls, days: Sequence[Weather]) -> Climate:
-        """Return the climate of daily rows.
+        """Return the climate of daily rows; days whose snow is not known are left out.
 
         Raises
         ------
         InputError
             If no month with snow has enough days.
         """
+        days = [day for day in days if day.source is not Source.MISSING]
         snows = np.array([day.snowfall >= LEAST_FALL for day in days])
         temperatures = np.array([day.temperature for day in days])
         months = np.array([day.date.month for day in days])
