@@ -1,5 +1,8 @@
 """Several files of one station."""
 
+import json
+import subprocess
+import sys
 from datetime import datetime, timedelta
 
 import pandas as pd
@@ -135,3 +138,33 @@ def test_a_file_that_adds_nothing_is_told(written):
     both = smet("TA HS", ["268.15 0.3"] * 3, step=24.0)
     notes = read_stations([written(both, "a.smet"), written(both, "b.smet")]).notes
     assert "b.smet adds nothing" in notes
+
+
+def commands(tmp_path, *arguments):
+    code = [sys.executable, "-m", "snowshed", *arguments, "-o", "out"]
+    return subprocess.run(code, cwd=tmp_path, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(
+    "files", [["nime.csv", "smn.csv"], ["nime.csv", "--temperature", "smn.csv"]]
+)
+def test_commands_take_several_files(files, written, tmp_path):
+    written(SNOW, "nime.csv")
+    written(WARM, "smn.csv")
+    panel = ("--dim", "2", "--height", "1", "--length", "1", "--tilt", "10", "--dx", "0.05")
+    done = commands(tmp_path, "season", *files, *panel)
+    assert done.returncode == 0, done.stderr
+    said = " ".join((done.stdout + done.stderr).split())
+    assert "the temperature is from tre200h0 of smn.csv on 12 days" in said
+    notes = json.loads((tmp_path / "out" / "season.json").read_text())["notes"]
+    assert "new snow is from hns000d0 of nime.csv on 12 days" in notes
+
+
+def test_clearance_takes_several_files(written, tmp_path):
+    written(meteoswiss("hns000d0", ["12", "0", "0"] * 70, BEGIN, 24.0), "nime.csv")
+    written(meteoswiss("tre200d0", ["-4"] * 210, BEGIN, 24.0), "smn.csv")
+    panel = ("--slope-length", "2", "--tilt", "60", "--coverage", "0.5", "--dry-run")
+    done = commands(tmp_path, "clearance", "nime.csv", "--temperature", "smn.csv", *panel)
+    assert done.returncode == 0, done.stderr
+    assert "1 winter" in done.stdout + done.stderr
+    assert commands(tmp_path, "clearance", "nime.csv", "smn.csv", *panel).returncode == 0

@@ -70,9 +70,11 @@ def test_a_depth_in_another_unit_is_refused_with_the_likely_one(factor, station)
     assert len(station(depths_by(1.0)).rows) == 10
 
 
-def test_one_spike_of_a_sensor_is_no_other_unit(station):
-    rows = [f"268.15 {one}" for one in (0.3, 0.3, 0.31, 2.9, 0.31, 0.32, 0.32, 0.33, 0.34, 0.35)]
-    assert len(station(smet("TA HS", rows)).rows) == 10
+@pytest.mark.parametrize("step", [1.0, 24.0])
+@pytest.mark.parametrize("warm", [268.15, 293.15])
+def test_spikes_of_a_sensor_are_no_other_unit(step, warm, station):
+    rows = [f"{warm} {3.0 if n % 5 == 2 else 0.3}" for n in range(100)]
+    assert len(station(smet("TA HS", rows, step=step)).rows) == 100
 
 
 @pytest.mark.parametrize(

@@ -6,18 +6,17 @@ the middle of many that tells a column in another unit, so that a faulty sensor 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from datetime import timedelta
-from statistics import median
+from datetime import date
+from statistics import fmean, median
 
 from snowshed._core import InputError
 from snowshed.io.weather.columns import WORDS
 from snowshed.io.weather.observation import DAY, Observation, Station
 
 FEWEST = 5  # values by whose middle a unit is judged
-LONGEST = timedelta(hours=26)  # between rows whose depths are compared
-#: Half of the changes of the snow depth from row to row are smaller, m, as is half of the new snow.
+#: Half of the changes of the snow depth from day to day are smaller, m, as is half of the new snow.
 CHANGE, NEW_SNOW = 0.5, 0.7
 #: Temperatures of the air, degrees C, between which snow falls.
 COLDEST, WARMEST = -40.0, 12.0
@@ -51,20 +50,29 @@ def _refused(station: Station, source: str, name: str, what: str) -> InputError:
     return InputError(f"{source}, column {title}: {what}")
 
 
-def _pairs(rows: Sequence[Observation]) -> Iterator[tuple[Observation, float]]:
-    """Yield the rows whose depth is known, with its change since a row at most a day before."""
-    known = [row for row in rows if row.snow_depth is not None]
-    for earlier, later in zip(known, known[1:]):
-        if later.time - earlier.time <= LONGEST and not later.seam:
-            yield later, (later.snow_depth or 0.0) - (earlier.snow_depth or 0.0)
+def _changes(rows: Sequence[Observation]) -> list[tuple[date, float]]:
+    """Return the changes of the depth from day to day, without spikes: medians of three days."""
+    told: dict[date, list[float]] = {}
+    for row in rows:
+        if row.snow_depth is not None:
+            told.setdefault(row.time.date(), []).append(row.snow_depth)
+    joints = {row.time.date() for row in rows if row.seam}
+    days = sorted(told)
+    raw = [median(told[day]) for day in days]
+    depths = [median(raw[max(n - 1, 0) : n + 2]) for n in range(len(raw))]
+    return [
+        (days[n], depths[n] - depths[n - 1])
+        for n in range(1, len(days))
+        if (days[n] - days[n - 1]).days == 1 and joints.isdisjoint(days[n - 1 : n + 2])
+    ]
 
 
 def _check_depths(station: Station, source: str) -> None:
-    changes = [abs(change) for _, change in _pairs(station.rows) if abs(change) > 1e-6]
+    changes = [abs(change) for _, change in _changes(station.rows) if abs(change) > 1e-6]
     if len(changes) >= FEWEST and median(changes) > CHANGE:
         raise _refused(
             station, source, "snow_depth",
-            f"half of the changes of the snow depth from row to row are of {median(changes):g} m "
+            f"half of the changes of the snow depth from day to day are of {median(changes):g} m "
             "and more; is it in cm, mm or inches?",
         )  # fmt: skip
 
@@ -104,12 +112,17 @@ def _check_rain(station: Station, source: str) -> None:
 
 
 def _check_temperatures(station: Station, source: str) -> None:
-    rises = {row.line for row, change in _pairs(station.rows) if change >= LEAST_RISE}
-    snowy = [
-        row.temperature
-        for row in station.rows
-        if row.temperature is not None and ((row.snowfall or 0.0) >= LEAST_NEW or row.line in rises)
-    ]
+    rises = {day for day, change in _changes(station.rows) if change >= LEAST_RISE}
+    told: dict[date, list[float]] = {}
+    snowy = []
+    for row in station.rows:
+        if row.temperature is None:
+            continue
+        if row.time.date() in rises:
+            told.setdefault(row.time.date(), []).append(row.temperature)
+        elif (row.snowfall or 0.0) >= LEAST_NEW:
+            snowy.append(row.temperature)
+    snowy += [fmean(own) for own in told.values()]
     if len(snowy) < FEWEST or COLDEST <= median(snowy) <= WARMEST:
         return
     unit = "degrees F" if median(snowy) > WARMEST else "tenths of degrees C"
