@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
-from typing import Optional
+from typing import Any, Optional, Union
+
+Handler = Union[Callable[[int, Optional[FrameType]], Any], int, None]
 
 
 class Interrupted(KeyboardInterrupt):
@@ -47,7 +49,9 @@ def deferred_interrupts() -> Iterator[InterruptRequest]:
         return
     signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
     handlers = {number: signal.getsignal(number) for number in signals}
-    before = {number: old for number, old in handlers.items() if old is not signal.SIG_IGN}
+    before: dict[int, Handler] = {
+        int(number): old for number, old in handlers.items() if old is not signal.SIG_IGN
+    }
 
     def restore() -> None:
         for number, handler in before.items():
