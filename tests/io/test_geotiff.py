@@ -285,3 +285,21 @@ def test_a_cut_file_is_refused(tmp_path):
     (tmp_path / "a.tif").write_bytes(whole[: len(whole) // 2])
     with pytest.raises(InputError, match=r"a\.tif: not a GeoTIFF"):
         read_raster(tmp_path / "a.tif")
+
+
+@pytest.mark.parametrize("system", ["http://127.0.0.1:9/a.wkt", "/etc/hostname"])
+def test_a_coordinate_system_beside_a_raster_leads_nowhere(tmp_path, system):
+    write_geotiff(tmp_path / "a.tif")
+    (tmp_path / "a.tif.aux.xml").write_text(f"<PAMDataset><SRS>{system}</SRS></PAMDataset>")
+    with pytest.raises(InputError, match=r"a\.tif: not a GeoTIFF: Cannot import"):
+        read_raster(tmp_path / "a.tif")
+
+
+def test_empty_files_are_named(tmp_path):
+    (tmp_path / "a.tif").write_bytes(b"")
+    with pytest.raises(InputError, match=r"a\.tif: not a GeoTIFF: it is empty"):
+        read_raster(tmp_path / "a.tif")
+    write_geotiff(tmp_path / "a.tif")
+    for name in ("a.tif.aux.xml", "a.tfw"):
+        (tmp_path / name).write_bytes(b"")
+    assert_slope(read_raster(tmp_path / "a.tif"))

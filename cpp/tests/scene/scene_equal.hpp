@@ -55,8 +55,8 @@ inline auto tied(const ResistanceSpec& s) {
   return std::tie(a, b, c);
 }
 inline auto tied(const TerrainSpec& s) {
-  auto& [a, b, c, d, e, f, g] = s;
-  return std::tie(a, b, c, d, e, f, g);
+  auto& [a, b, c, d, e, f, g, h, i, j] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j);
 }
 inline auto tied(const SlideSettings& s) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w] = s;

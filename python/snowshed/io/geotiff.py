@@ -7,6 +7,7 @@ whatever else lies in the folder is not opened, and no other format is tried.
 from __future__ import annotations
 
 import math
+import sys
 import uuid
 import warnings
 from collections.abc import Iterator
@@ -96,9 +97,13 @@ def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
 def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any]:
     """Open the bytes of a GeoTIFF, beside which there are those of other files by their endings."""
     rasterio: Any = require("rasterio", "terrain", "reading a GeoTIFF")
+    gdal: Any = require("rasterio._err", "terrain", "reading a GeoTIFF")  # not all are translated
+    if not content:
+        raise InputError(f"{path}: not a GeoTIFF: it is empty")
     folder = str(uuid.uuid4())
     with fenced_rasterio(), ExitStack() as stack:
         try:
+            stack.enter_context(_without_words_of_gdal())
             stack.enter_context(warnings.catch_warnings())
             # A raster without a place on the map is refused by its reader.
             warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
@@ -108,8 +113,29 @@ def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any
                 rasterio.MemoryFile(content, dirname=folder, filename="a.tif")
             )
             yield stack.enter_context(file.open(driver="GTiff"))
-        except rasterio.errors.RasterioError as error:
-            raise InputError(f"{path}: not a GeoTIFF: {error}") from None
+        except (rasterio.errors.RasterioError, gdal.CPLE_BaseError, UnicodeDecodeError) as error:
+            told = str(error).replace(f"/vsimem/{folder}/", "")
+            raise InputError(f"{path}: not a GeoTIFF: {told}") from None
+
+
+@contextmanager
+def _without_words_of_gdal() -> Iterator[None]:
+    """Keep rasterio from printing a traceback where GDAL quotes bytes that are no text."""
+    unraisable, uncaught = sys.unraisablehook, sys.excepthook
+
+    def drop_or_tell(found: Any) -> None:
+        if not isinstance(found.exc_value, UnicodeDecodeError):
+            unraisable(found)
+
+    def drop_or_print(kind: Any, value: Any, trace: Any) -> None:
+        if not isinstance(value, UnicodeDecodeError):
+            uncaught(kind, value, trace)
+
+    sys.unraisablehook, sys.excepthook = drop_or_tell, drop_or_print
+    try:
+        yield
+    finally:
+        sys.unraisablehook, sys.excepthook = unraisable, uncaught
 
 
 def _sidecars(path: Path) -> dict[str, bytes]:
@@ -121,10 +147,10 @@ def _sidecars(path: Path) -> dict[str, bytes]:
             f"gdal_translate, or remove it"
         )
     facts = sidecar(path)
-    found = {} if facts is None else {FACTS: facts}
+    found = {FACTS: facts} if facts else {}
     for file in (path.with_suffix(ending) for ending in WORLD_FILES):
-        if file.exists():
-            found.setdefault("a.tfw", small_file(file))
+        if file.exists() and "a.tfw" not in found and (content := small_file(file)):
+            found["a.tfw"] = content
     return found
 
 
@@ -140,7 +166,10 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
     if band is not None and band not in bands:
         raise InputError(f"{path}: has no band {band}; allowed: {', '.join(map(str, bands))}")
     if band is None and len(bands) != 1:
-        raise InputError(f"{path}: has {len(bands)} bands ({_named(source, bands)}); choose --band")
+        raise InputError(
+            f"{path}: has {len(bands)} bands ({_named(source, bands)}); say which to read (--band; "
+            "of a raster of thickness --thickness-band)"
+        )
     chosen = bands[0] if band is None else band
     if source.colorinterp[chosen - 1].name == "palette":
         raise InputError(f"{path}: its values are numbers of colours: a picture, not a raster")
