@@ -85,7 +85,7 @@ def notes_of_beginning(scene: ResolvedScene) -> list[str]:
         )
     else:
         simulation.begin_event()
-        found += simulation.notes
+    found += simulation.notes
     return found
 
 
