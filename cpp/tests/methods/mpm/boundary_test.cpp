@@ -4,6 +4,7 @@
 
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/geometry/bounds.hpp"
+#include "snowshed/geometry/combine.hpp"
 
 namespace snowshed {
 namespace {
