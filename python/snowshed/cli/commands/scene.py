@@ -13,7 +13,6 @@ from snowshed._core import InputError
 from snowshed.cli.accuracy import accuracy_option, check_alone, choose
 from snowshed.cli.scene_options import in_terms_of_options, scene_from_options, scene_options
 from snowshed.cli.terminal import say, write_out
-from snowshed.io.notes import tell
 from snowshed.scene.scene import ResolvedScene, Scene
 
 PATH = click.Path(path_type=Path)
@@ -29,10 +28,7 @@ def plan(scene: Path, accuracy: Optional[float]) -> None:
     ready = ResolvedScene.load(scene)
     if accuracy is not None:
         ready = _accurate(Scene.load(scene), accuracy).resolve()
-    found = _core.plan(ready.json, ready.base_dir)
-    for note in found["notes"]:
-        tell(note)
-    console.print_plan(found)
+    console.print_plan(_core.plan(ready.json, ready.base_dir))
 
 
 @click.command()
