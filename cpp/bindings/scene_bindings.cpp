@@ -23,7 +23,6 @@ py::dict plan_dict(const std::string& text, const std::filesystem::path& base_di
   py::dict d;
   d["used"] = report.used;
   d["left_out"] = report.left_out;
-  d["notes"] = report.notes;
   d["particles_per_event"] =
       std::int64_t(report.cost.particles.empty() ? 0.0 : report.cost.particles.front());
   d["particles_total"] = std::int64_t(report.cost.total_particles);

@@ -139,7 +139,6 @@ CostReport report_cost(const Scene& given, const std::filesystem::path& base_dir
   std::visit([&](const auto& own) { list_features_of(own, scene, report); }, scene.numerics);
   const Simulation sim(scene, base_dir);
   report.cost = sim.cost();
-  report.notes = sim.notes();
   report.threads = sim.threads();
   report.kernels = kernel_variant();
   report.updates_per_s = measured_speed(scene, base_dir, report.cost);

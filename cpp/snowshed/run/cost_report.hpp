@@ -15,8 +15,7 @@ struct CostReport {
   double updates_per_s = 0;  // particle updates, measured here and now on a small copy
   double wall_time = 0;      // s, expected
   int threads = 0;
-  std::string kernels;             // instruction set
-  std::vector<std::string> notes;  // on what is assumed or changed, see Simulation::notes
+  std::string kernels;  // instruction set
 };
 
 /// Expected work of a run: particle updates of whole snow, of which updates of spread and yielding

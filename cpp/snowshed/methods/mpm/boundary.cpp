@@ -13,13 +13,17 @@ ThickSolid as_grid_sees(Shape shape, double dx, int dimension) {
   return thickened(std::move(shape), dx, dimension);
 }
 
+Obstacle thick_enough(Obstacle obstacle, double dx, int dimension) {
+  obstacle.shape = as_grid_sees(std::move(obstacle.shape), dx, dimension).shape;
+  return obstacle;
+}
+
 template <class T, int D>
 Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx) : dx_(dx) {
   for (Obstacle& o : obstacles) {
     laws_.push_back(o.law);
     any_motion_ = any_motion_ || o.motion.has_value();
-    o.shape = as_grid_sees(o.shape, dx, D).shape;
-    obstacles_.push_back(std::move(o));
+    obstacles_.push_back(thick_enough(std::move(o), dx, D));
   }
 }
 

@@ -20,6 +20,7 @@ namespace snowshed {
 /// A solid as the grid must see it: parts thinner than two cells would slip between the nodes, so
 /// their surface is moved out until they are two cells thick.
 ThickSolid as_grid_sees(Shape shape, double dx, int dimension);
+Obstacle thick_enough(Obstacle obstacle, double dx, int dimension);
 
 /// The obstacles as the grid sees them. It never changes.
 template <class T, int D>
