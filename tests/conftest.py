@@ -11,6 +11,7 @@ import pytest
 
 from snowshed import Scene, run_events
 from snowshed.io.vdb import available
+from snowshed.io.weather import read_station
 
 # What writes and reads OpenVDB files, where snowshed was built without it.
 collect_ignore = [] if available() else ["io/vdb/test_vdb_files.py"]
@@ -68,3 +69,21 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("finished") / "results"
     run_events(tiny_scene(**{"output.energy": True}), folder)
     return folder
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Return a function that writes a file and returns its path."""
+
+    def write(content, name="station.txt"):
+        file = tmp_path / name
+        file.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return file
+
+    return write
+
+
+@pytest.fixture
+def station(written):
+    """Return a function that reads a station from the content of a file."""
+    return lambda content, name="station.txt": read_station(written(content, name))

@@ -80,9 +80,12 @@ def test_a_mask_or_overview_beside_a_geotiff_makes_no_request(tmp_path):
         source = f"<SourceFilename>/vsicurl/{listener.address}/a.tif</SourceFilename>"
         band = f'<VRTRasterBand dataType="Byte" band="1"><SimpleSource>{source}</SimpleSource>'
         vrt = f'<VRTDataset rasterXSize="9" rasterYSize="9">{band}</VRTRasterBand></VRTDataset>'
-        for ending in (".msk", ".ovr", ".aux.xml"):
+        for ending in (".ovr", ".aux.xml"):
             (tmp_path / f"a.tif{ending}").write_text(vrt)
         assert read_raster(tmp_path / "a.tif").heights.shape == (9, 9)
+        (tmp_path / "a.tif.msk").write_text(vrt)
+        with pytest.raises(InputError, match="a mask beside a raster is not read"):
+            read_raster(tmp_path / "a.tif")
 
 
 def test_compound_systems_are_compared_without_their_heights():

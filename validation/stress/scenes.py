@@ -70,6 +70,7 @@ class _SceneOf:
         """Return the scene with all its parts."""
         scene = Scene(
             dimension=self.dimension,
+            misplaced_snow="allow",  # snow of the second event may meet that of the first
             snow=self._snow(),
             seeding=self._seeding(),
             numerics=self._numerics(),
@@ -119,7 +120,6 @@ class _SceneOf:
         assert scene.seeding is not None and scene.bodies is not None
         scene.seeding.pattern = "regular"
         scene.bodies = [*scene.bodies, *scene.bodies]
-        scene.misplaced_snow = "allow"
 
     def _plate(self, scene: Scene) -> None:
         plate = Shape.plate(

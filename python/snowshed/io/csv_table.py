@@ -307,14 +307,15 @@ def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.Data
 
 def _decoded(path: Path, largest: int) -> str:
     content = unpacked(read_input(path, largest), path, largest)
-    if b"\0" in content:
-        line = content[: content.index(b"\0")].count(b"\n") + 1
-        raise InputError(f"{path}, line {line}: not a table: it holds bytes that are 0")
     try:
-        return content.decode("utf-8-sig")
+        text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
         raise InputError(f"{path}, line {line}: not a table: not UTF-8 text") from None
+    if b"\0" in content:
+        line = content[: content.index(b"\0")].count(b"\n") + 1
+        raise InputError(f"{path}, line {line}: not a table: it holds bytes that are 0")
+    return text
 
 
 def _records(

@@ -9,7 +9,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from snowshed._core import InputError
 from snowshed.io.arrays import Booleans
@@ -121,6 +120,8 @@ def _refuse_gaps(depth: Raster, snow: Booleans) -> None:
 
     Areas that meet at a corner are apart there, so that what is around them passes between.
     """
+    from scipy import ndimage  # takes a tenth of a second, and most slides have polygons
+
     bare, _ = ndimage.label(np.pad(~snow, 1, constant_values=True), structure=np.ones((3, 3)))
     amid = (bare != bare[0, 0])[1:-1, 1:-1] & ~snow
     _refuse(depth, amid & np.isnan(depth.heights), "no thickness amid snow")

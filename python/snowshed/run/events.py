@@ -28,7 +28,7 @@ from snowshed.run.energies import draw_energies, write_energy_history
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.results import RunFolder, measured_columns, read_events
+from snowshed.run.results import RunFolder, measured_columns, parse_events, read_events
 from snowshed.run.results_reader import HISTORY
 from snowshed.run.scene_notes import notes_after
 from snowshed.run.sequence import (
@@ -221,7 +221,7 @@ class _Recorder(NotePasser):
         warn_of_residual(facts)
         if facts["event"] == self.count:
             scene = json.loads(self.simulation.scene)
-            for note in notes_after(read_events(self.results.folder), scene):
+            for note in notes_after(parse_events(self.results.events.path), scene):
                 say_note(self.sequence, note)
         self._tell(self.simulation.time_s, 1.0)
 

@@ -142,7 +142,7 @@ class RunFolder:
         if (read_object(self.ageing) if self.ageing.is_file() else None) != ageing:
             raise InputError(f"{self.ageing}: between its events the stack aged in another way")
         if self.events.rows:
-            _parsed_events(self.events.path)
+            parse_events(self.events.path)
 
     def missing_events(self, done: int) -> range:
         """Return those of the events that are done which the table does not hold yet."""
@@ -243,10 +243,17 @@ def read_events(folder: PathLike) -> pd.DataFrame:
     if not path.is_file():
         raise InputError(f"{folder}: no results; it holds no events.csv")
     check_run_file(path)
-    return _parsed_events(path)
+    return parse_events(path)
 
 
-def _parsed_events(path: Path) -> pd.DataFrame:
+def parse_events(path: Path) -> pd.DataFrame:
+    """Read a table of events while its run goes on, when no checksum of it is known yet.
+
+    Raises
+    ------
+    InputError
+        If it is no table of events.
+    """
     table = read_csv(path)
     for name in ("event", "height_m"):
         if name not in table:
