@@ -162,7 +162,8 @@ double winding_number(const TriangleMesh& mesh, const Vec3& x) {
   return sum / (4 * pi);
 }
 
-/// Samples of the surface must have the solid on one side of them, and nothing on the other.
+/// Samples of the surface must have the solid on one side of them, and nothing on the other. Where
+/// two sheets coincide, as at a cut that joins a hole to an outline, both sides are the same.
 void check_sides(const TriangleMesh& mesh, const std::string& where) {
   constexpr std::size_t work = 20'000'000, least = 8, most = 100;
   const std::size_t n = mesh.triangles.size();
@@ -177,7 +178,8 @@ void check_sides(const TriangleMesh& mesh, const std::string& where) {
     const Vec3 normal = area.normalized();
     const double outside = winding_number(mesh, middle + step * normal),
                  inside = winding_number(mesh, middle - step * normal);
-    if (std::abs(outside) < 0.5 && std::abs(inside - 1) < 0.5) continue;
+    const bool is_double = std::abs(inside - outside) < 0.5;  // two sheets that coincide
+    if (is_double || (std::abs(outside) < 0.5 && std::abs(inside - 1) < 0.5)) continue;
     std::ostringstream text;
     text << "the surface runs through itself: its triangle around (" << middle.x() << ", "
          << middle.y() << ", " << middle.z() << ") has "

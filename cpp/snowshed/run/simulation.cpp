@@ -54,9 +54,9 @@ Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir
   }
   shape_prints_ = fingerprints_of_shapes(scene_, base_dir_);
   surroundings_ = build_surroundings(scene_, base_dir_);
+  notes_ = surroundings_.notes;
   listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
   resolved_obstacles_ = listed_obstacles(scene_, surroundings_.resolved);
-  notes_ = surroundings_.notes;
   solver_ = empty_method();
   if (scene_.uses<SlideSettings>()) {
     cost_ = estimate_slide_cost(scene_, slide().terrain(), surroundings_.areas.release.front(),
