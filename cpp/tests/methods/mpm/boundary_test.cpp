@@ -235,11 +235,13 @@ TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
   for (const Shape& shape : {bin, shelf}) {
     const auto solver =
         make_mpm(options_for({2, Precision::float32}), {fixed(shape, Condition::separate, 0.3)});
-    ParticleBatch batch = filled_box(2, Vec3(-0.1, 0, 0.04), Vec3(0.03, 0, 0.1), 0.005);
+    ParticleBatch batch = filled_box(2, Vec3(-0.115, 0, 0.04), Vec3(-0.085, 0, 0.14), 0.005);
     batch.velocity.z() = -3;
     solver->add(batch);
     run_until(*solver, 0.15);
-    for (const Vec3& x : solver->state().positions) ASSERT_GT(x.z(), 0);
+    // Some slides off the end of the shelf, which its rounding moves out by a cell.
+    for (const Vec3& x : solver->state().positions)
+      if (x.x() > -0.21) ASSERT_GT(x.z(), 0);
   }
 }
 

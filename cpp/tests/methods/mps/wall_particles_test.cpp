@@ -134,7 +134,7 @@ TEST(MpsWallParticles, OfAThinWallOfACombinedSolidStandWhereItIs) {
   o.obstacles = {{"bin", bin, {Condition::sticky, 0.0}, std::nullopt}};
   const MpsModel<2> model(o);
   EXPECT_NEAR(model.options.obstacles.front().shape->distance({0, 0, wall / 2 + spacing}), 0,
-              1e-4 * spacing);
+              2e-3 * spacing);
   MpsParticles<2> p = at_rest<2>({{0, 0, 0.03}, {0.27, 0, 0.2}});
   WallParticles<2> walls(model.options.obstacles, spacing, 2.1 * spacing);
   walls.append_near(0, 0, 1, p);
