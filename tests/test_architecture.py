@@ -147,7 +147,6 @@ WRITERS |= {"to_parquet", "to_netcdf", "copyfile", "copytree"}
 #: Who may do so elsewhere, and why.
 WRITE_BY_NAME = {
     "io/csv_table.py": "makes texts only",
-    "run/avaframe_outputs.py": "copies files that it does not know",
     "scene/builders/terrain.py": "has a temporary folder",
     "study/formats.py": "is given the file beside",
 }

@@ -60,7 +60,7 @@ def deferred_interrupts() -> Iterator[InterruptRequest]:
     def note(number: int, frame: Optional[FrameType]) -> None:
         request.requested = True
         restore()
-        outer = before[number]
+        outer = before[signal.Signals(number)]
         if callable(outer) and getattr(outer, "defers", False):
             outer(number, frame)
 

@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.io.atomic import replacing
 from snowshed.io.coordinate_systems import system_of
 from snowshed.io.extras import require
 from snowshed.io.limits import (
@@ -74,7 +75,8 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
             for source, copy in ((path, file), (log, Path(f"{file}-wal"))):
                 if source.stat().st_size > GEOPACKAGE_COPY:
                     raise InputError(f"{path}: open in another program; close it there first")
-                shutil.copyfile(source, copy)
+                with replacing(copy) as beside:
+                    shutil.copyfile(source, beside)
         mode = "mode=ro&immutable=1" if log is None else "mode=rw"
         with closing(sqlite3.connect(f"{file.absolute().as_uri()}?{mode}", uri=True)) as connection:
             _restrict(connection)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from snowshed._core import InputError
+from snowshed.io.atomic import replacing
 from snowshed.io.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
 from snowshed.io.messages import quoted
 from snowshed.io.notes import tell
@@ -87,7 +88,7 @@ def copy_inputs(inputs: Sequence[InputFile], folder: Path) -> None:
             if not stat.S_ISREG(os.fstat(source.fileno()).st_mode):
                 raise OSError(None, "not a regular file any more", str(each.file))
             target.unlink(missing_ok=True)  # which may be a link to something else
-            with target.open("xb") as copy:
+            with replacing(target) as beside, beside.open("wb") as copy:
                 shutil.copyfileobj(source, copy)
 
 
