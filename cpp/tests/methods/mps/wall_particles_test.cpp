@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "mps_testing.hpp"
+#include "snowshed/geometry/combine.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
 namespace snowshed {
