@@ -1,5 +1,6 @@
 #include "snowshed/geometry/polygon_faces.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -39,11 +40,21 @@ Outline flattened(const std::vector<Vec3>& vertices, const Face& face, const Vec
   return outline;
 }
 
+/// Drops repeated corners, and begins with that of the smallest coordinates.
 Face without_repetitions(const std::vector<Vec3>& vertices, const Face& face) {
   Face kept;
   for (const std::uint32_t corner : face)
     if (kept.empty() || vertices[corner] != vertices[kept.back()]) kept.push_back(corner);
   while (kept.size() > 1 && vertices[kept.back()] == vertices[kept.front()]) kept.pop_back();
+  // So that two faces that coincide and turn opposite ways are cut alike.
+  std::rotate(kept.begin(),
+              std::min_element(kept.begin(), kept.end(),
+                               [&](auto a, auto b) {
+                                 const Vec3 &p = vertices[a], &q = vertices[b];
+                                 return std::lexicographical_compare(p.data(), p.data() + 3,
+                                                                     q.data(), q.data() + 3);
+                               }),
+              kept.end());
   return kept;
 }
 

@@ -20,7 +20,8 @@ class FaceCutter {
   explicit FaceCutter(std::string where) : where_(std::move(where)) {}
 
   /// Appends the triangles of a face to the mesh, whose vertices it uses. They turn as the face
-  /// does and use all of its corners. A convex face becomes a fan around its first corner. Others
+  /// does and use all of its corners. A convex face becomes a fan around the corner of the smallest
+  /// coordinates, so that two faces that coincide are cut alike. Others
   /// are cut ear by ear (Meisters 1975) as they look along the axis nearest to their normal, with
   /// exact orientations. Corners in the middle of an edge, outlines that touch themselves, and
   /// holes that a cut joins to the outline are therefore right.

@@ -95,6 +95,42 @@ void merge_identical_vertices(TriangleMesh& mesh) {
   mesh.triangles = std::move(triangles);
 }
 
+void cancel_opposite_triangles(TriangleMesh& mesh) {
+  struct Facet {
+    Triangle vertices;  // in ascending order
+    bool turned;        // the order of the mesh is an odd permutation of that
+    std::uint32_t number;
+  };
+  std::vector<Facet> facets;
+  facets.reserve(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& given = mesh.triangles[t];
+    Facet facet{given, false, t};
+    std::rotate(facet.vertices.begin(),
+                std::min_element(facet.vertices.begin(), facet.vertices.end()),
+                facet.vertices.end());
+    facet.turned = facet.vertices[1] > facet.vertices[2];
+    if (facet.turned) std::swap(facet.vertices[1], facet.vertices[2]);
+    facets.push_back(facet);
+  }
+  std::sort(facets.begin(), facets.end(), [](const Facet& a, const Facet& b) {
+    return std::tie(a.vertices, a.turned, a.number) < std::tie(b.vertices, b.turned, b.number);
+  });
+  std::vector<char> dropped(mesh.triangles.size(), 0);
+  for (auto first = facets.begin(); first != facets.end();) {
+    const auto end = std::find_if(first, facets.end(),
+                                  [&](const Facet& f) { return f.vertices != first->vertices; });
+    auto back = std::find_if(first, end, [](const Facet& f) { return f.turned; });
+    for (auto front = first, middle = back; front != middle && back != end; ++front, ++back)
+      dropped[front->number] = dropped[back->number] = 1;
+    first = end;
+  }
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (!dropped[t]) mesh.triangles[kept++] = mesh.triangles[t];
+  mesh.triangles.resize(kept);
+}
+
 double enclosed_volume(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return 0;
   const Vec3 apex = mesh.vertices[mesh.triangles.front()[0]];  // a near one limits cancellation

@@ -26,6 +26,10 @@ void require_valid_numbers(const TriangleMesh& mesh, const std::string& where);
 /// repeats vertices for every triangle, other formats at seams. The mesh must have valid numbers.
 void merge_identical_vertices(TriangleMesh& mesh);
 
+/// Removes pairs of triangles that have the same vertices and turn opposite ways, as where two
+/// solids share a face, or where a cut joins a hole to an outline. They bound nothing.
+void cancel_opposite_triangles(TriangleMesh& mesh);
+
 /// Returns the volume enclosed by a closed mesh, m3; negative if the triangles face inward.
 double enclosed_volume(const TriangleMesh& mesh);
 

@@ -31,6 +31,25 @@ TEST(TriangleMesh, MergesIdenticalVertices) {
   require_closed(soup, "m");
 }
 
+TEST(TriangleMesh, CancelsTrianglesThatTurnOppositeWays) {
+  TriangleMesh both = box_mesh({0, 0, 0}, {1, 1, 1});
+  const TriangleMesh other = box_mesh({1, 0, 0}, {2, 1, 1});
+  for (const Triangle& t : other.triangles)
+    both.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  both.vertices.insert(both.vertices.end(), other.vertices.begin(), other.vertices.end());
+  merge_identical_vertices(both);
+  EXPECT_EQ(both.triangles.size(), 24u);
+  cancel_opposite_triangles(both);
+  EXPECT_LE(both.triangles.size(), 24u);
+  require_closed(both, "m");
+  EXPECT_NEAR(enclosed_volume(both), 2, 1e-12);
+  TriangleMesh twice = cube();
+  for (const Triangle& t : cube().triangles) twice.triangles.push_back({t[1], t[0], t[2]});
+  twice.triangles.push_back(twice.triangles.front());
+  cancel_opposite_triangles(twice);
+  ASSERT_EQ(twice.triangles.size(), 1u);
+}
+
 TEST(TriangleMesh, RefusesWhatIsNotClosed) {
   const auto check = [](TriangleMesh mesh, const std::string& expected) {
     expect_input_error([&] { require_closed(mesh, "m.stl"); }, expected);

@@ -30,6 +30,8 @@ ShellSolid read_solid(const std::filesystem::path& path, double scale) {
   for (Vec3& vertex : mesh.vertices) vertex *= scale;
   require_valid_numbers(mesh, path.string());
   merge_identical_vertices(mesh);
+  cancel_opposite_triangles(mesh);
+  if (mesh.triangles.empty()) throw InputError(path.string(), "the mesh encloses no volume");
   require_closed(mesh, path.string());
   return solid_of_shells(mesh, path.string());
 }

@@ -126,13 +126,67 @@ TEST_F(MeshIo, ScalesToMetres) {
   EXPECT_NEAR(enclosed_volume(read("a.stl", ascii_stl(sample()), 1e-3)), 6e-9, 1e-18);
 }
 
-TEST_F(MeshIo, PolygonsBecomeFans) {
+TEST_F(MeshIo, QuadsBecomeTwoTriangles) {
   const std::string quads =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
       "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
   const TriangleMesh mesh = read("a.obj", quads);
   EXPECT_EQ(mesh.triangles.size(), 12u);
   EXPECT_NEAR(enclosed_volume(mesh), 1, 1e-12);
+}
+
+// A trough whose ends are polygons of eight corners, from any of them, and a plate with a hole that
+// a cut joins to its outline, as OBJ and as PLY.
+TEST_F(MeshIo, ConcavePolygonsAreWhatTheyLookLike) {
+  struct Case {
+    std::vector<std::array<double, 2>> outline;
+    double area;
+  };
+  const Case cases[] = {
+      {{{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 5},
+      {{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}}, 12}};
+  for (const Case& c : cases)
+    for (std::size_t start = 0; start < c.outline.size(); ++start) {
+      const std::size_t n = c.outline.size();
+      std::ostringstream obj, ply_vertices, ply_faces;
+      for (const double y : {0.0, 1.0})
+        for (std::size_t i = 0; i < n; ++i) {
+          const auto& [x, z] = c.outline[(i + start) % n];
+          obj << "v " << x << " " << y << " " << z << "\n";
+          ply_vertices << x << " " << y << " " << z << "\n";
+        }
+      std::vector<std::vector<std::size_t>> faces(2);
+      for (std::size_t i = 0; i < n; ++i) {
+        faces[0].push_back(i);
+        faces[1].push_back(2 * n - 1 - i);
+        faces.push_back({(i + 1) % n, i, n + i, n + (i + 1) % n});
+      }
+      for (const auto& face : faces) {
+        obj << "f";
+        ply_faces << face.size();
+        for (const std::size_t v : face) {
+          obj << " " << v + 1;
+          ply_faces << " " << v;
+        }
+        obj << "\n";
+        ply_faces << "\n";
+      }
+      std::ostringstream header;
+      header << "ply\nformat ascii 1.0\nelement vertex " << 2 * n
+             << "\nproperty double x\nproperty double y\nproperty double z\nelement face "
+             << faces.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+      for (const TriangleMesh& mesh :
+           {read("a.obj", obj.str()),
+            read("a.ply", header.str() + ply_vertices.str() + ply_faces.str())}) {
+        ASSERT_NEAR(enclosed_volume(mesh), c.area, 1e-12) << start;
+        double surface = 0;  // no walls that are not there
+        for (const Triangle& t : mesh.triangles) {
+          const Vec3& a = mesh.vertices[t[0]];
+          surface += (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm() / 2;
+        }
+        ASSERT_NEAR(surface, 2 * c.area + (c.area == 5 ? 12 : 24), 1e-12) << start;
+      }
+    }
 }
 
 TEST_F(MeshIo, RefusesFilesThatAreNotThereOrNotMeshes) {
