@@ -14,10 +14,10 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.io.array_arguments import finite, points, positive, whole_number
 from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
-from snowshed.io.notes import tell
 from snowshed.run.fields import Fields
 from snowshed.run.grid import grid_dataset, scene_grid
 from snowshed.run.particle_dataset import DATASET, particle_dataset
+from snowshed.run.sequence import telling
 from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
@@ -104,10 +104,7 @@ class Simulation:
     # --- running ---------------------------------------------------------------------------
 
     def begin_event(self) -> None:
-        """Lay the snow of the next event.
-
-        What should be known of it, such as particles inside an obstacle, is said as a
-        `snowshed.SnowshedNote`.
+        """Lay the snow of the next event; what should be known of it is a `SnowshedNote`.
 
         Raises
         ------
@@ -117,10 +114,8 @@ class Simulation:
         SimulationError
             If the present event has not ended, or its stack cannot be seeded afresh.
         """
-        said = len(self._core.notes)
-        self._core.begin_event()
-        for note in self._core.notes[said:]:
-            tell(note)
+        with telling(self._core):
+            self._core.begin_event()
 
     def step(self, count: int = 1) -> None:
         """Take steps of the present event, whether the snow rests or not.
@@ -220,8 +215,7 @@ class Simulation:
         Raises
         ------
         InputError
-            If an argument has another shape, is not finite, the snow is none of the scene's, or
-            the particles lie where snow may not be.
+            If an argument is wrong, or the particles lie where snow may not be.
         SimulationError
             If a position lies beyond the addressable grid (10^6 cells to each side, about).
 
@@ -242,10 +236,8 @@ class Simulation:
         places = points("positions", positions, self.dimension)
         speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
         heavy = self._seeded_mass(snows[kind]) if mass is None else positive("mass", mass)
-        said = len(self._core.notes)
-        self._core.add_snow(places, heavy, tuple(speed.tolist()), kind)
-        for note in self._core.notes[said:]:
-            tell(note)
+        with telling(self._core):
+            self._core.add_snow(places, heavy, tuple(speed.tolist()), kind)
 
     def add_velocity(self, changes: ArrayLike) -> None:
         """Add to the velocities of the particles.
