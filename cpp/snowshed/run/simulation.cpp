@@ -9,7 +9,6 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/timer.hpp"
 #include "snowshed/methods/grains/solver.hpp"
-#include "snowshed/methods/slide/release.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/film_recorder.hpp"
@@ -23,7 +22,6 @@
 #include "snowshed/run/snow_placement.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
-#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {
@@ -146,23 +144,9 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
 }
 
 SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) const {
-  if (scene_.uses<SlideSettings>()) return seed_slide(stop);
+  if (scene_.uses<SlideSettings>()) return seeded(slide().seed(stop));
   if (scene_.uses<GrainsSettings>()) return seeded(grains().seed());
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
-}
-
-SeededSnow Simulation::seed_slide(const StopRequest& stop) const {
-  SeededSnow snow = seeded(slide().seed(stop));
-  const std::vector<OffTerrain> off =
-      find_off_terrain(slide().terrain(), surroundings_.areas.release);
-  for (std::size_t i = 0; i < off.size(); ++i)
-    if (off[i].share > 0)
-      snow.notes.push_back(told_or_refused(
-          scene_, "/terrain/release/" + std::to_string(i),
-          percent(off[i].share) + " of it lies where the terrain tells no height, such as at (" +
-              show(off[i].x) + ", " + show(off[i].y) + ")",
-          off[i].share));
-  return snow;
 }
 
 /// Returns notes on the new snow; throws InputError where it lies where snow may not be. What the

@@ -164,7 +164,6 @@ class Simulation {
   double lift_of_next_slab(const std::optional<Reseeding>&) const;
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
   SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
-  SeededSnow seed_slide(const StopRequest& stop) const;
   std::vector<std::string> check_placement_of(const SeededSnow&,
                                               const std::optional<Reseeding>&) const;
   std::vector<Vec3> positions() const;

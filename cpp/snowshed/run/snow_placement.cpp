@@ -287,13 +287,6 @@ std::string percent(double share) {
   return text;
 }
 
-std::string told_or_refused(const Scene& scene, const std::string& path,
-                            const std::string& sentence, double share) {
-  if (share > most_misplaced && scene.misplaced_snow == MisplacedSnow::refuse)
-    throw InputError(path, sentence + "; move it, or set /misplaced_snow to \"allow\"");
-  return path + ": " + sentence;
-}
-
 std::vector<std::string> check_placement(const Scene& scene, const std::vector<PlacedBody>& bodies,
                                          const OccupiedSpace& space) {
   const Obstacles obstacles(scene, space);
@@ -323,8 +316,10 @@ std::vector<std::string> check_placement(const Scene& scene, const std::vector<P
     for (const std::string& sentence : sentences) notes.push_back(body.path + ": " + sentence);
     if (snow.parts().empty()) continue;
     const std::string sentence = sentence_of(snow, scene.dimension, space.event);
-    notes.push_back(body.is_told_only ? body.path + ": " + sentence
-                                      : told_or_refused(scene, body.path, sentence, snow.share()));
+    if (snow.share() > most_misplaced && !body.is_told_only &&
+        scene.misplaced_snow == MisplacedSnow::refuse)
+      throw InputError(body.path, sentence + "; move it, or set /misplaced_snow to \"allow\"");
+    notes.push_back(body.path + ": " + sentence);
   }
   return shortened(std::move(notes));
 }

@@ -45,9 +45,4 @@ std::vector<std::string> check_placement(const Scene&, const std::vector<PlacedB
 /// The sentence for a share of something: "0.4 %", "50 %".
 std::string percent(double share);
 
-/// Throws InputError with the sentence where the share is too large for the scene; else returns the
-/// sentence as a note.
-std::string told_or_refused(const Scene&, const std::string& path, const std::string& sentence,
-                            double share);
-
 }  // namespace snowshed

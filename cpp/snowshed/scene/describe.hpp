@@ -349,7 +349,7 @@ void describe(V& v, Scene& s) {
   v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");
   v.choice("misplaced_snow", s.misplaced_snow,
            "What becomes of a scene that seeds more than 1 % of a body of snow inside an obstacle, "
-           "below the ground, outside the domain or the terrain, or within other snow");
+           "below the ground, outside the domain, or within other snow");
   v.method_ahead("method", s.numerics);
   if (v.shows(s.numerics, &TakenParts::snow))
     v.object("snow", s.snow, Need::optional, "The material");

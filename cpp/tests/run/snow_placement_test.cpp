@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "io/temporary_folder.hpp"
 #include "run/simulation_testing.hpp"
@@ -50,14 +49,6 @@ void expect_part(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << "'" << text << "' lacks '" << part << "'";
 }
 
-/// The share (%) of the first body that is told of; a layer of a lattice lies on one side or the
-/// other.
-double share_told(const std::string& text) {
-  const std::string before = "/bodies/0/shape: ";
-  const std::size_t at = text.find(before);
-  return at == std::string::npos ? -1 : std::strtod(text.c_str() + at + before.size(), nullptr);
-}
-
 class SnowPlacement : public ::testing::TestWithParam<std::pair<int, const char*>> {
  protected:
   int dimension() const { return GetParam().first; }
@@ -81,9 +72,8 @@ TEST_P(SnowPlacement, SaysNothingOfSnowThatTouchesGroundWallsAndOtherSnow) {
 }
 
 TEST_P(SnowPlacement, RefusesSnowBelowTheGround) {
-  const std::string text = said(box(0, 0, 0.4, 0.2));
-  expect_part(text, "refused: /bodies/0/shape: ");
-  EXPECT_NEAR(share_told(text), 50, 10.1);
+  const std::string text = said(box(0, 0, 0.4, 0.24));
+  expect_part(text, "refused: /bodies/0/shape: 5");
   expect_part(text, "% of its particles lie below the ground, such as at (");
 }
 
@@ -104,21 +94,35 @@ TEST_P(SnowPlacement, RefusesBodiesOneInAnother) {
               "/bodies/1/shape: 100 % of its particles lie within the snow of /bodies/0");
 }
 
-TEST_P(SnowPlacement, RefusesSnowOutsideTheDomain) {
-  // A rule of the scene holds for the extent of bodies; the corner of a turned one reaches farther.
-  const std::string parts =
-      dimension() == 2
-          ? R"("domain": {"min": [-1, 0], "max": [1, 1]}, "misplaced_snow": "allow")"
-          : R"("domain": {"min": [-1, -1, 0], "max": [1, 1, 1]}, "misplaced_snow": "allow")";
+TEST_P(SnowPlacement, SaysNothingOfSnowThatTouchesTheSidesOfTheDomain) {
+  const std::string parts = dimension() == 2
+                                ? R"("domain": {"min": [-0.2, 0], "max": [0.2, 1]})"
+                                : R"("domain": {"min": [-0.2, -0.2, 0], "max": [0.2, 0.2, 1]})";
   EXPECT_EQ(said(box(0, 0.1, 0.4, 0.2), parts), "");
+}
+
+TEST_P(SnowPlacement, RefusesAddedSnowOutsideTheDomain) {
+  const std::string parts = dimension() == 2
+                                ? R"("domain": {"min": [-1, 0], "max": [1, 1]})"
+                                : R"("domain": {"min": [-1, -1, 0], "max": [1, 1, 1]})";
+  Simulation sim(with_bodies(dimension(), method(), box(0, 0.1, 0.4, 0.2), parts));
+  sim.begin_event();
+  ParticleBatch corner;
+  corner.positions = {{1.1, 0, -0.1}};
+  corner.mass = sim.solver().state().masses.front();
+  try {
+    sim.add_snow(corner);
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    expect_part(error.what(), "positions: 100 % of its particles lie outside the domain");
+  }
 }
 
 TEST_P(SnowPlacement, TellsOfALittleAndOfMoreWhereTheSceneAllowsIt) {
   const std::string sliver = said(box(0, 0.1994, 0.4, 0.4));  // 0.15 % of its height
   EXPECT_EQ(sliver.find("refused"), std::string::npos) << sliver;
-  const std::string half = said(box(0, 0, 0.4, 0.2), R"("ground": {}, "misplaced_snow": "allow")");
-  EXPECT_EQ(half.find("/bodies/0/shape: "), 0u) << half;
-  EXPECT_NEAR(share_told(half), 50, 10.1);
+  const std::string half = said(box(0, 0, 0.4, 0.24), R"("ground": {}, "misplaced_snow": "allow")");
+  EXPECT_EQ(half.find("/bodies/0/shape: 5"), 0u) << half;
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SnowPlacement,

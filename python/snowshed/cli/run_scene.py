@@ -8,7 +8,6 @@ import snowshed._core as _core
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.terminal import say
 from snowshed.io.formatting import about
-from snowshed.io.notes import recorded
 from snowshed.methods.registry import DEFAULT, NAME_KEY
 from snowshed.run.interrupt import Interrupted
 from snowshed.scene.scene import ResolvedScene
@@ -65,10 +64,10 @@ def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) ->
     from snowshed.cli.progress import progress_bar
     from snowshed.run.slides import run_slide
 
-    with recorded() as told, progress_bar(quiet=quiet) as progress:
+    with progress_bar(quiet=quiet) as progress:
         summary = run_slide(ready, folder, resume=resume, progress=progress)
     if not quiet:
-        print_slide(summary, folder, told)
+        print_slide(summary, folder)
 
 
 def _run_grains(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:

@@ -7,6 +7,8 @@ written into run.json: whoever runs a scene, hears the same.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import snowshed._core as _core
@@ -42,6 +44,15 @@ def say_note(sequence: _core.EventSequence, note: str) -> None:
     """Say a note on a run and keep it for run.json, which has it once."""
     sequence.add_note(note)
     tell(note)
+
+
+@contextmanager
+def telling(core: _core.Simulation) -> Iterator[None]:
+    """Say what a simulation notes within the block."""
+    said = len(core.notes)
+    yield
+    for note in core.notes[said:]:
+        tell(note, stacklevel=4)
 
 
 class NotePasser:

@@ -14,10 +14,10 @@ import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
 from snowshed.io.array_arguments import finite, points, positive, whole_number
 from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
-from snowshed.io.notes import tell
 from snowshed.run.fields import Fields
 from snowshed.run.grid import grid_dataset, scene_grid
 from snowshed.run.particle_dataset import DATASET, particle_dataset
+from snowshed.run.sequence import telling
 from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
@@ -105,10 +105,7 @@ class Simulation:
     # --- running ---------------------------------------------------------------------------
 
     def begin_event(self) -> None:
-        """Lay the snow of the next event.
-
-        What should be known of it, such as particles inside an obstacle, is said as a
-        `snowshed.SnowshedNote`.
+        """Lay the snow of the next event; what should be known of it is a `SnowshedNote`.
 
         Raises
         ------
@@ -118,10 +115,8 @@ class Simulation:
         SimulationError
             If the present event has not ended, or its stack cannot be seeded afresh.
         """
-        said = len(self._core.notes)
-        self._core.begin_event()
-        for note in self._core.notes[said:]:
-            tell(note)
+        with telling(self._core):
+            self._core.begin_event()
 
     def step(self, count: int = 1) -> None:
         """Take steps of the present event, whether the snow rests or not.
@@ -168,7 +163,10 @@ class Simulation:
             raise InputError(f'until: {until!r}; allowed: "rest", a time in s, a function')
         if not (isinstance(until, str) or callable(until)):
             until = finite("until", until)
-        self._begin_where_none_runs()
+        if not self.event_running and self.event >= self._core.event_count:
+            raise SimulationError(f"all {self.event} events have ended; begin_event adds another")
+        if not self.event_running:
+            self.begin_event()
         if isinstance(until, str):
             return cast(Ended, self._core.run(lambda report: True, CHECK_INTERVAL))
         if callable(until):
@@ -178,13 +176,6 @@ class Simulation:
             left = 0.5 * (until - self.time) / self._core.time_step_s if self.time else 1
             self._core.step(max(1, min(MOST_STEPS, int(left))))
         return "reached"
-
-    def _begin_where_none_runs(self) -> None:
-        if self.event_running:
-            return
-        if self.event >= self._core.event_count:
-            raise SimulationError(f"all {self.event} events have ended; begin_event adds another")
-        self.begin_event()
 
     def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:
         longest = float(self._data["events"]["max_time"])
@@ -225,8 +216,7 @@ class Simulation:
         Raises
         ------
         InputError
-            If an argument has another shape, is not finite, the snow is none of the scene's, or
-            the particles lie where snow may not be.
+            If an argument is wrong, or the particles lie where snow may not be.
         SimulationError
             If a position lies beyond the addressable grid (10^6 cells to each side, about).
 
@@ -247,10 +237,8 @@ class Simulation:
         places = points("positions", positions, self.dimension)
         speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
         heavy = self._seeded_mass(snows[kind]) if mass is None else positive("mass", mass)
-        said = len(self._core.notes)
-        self._core.add_snow(places, heavy, tuple(speed.tolist()), kind)
-        for note in self._core.notes[said:]:
-            tell(note)
+        with telling(self._core):
+            self._core.add_snow(places, heavy, tuple(speed.tolist()), kind)
 
     def add_velocity(self, changes: ArrayLike) -> None:
         """Add to the velocities of the particles.

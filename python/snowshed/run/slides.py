@@ -195,7 +195,7 @@ def run_slide(
         terrain = json.loads(sequence.simulation.scene)["terrain"]
         depth = thickness_map(terrain, Path(ready.base_dir))
         areas = release_areas(maps.raster(maps.terrain), terrain["release"], depth)
-        summary = _summary(sequence, facts, maps, areas)
+        summary = _summary(sequence.simulation, facts, maps, areas)
         if rasters:
             _write(Path(out_dir), maps, summary, _crs(sequence.simulation))
         else:
@@ -353,12 +353,11 @@ def _draw(
 
 
 def _summary(
-    sequence: _core.EventSequence,
+    simulation: _core.Simulation,
     facts: dict[str, Any],
     maps: SlideMaps,
     areas: Sequence[ReleaseArea],
 ) -> SlideSummary:
-    simulation = sequence.simulation
     slide = simulation.slide_facts()
     corners = np.concatenate(_release_outlines(simulation))
     middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
@@ -388,7 +387,7 @@ def _summary(
     )
     settings = json.loads(simulation.scene)["numerics"]
     left = validity_notes(areas, settings, asdict(summary))
-    return replace(summary, notes=(*_of_files(simulation), *sequence.notes, *summary.notes, *left))
+    return replace(summary, notes=(*_of_files(simulation), *summary.notes, *left))
 
 
 def _write_packed(folder: Path, maps: SlideMaps, summary: SlideSummary) -> None:

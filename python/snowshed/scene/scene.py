@@ -75,8 +75,7 @@ class Scene(Record):
         Gravity, along -z [m/s2]. 0 <= value <= 1000; default 9.81.
     misplaced_snow : {"refuse", "allow"}
         What becomes of a scene that seeds more than 1 % of a body of snow inside an obstacle,
-        below the ground, outside the domain or the terrain, or within other snow. Default
-        "refuse".
+        below the ground, outside the domain, or within other snow. Default "refuse".
     snow : Snow
         The material.
     panel : Panel

@@ -194,13 +194,7 @@ MapPoint centroid(const Ring& ring) {
 struct Ground {
   double stretch = 0;          // sloping over projected area, mean
   double east = 1, north = 0;  // unit vector of the mean fall line
-  std::size_t points = 0;      // on the terrain
-  std::size_t outside = 0;     // where it is unknown or ends
-  MapPoint example{0, 0};      // of these
-
-  double share_outside() const {
-    return outside == 0 ? 0 : double(outside) / double(points + outside);
-  }
+  std::size_t points = 0;
 };
 
 Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
@@ -210,11 +204,7 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
   const double step = terrain.cell() / 2;
   const auto look_at = [&](double x, double y) {
     const GridPlace p = terrain.place(x, y);
-    if (!p.inside()) {
-      g.example = {x, y};
-      ++g.outside;
-      return;
-    }
+    if (!p.inside()) return;
     const Vec3 n = terrain.normal(p);
     g.stretch += 1 / n.z();
     fall[0] += n.x();
@@ -225,9 +215,9 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
     for (double x = b.low[0] + step / 2; x < b.high[0]; x += step)
       if (contains(polygon, {x, y})) look_at(x, y);
   // Areas narrower than the points are apart may lie between them.
-  if (g.points + g.outside == 0)
+  if (g.points == 0)
     for (const MapPoint& corner : polygon.outline) look_at(corner[0], corner[1]);
-  if (g.points == 0) return Ground{1.0, 1.0, 0.0, 0, g.outside, g.example};
+  if (g.points == 0) return Ground{1.0, 1.0, 0.0, 0};
   g.stretch /= double(g.points);
   const double length = std::hypot(fall[0], fall[1]);
   if (length > 1e-6 * double(g.points)) {
@@ -286,8 +276,7 @@ ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const Sl
   const double cell = terrain.cell();
   const Ground ground = ground_under(terrain, area.polygon);
   const double thickness = mean_thickness(area, terrain, index);
-  const double on_terrain = map_area(area.polygon) * (1 - ground.share_outside());
-  const double mass = thickness * ground.stretch * on_terrain * s.density;
+  const double mass = thickness * ground.stretch * map_area(area.polygon) * s.density;
   const double cell_mass = thickness * ground.stretch * cell * cell * s.density;
   const double points = std::max(1.0, std::floor(cell_mass / mass_per_particle(s, cell)));
   ParticleBatch batch;
@@ -308,17 +297,6 @@ ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const Sl
 }
 
 }  // namespace
-
-std::vector<OffTerrain> find_off_terrain(const Terrain& terrain,
-                                         const std::vector<SlideArea>& areas) {
-  std::vector<OffTerrain> found;
-  for (const SlideArea& area : areas) {
-    const Ground g = ground_under(terrain, area.polygon);
-    found.push_back(
-        {g.share_outside(), terrain.west() + g.example[0], terrain.south() + g.example[1]});
-  }
-  return found;
-}
 
 double mass_per_particle(const SlideSettings& s, double cell) {
   return s.density * cell * cell * s.layer_thickness;

@@ -18,15 +18,6 @@ double mass_per_particle(const SlideSettings& settings, double cell);
 /// sample. 0 for a single particle.
 double lattice_spacing(const ParticleBatch& batch);
 
-/// How much of an area lies where the terrain is unknown or ends, and a point there.
-struct OffTerrain {
-  double share = 0;
-  double x = 0, y = 0;  // m, in the terrain's coordinates
-};
-
-/// Looks at points half a cell apart.
-std::vector<OffTerrain> find_off_terrain(const Terrain& terrain, const std::vector<SlideArea>&);
-
 /// Throws InputError where the release would be more particles than a slide is set up with in
 /// seconds and a gigabyte, or has so many corners that they take longer.
 void check_effort(const SlideSettings& settings, const Terrain& terrain,
@@ -36,8 +27,7 @@ void check_effort(const SlideSettings& settings, const Terrain& terrain,
 ///
 /// Improved mode: the lattice of each area begins at its centre and follows its mean slope, so the
 /// result does not depend on the position of the grid. A layer thinner than that of a particle has
-/// one particle per cell. The mass is exactly that of the thickness over the sloping area, as far
-/// as that lies on the terrain.
+/// one particle per cell. The mass is exactly that of the thickness over the sloping area.
 ///
 /// Compatible mode: one lattice begins at the grid's origin. The mean slope of all areas decides
 /// the number of particles per cell. The particles of a cell share its mass. All are in one batch.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from pathlib import Path
 
 from rich.table import Table
@@ -12,8 +11,8 @@ from snowshed.cli.terminal import PlainConsole
 from snowshed.run.slides import SlideSummary
 
 
-def print_slide(summary: SlideSummary, folder: Path, told: Collection[str] = ()) -> None:
-    """Print the figures of a slide, and its notes but for those that have been told."""
+def print_slide(summary: SlideSummary, folder: Path) -> None:
+    """Print the figures of a slide."""
     shown = Table(title="Snow slide", show_header=False, box=None, title_justify="left")
     shown.add_column(style="bold")
     broken = f"{summary.bonds_broken:,} of {summary.bonds_made:,}"
@@ -34,8 +33,7 @@ def print_slide(summary: SlideSummary, folder: Path, told: Collection[str] = ())
     PlainConsole().print(shown)
     console = PlainConsole(soft_wrap=True)
     for note in summary.notes:
-        if note not in told:
-            console.note(note)
+        console.note(note)
     console.print(f"results, maps, slide.html and slide.png in {folder}")
 
 
