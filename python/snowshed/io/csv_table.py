@@ -64,8 +64,6 @@ class Table:
         self.rows: list[dict[str, str]] = []
         if path.exists():
             self.rows = self._read()
-        if self.rows and not self.columns:
-            self.columns = list(self.rows[0])
 
     def add(self, rows: Iterable[Mapping[str, Any]]) -> None:
         """Add rows and write the file."""
@@ -100,6 +98,7 @@ class Table:
                 raise self._damaged(f"its columns are not {', '.join(self.columns)}")
             if not WHOLE.fullmatch(row.get("event", "")):
                 raise self._damaged("a row without the number of its event")
+        self.columns = self.columns or names  # a table without rows has them, too
         return rows
 
     def _damaged(self, what: str) -> InputError:
