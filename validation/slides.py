@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -128,8 +128,9 @@ def slide_drive(site: Site, settings: Settings, own: Collection[str] = ()) -> Dr
 
 
 def maps_of(drive: Drive) -> SlideMaps:
-    """Return a slide's maps as they are now."""
-    return slide_maps(drive.core)
+    """Return a slide's maps as they are now; the speed is the solver's, also beyond the snow."""
+    speed = drive.core.slide_maps()["peak_speed"]
+    return replace(slide_maps(drive.core), peak_speed=speed)
 
 
 def node_axes(maps: SlideMaps) -> tuple[Floats, Floats]:

@@ -310,13 +310,13 @@ void check_memory(double bytes, double available) {
 }
 
 void check_duration(const Scene& scene, const CostEstimate& cost) {
-  constexpr double most_steps = 1e10, most_records = 1e6;
+  constexpr double most_steps = 1e12, most_records = 1e6;
   const double steps = cost.event_time / cost.time_step;
   if (!(steps <= most_steps))
     throw InputError(path_of_step(scene), "makes steps of " + show_rounded(cost.time_step) +
                                               " s, of which an event of " +
                                               show_rounded(cost.event_time) + " s would take " +
-                                              show_rounded(steps) + "; at most 1e10 are allowed");
+                                              show_rounded(steps) + "; at most 1e12 are allowed");
   const auto check_interval = [&](const double& interval) {
     const double records = cost.event_time * scene.events.count / interval;
     if (interval > 0 && !(records <= most_records))

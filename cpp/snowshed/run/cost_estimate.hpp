@@ -37,7 +37,7 @@ CostEstimate estimate_cost(const Scene& scene, std::vector<double> particles);
 double stable_time_step(const Scene& scene);
 
 /// Throws InputError, naming what is to blame, where an event would take more steps than any run
-/// has time for (10^10), or be recorded more than a million times.
+/// has time for (10^12), or be recorded more than a million times.
 void check_duration(const Scene&, const CostEstimate&);
 
 /// Throws InputError naming both numbers when `bytes` exceeds `available`; by default the memory

@@ -75,10 +75,10 @@ std::string refused_at(const Scene& scene) {
   }
 }
 
-TEST(EventsEnd, WithinTenThousandMillionSteps) {
+TEST(EventsEnd, WithinAMillionMillionSteps) {
   Scene scene = drift({drifting_box(0, 0.1, 0.01, 1)});
   EXPECT_EQ(refused_at(scene), "");
-  for (const double factor : {1e-300, 1e-15, 1e-9}) {
+  for (const double factor : {1e-300, 1e-15, 1e-11}) {
     scene.mpm().courant_factor = factor;
     EXPECT_EQ(refused_at(scene), "/numerics/courant_factor") << factor;
   }
