@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "methods/mpm/solver_testing.hpp"
-#include "snowshed/geometry/combine.hpp"
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/combine.hpp"
 
