@@ -41,7 +41,7 @@ def test_snow_and_temperature_of_a_station_in_two_files(written):
 
 def test_no_water_counts_twice_where_two_files_have_it(written):
     snow, warm = written(SNOW, "nime.csv"), written(WARM, "smn.csv")
-    for files, total in (((snow, warm), 20.0), ((warm, snow), 144.0)):
+    for files, total in (((snow, warm), 20.0), ((warm, snow), 143.5)):
         rows = read_stations(files).rows
         assert sum(row.precipitation or 0.0 for row in rows) == pytest.approx(total)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from datetime import datetime, timedelta
+from datetime import datetime
 from typing import Any, NamedTuple, Optional
 
 from snowshed.io.weather.observation import Observation, Quantity
@@ -101,8 +101,6 @@ def observations(
         given: dict[str, Any] = {name: values[i] for name, i in taken.items()}
         for name, i in taken.items():
             if name in HOURS and values[i] is not None:
-                hours = given[HOURS[name]] = columns[i].quantity.hours
-                if hours and columns[i].quantity.begins:
-                    given["end"] = time + timedelta(hours=hours)
+                given[HOURS[name]] = columns[i].quantity.hours
         rows.append(Observation(line, time, **given))
     return rows, {name: columns[i].title for name, i in taken.items()}, notes

@@ -46,15 +46,24 @@ def with_hours(station: Station) -> Station:
                 )
             else:
                 notes.append(_thin_out(rows, own, fixed, title))
-        _drop_first(rows, own[0], (name, hours))
+        notes += _drop_first(rows, own[0], (name, hours), title)
     return replace(station, rows=rows, notes=notes, rolling=frozenset(rolling))
 
 
-def _drop_first(rows: list[Observation], first: int, fields: tuple[str, str]) -> None:
-    """Drop a 0 of the day before the first row, of which the file has nothing else."""
+def _drop_first(
+    rows: list[Observation], first: int, fields: tuple[str, str], title: str
+) -> list[str]:
+    """Drop a first amount of the day before the rows, of which the file has nothing else."""
     row, (name, hours) = rows[first], fields
-    if getattr(row, name) == 0.0 and row.time.date() not in row.shares(getattr(row, hours)):
-        rows[first] = changed(row, **{name: None, hours: None})
+    amount = getattr(row, name)
+    if amount is None or row.time.date() in row.shares(getattr(row, hours)):
+        return []
+    rows[first] = changed(row, **{name: None, hours: None})
+    if amount == 0.0:
+        return []
+    return [
+        f"the first {title} ({amount:g}) fell on the day before the file begins, and is left out"
+    ]
 
 
 def _fill_in(

@@ -181,8 +181,6 @@ class Quantity:
         value = factor * cell + offset.
     hours
         How long an amount gathered; None: since the row before, or it is no amount.
-    begins
-        Whether these hours begin at the time of the row, instead of ending there.
     """
 
     name: str
@@ -190,7 +188,6 @@ class Quantity:
     factor: float = 1.0
     offset: float = 0.0
     hours: Optional[float] = None
-    begins: bool = False
 
     def read(self, text: str, where: str, missing: Sequence[str] = ("",)) -> Optional[float]:
         """Return a cell's value; None if it is missing.

@@ -13,11 +13,11 @@ TEN_MINUTES, HOURLY, DAILY = 1.0 / 6.0, 1.0, 24.0  # over which amounts gather
 TEMPERATURE = Quantity("temperature", "degrees C")
 DEPTH = Quantity("snow_depth", "cm", 0.01)
 #: Parameters of MeteoSwiss, daily, hourly and of ten minutes, the better ones first: depths in cm.
-#: Times of days and hours are those of their beginning, other times are ends.
+#: Hours and ten minutes end at their time; days begin there, those of water and snow at 6 UTC.
 METEOSWISS: Mapping[str, Quantity] = {
     **dict.fromkeys(("tre200d0", "tre200h0", "tre200s0"), TEMPERATURE),
     "rre150d0": Quantity("precipitation", "mm", hours=DAILY),
-    "rre150h0": Quantity("precipitation", "mm", hours=HOURLY, begins=True),
+    "rre150h0": Quantity("precipitation", "mm", hours=HOURLY),
     "rre150z0": Quantity("precipitation", "mm", hours=TEN_MINUTES),
     "rka150d0": Quantity("precipitation", "mm", hours=DAILY),
     "rre003i0": Quantity("precipitation", "mm", hours=3.0),
