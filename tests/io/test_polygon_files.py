@@ -371,11 +371,11 @@ def test_changes_that_wait_in_the_log_of_another_program_count(package):
     writer.close()
 
 
-def test_a_description_of_a_table_that_is_no_text_is_refused(package):
-    """SQLite names what it does not understand, and Python cannot read the name."""
+def test_a_name_that_is_no_text_is_refused(package):
+    """SQLite's message holds the name, and Python cannot read that."""
     content = package.read_bytes()
-    assert b'"thickness"' in content
-    package.write_bytes(content.replace(b'"thickness"', b"(\xe6\xe6\xe6\xe6\xe6\xe6\xe6\xe6\xe6("))
+    assert content.count(b"trigger_insert_feature")
+    package.write_bytes(content.replace(b"trigger_insert_f", b"trigger_insert_\xe6", 1))
     with pytest.raises(InputError, match="not a GeoPackage that can be read"):
         read_areas(package)
 
