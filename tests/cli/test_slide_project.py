@@ -42,10 +42,10 @@ def interrupted(project, out, number, *options):
 
 def test_the_hint_after_an_interrupt_goes_on_with_all_simulations(tmp_path):
     """Also with what was asked for on the command line."""
-    ini = "tEnd = 20\ndeltaTh = 0.01\n"
+    ini = "tEnd = 6\ndeltaTh = 0.02\n"
     project = write_project(tmp_path / "a project", ini, releases=("north", "south"))
     out = tmp_path / "out"
-    options = ["--no-bonds", "--stop-ratio", "0", "--thickness", "0.75"]
+    options = ["--no-bonds", "--stop-ratio", "0.0", "--thickness", "0.75"]
     again = interrupted(project, out, signal.SIGINT, *options)
     assert not list(out.glob("south_*"))
     assert subprocess.run([*PROGRAM, *again], capture_output=True).returncode == 0
@@ -90,6 +90,13 @@ def test_settings_that_the_scene_refuses_are_located_in_the_ini(tmp_path, capsys
     assert not (tmp_path / "out").exists()
 
 
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Leave out the pictures, which take most of the time."""
+    monkeypatch.setattr(slides, "_draw", lambda *_: None)
+
+
+@pytest.mark.usefixtures("undrawn")
 def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, capsys, monkeypatch):
     from snowshed import InputError
 
@@ -112,6 +119,7 @@ def test_links_are_refused_before_anything_is_written(tmp_path, capsys):
     assert [file.name for file in tmp_path.iterdir()] == ["project"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
     """GDAL's own warnings, too, which are notes."""
     pyogrio = pytest.importorskip("pyogrio")
@@ -135,6 +143,7 @@ def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
     assert "note: " in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_layers_are_chosen_on_the_command_line(tmp_path, capsys):
     pyogrio = pytest.importorskip("pyogrio")
     import numpy as np

@@ -371,6 +371,15 @@ def test_changes_that_wait_in_the_log_of_another_program_count(package):
     writer.close()
 
 
+def test_a_name_that_is_no_text_is_refused(package):
+    """SQLite's message holds the name, and Python cannot read that."""
+    content = package.read_bytes()
+    assert content.count(b"trigger_insert_feature")
+    package.write_bytes(content.replace(b"trigger_insert_f", b"trigger_insert_\xe6", 1))
+    with pytest.raises(InputError, match="not a GeoPackage that can be read"):
+        read_areas(package)
+
+
 def test_a_hot_journal_is_not_played_back(package):
     journal = package.with_name("a.gpkg-journal")
     journal.write_bytes(b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7" + bytes(512))

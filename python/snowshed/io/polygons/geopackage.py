@@ -54,7 +54,7 @@ def read_geopackage(path: Path, layer: Optional[str], option: str) -> PolygonLay
     try:
         with _opened(path) as connection:
             return _Package(path, connection).read(layer, option)
-    except sqlite3.Error as error:
+    except (sqlite3.Error, UnicodeError, OverflowError) as error:
         why = "reading it takes too long" if "interrupt" in str(error) else str(error)
         raise InputError(f"{path}: not a GeoPackage that can be read: {why}") from None
 
