@@ -32,6 +32,7 @@ from snowshed.run.results import RunFolder, measured_columns, parse_events, read
 from snowshed.run.results_reader import HISTORY
 from snowshed.run.scene_notes import notes_after
 from snowshed.run.sequence import (
+    USER,
     NotePasser,
     open_sequence,
     run_sequence,
@@ -222,7 +223,7 @@ class _Recorder(NotePasser):
         if facts["event"] == self.count:
             scene = json.loads(self.simulation.scene)
             for note in notes_after(parse_events(self.results.events.path), scene):
-                say_note(self.sequence, note)
+                say_note(self.sequence, note, USER + 1)
         self._tell(self.simulation.time_s, 1.0)
 
     def fill_in(self, finished: list[dict[str, Any]]) -> None:

@@ -19,6 +19,7 @@ from snowshed.run.interrupt import Interrupted
 from snowshed.run.scene_notes import notes_before
 from snowshed.scene.scene import PathLike, ResolvedScene
 
+USER = 4  # the caller of a run, seen from where its notes are said
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
 
 
@@ -40,10 +41,10 @@ def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> 
     sequence.files = {**sequence.files, **marks}
 
 
-def say_note(sequence: _core.EventSequence, note: str) -> None:
+def say_note(sequence: _core.EventSequence, note: str, stacklevel: int = USER) -> None:
     """Say a note on a run and keep it for run.json, which has it once."""
     sequence.add_note(note)
-    tell(note)
+    tell(note, stacklevel)
 
 
 @contextmanager
@@ -52,7 +53,7 @@ def telling(core: _core.Simulation) -> Iterator[None]:
     said = len(core.notes)
     yield
     for note in core.notes[said:]:
-        tell(note, stacklevel=4)
+        tell(note, USER)
 
 
 class NotePasser:
@@ -60,7 +61,7 @@ class NotePasser:
 
     def noted(self, note: str) -> None:
         """Say a note."""
-        tell(note)
+        tell(note, USER)
 
 
 def run_sequence(
