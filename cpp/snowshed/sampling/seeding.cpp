@@ -176,40 +176,6 @@ std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, doubl
   return points;
 }
 
-std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing,
-                               const StopRequest& stop) {
-  check_arguments(dimension, spacing, 1);
-  count_for(measure(shape, dimension, spacing, stop), dimension, spacing, 1);
-  std::vector<Vec3> points;
-  const auto box = scene_box(shape, dimension);
-  if (!box) {
-    Mat3 cell = spacing * Mat3::Identity();
-    if (dimension == 2) cell(1, 1) = 0;
-    points = LatticeSeeder(shape, nullptr, stop)
-                 .fill(voxelize(shape, dimension, spacing, 0.0, stop), cell);
-  } else {
-    OrientedBox filled = *box;
-    std::array<std::size_t, 3> counts{1, 1, 1};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis == 1 && dimension == 2) continue;
-      counts[axis] = std::size_t(std::max(1.0, std::round(2 * box->half[axis] / spacing)));
-      const double shorter = box->half[axis] - 0.5 * double(counts[axis]) * spacing;
-      filled.center -= shorter * box->axes.col(axis);
-    }
-    for (std::size_t i = 0; i < counts[0]; ++i)
-      for (std::size_t j = 0; j < counts[1]; ++j)
-        for (std::size_t k = 0; k < counts[2]; ++k) {
-          const Vec3 steps((double(i) - 0.5 * double(counts[0] - 1)),
-                           (double(j) - 0.5 * double(counts[1] - 1)),
-                           (double(k) - 0.5 * double(counts[2] - 1)));
-          points.push_back(filled.center + spacing * (box->axes * steps));
-        }
-  }
-  if (points.empty())
-    throw InputError("", "the solid is too small for the spacing to hold a particle");
-  return points;
-}
-
 std::size_t expected_count(const LevelSet& shape, int dimension, double voxel, double per_voxel,
                            SeedPattern pattern) {
   check_arguments(dimension, voxel, per_voxel);

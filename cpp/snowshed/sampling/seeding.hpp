@@ -36,11 +36,4 @@ std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, doubl
 std::size_t expected_count(const LevelSet& shape, int dimension, double voxel, double per_voxel,
                            SeedPattern pattern);
 
-/// Returns the points of a square or cubic lattice with the given spacing (m) that lie inside the
-/// bounded solid. In a box the lattice stands along its edges, and the first point half a spacing
-/// from its lowest corner; a box is filled with the nearest whole number of layers. Throws
-/// InputError where the solid holds no point, or more than `max_particles`.
-std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing,
-                               const StopRequest& stop = {});
-
 }  // namespace snowshed

@@ -31,10 +31,11 @@ class Subdivision {
       : shape_(shape), bounds_(shape.bounds()), dimension_(dimension), check_stop_(stop) {}
 
   /// Returns the smallest cell with edge `edge` * 2^levels that covers the solid and the margin.
-  Root root(double edge, double margin) const {
+  /// Its centre is `shift` from that of the solid's bounds.
+  Root root(double edge, double margin, const Vec3& shift = Vec3::Zero()) const {
     require_bounded(bounds_, dimension_);
-    Root root{(bounds_.min + bounds_.max) / 2, 0};
-    Vec3 size = bounds_.max - bounds_.min;
+    Root root{(bounds_.min + bounds_.max) / 2 + shift, 0};
+    Vec3 size = bounds_.max - bounds_.min + 2 * shift.cwiseAbs();
     if (dimension_ == 2) root.center.y() = size.y() = 0;
     while (std::ldexp(edge, root.levels) < size.maxCoeff() + 2 * margin)
       if (++root.levels > max_levels) refuse();
@@ -125,12 +126,24 @@ class Subdivision {
 }  // namespace
 
 std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin,
-                            const StopRequest& stop) {
+                            const StopRequest& stop, const Vec3& shift) {
   std::vector<Voxel> voxels;
   Subdivision cut(shape, dimension, stop);
-  const auto [center, levels] = cut.root(edge, margin);
+  const auto [center, levels] = cut.root(edge, margin, shift);
   cut.collect_voxels(center, std::ldexp(edge, levels), levels, margin, voxels);
   return voxels;
+}
+
+std::vector<double> shares_within(const LevelSet& shape, int dimension, double edge,
+                                  const std::vector<Voxel>& voxels, const StopRequest& stop) {
+  const int levels = dimension == 2 ? 2 : 1;
+  Subdivision cut(shape, dimension, stop);
+  std::vector<double> shares;
+  shares.reserve(voxels.size());
+  for (const Voxel& voxel : voxels)
+    shares.push_back(
+        voxel.inside ? 1.0 : cut.measure(voxel.center, edge, levels) / std::pow(edge, dimension));
+  return shares;
 }
 
 std::optional<OrientedBox> scene_box(const LevelSet& shape, int dimension) {

@@ -16,12 +16,17 @@ struct Voxel {
 
 /// Returns the voxels with edge `edge` (metres) that may hold points within `margin` of the bounded
 /// solid `shape`. Neighbouring voxels are near each other in the result. The lattice has a corner
-/// at the centre of the solid's bounds.
+/// `shift` (m) from the centre of the solid's bounds.
 ///
 /// Throws InputError if the solid is unbounded or needs more than 2e8 voxels on its boundary, and
 /// Stopped on request.
 std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin = 0.0,
-                            const StopRequest& stop = {});
+                            const StopRequest& stop = {}, const Vec3& shift = Vec3::Zero());
+
+/// Returns which part of each voxel lies within the solid, 0 to 1, with the error of `measure`.
+/// `voxels` are those that `voxelize` found for an edge. Throws Stopped on request.
+std::vector<double> shares_within(const LevelSet& shape, int dimension, double edge,
+                                  const std::vector<Voxel>& voxels, const StopRequest& stop = {});
 
 /// Returns `shape` as a box if it is one. In 2D this is the rectangle in which the box cuts the
 /// plane y = 0, with edges along columns 0 and 2 of `axes`; the box's own y axis must be normal to

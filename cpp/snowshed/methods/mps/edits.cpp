@@ -14,13 +14,17 @@ void check_count(const char* what, std::size_t given, std::size_t particles) {
         what, std::to_string(given) + " given for " + std::to_string(particles) + " particles");
 }
 
-/// All particles stand for the same mass: the method conserves momentum only so.
-void check_mass(double mass, double expected) {
-  if (std::abs(mass - expected) > 1e-6 * expected)
+/// Particles push each other as if they stood for the same mass, that of a cell. Those of a body
+/// whose volume is no whole number of cells differ from it by half a particle in all, so the
+/// momentum that bodies exchange does, too. More than that in a single particle is another snow.
+void check_mass(double mass, double of_cell) {
+  constexpr double least = 0.5, most = 1.5;
+  if (mass < least * of_cell * (1 - 1e-6) || mass > most * of_cell * (1 + 1e-6))
     throw InputError("mass", std::to_string(mass) +
-                                 " kg; a particle has density times spacing to "
-                                 "the power of the dimension, " +
-                                 std::to_string(expected) + " kg");
+                                 " kg; a particle has the mass of a cell, density times spacing "
+                                 "to the power of the dimension (" +
+                                 std::to_string(of_cell) +
+                                 " kg), or from half to one and a half of it");
 }
 
 }  // namespace

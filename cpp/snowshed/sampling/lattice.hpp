@@ -1,0 +1,37 @@
+// Filling a solid with the particles of a lattice, each of which stands for a whole cell.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "snowshed/core/stop_request.hpp"
+#include "snowshed/geometry/level_set.hpp"
+
+namespace snowshed {
+
+/// The particles of a solid.
+struct LatticeFilling {
+  std::vector<Vec3> positions;  // m, none outside of the solid
+  double volume = 0;            // m3 (2D: m2), of the solid
+};
+
+/// Fills a bounded solid with points of a square or cubic lattice of the given spacing (m), as many
+/// as its volume holds cells, to the nearest whole number (`count_lattice`). So the solid and its
+/// particles have the same volume, whatever the spacing.
+///
+/// In a box the lattice stands along its edges, and its full layers begin at the lowest corner;
+/// what is left of a layer is at the top. Other solids have a lattice along the world axes, which
+/// begins at the lowest corner of their bounds. Cells that the surface cuts have a point in as many
+/// as their parts within the solid make together: every second one along a face that halves them. A
+/// point that would lie outside is moved to the surface.
+///
+/// Throws InputError where the solid holds less than half a cell, or more than `max_particles`, and
+/// Stopped on request.
+LatticeFilling fill_lattice(const LevelSet& shape, int dimension, double spacing,
+                            const StopRequest& stop = {});
+
+/// Returns how many points `fill_lattice` places. Throws as it.
+std::size_t count_lattice(const LevelSet& shape, int dimension, double spacing,
+                          const StopRequest& stop = {});
+
+}  // namespace snowshed
