@@ -68,6 +68,11 @@ class Display : public snowshed::EventObserver {
  public:
   explicit Display(bool quiet) : quiet_(quiet) {}
 
+  void noted(const std::string& note) override {
+    if (!quiet_)
+      std::fprintf(stderr, "%snote: %s\n", terminal_ ? "\r" : "",
+                   snowshed::printable(note).c_str());
+  }
   void progress(const snowshed::Simulation& sim, const snowshed::RunReport& r) override {
     if (!quiet_ && terminal_)
       std::fprintf(stderr, "\revent %d  %3.0f %%  t = %.3f s  %.1f M updates/s ", sim.event(),

@@ -50,6 +50,10 @@ class PythonObserver : public EventObserver {
     py::gil_scoped_acquire gil;
     observer_.attr("event_begun")(reseeding_dict(reseeding));
   }
+  void noted(const std::string& note) override {
+    py::gil_scoped_acquire gil;
+    observer_.attr("noted")(note);
+  }
   void progress(const Simulation&, const RunReport& report) override {
     py::gil_scoped_acquire gil;
     observer_.attr("progress")(report_dict(report));
@@ -104,6 +108,10 @@ void bind_event_sequence(py::module_& m) {
       .def("__enter__", [](EventSequence& self) -> EventSequence& { return self; })
       .def("__exit__", [](EventSequence& self, const py::args&) { self.close(); })
       .def("record_failure", &EventSequence::record_failure, "error"_a)
+      .def(
+          "add_note", [](EventSequence& s, const std::string& note) { s.record().add_note(note); },
+          "note"_a)
+      .def_property_readonly("notes", [](const EventSequence& s) { return s.record().notes; })
       .def("count_from", &EventSequence::count_from, "steps"_a, "wall_s"_a)
       .def(
           "describe_machine",

@@ -313,6 +313,11 @@ void bind_facts(SimulationClass& c) {
   c.reads("slide_facts", &slide_facts);
   c.reads("slide_bonds", &slide_bonds);
   c.reads("obstacle_distance", &obstacle_distance, "points"_a);
+  c.property("notes", [](const Simulation& s) { return s.notes(); });
+  c.property("expected_particles", [](const Simulation& s) {
+    const std::vector<double>& particles = s.cost().particles;
+    return particles.empty() ? 0.0 : particles.front();
+  });
   c.property("event", [](const Simulation& s) { return s.event(); });
   c.property("event_count", [](const Simulation& s) { return s.scene().events.count; });
   c.property("event_running", [](const Simulation& s) { return s.event_running(); });

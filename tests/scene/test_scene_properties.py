@@ -192,11 +192,14 @@ def wrong_values(parameter: Parameter) -> st.SearchStrategy:
     """Values of other types than the parameter's, and numbers that no parameter allows."""
     types = {"boolean": bool, "string": str, "vector": list, "list": list, "number": (int, float)}
     right = types.get(parameter.kind, (int, float))
+    any_text = parameter.kind == "string" and not parameter.choices  # such as the title
     return st.one_of(
         ANYTHING.filter(lambda value: value is not None and type(value) is not bool).filter(
             lambda value: not isinstance(value, right)
         ),
-        st.sampled_from([math.nan, math.inf, -math.inf, 10**400, -1e300, "\0", [[]]]),
+        st.sampled_from(
+            [math.nan, math.inf, -math.inf, 10**400, -1e300, [[]], *([] if any_text else ["\0"])]
+        ),
     )
 
 

@@ -70,6 +70,7 @@ class _SceneOf:
         """Return the scene with all its parts."""
         scene = Scene(
             dimension=self.dimension,
+            misplaced_snow="allow",  # events are too short for the snow to make room
             snow=self._snow(),
             seeding=self._seeding(),
             numerics=self._numerics(),

@@ -7,10 +7,12 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/run/cost_estimate.hpp"
+#include "snowshed/sampling/lattice.hpp"
 #include "snowshed/sampling/seeding.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_shape.hpp"
+#include "snowshed/scene/message_format.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 
 namespace snowshed {
@@ -59,25 +61,63 @@ double body_volume(const BodySpec& body, const Scene& scene, const std::string& 
   });
 }
 
-/// Fills a body of snow with particles of equal mass; returns its mass, kg.
-double seed_body(const BodySpec& body, const Scene& scene, const std::string& path,
-                 const std::filesystem::path& base_dir, std::uint64_t seed, const StopRequest& stop,
-                 ParticleBatch& batch) {
-  const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
-  const double dx = resolution(scene.numerics);
+/// How many particles of a lattice fill a body; about, where they are too many for any machine.
+double lattice_particles_of(const BodySpec& body, const Scene& scene, double spacing,
+                            const std::string& path, const std::filesystem::path& base_dir) {
+  const double told = shape_volume(body.shape, scene.dimension).value_or(0.0);
+  const double about = told / std::pow(spacing, scene.dimension);
+  if (about > 2 * max_particles) return about;  // and none are counted
+  return with_path(path, [&] {
+    const Shape shape = build_shape(body.shape, scene.dimension, path, base_dir);
+    return double(count_lattice(*shape, scene.dimension, spacing));
+  });
+}
+
+std::string in_millimetres(double metres) { return show_rounded(1000 * metres) + " mm"; }
+
+/// Says what becomes of a body that is too small for a lattice of particles of equal mass.
+void tell_of_coarse_lattice(const LevelSet& shape, const MpsSettings& settings, double mass_ratio,
+                            std::size_t particles, std::vector<std::string>& notes) {
+  constexpr double most_uneven = 0.02;
+  const double thickness = 2 * shape.inradius();
+  const std::string count =
+      std::to_string(particles) + (particles == 1 ? " particle" : " particles");
+  if (thickness < settings.spacing * (1 - 1e-6))
+    notes.push_back("is " + in_millimetres(thickness) + " thick, less than the spacing of " +
+                    in_millimetres(settings.spacing) + ": it becomes " + count +
+                    " that fill no layer, and neither pressure nor yield stress are resolved; "
+                    "give a smaller /numerics/spacing");
+  else if (std::abs(mass_ratio - 1) > most_uneven)
+    notes.push_back("becomes " + count + " of " + show_rounded(mass_ratio) +
+                    " times the mass that a cell of the spacing holds, so that its mass is right; "
+                    "give a smaller /numerics/spacing");
+}
+
+/// Fills a body with as many particles as its volume holds cells of the spacing. They share its
+/// mass, so that it is exact, and are as heavy as their cells, to half a particle.
+void seed_on_lattice(const LevelSet& shape, const Scene& scene, const StopRequest& stop,
+                     ParticleBatch& batch, std::vector<std::string>& notes) {
+  const MpsSettings& s = std::get<MpsSettings>(scene.numerics);
+  LatticeFilling filling = fill_lattice(shape, scene.dimension, s.spacing, stop);
+  const std::size_t count = filling.positions.size();
+  batch.positions = std::move(filling.positions);
+  batch.mass = s.density * filling.volume / double(count);
+  const double cell = std::pow(s.spacing, scene.dimension);
+  tell_of_coarse_lattice(shape, s, filling.volume / (cell * double(count)), count, notes);
+}
+
+/// Fills a body of snow with particles of equal mass. Notes on it are added without their place.
+void seed_body(const BodySpec& body, const Shape& shape, const Scene& scene, std::uint64_t seed,
+               const StopRequest& stop, ParticleBatch& batch, std::vector<std::string>& notes) {
   batch.velocity = body.velocity;
-  if (scene.uses<MpsSettings>()) {
-    batch.positions = seed_lattice(*shape, scene.dimension, dx, stop);
-    batch.mass = std::get<MpsSettings>(scene.numerics).density * std::pow(dx, scene.dimension);
-    return batch.total_mass();
-  }
+  if (scene.uses<MpsSettings>()) return seed_on_lattice(*shape, scene, stop, batch, notes);
+  const double dx = resolution(scene.numerics);
   const Snow& snow = snow_of(scene, body);
   batch.positions = snowshed::seed(*shape, scene.dimension, dx, scene.seeding.particles_per_voxel,
                                    scene.seeding.pattern, seed, stop);
   const double mass = snow.density * measure(*shape, scene.dimension, dx, stop);
   batch.mass = mass / double(batch.positions.size());
   batch.material_id = material_id_of(snow, assemble_snows(scene));
-  return mass;
 }
 
 }  // namespace
@@ -92,9 +132,15 @@ SeededSnow seed_event(const Scene& scene, const std::filesystem::path& base_dir,
     const std::uint64_t seed = scene.seeding.seed + 1000003u * std::uint64_t(event) + i;
     ParticleBatch& batch = snow.batches.emplace_back();
     batch.event = event;
-    snow.mass += with_path(paths[i], [&] {
-      return seed_body(bodies[i], scene, paths[i], base_dir, seed, stop, batch);
+    std::vector<std::string> notes;
+    const Shape shape = with_path(paths[i], [&] {
+      const Shape built = build_shape(bodies[i].shape, scene.dimension, paths[i], base_dir);
+      seed_body(bodies[i], built, scene, seed, stop, batch, notes);
+      return built;
     });
+    for (const std::string& note : notes) snow.notes.push_back(paths[i] + ": " + note);
+    snow.bodies.push_back({paths[i], shape, i < layers});
+    snow.mass += batch.total_mass();
     if (i >= layers) snow.height_on_panel += panel.height_of(batch.positions);
   }
   if (scene.slab) snow.height_on_panel += slab_thickness(*scene.slab, event);
@@ -117,15 +163,14 @@ double slab_mass(const Scene& scene, int event) {
 
 std::vector<double> count_lattice_particles(const Scene& scene,
                                             const std::filesystem::path& base_dir) {
+  const double spacing = resolution(scene.numerics);
   std::vector<double> counts;
-  const double cell = std::pow(resolution(scene.numerics), scene.dimension);
   for (int event = 1; event <= scene.events.count; ++event) {
     const std::vector<BodySpec> bodies = assemble_bodies(scene, event);
     const std::vector<std::string> paths = body_paths(scene, event);
-    double volume = 0;
+    double& count = counts.emplace_back(0);
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      volume += body_volume(bodies[i], scene, paths[i], base_dir);
-    counts.push_back(std::round(volume / cell));
+      count += lattice_particles_of(bodies[i], scene, spacing, paths[i], base_dir);
   }
   return counts;
 }

@@ -2,18 +2,29 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "snowshed/core/stop_request.hpp"
+#include "snowshed/geometry/level_set.hpp"
 #include "snowshed/methods/particle_batch.hpp"
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/scene/scene.hpp"
 
 namespace snowshed {
 
+/// A layer of the slab or a body that was filled with particles.
+struct SeededBody {
+  std::string path;  // in the scene
+  Shape shape;
+  bool is_of_slab = false;
+};
+
 /// The slab and the bodies of one event, as particles.
 struct SeededSnow {
   std::vector<ParticleBatch> batches;  // one for each layer of the slab, then for each body
+  std::vector<SeededBody> bodies;      // of the batches; none of a method that seeds its own
+  std::vector<std::string> notes;      // what has become of bodies that particles do not resolve
   double mass = 0;                     // kg
   double height_on_panel = 0;          // m along its normal: the slab, and bodies over the panel
 };
@@ -34,7 +45,8 @@ double slab_mass(const Scene& scene, int event);
 /// of bodies. Throws InputError where a body cannot be built or is too small for a particle.
 std::vector<double> count_particles(const Scene& scene, const std::filesystem::path& base_dir);
 
-/// The particles that each event adds where they stand on a lattice, one for each cell of it.
+/// The particles that each event adds where they stand on a lattice: exactly those that
+/// `seed_event` will place. Throws InputError as it does.
 std::vector<double> count_lattice_particles(const Scene& scene,
                                             const std::filesystem::path& base_dir);
 

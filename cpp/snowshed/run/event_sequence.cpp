@@ -78,7 +78,15 @@ void EventSequence::begin_event(EventObserver& observer) {
     if (sim_->event() > 0) observer.between_events(*sim_);
     reseeding = sim_->begin_event([&] { return observer.stop_requested(); });
   }
+  tell_notes(observer);
   observer.event_begun(*sim_, reseeding);
+}
+
+void EventSequence::tell_notes(EventObserver& observer) {
+  for (; told_ < sim_->notes().size(); ++told_) {
+    const std::string& note = sim_->notes()[told_];
+    if (record_.add_note(note)) observer.noted(note);
+  }
 }
 
 /// Returns how the event ended; paused where the observer stopped it.

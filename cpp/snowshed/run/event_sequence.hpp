@@ -23,6 +23,9 @@ class EventObserver {
   virtual void between_events(Simulation&) {}
   /// An event has begun, or is gone on with; `reseeding` tells what became of the stack before it.
   virtual void event_begun(const Simulation&, const std::optional<Reseeding>& /*reseeding*/) {}
+  /// What readers of the results should know of the snow that was just laid, a sentence; run.json
+  /// will have it.
+  virtual void noted(const std::string& /*note*/) {}
   virtual void progress(const Simulation&, const RunReport&) {}
   /// An event has ended and its particles are in the folder, but there is no checkpoint of it yet.
   virtual void event_ended(const Simulation&, const EventFacts&) {}
@@ -68,6 +71,7 @@ class EventSequence {
 
   bool is_done() const;
   void begin_event(EventObserver&);
+  void tell_notes(EventObserver&);
   RunEnd run_event(EventObserver&, double report_interval);
   void end_event(EventObserver&, RunEnd);
   void checkpoint(EventObserver&, const std::string& status);
@@ -77,6 +81,7 @@ class EventSequence {
   std::unique_ptr<Simulation> sim_;
   ResultsFolder folder_;
   RunRecord record_;
+  std::size_t told_ = 0;               // of the simulation's notes
   std::int64_t steps_before_;          // the present event
   double wall_before_, earlier_wall_;  // s, before the present event and before resuming
   Stopwatch clock_, since_checkpoint_;

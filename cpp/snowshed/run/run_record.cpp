@@ -113,6 +113,14 @@ std::map<std::string, std::map<std::string, std::string>> table_checksums(const 
   return tables;
 }
 
+std::vector<std::string> note_list(const json& j) {
+  std::vector<std::string> notes;
+  if (!j.is_array()) throw wrong_type("/notes", j, "an array");
+  for (std::size_t i = 0; i < j.size(); ++i)
+    notes.push_back(to_text(j[i], "/notes/" + std::to_string(i)));
+  return notes;
+}
+
 }  // namespace
 
 std::optional<double> EventFacts::energy_residual() const {
@@ -135,6 +143,7 @@ RunRecord RunRecord::read(const std::filesystem::path& file) try {
   const json j = parse_json(read_bytes(file), "text");
   record.wall = to_number(require(j, "wall_s", "/"), "/wall_s", "a number");
   if (j.contains("tables")) record.tables = table_checksums(j["tables"]);
+  if (j.contains("notes")) record.notes = note_list(j["notes"]);
   if (!j.contains("finished_events")) return record;  // of the version before
   const json& events = j["finished_events"];
   if (!events.is_array()) throw wrong_type("/finished_events", events, "an array");
@@ -169,12 +178,19 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim,
     j["mass_balance"] = balance_of(*slide);
   if (const auto* mps = dynamic_cast<const MpsMethod*>(&method))
     j["equations"] = equations_of(*mps);
+  j["notes"] = notes;
   j["finished_events"] = ordered_json::array();
   for (const EventFacts& facts : finished) j["finished_events"].push_back(to_json(facts));
   if (!tables.empty()) j["tables"] = tables;
   j["status"] = status;
   if (!error.empty()) j["error"] = error;
   write_atomic(file, pretty(j));
+}
+
+bool RunRecord::add_note(const std::string& note) {
+  if (std::find(notes.begin(), notes.end(), note) != notes.end()) return false;
+  notes.push_back(note);
+  return true;
 }
 
 void RunRecord::keep_through(int event) {

@@ -48,7 +48,11 @@ class RunRecord {
   /// Forgets the events after `event`, which will be run again.
   void keep_through(int event);
 
+  /// Adds what readers of the results should know, a sentence. Returns whether it is new.
+  bool add_note(const std::string& note);
+
   std::vector<EventFacts> finished;            // by event
+  std::vector<std::string> notes;              // in the order in which they were said
   std::map<std::string, std::string> machine;  // further facts, by key
   /// Checksums of the tables that Python keeps: by name, of the rows through an event.
   std::map<std::string, std::map<std::string, std::string>> tables;

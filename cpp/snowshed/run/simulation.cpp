@@ -19,11 +19,21 @@
 #include "snowshed/run/record_times.hpp"
 #include "snowshed/run/slide_cost.hpp"
 #include "snowshed/run/snapshot_series.hpp"
+#include "snowshed/run/snow_placement.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed {
+namespace {
+
+/// The mean distance of particles as they are seeded, m.
+double particle_distance(const Scene& scene) {
+  const double per_voxel = scene.uses<MpsSettings>() ? 1 : scene.seeding.particles_per_voxel;
+  return resolution(scene.numerics) / std::pow(per_voxel, 1.0 / scene.dimension);
+}
+
+}  // namespace
 
 Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir)
     : scene_(resolve(scene)),
@@ -104,10 +114,12 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
     reseeding = reseed_stack(scene_, panel_, solver_->state(), event_, laid_height_, stop);
   const double lift = lift_of_next_slab(reseeding);
   SeededSnow snow = seed_next_event(lift, stop);
+  std::vector<std::string> notes = check_placement_of(snow, reseeding);
   change_snow(reseeding, std::move(snow.batches));
   event_mass_ = snow.mass;
   laid_height_ += snow.height_on_panel;
   ++event_;
+  notes_.insert(notes_.end(), notes.begin(), notes.end());
   running_ = true;
   event_start_ = solver_->time();
   rest_.start_event(event_start_);
@@ -119,6 +131,41 @@ SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) con
   if (scene_.uses<SlideSettings>()) return seeded(slide().seed());
   if (scene_.uses<GrainsSettings>()) return seeded(grains().seed());
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
+}
+
+/// Returns notes on the new snow; throws InputError where it lies where snow may not be. What the
+/// program lays on a stack that has grown to it is told only: a winter goes on with it.
+std::vector<std::string> Simulation::check_placement_of(
+    const SeededSnow& snow, const std::optional<Reseeding>& reseeding) const {
+  std::vector<std::string> notes;
+  std::vector<PlacedBody> bodies;
+  for (std::size_t i = 0; i < snow.bodies.size(); ++i) {
+    const SeededBody& body = snow.bodies[i];
+    bodies.push_back(
+        {body.path, &snow.batches[i].positions, body.shape, body.is_of_slab && event_ > 0});
+  }
+  OccupiedSpace space{
+      surroundings_.obstacles, solver_->time(), {}, particle_distance(scene_), event_ + 1};
+  if (reseeding) {
+    const std::vector<Vec3>& stack = reseeding->after.positions;
+    notes = check_placement(scene_, {{"the stack, seeded anew", &stack, nullptr, true}}, space);
+    space.particles = stack;
+  } else if (!bodies.empty()) {
+    space.particles = positions();
+  }
+  const std::vector<std::string> of_bodies = check_placement(scene_, bodies, space);
+  notes.insert(notes.end(), snow.notes.begin(), snow.notes.end());
+  notes.insert(notes.end(), of_bodies.begin(), of_bodies.end());
+  return notes;
+}
+
+std::vector<Vec3> Simulation::positions() const {
+  const FieldView view = solver_->field("position");
+  std::vector<Vec3> positions;
+  positions.reserve(solver_->size());
+  for (std::size_t i = 0; i < solver_->size(); ++i)
+    positions.push_back(Vec3::Map(view.at<double>(i)));
+  return positions;
 }
 
 /// Takes a step of the present event.
@@ -139,7 +186,13 @@ void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
 
 void Simulation::add_snow(ParticleBatch batch) {
   batch.event = std::max(event_, 1);
+  std::vector<std::string> notes;
+  if (scene_.uses<MpmSettings>() || scene_.uses<MpsSettings>())
+    notes = check_placement(
+        scene_, {{"positions", &batch.positions}},
+        {surroundings_.obstacles, solver_->time(), positions(), particle_distance(scene_), event_});
   solver_->add(batch);
+  notes_.insert(notes_.end(), notes.begin(), notes.end());
   event_mass_ += batch.total_mass();
   laid_height_ += panel_.height_of(batch.positions);
 }

@@ -53,9 +53,9 @@ class Simulation {
   /// Seeds the next event's snow: the slab on the panel (above what remained there, unless that is
   /// less than 2 % of it and of what the last event laid) and the scene's bodies. With between =
   /// "reseed", from the second event on the stack is first seeded afresh (`reseed_stack`). All or
-  /// nothing: throws InputError where the snow of this event cannot be seeded, SimulationError
-  /// where the stack cannot be converted or an event still runs, Stopped on request, and leaves
-  /// everything as it was.
+  /// nothing: throws InputError where the snow of this event cannot be seeded, or lies where snow
+  /// may not be (snow_placement.hpp), SimulationError where the stack cannot be converted or an
+  /// event still runs, Stopped on request, and leaves everything as it was.
   std::optional<Reseeding> begin_event(const StopRequest& stop = {});
 
   /// Runs the present event until the snow rests, the time limit, or `observer`, called every
@@ -64,7 +64,8 @@ class Simulation {
   RunEnd run(const std::function<bool(const RunReport&)>& observer, double interval);
 
   /// Adds particles of the present event, beside those that begin_event seeds; before the first
-  /// event they are of that. `batch.event` is set here.
+  /// event they are of that. `batch.event` is set here. Throws InputError where they lie where snow
+  /// may not be.
   void add_snow(ParticleBatch batch);
 
   /// Takes `count` steps of the present event, whether the snow rests or not. For those who drive
@@ -111,6 +112,9 @@ class Simulation {
   /// and of grains, whose curve has them.
   const EnergyHistory& energy_history() const;
   int event() const { return event_; }
+  /// What readers of the results should know of the snow that was laid since this object was made,
+  /// a sentence each.
+  const std::vector<std::string>& notes() const { return notes_; }
   bool event_running() const { return running_; }
   double event_time() const { return solver_->time() - event_start_; }
   int threads() const;
@@ -146,6 +150,9 @@ class Simulation {
   double lift_of_next_slab(const std::optional<Reseeding>&) const;
   ParticleState as_held(const std::vector<ParticleBatch>&) const;
   SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
+  std::vector<std::string> check_placement_of(const SeededSnow&,
+                                              const std::optional<Reseeding>&) const;
+  std::vector<Vec3> positions() const;
   void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added);
   void advance();
   void record();
@@ -173,6 +180,7 @@ class Simulation {
   std::unique_ptr<LoadingCurve> curve_;      // of grains only
   std::unique_ptr<EnergyHistory> energies_;  // of all others, with output.energy
   RestDetector rest_;
+  std::vector<std::string> notes_;
   int event_ = 0;
   bool running_ = false;
   double event_start_ = 0;  // s

@@ -341,6 +341,9 @@ void describe(V& v, Scene& s) {
   v.integer("dimension", s.dimension, between(2, 3), "2: the plane (x, z); 3: space");
   v.text("title", s.title, "What this scene is");
   v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");
+  v.choice("misplaced_snow", s.misplaced_snow,
+           "What becomes of a scene that seeds more than 1 % of a body of snow inside an obstacle, "
+           "below the ground, outside the domain, or within other snow");
   v.method_ahead("method", s.numerics);
   if (v.shows(s.numerics, &TakenParts::snow))
     v.object("snow", s.snow, Need::optional, "The material");

@@ -151,6 +151,12 @@ struct EnumNames<SeedPattern> {
 };
 
 template <>
+struct EnumNames<MisplacedSnow> {
+  static constexpr Named<MisplacedSnow> list[] = {{MisplacedSnow::refuse, "refuse"},
+                                                  {MisplacedSnow::allow, "allow"}};
+};
+
+template <>
 struct EnumNames<Between> {
   static constexpr Named<Between> list[] = {{Between::carry, "carry"}, {Between::reseed, "reseed"}};
 };

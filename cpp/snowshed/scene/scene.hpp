@@ -162,6 +162,9 @@ struct Output {
   double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };
 
+/// What becomes of a scene that seeds more than 1 % of a body of snow where none may be.
+enum class MisplacedSnow { refuse, allow };
+
 struct Domain {
   Vec3 min = Vec3::Zero();  // m
   Vec3 max = Vec3::Zero();
@@ -171,6 +174,7 @@ struct Scene {
   int dimension = 3;
   std::string title;
   double gravity = 9.81;  // m/s2, along -z
+  MisplacedSnow misplaced_snow = MisplacedSnow::refuse;
   Snow snow;
   std::optional<Panel> panel;
   std::optional<Slab> slab;

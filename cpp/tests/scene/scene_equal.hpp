@@ -106,8 +106,8 @@ inline auto tied(const MpsSettings& s) {
                   s34);
 }
 inline auto tied(const Scene& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t);
 }
 
 // Found by argument-dependent lookup from std::tuple, std::optional and std::vector.

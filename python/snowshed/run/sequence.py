@@ -1,12 +1,21 @@
-"""The core's sequence of events in a results folder: opened, and run to its end."""
+"""The core's sequence of events in a results folder: opened, and run to its end.
+
+What readers of the results should know of a run is said here, as a note (`snowshed.io.notes`), and
+written into run.json: whoever runs a scene, hears the same.
+"""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import snowshed._core as _core
+from snowshed.io.notes import tell
 from snowshed.io.paths import utf8_path
 from snowshed.run.interrupt import Interrupted
+from snowshed.run.scene_notes import notes_before
 from snowshed.scene.scene import PathLike, ResolvedScene
 
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
@@ -24,6 +33,29 @@ def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _c
     return open_folder(scene.json, scene.base_dir, utf8_path(folder))
 
 
+def say_note(sequence: _core.EventSequence, note: str) -> None:
+    """Say a note on a run and keep it for run.json, which has it once."""
+    sequence.add_note(note)
+    tell(note)
+
+
+@contextmanager
+def telling(core: _core.Simulation) -> Iterator[None]:
+    """Say what a simulation notes within the block."""
+    said = len(core.notes)
+    yield
+    for note in core.notes[said:]:
+        tell(note, stacklevel=4)
+
+
+class NotePasser:
+    """The part of an observer that passes on what the core notes, which run.json has already."""
+
+    def noted(self, note: str) -> None:
+        """Say a note."""
+        tell(note)
+
+
 def run_sequence(
     sequence: _core.EventSequence,
     observer: _core.EventObserver,
@@ -31,7 +63,8 @@ def run_sequence(
 ) -> None:
     """Run the events that are left; a failure is written down in the folder.
 
-    The observer is told of the progress about twice a second.
+    The observer is told of the progress about twice a second. What is odd about the scene is said
+    first.
 
     Raises
     ------
@@ -40,6 +73,8 @@ def run_sequence(
     Interrupted
         If the observer asked for a stop; a checkpoint holds the state to resume from.
     """
+    for note in notes_before(json.loads(sequence.simulation.scene)):
+        say_note(sequence, note)
     try:
         finished = sequence.run(observer, REPORT_INTERVAL)
     except (_core.SimulationError, _core.InputError) as error:

@@ -17,6 +17,7 @@ from snowshed.io.arrays import Booleans, Floats, Integers, Numbers
 from snowshed.run.fields import Fields
 from snowshed.run.grid import grid_dataset, scene_grid
 from snowshed.run.particle_dataset import DATASET, particle_dataset
+from snowshed.run.sequence import telling
 from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
@@ -103,16 +104,18 @@ class Simulation:
     # --- running ---------------------------------------------------------------------------
 
     def begin_event(self) -> None:
-        """Lay the snow of the next event.
+        """Lay the snow of the next event; what should be known of it is a `SnowshedNote`.
 
         Raises
         ------
         InputError
-            If it cannot be seeded.
+            If it cannot be seeded, or more than 1 % of a body lies where snow may not be (unless
+            the scene's ``misplaced_snow`` is "allow").
         SimulationError
             If the present event has not ended, or its stack cannot be seeded afresh.
         """
-        self._core.begin_event()
+        with telling(self._core):
+            self._core.begin_event()
 
     def step(self, count: int = 1) -> None:
         """Take steps of the present event, whether the snow rests or not.
@@ -193,8 +196,9 @@ class Simulation:
     ) -> None:
         """Add particles, which belong to the present event.
 
-        They get the next ids, in their order. Nothing keeps them out of obstacles or of other
-        snow; particles within are pushed out, hard.
+        They get the next ids, in their order. Particles inside an obstacle or surrounded by other
+        snow are pushed out, hard; more than 1 % of them are refused, unless the scene's
+        ``misplaced_snow`` is "allow".
 
         Parameters
         ----------
@@ -211,7 +215,7 @@ class Simulation:
         Raises
         ------
         InputError
-            If an argument has another shape, is not finite, or the snow is none of the scene's.
+            If an argument is wrong, or the particles lie where snow may not be.
         SimulationError
             If a position lies beyond the addressable grid (10^6 cells to each side, about).
 
@@ -232,7 +236,8 @@ class Simulation:
         places = points("positions", positions, self.dimension)
         speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
         heavy = self._seeded_mass(snows[kind]) if mass is None else positive("mass", mass)
-        self._core.add_snow(places, heavy, tuple(speed.tolist()), kind)
+        with telling(self._core):
+            self._core.add_snow(places, heavy, tuple(speed.tolist()), kind)
 
     def add_velocity(self, changes: ArrayLike) -> None:
         """Add to the velocities of the particles.

@@ -22,6 +22,7 @@ SnowModel = Literal["cam_clay", "elastic"]
 Condition = Literal["sticky", "slip", "separate"]
 Pattern = Literal["regular", "jittered", "poisson"]
 Between = Literal["carry", "reseed"]
+MisplacedSnow = Literal["refuse", "allow"]
 
 #: Key of a snow's file under which it says where it comes from.
 PROVENANCE = "provenance"

@@ -33,6 +33,7 @@ from snowshed.scene.components import (
     Domain,
     Events,
     Ground,
+    MisplacedSnow,
     Obstacle,
     Panel,
     Seeding,
@@ -67,6 +68,9 @@ class Scene(Record):
         What this scene is.
     gravity : float
         Gravity, along -z [m/s2]. 0 <= value <= 1000; default 9.81.
+    misplaced_snow : {"refuse", "allow"}
+        What becomes of a scene that seeds more than 1 % of a body of snow inside an obstacle,
+        below the ground, outside the domain, or within other snow. Default "refuse".
     snow : Snow
         The material.
     panel : Panel
@@ -113,6 +117,7 @@ class Scene(Record):
     dimension: Optional[int] = None
     title: Optional[str] = None
     gravity: Optional[float] = None
+    misplaced_snow: Optional[MisplacedSnow] = None
     snow: Optional[Snow] = None
     panel: Optional[Panel] = None
     slab: Optional[Slab] = None

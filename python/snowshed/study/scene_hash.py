@@ -104,6 +104,8 @@ def content_hash(scene: Mapping[str, Any]) -> str:
         If a file that the scene names cannot be read.
     """
     content = {key: value for key, value in scene.items() if key not in WITHOUT_EFFECT}
+    if content.get("misplaced_snow") == "refuse":  # the default, which was no key once
+        del content["misplaced_snow"]
     if scene.get("snowshed") != 1:
         content = _as_version_1(content)
     content["numerics"] = {

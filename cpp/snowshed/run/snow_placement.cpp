@@ -1,0 +1,330 @@
+#include "snowshed/run/snow_placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <optional>
+
+#include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mpm/boundary.hpp"
+#include "snowshed/particles/point_grid.hpp"
+
+namespace snowshed {
+namespace {
+
+/// Particles that follow on each other lie near to each other.
+constexpr std::size_t particles_in_box = 64;
+
+constexpr double depth_over_resolution = 1e-3;  // that is rounding of files, not an overlap
+
+/// Where old snow surrounds a point: within this many particle distances there are ...
+constexpr double reach = 2.2;
+constexpr double least_filled = 0.4;  // ... so many of the particles that whole snow would have,
+constexpr double most_aside = 0.28;   // and their centre lies so near, over the reach. On a flat
+                                      // surface it is at 0.38 (3D) and 0.42 (2D).
+
+constexpr std::size_t most_notes = 10;  // of the bodies of an event
+constexpr std::size_t most_parts = 3;   // of a sentence
+
+struct PointBox {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+
+  void extend(const Vec3& x) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  bool meets(const Vec3& other_low, const Vec3& other_high, int dimension) const {
+    for (const int axis : {0, 1, 2}) {
+      if (axis == 1 && dimension == 2) continue;
+      if (other_low[axis] > high[axis] || other_high[axis] < low[axis]) return false;
+    }
+    return true;
+  }
+};
+
+PointBox box_around(const std::vector<Vec3>& points, std::size_t begin, std::size_t end) {
+  PointBox box;
+  for (std::size_t i = begin; i < end; ++i) box.extend(points[i]);
+  return box;
+}
+
+/// The particles of a body that lie in one thing.
+struct Part {
+  std::string where;
+  std::size_t count = 0;
+  Vec3 example = Vec3::Zero();
+};
+
+/// The particles of a body, and which of them are misplaced.
+class Particles {
+ public:
+  Particles(const std::vector<Vec3>& positions, int dimension)
+      : positions_(positions), dimension_(dimension), found_(positions.size(), 0) {
+    for (std::size_t begin = 0; begin < positions.size(); begin += particles_in_box) {
+      const std::size_t end = std::min(begin + particles_in_box, positions.size());
+      boxes_.push_back(box_around(positions, begin, end));
+      whole_.extend(boxes_.back().low);
+      whole_.extend(boxes_.back().high);
+    }
+  }
+
+  const PointBox& box() const { return whole_; }
+
+  /// Marks the particles where `distance` is below `-depth`, and counts them under a name.
+  template <class Distance>
+  void find_within(const std::string& where, double depth, const Distance& distance) {
+    for_each_near(distance, depth, [&](std::size_t i) { count(where, i); });
+  }
+
+  /// The same for particles that are not misplaced otherwise.
+  template <class Distance>
+  std::size_t count_others_within(double depth, const Distance& distance) const {
+    std::size_t others = 0;
+    for_each_near(distance, depth, [&](std::size_t i) { others += found_[i] == 0; });
+    return others;
+  }
+
+  /// Marks the particles for which `is_there(x)` in the boxes that meet another box.
+  template <class Test>
+  void find_where(const std::string& where, const PointBox& other, const Test& is_there) {
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+      if (!boxes_[b].meets(other.low, other.high, dimension_)) continue;
+      for (std::size_t i = b * particles_in_box; i < end_of(b); ++i)
+        if (is_there(positions_[i])) count(where, i);
+    }
+  }
+
+  double share() const {
+    return share_of(found_.size() - std::size_t(std::count(found_.begin(), found_.end(), 0u)));
+  }
+  double share_of(std::size_t count) const { return double(count) / double(positions_.size()); }
+  const std::vector<Part>& parts() const { return parts_; }
+
+ private:
+  std::size_t end_of(std::size_t box) const {
+    return std::min((box + 1) * particles_in_box, positions_.size());
+  }
+
+  template <class Distance, class Visit>
+  void for_each_near(const Distance& distance, double depth, const Visit& visit) const {
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+      const double middle = distance(Vec3(0.5 * (boxes_[b].low + boxes_[b].high)));
+      const double radius = 0.5 * (boxes_[b].high - boxes_[b].low).norm();
+      if (middle - radius >= -depth) continue;
+      const bool all = middle + radius < -depth;
+      for (std::size_t i = b * particles_in_box; i < end_of(b); ++i)
+        if (all || distance(positions_[i]) < -depth) visit(i);
+    }
+  }
+
+  void count(const std::string& where, std::size_t i) {
+    if (parts_.empty() || parts_.back().where != where) parts_.push_back({where, 0, positions_[i]});
+    const auto part = std::uint32_t(parts_.size());
+    if (found_[i] == part) return;  // a corner of the domain is beyond two of its sides
+    found_[i] = part;
+    ++parts_.back().count;
+  }
+
+  const std::vector<Vec3>& positions_;
+  const int dimension_;
+  std::vector<std::uint32_t> found_;  // by particle, the last part it is of, from 1; 0: none
+  std::vector<PointBox> boxes_;
+  PointBox whole_;
+  std::vector<Part> parts_;
+};
+
+/// Whether a point is surrounded by particles of old snow.
+class OldSnow {
+ public:
+  OldSnow(const OccupiedSpace& space, const PointBox& new_snow, int dimension)
+      : radius_(reach * space.particle_distance) {
+    const Vec3 around = Vec3::Constant(radius_);
+    for (const Vec3& x : space.particles)
+      if (new_snow.meets(x - around, x + around, dimension)) {
+        near_.push_back(x);
+        box_.extend(x - around);
+        box_.extend(x + around);
+      }
+    if (!near_.empty()) grid_.emplace(near_, radius_);
+    const double ball = dimension == 2 ? 3.14159 * reach * reach : 4.18879 * std::pow(reach, 3);
+    least_ = least_filled * ball;
+  }
+
+  const PointBox& box() const { return box_; }
+  bool empty() const { return near_.empty(); }
+
+  bool surrounds(const Vec3& x) const {
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    grid_->for_each_near(x, [&](std::size_t, const Vec3& y) {
+      if ((y - x).squaredNorm() > radius_ * radius_) return;
+      sum += y - x;
+      ++count;
+    });
+    return count >= least_ && sum.norm() < most_aside * radius_ * count;
+  }
+
+ private:
+  double radius_, least_;
+  std::vector<Vec3> near_;
+  PointBox box_;
+  std::optional<PointGrid> grid_;
+};
+
+std::string place(const Vec3& x, int dimension) {
+  char text[100];
+  if (dimension == 2)
+    std::snprintf(text, sizeof text, "(%.4g, %.4g) m", x.x(), x.z());
+  else
+    std::snprintf(text, sizeof text, "(%.4g, %.4g, %.4g) m", x.x(), x.y(), x.z());
+  return text;
+}
+
+/// The obstacles in words, and where they are.
+class Obstacles {
+ public:
+  Obstacles(const Scene& scene, const OccupiedSpace& space)
+      : scene_(scene), space_(space), depth_(depth_over_resolution * resolution(scene.numerics)) {
+    const std::size_t standing = std::size_t(scene.ground.has_value()) + scene.panel.has_value();
+    for (std::size_t k = 0; k < space.obstacles.size(); ++k) {
+      const Obstacle& o = space.obstacles[k];
+      bounds_.push_back(o.shape->bounds());
+      if (o.name == "domain" && k >= standing + scene.obstacles.size())
+        words_.push_back("outside the domain");
+      else if (scene.ground && k == 0)
+        words_.push_back("below the ground");
+      else if (k < standing)
+        words_.push_back("inside the panel");
+      else
+        words_.push_back(o.name.empty() ? "inside /obstacles/" + std::to_string(k - standing)
+                                        : "inside the obstacle \"" + o.name + "\"");
+    }
+  }
+
+  void find(Particles& snow) const {
+    for_each_near(snow, 0, [&](std::size_t k, const auto& to_body) {
+      const LevelSet& shape = *space_.obstacles[k].shape;
+      snow.find_within(words_[k], depth_,
+                       [&](const Vec3& x) { return shape.distance(to_body(x)); });
+    });
+  }
+
+  /// Adds what is to be told of particles that lie only where the grid thickens obstacles.
+  void find_in_thickening(const Particles& snow, std::vector<std::string>& sentences) const {
+    if (!scene_.uses<MpmSettings>()) return;
+    const double dx = resolution(scene_.numerics);
+    for_each_near(snow, dx, [&](std::size_t k, const auto& to_body) {
+      const Obstacle& o = space_.obstacles[k];
+      const Obstacle seen = thick_enough(o, dx);
+      if (seen.shape == o.shape) return;
+      const std::size_t count = snow.count_others_within(
+          depth_, [&](const Vec3& x) { return seen.shape->distance(to_body(x)); });
+      if (count == 0) return;
+      const std::string name = words_[k].substr(std::string("inside ").size());
+      sentences.push_back(percent(snow.share_of(count)) + " of its particles lie beside " + name +
+                          ", where the grid sees it thicker than it is, and are pushed out");
+    });
+  }
+
+ private:
+  /// Calls visit(number, to_body) for the obstacles within `margin` (m) of the snow.
+  template <class Visit>
+  void for_each_near(const Particles& snow, double margin, const Visit& visit) const {
+    for (std::size_t k = 0; k < space_.obstacles.size(); ++k) {
+      const Obstacle& o = space_.obstacles[k];
+      if (o.motion) {
+        const RigidPose pose = o.motion->at(space_.time);
+        visit(k, [&](const Vec3& x) { return pose.to_body(x); });
+        continue;
+      }
+      const Vec3 around = Vec3::Constant(margin);
+      if (snow.box().meets(bounds_[k].min - around, bounds_[k].max + around, scene_.dimension))
+        visit(k, [](const Vec3& x) { return x; });
+    }
+  }
+
+  const Scene& scene_;
+  const OccupiedSpace& space_;
+  const double depth_;
+  std::vector<Bounds> bounds_;
+  std::vector<std::string> words_;
+};
+
+/// "/bodies/0" of "/bodies/0/shape".
+std::string body_of(const std::string& path) {
+  const std::string ending = "/shape";
+  const std::size_t length = path.size() < ending.size() ? 0 : path.size() - ending.size();
+  return path.compare(length, std::string::npos, ending) == 0 ? path.substr(0, length) : path;
+}
+
+std::string sentence_of(const Particles& snow, int dimension, int event) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most_parts, snow.parts().size()); ++i) {
+    const Part& part = snow.parts()[i];
+    const std::string share = percent(snow.share_of(part.count));
+    text += text.empty() ? share + " of its particles lie " : " and " + share + " ";
+    text += part.where + ", such as at " + place(part.example, dimension);
+  }
+  if (snow.parts().size() > most_parts) text += ", and others elsewhere";
+  return event > 1 ? "in event " + std::to_string(event) + ", " + text : text;
+}
+
+/// No more notes than anybody reads.
+std::vector<std::string> shortened(std::vector<std::string> notes) {
+  if (notes.size() <= most_notes) return notes;
+  const std::size_t more = notes.size() - most_notes + 1;
+  notes.resize(most_notes - 1);
+  notes.push_back(std::to_string(more) +
+                  " further bodies of snow lie where snow may not be, or "
+                  "where the grid thickens an obstacle");
+  return notes;
+}
+
+}  // namespace
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, share < 0.1 ? "%.2g %%" : "%.0f %%", 100 * share);
+  return text;
+}
+
+std::vector<std::string> check_placement(const Scene& scene, const std::vector<PlacedBody>& bodies,
+                                         const OccupiedSpace& space) {
+  const Obstacles obstacles(scene, space);
+  const double depth = depth_over_resolution * resolution(scene.numerics);
+  std::vector<Bounds> bounds;
+  for (const PlacedBody& body : bodies)
+    bounds.push_back(body.shape ? body.shape->bounds() : Bounds{});
+  std::vector<std::string> notes;
+  for (const PlacedBody& body : bodies) {
+    if (body.positions->empty()) continue;
+    Particles snow(*body.positions, scene.dimension);
+    obstacles.find(snow);
+    for (std::size_t other = 0; other < bodies.size(); ++other) {
+      if (&bodies[other] == &body || !bodies[other].shape) continue;
+      if (!snow.box().meets(bounds[other].min, bounds[other].max, scene.dimension)) continue;
+      snow.find_within("within the snow of " + body_of(bodies[other].path), depth,
+                       [&](const Vec3& x) { return bodies[other].shape->distance(x); });
+    }
+    if (!space.particles.empty()) {
+      const OldSnow old(space, snow.box(), scene.dimension);
+      if (!old.empty())
+        snow.find_where("within snow that is already there", old.box(),
+                        [&](const Vec3& x) { return old.surrounds(x); });
+    }
+    std::vector<std::string> sentences;
+    obstacles.find_in_thickening(snow, sentences);
+    for (const std::string& sentence : sentences) notes.push_back(body.path + ": " + sentence);
+    if (snow.parts().empty()) continue;
+    const std::string sentence = sentence_of(snow, scene.dimension, space.event);
+    if (snow.share() > most_misplaced && !body.is_told_only &&
+        scene.misplaced_snow == MisplacedSnow::refuse)
+      throw InputError(body.path, sentence + "; move it, or set /misplaced_snow to \"allow\"");
+    notes.push_back(body.path + ": " + sentence);
+  }
+  return shortened(std::move(notes));
+}
+
+}  // namespace snowshed

@@ -1,0 +1,47 @@
+// Whether new snow lies where snow may be: outside of obstacles, and of other snow.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/geometry/level_set.hpp"
+#include "snowshed/methods/obstacle.hpp"
+#include "snowshed/scene/scene.hpp"
+
+namespace snowshed {
+
+/// The largest share of a body that may lie where snow may not be.
+inline constexpr double most_misplaced = 0.01;
+
+/// A body of new snow.
+struct PlacedBody {
+  std::string path;                    // in the scene
+  const std::vector<Vec3>* positions;  // m, of its particles
+  Shape shape = nullptr;               // that they fill; null where there is none
+  bool is_told_only = false;           // for it lies where the program laid it
+};
+
+/// What new snow must keep out of.
+struct OccupiedSpace {
+  const std::vector<Obstacle>& obstacles;
+  double time = 0;               // s, at which moving obstacles are met
+  std::vector<Vec3> particles;   // m, of the snow that is there already
+  double particle_distance = 0;  // m, mean, between these
+  int event = 1;                 // that the new snow is of
+};
+
+/// Looks for particles of new snow that lie more than a thousandth of the scene's resolution inside
+/// an obstacle, beyond the sides of the domain, or in another new body, and for those that old snow
+/// surrounds. (Old snow has no surface. What reaches less than half the distance of two particles
+/// into it is not seen.) Returns a sentence for each body that has such particles, and for those
+/// that lie only where the MPM thickens a thin obstacle: from there they are pushed out.
+///
+/// Throws InputError with share and place where it is more than `most_misplaced` of a body's
+/// particles, not counting the thickening, unless the scene allows that or the body is told only.
+std::vector<std::string> check_placement(const Scene&, const std::vector<PlacedBody>&,
+                                         const OccupiedSpace&);
+
+/// The sentence for a share of something: "0.4 %", "50 %".
+std::string percent(double share);
+
+}  // namespace snowshed
