@@ -3,12 +3,14 @@
 import signal
 import threading
 import time
+from dataclasses import replace
 
 import pytest
 import study_helpers
 from study_helpers import outcome, tiny_study
 
-from snowshed import InputError, _core
+from snowshed import InputError, SnowshedNote, _core
+from snowshed.io.notes import recorded
 from snowshed.study import Study, StudyError, StudyInterrupted, cost_estimate, resume, session
 from snowshed.study.outcome import Outcome
 from snowshed.study.owner import ownership
@@ -322,3 +324,17 @@ def test_estimating_many_runs_takes_little():
     for scene in scenes:
         cost_estimate.work(scene)
     assert time.process_time() - start < 0.05 * len(scenes)
+
+
+def test_notes_on_runs_are_said_after_them_the_most_frequent_first(scripted, tmp_path):
+    seen = iter(range(100))
+
+    def noted(task):
+        notes = ["the slab is thin", *(["one stays"] if next(seen) == 0 else [])]
+        return replace(outcome(task.hash), notes=notes)
+
+    scripted.answer = noted
+    with pytest.warns(SnowshedNote), recorded() as said:
+        STUDY.run(tmp_path / "store")
+    runs = len(states(tmp_path / "store"))
+    assert said == [f"{runs} runs: the slab is thin", "1 run: one stays"]

@@ -8,9 +8,8 @@ import snowshed._core as _core
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.terminal import say
 from snowshed.io.formatting import about
-from snowshed.methods.registry import NAME_KEY
+from snowshed.methods.registry import DEFAULT, NAME_KEY
 from snowshed.run.interrupt import Interrupted
-from snowshed.run.scene_notes import notes_after, notes_before
 from snowshed.scene.scene import ResolvedScene
 
 LONG = 600.0  # s; longer runs are announced
@@ -40,25 +39,24 @@ def _run_events(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -
     from snowshed.run.events import run_events
 
     if not quiet:
-        for note in (*notes_before(ready.data), *_of_long_run(ready)):
-            say(f"note: {note}", err=True)
+        _tell_of_long_run(ready)
     with progress_bar(quiet=quiet) as progress:
         table = run_events(ready, folder, resume=resume, progress=progress)
     if not quiet:
         console.print_events(table, folder)
-        for note in notes_after(table):
-            say(f"note: {note}")
 
 
-def _of_long_run(ready: ResolvedScene) -> list[str]:
-    """Return a note on a run that takes long, before it begins."""
+def _tell_of_long_run(ready: ResolvedScene) -> None:
+    """Say how long a run takes that takes long: a hint for the terminal, not for its results."""
     seconds = _core.plan(ready.json, ready.base_dir)["expected_wall_s"]
     if seconds < LONG:
-        return []
-    return [
-        f"this takes {about(seconds)}; Ctrl-C stops it, --resume goes on. A larger --dx is faster: "
-        "twice the size takes a sixteenth of the time in 3D, an eighth in 2D"
-    ]
+        return
+    size = "--dx" if ready.data.get(NAME_KEY, DEFAULT) == DEFAULT else "numerics.spacing"
+    say(
+        f"note: this takes {about(seconds)}; Ctrl-C stops it, --resume goes on. A larger {size} is "
+        "faster: twice the size takes a sixteenth of the time in 3D, an eighth in 2D",
+        err=True,
+    )
 
 
 def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:

@@ -29,7 +29,8 @@ from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
-from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.scene_notes import notes_after
+from snowshed.run.sequence import NotePasser, open_sequence, run_sequence, say_note
 from snowshed.run.solids_file import write_solids
 from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
@@ -148,7 +149,7 @@ def _continue_tables(
         sequence.count_from(int(events.total("steps")), events.total("wall_s"))
 
 
-class _Recorder:
+class _Recorder(NotePasser):
     """Measures the stack after each event and fills the tables, as the core's loop tells it."""
 
     def __init__(
@@ -207,6 +208,10 @@ class _Recorder:
         self.stack = self._measure()
         self._record(facts, self.stack)
         warn_of_residual(facts)
+        if facts["event"] == self.count:
+            scene = json.loads(self.simulation.scene)
+            for note in notes_after(read_events(self.results.folder), scene):
+                say_note(self.sequence, note)
         self._tell(self.simulation.time_s, 1.0)
 
     def fill_in(self, finished: list[dict[str, Any]]) -> None:

@@ -33,7 +33,7 @@ from snowshed.methods.grains.summary import GrainsSummary, summarise
 from snowshed.run.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.sequence import NotePasser, open_sequence, run_sequence
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
 CURVE = "curve.csv"
@@ -135,7 +135,7 @@ def run_grains(
     return summary
 
 
-class _Recorder:
+class _Recorder(NotePasser):
     """Passes on how far the test has come, and writes its curve now and then."""
 
     def __init__(

@@ -44,7 +44,7 @@ from snowshed.run.energies import draw_energies, write_energy_history
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
-from snowshed.run.sequence import open_sequence, run_sequence
+from snowshed.run.sequence import NotePasser, open_sequence, run_sequence
 from snowshed.scene.components import Outline
 from snowshed.scene.scene import PathLike, SceneLike, resolve_scene
 
@@ -258,7 +258,7 @@ def _particle_table(simulation: _core.Simulation) -> pd.DataFrame:
     )
 
 
-class _Recorder:
+class _Recorder(NotePasser):
     """Passes on how far the run has come."""
 
     def __init__(

@@ -6,6 +6,7 @@ import json
 import platform
 import shutil
 import tempfile
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import datetime, timezone
@@ -14,6 +15,7 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.io.notes import SnowshedNote
 from snowshed.run.interrupt import Interrupted
 from snowshed.run.method_runs import runs_of
 from snowshed.run.progress import Progress, Reporter
@@ -62,7 +64,9 @@ def _compute(task: Task, folder: Path, report: Optional[FractionReporter]) -> Ou
     if earlier.get("status") == "failed":  # the one before was killed before it could say so
         return _outcome(task, folder, earlier["error"])
     try:
-        _run_or_resume(task, folder, _weighted(report))
+        with warnings.catch_warnings():  # nobody hears a worker: the outcome has its notes
+            warnings.simplefilter("ignore", SnowshedNote)
+            _run_or_resume(task, folder, _weighted(report))
     except Interrupted:
         return Outcome(task.hash, "interrupted")
     except OSError:
@@ -99,7 +103,9 @@ def _outcome(task: Task, folder: Path, error: Optional[str]) -> Outcome:
     status = "done" if error is None else "failed"
     begun = (folder / "scene.json").is_file()  # else it failed before there was anything
     particles = dict(runs.kept(folder)) if task.keep_particles and begun else {}
-    return Outcome(task.hash, status, events, _timing(results.read_run()), error, particles)
+    facts = results.read_run()
+    notes = tuple(facts.get("notes", ()))
+    return Outcome(task.hash, status, events, _timing(facts), error, particles, notes)
 
 
 def _timing(facts: dict[str, Any]) -> dict[str, Any]:

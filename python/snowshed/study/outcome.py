@@ -53,6 +53,8 @@ class Outcome:
     particles
         Those after each completed event, packed (see `snowshed.run.event_particles`), by events;
         empty unless the task asked for them.
+    notes
+        What readers of the results should know, as run.json has it.
     """
 
     hash: str
@@ -61,3 +63,4 @@ class Outcome:
     timing: Mapping[str, Any] = field(default_factory=dict)
     error: Optional[str] = None
     particles: Mapping[int, bytes] = field(default_factory=dict)
+    notes: Sequence[str] = ()

@@ -15,6 +15,7 @@ from typing import Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.io.notes import tell
 from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.run.pool import available_cores
 from snowshed.run.progress import Progress, Reporter
@@ -31,6 +32,7 @@ from snowshed.study.workers import Workers
 
 POLL_S = 0.25  # s between checks of interrupts and progress
 ELSEWHERE_S = 1.0  # s between checks of what other processes compute
+MOST_NOTES = 10  # that are said after a session, each once
 DEATHS = 3  # workers that may die of a run before it counts as failed
 
 
@@ -162,9 +164,20 @@ def _compute(
     try:
         with ownership(store) as owner, deferred_interrupts() as interrupt:
             session = _Session(store, owner, workers, list(runs.values()), interrupt)
-            session.run(_Narrator(session, progress, at_once) if progress else None)
+            try:
+                session.run(_Narrator(session, progress, at_once) if progress else None)
+            finally:
+                _tell_of_runs(session.notes)
     finally:
         workers.close()
+
+
+def _tell_of_runs(notes: Counter[str]) -> None:
+    """Say the notes on runs, those on most runs first."""
+    for note, runs in notes.most_common(MOST_NOTES):
+        tell(f"{runs} {'run' if runs == 1 else 'runs'}: {note}", stacklevel=3)
+    if len(notes) > MOST_NOTES:
+        tell(f"{len(notes) - MOST_NOTES} further notes on runs", stacklevel=3)
 
 
 def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
@@ -218,6 +231,7 @@ class _Session:
         self.elsewhere: list[StoredRun] = []
         self.looked = -math.inf
         self.deaths: Counter[str] = Counter()
+        self.notes: Counter[str] = Counter()  # on how many runs each was made
 
     def run(self, tell: Optional[Callable[[], None]]) -> None:
         """Compute until no run is missing."""
@@ -305,6 +319,7 @@ class _Session:
 
     def _store(self, outcome: Outcome) -> None:
         self.store.record(outcome)
+        self.notes.update(outcome.notes)
         _remove(self._folder(outcome.hash))
         self._count(outcome.hash, outcome.status)
 

@@ -13,6 +13,8 @@ from snowshed._core import InputError
 from snowshed.cli.accuracy import accuracy_option, check_alone, choose
 from snowshed.cli.scene_options import in_terms_of_options, scene_from_options, scene_options
 from snowshed.cli.terminal import say, write_out
+from snowshed.io.notes import tell
+from snowshed.run.scene_notes import notes_of_beginning
 from snowshed.scene.scene import ResolvedScene, Scene
 
 PATH = click.Path(path_type=Path)
@@ -29,6 +31,13 @@ def plan(scene: Path, accuracy: Optional[float]) -> None:
     if accuracy is not None:
         ready = _accurate(Scene.load(scene), accuracy).resolve()
     console.print_plan(_core.plan(ready.json, ready.base_dir))
+    _tell_of_beginning(ready)
+
+
+def _tell_of_beginning(ready: ResolvedScene) -> None:
+    """Say what a run of a scene would say before its first step."""
+    for note in notes_of_beginning(ready):
+        tell(note)
 
 
 @click.command()
@@ -44,6 +53,7 @@ def scene(
 ) -> None:
     """Write the scene that the same options of ``panel`` would run."""
     ready = resolve_options(preset, snow_preset, options, accuracy)
+    _tell_of_beginning(ready)
     if file is None:
         write_out(ready.json)
     else:
