@@ -1,5 +1,6 @@
 """Every example runs; on coarse grids, so that it takes a second or two."""
 
+import re
 import subprocess
 import sys
 
@@ -19,6 +20,8 @@ ARGUMENTS = {
     "resume.py": ["out", "0.02"],
     "slab_and_bonds.py": ["out", "1.0"],
 }
+#: On such coarse grids slabs are said to be thin; with the line of the script that runs them.
+NOTE = re.compile(r".*: SnowshedNote: the slab is .* thick, less than two cells .*\n.*\n")
 
 
 def test_all_scripts_are_run():
@@ -30,7 +33,7 @@ def test_script(name, tmp_path):
     command = [sys.executable, EXAMPLES / name, *ARGUMENTS[name]]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
+    assert NOTE.sub("", done.stderr) == ""
     assert "event" in done.stdout
     assert (tmp_path / "out").is_dir() and len(list(tmp_path.iterdir())) == 1
     for folder in {path.parent for path in tmp_path.rglob("events.csv")}:

@@ -30,7 +30,7 @@ from snowshed.run.machine import machine_facts
 from snowshed.run.progress import Progress, Reporter
 from snowshed.run.results import RunFolder, measured_columns, read_events
 from snowshed.run.scene_notes import notes_after
-from snowshed.run.sequence import NotePasser, open_sequence, run_sequence, say_note
+from snowshed.run.sequence import USER, NotePasser, open_sequence, run_sequence, say_note
 from snowshed.run.solids_file import write_solids
 from snowshed.run.stack_measuring import measure_particles
 from snowshed.scene.scene import PathLike, ResolvedScene, SceneLike, resolve_scene
@@ -211,7 +211,7 @@ class _Recorder(NotePasser):
         if facts["event"] == self.count:
             scene = json.loads(self.simulation.scene)
             for note in notes_after(read_events(self.results.folder), scene):
-                say_note(self.sequence, note)
+                say_note(self.sequence, note, USER + 1)
         self._tell(self.simulation.time_s, 1.0)
 
     def fill_in(self, finished: list[dict[str, Any]]) -> None:

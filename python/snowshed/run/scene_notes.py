@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FEW = 2.0  # cells; a thinner slab is coarse
 ALL_STAYS = 0.98  # of the snow
-MOST_SEEDED = 500_000  # particles, in a second or two
+MOST_SEEDED = 100_000  # particles; these take two seconds
 #: How the methods that make stacks call the length that they resolve: setting, and its word.
 RESOLUTIONS = {"mpm": ("dx", "cells"), "mps": ("spacing", "spacings")}
 #: What snow can land on besides a panel.

@@ -18,6 +18,7 @@ from snowshed.run.interrupt import Interrupted
 from snowshed.run.scene_notes import notes_before
 from snowshed.scene.scene import PathLike, ResolvedScene
 
+USER = 4  # the caller of a run, seen from where its notes are said
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
 
 
@@ -33,10 +34,10 @@ def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _c
     return open_folder(scene.json, scene.base_dir, utf8_path(folder))
 
 
-def say_note(sequence: _core.EventSequence, note: str) -> None:
+def say_note(sequence: _core.EventSequence, note: str, stacklevel: int = USER) -> None:
     """Say a note on a run and keep it for run.json, which has it once."""
     sequence.add_note(note)
-    tell(note)
+    tell(note, stacklevel)
 
 
 @contextmanager
@@ -45,7 +46,7 @@ def telling(core: _core.Simulation) -> Iterator[None]:
     said = len(core.notes)
     yield
     for note in core.notes[said:]:
-        tell(note, stacklevel=4)
+        tell(note, USER)
 
 
 class NotePasser:
@@ -53,7 +54,7 @@ class NotePasser:
 
     def noted(self, note: str) -> None:
         """Say a note."""
-        tell(note)
+        tell(note, USER)
 
 
 def run_sequence(
