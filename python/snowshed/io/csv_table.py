@@ -59,10 +59,10 @@ class Table:
         self.path = path
         self.columns = list(columns)
         self.rows: list[dict[str, str]] = []
+        self._written: list[str] = []  # the columns in the file
         if path.exists():
             self.rows = self._read()
-        if self.rows and not self.columns:
-            self.columns = list(self.rows[0])
+        self.columns = self.columns or self._written
 
     def add(self, rows: Iterable[Mapping[str, Any]]) -> None:
         """Add rows and write the file."""
@@ -78,6 +78,11 @@ class Table:
             self.rows = kept
             self._write()
 
+    def fill_columns(self) -> None:
+        """Write the columns that the file lacks, as that of an earlier version may."""
+        if self._written and self._written != self.columns:
+            self._write()
+
     def total(self, column: str) -> float:
         """Return the sum of a column."""
         try:
@@ -91,6 +96,7 @@ class Table:
     def _read(self) -> list[dict[str, str]]:
         records = _records(self.path, _decoded(self.path, TABLE))
         _, names = next(records, (0, []))
+        self._written = names
         rows = [dict(zip(names, cells)) for _, cells in records]
         for row in rows:
             if self.columns and not set(row) <= set(self.columns):
@@ -109,6 +115,7 @@ class Table:
 
     def _write(self) -> None:
         write_text(self.path, self._text(self.rows))
+        self._written = self.columns
 
     def _text(self, rows: Iterable[Mapping[str, str]]) -> str:
         text = io.StringIO()
