@@ -255,3 +255,28 @@ def test_the_number_of_threads_may_be_changed_in_the_folder_itself(folder):
     (folder / "scene.json").write_text(json.dumps(scene))
     with pytest.raises(InputError, match="not the scene of the run"):
         _ = Results(folder).scene
+
+
+def test_a_table_without_rows_is_sound(tmp_path):
+    """Nothing has slid off yet, and there is no stack."""
+    scene = tiny_scene(**{"events.count": 1, "events.max_time": 0.1})
+    run_events(scene, tmp_path, pictures=False)
+    assert (tmp_path / "outline.csv").read_text() == "event,x,z\n"
+    assert len(Results(tmp_path).outline) == 0
+    write_view(tmp_path)
+    (tmp_path / "outline.csv").write_text("event,x,y\n")
+    with pytest.raises(InputError, match=r"outline\.csv"):
+        _ = Results(tmp_path).outline
+
+
+def test_a_finished_run_of_the_version_before_can_be_resumed_and_read(folder):
+    """Its table has fewer columns, and its run.json no checksums."""
+    record = json.loads((folder / "run.json").read_text())
+    for new in ("film", "files", "tables", "scene_checksum", "checksum"):
+        del record[new]
+    (folder / "run.json").write_text(json.dumps(record, indent=2))
+    rows = [line.rpartition(",")[0] for line in (folder / "events.csv").read_text().splitlines()]
+    (folder / "events.csv").write_text("\n".join(rows) + "\n")
+    assert "joined" not in Results(folder).events
+    table = run_events(folder / "scene.json", folder, resume=True, pictures=False)
+    assert "joined" in table and len(Results(folder).events) == 2

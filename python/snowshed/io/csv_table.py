@@ -62,8 +62,10 @@ class Table:
         self.path = path
         self.columns = list(columns)
         self.rows: list[dict[str, str]] = []
+        self._written: list[str] = []  # the columns in the file
         if path.exists():
             self.rows = self._read()
+        self.columns = self.columns or self._written
 
     def add(self, rows: Iterable[Mapping[str, Any]]) -> None:
         """Add rows and write the file."""
@@ -79,6 +81,11 @@ class Table:
             self.rows = kept
             self._write()
 
+    def fill_columns(self) -> None:
+        """Write the columns that the file lacks, as that of an earlier version may."""
+        if self._written and self._written != self.columns:
+            self._write()
+
     def total(self, column: str) -> float:
         """Return the sum of a column."""
         try:
@@ -92,13 +99,13 @@ class Table:
     def _read(self) -> list[dict[str, str]]:
         records = _records(self.path, _decoded(self.path, TABLE))
         _, names = next(records, (0, []))
+        self._written = names
         rows = [dict(zip(names, cells)) for _, cells in records]
         for row in rows:
             if self.columns and not set(row) <= set(self.columns):
                 raise self._damaged(f"its columns are not {', '.join(self.columns)}")
             if not WHOLE.fullmatch(row.get("event", "")):
                 raise self._damaged("a row without the number of its event")
-        self.columns = self.columns or names  # a table without rows has them, too
         return rows
 
     def _damaged(self, what: str) -> InputError:
@@ -111,6 +118,7 @@ class Table:
 
     def _write(self) -> None:
         write_text(self.path, self._text(self.rows))
+        self._written = self.columns
 
     def _text(self, rows: Iterable[Mapping[str, str]]) -> str:
         text = io.StringIO()

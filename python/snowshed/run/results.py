@@ -170,6 +170,7 @@ class RunFolder:
             of_table = found.get(table.path.name, {})
             for later in [at for at in of_table if at.isdecimal() and int(at) > through]:
                 del of_table[later]  # of events that are run again
+            table.fill_columns()
             if through > 0:
                 found.setdefault(table.path.name, {})[str(through)] = table.checksum(through)
         return found
