@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "methods/mpm/solver_testing.hpp"
-#include "snowshed/geometry/combine.hpp"
 #include "snowshed/geometry/bounds.hpp"
+#include "snowshed/geometry/combine.hpp"
 
 namespace snowshed {
 namespace {
