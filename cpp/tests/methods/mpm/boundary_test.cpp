@@ -239,7 +239,8 @@ TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
     batch.velocity.z() = -3;
     solver->add(batch);
     run_until(*solver, 0.15);
-    for (const Vec3& x : solver->state().positions) ASSERT_GT(x.z(), 0);
+    for (const Vec3& x : solver->state().positions)
+      ASSERT_TRUE(x.z() > 0 || x.x() < -0.2) << x.transpose();  // or over the shelf's edge
   }
 }
 
