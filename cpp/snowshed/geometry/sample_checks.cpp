@@ -119,18 +119,19 @@ double mean_slope_at_surface(const GridSamples& s) {
 
 /// The largest and the smallest value where these were cut off.
 Band cut_off(const GridSamples& s) {
+  constexpr std::size_t least = 4;  // level samples; distances by other norms have some in corners
   const auto [low, high] = std::minmax_element(s.values.begin(), s.values.end());
-  Band band{infinity, infinity};
-  if (!(*low < 0) || !(*high > 0)) return band;
+  if (!(*low < 0) || !(*high > 0)) return {infinity, infinity};
+  std::size_t level_inside = 0, level_outside = 0;
   s.for_each([&](std::size_t i, std::size_t j, std::size_t k) {
     const Sample at{i, j, k};
     const float value = value_at(s, at);
     if (value != *low && value != *high) return;
     bool level = true;
     for_neighbours(s, at, [&](int, const Sample& next) { level &= value_at(s, next) == value; });
-    if (level) (value < 0 ? band.inside : band.outside) = std::abs(value);
+    if (level) ++(value < 0 ? level_inside : level_outside);
   });
-  return band;
+  return {level_outside < least ? infinity : *high, level_inside < least ? infinity : -*low};
 }
 
 std::string in_words(double metres) {

@@ -158,7 +158,7 @@ class ThinPartSearch {
     const double longest = 2 * half_, shortest = shortest_step * half_;
     double way = 0;
     for (double d = 0; way < longest; d = depth(x + way * direction)) {
-      if (d < -on_surface * half_) return way;
+      if (d < -on_surface * half_) return std::max(0.0, way + d);  // back to the surface
       way += std::max(d, shortest);
     }
     return longest;
