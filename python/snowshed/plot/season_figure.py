@@ -119,7 +119,8 @@ def _draw_panel_snow(axes: Axes, dates: Floats, table: pd.DataFrame) -> None:
         label="lets go",
     )
     axes.set_title("Snow on the panel: stress at its base, Pa", loc="left", color=INK, fontsize=11)
-    axes.set_ylim(0.0, 1.25 * max(table["driving_pa"].max(), table["resisting_pa"].max()))
+    most = max(table["driving_pa"].max(), table["resisting_pa"].max())
+    axes.set_ylim(0.0, 1.25 * most if most > 0.0 else 1.0)  # a winter without snow has none
     axes.legend(frameon=False, fontsize=9, ncols=3, loc="upper left")
 
 

@@ -79,8 +79,15 @@ def test_a_rise_over_a_summer_is_not_counted(tmp_path):
             *days(date(2024, 11, 1), date(2024, 11, 30)),
         )
     ]
-    with pytest.raises(InputError, match=r"never snows.*0.50 m from 2024-04-30 .* not counted"):
-        read_record(ghcn(tmp_path / "x.csv", rows))
+    record = read_record(ghcn(tmp_path / "x.csv", rows))
+    assert total(record) == 0.0 and told(record, "it never snows in this file")
+    assert told(record, "rises by 0.50 m from 2024-04-30", "not counted")
+
+
+def test_a_station_without_snow_is_read_and_its_winter_counts(tmp_path):
+    record = daily_depths(tmp_path, [0.3] * 182)
+    assert told(record, "it never snows in this file")
+    assert record.winters().words == "1 of 1 winter"
 
 
 def test_the_depth_of_weekdays_tells_of_the_weekend(tmp_path):

@@ -23,7 +23,9 @@ NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
 
 
-def check_rows(rows: Sequence[Weather], places: Sequence[Row], name: str) -> None:
+def check_rows(
+    rows: Sequence[Weather], places: Sequence[Row], name: str, *, snowless: bool = False
+) -> None:
     """Raise InputError if rows are no weather of seasons.
 
     Parameters
@@ -34,6 +36,8 @@ def check_rows(rows: Sequence[Weather], places: Sequence[Row], name: str) -> Non
         Where each row stands, for messages.
     name
         The file.
+    snowless
+        Whether it need not snow in it: a station may have observed a winter without snow.
     """
     if not rows:
         raise InputError(f"{name}: no rows below the header")
@@ -47,6 +51,8 @@ def check_rows(rows: Sequence[Weather], places: Sequence[Row], name: str) -> Non
             )
     _check_years(rows, places)
     _check_amounts(rows, places, name)
+    if not snowless and not any(row.snowfall for row in rows):
+        raise InputError(f"{name}: {NO_SNOW}; the snowfall of every row is 0")
 
 
 def check_one_season(rows: Sequence[Weather]) -> None:
@@ -112,7 +118,7 @@ def _check_amounts(rows: Sequence[Weather], places: Sequence[Row], name: str) ->
             )
     totals = sorted(total for total, _ in falls.values() if total)
     if not totals:
-        raise InputError(f"{name}: {NO_SNOW}; the snowfall of every row is 0")
+        return
     middle = totals[len(totals) // 2]
     if len(totals) >= 3 and middle > TYPICAL_SNOWFALL:
         raise InputError(

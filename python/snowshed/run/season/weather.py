@@ -174,12 +174,9 @@ def _of_station(station: Station, source: str, snow_from: str) -> Record:
     record = record_of(station, source, CHOICES.get(snow_from))
     places = [Row(source, f"line {row.line}", row.line, {}) for row in record.rows]
     notes = [f"the weather is of a file in the format {station.format}", *record.notes]
-    try:
-        check_rows(record.rows, places, source)
-    except InputError as error:
-        if NO_SNOW not in str(error):
-            raise
-        raise InputError("; ".join([str(error), *record.notes])) from None
+    check_rows(record.rows, places, source, snowless=True)
+    if not any(row.snowfall for row in record.rows):
+        notes.append(f"{NO_SNOW} in this file")
     return replace(record, notes=notes)
 
 
