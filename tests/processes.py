@@ -4,8 +4,18 @@ import os
 import signal
 import subprocess
 import sys
+import sysconfig
 import time
 from pathlib import Path
+
+#: The executable that runs scenes without Python.
+EXECUTABLE = Path(sysconfig.get_path("scripts")) / "snowshed-run"
+
+
+def snowshed_run(*arguments: object, **options) -> subprocess.CompletedProcess[str]:
+    """Run ``snowshed-run`` to its end; its output is text."""
+    command = [EXECUTABLE, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, **options)
 
 
 def snowshed_command(*arguments: object, **options) -> subprocess.Popen:

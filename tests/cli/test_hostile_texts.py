@@ -68,15 +68,6 @@ def test_names_that_no_file_can_have_are_refused_before_anything_is_computed(tmp
     assert sorted(path.name for path in tmp_path.iterdir()) == ["loop", "scene.json"]
 
 
-def test_lack_of_memory_is_a_sentence(tmp_path, capsys, monkeypatch):
-    def fail(*_, **__):
-        raise MemoryError
-
-    monkeypatch.setattr("snowshed.run.events.run_events", fail)
-    assert main(["panel", *TINY, "-o", str(tmp_path / "out")]) == 3
-    assert capsys.readouterr().err.splitlines()[-1].startswith("error: out of memory; ")
-
-
 def test_a_spreadsheet_gets_no_formula():
     table = pd.DataFrame({"=A1": ["=HYPERLINK(1)", "@x", "-1.5", None], "b": [-1.0, 2, 3, 4]})
     lines = csv_text(table).splitlines()

@@ -57,7 +57,7 @@ DIFFERENT = (
     *("measurements.jsonl", "results.csv", "results.json", "scores.csv", "errors.csv"),
 )
 SEASON = "date,snowfall_m,temperature_c,density_kg_m3\n2024-12-01,0.05,-4,120\n2024-12-02,0,2,\n"
-WINTER = "".join(f"{date(2024, 12, 3) + timedelta(day)},0,2,\n" for day in range(60))
+WINTER = "".join(f"{date(2024, 12, 3) + timedelta(day)},0,2,\n" for day in range(90))
 STUDY = """name = "tiny"
 dimension = 2
 events = 1

@@ -108,5 +108,6 @@ def test_of_many_grains_the_forces_in_the_slice_are_drawn():
 def test_a_modulus_is_told_where_the_stress_is_linear_only():
     waves = 1e5 * RAMP + 4e3 * np.sin(300 * RAMP)
     for stress, words in ((1e5 * RAMP, "tangent modulus"), (waves, "not linear")):
-        figure = loading_figure(curve(axial_strain=RAMP, top_stress_pa=stress), ["compress"])
+        stresses = {"top_stress_pa": stress, "bottom_stress_pa": stress}
+        figure = loading_figure(curve(axial_strain=RAMP, **stresses), ["compress"])
         assert words in figure.axes[1].get_title("left")

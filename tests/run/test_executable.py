@@ -5,7 +5,6 @@ import os
 import shutil
 import signal
 import subprocess
-import sysconfig
 import time
 from pathlib import Path
 
@@ -13,18 +12,12 @@ import pandas as pd
 import pytest
 from bad_scenes import CLOSED_MESH, bad_scene  # noqa: F401
 from conftest import tiny_scene
+from processes import EXECUTABLE, snowshed_run
 from test_events import interrupt_at
 
 from snowshed import Interrupted, ResolvedScene, _core, run_events
 from snowshed.cli.main import main
 from snowshed.run import sequence
-
-EXECUTABLE = Path(sysconfig.get_path("scripts")) / "snowshed-run"
-
-
-def snowshed_run(*arguments, **options):
-    command = [EXECUTABLE, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, **options)
 
 
 def assert_refused(done, message):

@@ -11,7 +11,7 @@ import pytest
 from conftest import tiny_mps, tiny_scene
 from grain_files import write_labels
 from mutations.mutate import mutated
-from test_executable import snowshed_run
+from processes import snowshed_run
 
 from snowshed import InputError, ResolvedScene, Results, run_events
 from snowshed.io.film import Film

@@ -5,7 +5,7 @@ import json
 import pytest
 from conftest import tiny_mps, tiny_scene
 from grain_files import write_labels
-from test_executable import snowshed_run
+from processes import snowshed_run
 
 from snowshed import InputError, Simulation, run_events
 from snowshed.run.grains import run_grains
