@@ -29,9 +29,10 @@ HeightField plane_with_run_out(double width) {
   return f;
 }
 
-std::unique_ptr<SlideMethod> sliding(double particles, SlideMode mode, bool bonds, int threads) {
+std::unique_ptr<slide::Solver> sliding(double particles, slide::Mode mode, bool bonds,
+                                       int threads) {
   const double width = std::sqrt(particles / 2) * cell;  // two particles a cell
-  SlideOptions o;
+  slide::Options o;
   o.terrain = plane_with_run_out(width);
   const double low = 20, high = 20 + width;
   o.areas.release = {
@@ -40,13 +41,13 @@ std::unique_ptr<SlideMethod> sliding(double particles, SlideMode mode, bool bond
   o.settings.bonds = bonds;
   o.settings.threads = threads;
   o.settings.stop_ratio = 0;
-  auto slide = make_slide(std::move(o));
+  auto slide = slide::make_solver(std::move(o));
   slide->add(slide->seed());
   for (int i = 0; i < steps_before; ++i) slide->step();
   return slide;
 }
 
-void add(const std::string& name, double particles, SlideMode mode, bool bonds, int threads) {
+void add(const std::string& name, double particles, slide::Mode mode, bool bonds, int threads) {
   const std::string full = "slide/" + name + "/" + std::to_string(int(particles));
   benchmark::RegisterBenchmark(full.c_str(),
                                [=](benchmark::State& state) {
@@ -69,9 +70,9 @@ void add(const std::string& name, double particles, SlideMode mode, bool bonds, 
 void add_slides() {
   for (const double particles : {360., 1100., 1e5, 1e6})
     for (const int threads : {1, 2}) {
-      add("compatible", particles, SlideMode::compatible, true, threads);
-      add("improved", particles, SlideMode::improved, true, threads);
-      add("improved_without_bonds", particles, SlideMode::improved, false, threads);
+      add("compatible", particles, slide::Mode::compatible, true, threads);
+      add("improved", particles, slide::Mode::improved, true, threads);
+      add("improved_without_bonds", particles, slide::Mode::improved, false, threads);
     }
 }
 

@@ -40,7 +40,7 @@ ParticleBatch slab(const int (&cells)[3], double dx, double density) {
 
 /// A benchmark case.
 struct Case {
-  MpmOptions options;
+  mpm::Options options;
   ParticleBatch batch;
   int steps_before = 10;
 };
@@ -72,9 +72,9 @@ void report(benchmark::State& state, std::size_t particles, double bytes) {
 }
 
 void run(benchmark::State& state, const Case& c, int threads) {
-  MpmOptions options = c.options;
+  mpm::Options options = c.options;
   options.settings.threads = threads;
-  const auto solver = make_mpm(options);
+  const auto solver = mpm::make_solver(options);
   solver->add(c.batch);
   for (int i = 0; i < c.steps_before; ++i) solver->step();
   for (auto _ : state) solver->step();
@@ -114,7 +114,7 @@ Case slab_in_flow() {
 
 void add_slabs() {
   const auto unchanged = [](Case&) {};
-  const auto in_double = [](Case& c) { c.options.settings.precision = Precision::float64; };
+  const auto in_double = [](Case& c) { c.options.settings.precision = mpm::Precision::float64; };
   add("slab_3d/float_at_rest", slab_3d(), unchanged, {1, 2});
   add("slab_3d/float_in_plastic_flow", slab_in_flow(), unchanged, {1, 2});
   add("slab_3d/double_at_rest", slab_3d(), in_double, {1, 2});
@@ -170,9 +170,9 @@ void add_prices() {
   price("ground_cam_clay_in_flow", slab_in_flow(), unchanged);
   price("ground_elastic_in_flow", slab_in_flow(),
         [](C& c) { c.options.snows[0].model = SnowModel::elastic; });
-  price("double", plain(), [](C& c) { c.options.settings.precision = Precision::float64; });
-  price("cubic", plain(), [](C& c) { c.options.settings.basis = Basis::cubic; });
-  price("apic", plain(), [](C& c) { c.options.settings.transfer = Transfer::apic; });
+  price("double", plain(), [](C& c) { c.options.settings.precision = mpm::Precision::float64; });
+  price("cubic", plain(), [](C& c) { c.options.settings.basis = mpm::Basis::cubic; });
+  price("apic", plain(), [](C& c) { c.options.settings.transfer = mpm::Transfer::apic; });
   price("sticky_contact", on(Condition::sticky), unchanged);
   price("slip_contact", on(Condition::slip), unchanged);
   price("separate_contact", on(Condition::separate), unchanged);
@@ -211,15 +211,15 @@ void add_scaling() {
 /// A snow of each sort of kernel, see KernelChoice.
 struct MatrixSnow {
   const char* name;
-  std::function<void(MpmOptions&)> choose;
+  std::function<void(mpm::Options&)> choose;
 };
 
 const std::vector<MatrixSnow>& matrix_snows() {
   static const std::vector<MatrixSnow> snows = {
-      {"elastic", [](MpmOptions& o) { o.snows[0].model = SnowModel::elastic; }},
-      {"cam_clay", [](MpmOptions&) {}},
-      {"several", [](MpmOptions& o) { o.snows.assign(2, Snow()); }},
-      {"energy", [](MpmOptions& o) {
+      {"elastic", [](mpm::Options& o) { o.snows[0].model = SnowModel::elastic; }},
+      {"cam_clay", [](mpm::Options&) {}},
+      {"several", [](mpm::Options& o) { o.snows.assign(2, Snow()); }},
+      {"energy", [](mpm::Options& o) {
          o.snows.assign(2, Snow());
          o.energy = true;
        }}};
@@ -237,19 +237,19 @@ Case matrix_slab(int dimension) {
 void add_matrix() {
   for (const int dimension : {2, 3})
     for (const bool in_double : {false, true})
-      for (const Transfer transfer : {Transfer::flip, Transfer::apic})
-        for (const Basis basis : {Basis::quadratic, Basis::cubic})
+      for (const mpm::Transfer transfer : {mpm::Transfer::flip, mpm::Transfer::apic})
+        for (const mpm::Basis basis : {mpm::Basis::quadratic, mpm::Basis::cubic})
           for (const MatrixSnow& snow : matrix_snows()) {
             const std::string name = std::string("matrix/") + (dimension == 3 ? "3d/" : "2d/") +
                                      (in_double ? "double/" : "float/") +
-                                     (transfer == Transfer::flip ? "flip/" : "apic/") +
-                                     (basis == Basis::quadratic ? "quadratic/" : "cubic/") +
+                                     (transfer == mpm::Transfer::flip ? "flip/" : "apic/") +
+                                     (basis == mpm::Basis::quadratic ? "quadratic/" : "cubic/") +
                                      snow.name;
             add(name,
                 [=] {
                   Case c = matrix_slab(dimension);
                   c.options.settings.precision =
-                      in_double ? Precision::float64 : Precision::float32;
+                      in_double ? mpm::Precision::float64 : mpm::Precision::float32;
                   c.options.settings.transfer = transfer;
                   c.options.settings.basis = basis;
                   snow.choose(c.options);

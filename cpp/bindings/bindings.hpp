@@ -15,6 +15,8 @@ void bind_scene(pybind11::module_&);
 void bind_simulation(pybind11::module_&);
 void bind_event_sequence(pybind11::module_&);
 void bind_film(pybind11::module_&);
+void bind_geometry(pybind11::module_&);
+void bind_machine(pybind11::module_&);
 void bind_material(pybind11::module_&);
 
 pybind11::object reseeding_dict(const std::optional<Reseeding>&);  ///< None where there is none

@@ -14,6 +14,8 @@ PYBIND11_MODULE(_core, m) {
   snowshed::bind_simulation(m);
   snowshed::bind_event_sequence(m);
   snowshed::bind_film(m);
+  snowshed::bind_geometry(m);
+  snowshed::bind_machine(m);
   snowshed::bind_material(m);
   for (const snowshed::MethodBindings& method : snowshed::method_bindings()) method.module(m);
 }

@@ -347,8 +347,8 @@ Scene scene_of_checkpoint(int dimension, bool running) {
   scene.events.rest_time = 0.005;
   if (!running) return scene;
   scene.events.between = Between::reseed;
-  scene.numerics.as<MpmSettings>().precision = Precision::float64;
-  scene.numerics.as<MpmSettings>().transfer = Transfer::apic;
+  scene.numerics.as<mpm::Settings>().precision = mpm::Precision::float64;
+  scene.numerics.as<mpm::Settings>().transfer = mpm::Transfer::apic;
   scene.output.energy = true;
   scene.domain.emplace(Domain{Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   ObstacleSpec plate;

@@ -9,12 +9,12 @@
 
 namespace py = pybind11;
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// The solver as grains; throws InputError where the scene's method is another.
-const GrainsMethod& grains_of(const Simulation& sim) {
-  const auto* grains = dynamic_cast<const GrainsMethod*>(&sim.solver());
+const Solver& grains_of(const Simulation& sim) {
+  const auto* grains = dynamic_cast<const Solver*>(&sim.solver());
   if (!grains) throw InputError("/method", "is not \"grains\", and loads no sample");
   return *grains;
 }
@@ -92,4 +92,4 @@ const AddedBindings added{{&bind_labels, [](SimulationClass& c) {
                            }}};
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

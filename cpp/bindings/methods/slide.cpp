@@ -8,18 +8,18 @@
 
 namespace py = pybind11;
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 /// The solver as a slide; throws InputError where the scene's method is another.
-const SlideMethod& slide_of(const Simulation& sim) {
-  const auto* slide = dynamic_cast<const SlideMethod*>(&sim.solver());
+const Solver& slide_of(const Simulation& sim) {
+  const auto* slide = dynamic_cast<const Solver*>(&sim.solver());
   if (!slide) throw InputError("/method", "is not \"slide\", and has no maps");
   return *slide;
 }
 
 py::dict slide_maps(const Simulation& sim) {
-  const SlideMethod& slide = slide_of(sim);
+  const Solver& slide = slide_of(sim);
   const Terrain& t = slide.terrain();
   const auto map = [&](const std::vector<double>& values) {
     return map_of(values, t.rows(), t.columns());
@@ -39,7 +39,7 @@ py::dict slide_maps(const Simulation& sim) {
 }
 
 py::dict slide_facts(const Simulation& sim) {
-  const SlideMethod& slide = slide_of(sim);
+  const Solver& slide = slide_of(sim);
   const MassBalance& m = slide.mass_balance();
   py::dict d;
   d["bonds_made"] = slide.bonds_made();
@@ -53,7 +53,7 @@ py::dict slide_facts(const Simulation& sim) {
 
 /// The bonds that hold: ids of their particles (n, 2), and rest lengths (n).
 py::tuple slide_bonds(const Simulation& sim) {
-  const SlideMethod& slide = slide_of(sim);
+  const Solver& slide = slide_of(sim);
   const Bonds& bonds = slide.bonds();
   const FieldView ids = slide.field("id");
   py::array_t<std::int64_t> pairs({py::ssize_t(bonds.size()), py::ssize_t(2)});
@@ -73,4 +73,4 @@ const AddedBindings added{{[](py::module_&) {},
                            }}};
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::slide

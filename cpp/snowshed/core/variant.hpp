@@ -14,6 +14,16 @@
   }                          \
   }
 
+// The same of a method, in its namespace.
+#define SNOWSHED_METHOD_VARIANT_BEGIN(method) \
+  namespace snowshed {                        \
+  namespace method {                          \
+  inline namespace SNOWSHED_KERNEL_VARIANT {
+#define SNOWSHED_METHOD_VARIANT_END \
+  }                                 \
+  }                                 \
+  }
+
 #define SNOWSHED_INLINE inline __attribute__((always_inline))
 // Arrays of packs stay in registers only where the loops over them are taken apart early.
 #if defined(__clang__)

@@ -70,8 +70,8 @@ struct CamClay {
     return (T(1) + T(2) * beta) * s.q * s.q + m2 * (s.p + beta * p0) * (s.p - p0);
   }
 
-  /// Returns an elastic trial to the yield surface by backward Euler with hardening. The return
-  /// value says whether any particle of the pack yielded. With D the change of e_v,
+  /// Brings an elastic trial back to the yield surface by backward Euler with hardening; returns
+  /// whether any particle of the pack yielded. With D the change of e_v,
   ///   p = p_tr + K_d D,   q = q_tr N / (N - c D),   y(p, q, p0(e_v + D)) = 0,
   /// where N = 2p - (1 - beta) p0 is y_p/M^2 and c = 6 mu (1 + 2 beta)/M^2. D is bracketed. At one
   /// end D = 0, the trial, and y > 0. At the other the flow becomes purely deviatoric (N = 0, y <

@@ -21,7 +21,7 @@ Polygon square(double west, double south, double side) {
           {}};
 }
 
-TEST(Cliffs, elevations_that_are_missing_are_no_ground) {
+TEST(Cliffs, ElevationsThatAreMissingAreNoGround) {
   const std::string found = impossible_cliff(with_node(0), 70);
   EXPECT_NE(found.find("beside 0 m within 5 m, at ("), std::string::npos) << found;
   EXPECT_NE(impossible_cliff(with_node(0, 5, 60), 70), "");  // 45 m, to exactly 0
@@ -33,7 +33,7 @@ TEST(Cliffs, elevations_that_are_missing_are_no_ground) {
   EXPECT_EQ(impossible_cliff(with_node(0), 90), "");
 }
 
-TEST(Cliffs, count_where_an_area_lies) {
+TEST(Cliffs, CountWhereAnAreaLies) {
   const HeightField f = with_node(860);  // 25 m lower than its neighbours at (50, 40)
   EXPECT_EQ(impossible_cliff(f, 70), "");
   EXPECT_NE(cliff_under(square(30, 30, 30), f, 70), "");
@@ -43,7 +43,7 @@ TEST(Cliffs, count_where_an_area_lies) {
   EXPECT_EQ(cliff_under(square(30, 30, 30), with_node(878), 50), "");  // 9 m: a rock
 }
 
-TEST(Cliffs, an_area_may_reach_beyond_the_field) {
+TEST(Cliffs, AnAreaMayReachBeyondTheField) {
   EXPECT_EQ(cliff_under(square(-1e9, -1e9, 2e9), with_node(885), 70), "");
 }
 

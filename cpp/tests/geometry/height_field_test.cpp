@@ -9,7 +9,7 @@
 namespace snowshed {
 namespace {
 
-TEST(HeightField, a_place_is_a_cell_and_the_way_from_its_corner) {
+TEST(HeightField, APlaceIsACellAndTheWayFromItsCorner) {
   const GridPlace p = place_in(2.25, 1.5, 4, 3);
   EXPECT_EQ(p.column, 2);
   EXPECT_EQ(p.row, 1);
@@ -20,7 +20,7 @@ TEST(HeightField, a_place_is_a_cell_and_the_way_from_its_corner) {
   EXPECT_FALSE(place_in(std::nan(""), 1.0, 4, 3).inside());
 }
 
-TEST(HeightField, resampling_keeps_a_quadratic_surface) {
+TEST(HeightField, ResamplingKeepsAQuadraticSurface) {
   const auto surface = [](double x, double y) { return 3 + 0.2 * x - 0.1 * y + 0.01 * x * y; };
   const HeightField fine = resampled(terrain_of(12, 9, 5.0, surface), 2.0);
   ASSERT_EQ(fine.columns, 28);  // 55 m
@@ -30,7 +30,7 @@ TEST(HeightField, resampling_keeps_a_quadratic_surface) {
       ASSERT_NEAR(fine.height(i, j), surface(2.0 * i, 2.0 * j), 1e-10);
 }
 
-TEST(HeightField, resampling_keeps_holes_and_what_is_known_around_them) {
+TEST(HeightField, ResamplingKeepsHolesAndWhatIsKnownAroundThem) {
   HeightField f = terrain_of(9, 9, 1.0, [](double x, double) { return x; });
   f.heights[f.index(4, 4)] = std::nan("");
   const HeightField fine = resampled(f, 0.5);

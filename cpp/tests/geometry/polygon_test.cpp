@@ -10,26 +10,26 @@ namespace {
 const Ring square{{0, 0}, {4, 0}, {4, 4}, {0, 4}};
 const Ring clockwise{{0, 4}, {4, 4}, {4, 0}, {0, 0}};
 
-TEST(Polygon, contains_what_lies_within_and_in_no_hole) {
+TEST(Polygon, ContainsWhatLiesWithinAndInNoHole) {
   const Polygon p{square, {{{1, 1}, {2, 1}, {2, 2}, {1, 2}}}};
   EXPECT_TRUE(contains(p, {3, 3}));
   EXPECT_FALSE(contains(p, {1.5, 1.5}));
   EXPECT_FALSE(contains(p, {5, 1}));
 }
 
-TEST(Polygon, a_point_level_with_a_corner_counts_once) {
+TEST(Polygon, APointLevelWithACornerCountsOnce) {
   const Ring diamond{{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
   EXPECT_TRUE(contains(diamond, {0.5, 0}));
   EXPECT_FALSE(contains(diamond, {-2, 0}));
   EXPECT_FALSE(contains(diamond, {2, 0}));
 }
 
-TEST(Polygon, area_has_the_sign_of_the_direction) {
+TEST(Polygon, AreaHasTheSignOfTheDirection) {
   EXPECT_DOUBLE_EQ(twice_signed_area(square), 32);
   EXPECT_DOUBLE_EQ(twice_signed_area(clockwise), -32);
 }
 
-TEST(Polygon, area_within_rectangles_adds_up) {
+TEST(Polygon, AreaWithinRectanglesAddsUp) {
   const Polygon u{{{0.3, 0.2}, {6.1, 0}, {6, 5}, {4, 5.5}, {4, 2}, {2, 2}, {2, 5}, {0, 5}},
                   {{{0.5, 0.5}, {0.5, 1.5}, {5.5, 1.5}, {5.5, 0.5}}}};
   double sum = 0;
@@ -40,7 +40,7 @@ TEST(Polygon, area_within_rectangles_adds_up) {
   EXPECT_EQ(area_within(u, {2.5, 3}, {3.5, 4}), 0.0);
 }
 
-TEST(Polygon, widened_by_its_distance_whatever_the_direction) {
+TEST(Polygon, WidenedByItsDistanceWhateverTheDirection) {
   for (const Ring& ring : {square, clockwise}) {
     const Ring wide = widened(ring, 0.5);
     ASSERT_EQ(wide.size(), 4u);
@@ -48,7 +48,7 @@ TEST(Polygon, widened_by_its_distance_whatever_the_direction) {
   }
 }
 
-TEST(Polygon, a_sharp_corner_is_cut_off) {
+TEST(Polygon, ASharpCornerIsCutOff) {
   const Ring needle{{0, 0}, {10, 0.5}, {0, 1}};
   double reach = 0;
   for (const MapPoint& p : widened(needle, 0.1)) reach = std::max(reach, p[0]);
@@ -56,7 +56,7 @@ TEST(Polygon, a_sharp_corner_is_cut_off) {
   EXPECT_LT(reach, 10.0 + 4 * 0.1 + 1e-9);  // a full mitre would reach 2 m farther
 }
 
-TEST(Polygon, sees_edges_that_cross) {
+TEST(Polygon, SeesEdgesThatCross) {
   EXPECT_FALSE(crosses_itself(square));
   EXPECT_TRUE(crosses_itself({{0, 0}, {4, 4}, {4, 0}, {0, 4}}));
   EXPECT_TRUE(crosses_itself({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}));  // touches

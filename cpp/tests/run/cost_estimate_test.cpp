@@ -63,8 +63,8 @@ TEST(CostEstimate, TimeStepOfTheCalibratedSnow) {
   EXPECT_NEAR(first_time_step(lab), 4.762e-5, 1e-8);
   EXPECT_NEAR(first_time_step(preset_scene("geometry")), 5.430e-5, 1e-8);
   Scene fine = lab;
-  fine.numerics.as<MpmSettings>().dx = 0.005;
-  fine.numerics.as<MpmSettings>().courant_factor = 0.45;
+  fine.numerics.as<mpm::Settings>().dx = 0.005;
+  fine.numerics.as<mpm::Settings>().courant_factor = 0.45;
   EXPECT_NEAR(first_time_step(fine), first_time_step(lab) / 4, 1e-15);
 }
 
@@ -91,11 +91,11 @@ TEST(CostEstimate, TheRearSlidesTheWholePanelAndFalls) {
 
 TEST(CostEstimate, OlderSnowIsAwakeOnlyInPart) {
   Scene scene = preset_scene("lab-40");
-  scene.numerics.as<MpmSettings>().sleep_speed = 0.0;
+  scene.numerics.as<mpm::Settings>().sleep_speed = 0.0;
   const Estimate awake = estimate(scene);
   const double steps = awake.steps / 5, slab = awake.particles[0];
   EXPECT_NEAR(awake.updates, steps * slab * (1 + 2 + 3 + 4 + 5), 1.0);
-  scene.numerics.as<MpmSettings>().sleep_speed = 0.02;
+  scene.numerics.as<mpm::Settings>().sleep_speed = 0.02;
   const Estimate asleep = estimate(scene);
   EXPECT_LT(asleep.first_landing, asleep.sliding_time + asleep.fall_time);
   const double share = 0.5 * (1 - asleep.first_landing / asleep.event_time);
@@ -158,7 +158,7 @@ TEST(CostEstimate, SnowThatNeverLandsFliesApartFaster) {
   scene.panel->friction = 0.3;
   scene.ground.reset();
   scene.gravity = 1000.0;
-  scene.numerics.as<MpmSettings>().dx = 0.02;
+  scene.numerics.as<mpm::Settings>().dx = 0.02;
   scene.events.count = 1;
   scene.events.max_time = 0.5;
   const Estimate result = estimate(scene);
@@ -186,16 +186,16 @@ TEST(CostEstimate, DoublesNeedTwiceTheMemory) {
   const double single = estimate(scene).bytes;
   EXPECT_GT(single, 150.0 * 27830);
   EXPECT_LT(single, 300.0 * 27830);
-  scene.numerics.as<MpmSettings>().precision = Precision::float64;
+  scene.numerics.as<mpm::Settings>().precision = mpm::Precision::float64;
   EXPECT_NEAR(estimate(scene).bytes, 2 * single, 1e-6 * single);
 }
 
 TEST(CostEstimate, AbsurdScenesAreEstimatedAndRefused) {
   Scene scene = preset_scene("lab-40");
-  scene.numerics.as<MpmSettings>().dx = 1e-9;
+  scene.numerics.as<mpm::Settings>().dx = 1e-9;
   EXPECT_GT(estimate(scene).total_particles, 1e20);
   EXPECT_THROW(check_memory(estimate(scene).bytes), InputError);
-  scene.numerics.as<MpmSettings>().dx = std::numeric_limits<double>::denorm_min();
+  scene.numerics.as<mpm::Settings>().dx = std::numeric_limits<double>::denorm_min();
   EXPECT_THROW(check_memory(estimate(scene).bytes), InputError);
 }
 

@@ -17,7 +17,7 @@ class Story {
  public:
   explicit Story(const std::filesystem::path& checkpoint) : checkpoint_(checkpoint) {
     Scene scene = small_scene();
-    scene.numerics.as<MpmSettings>().dx = 0.02;
+    scene.numerics.as<mpm::Settings>().dx = 0.02;
     scene.events.count = 2;
     scene.events.between = Between::reseed;
     sim = std::make_unique<Simulation>(scene);
@@ -54,7 +54,7 @@ class Story {
 
  private:
   static ParticleBatch more_snow() {
-    return filled_box(2, Vec3(0.3, 0, 0.1), Vec3(0.34, 0, 0.12), 0.01);
+    return mpm::filled_box(2, Vec3(0.3, 0, 0.1), Vec3(0.34, 0, 0.12), 0.01);
   }
 
   std::filesystem::path checkpoint_;

@@ -13,7 +13,7 @@
 #include "snowshed/methods/grains/solver.hpp"
 #include "snowshed/run/simulation.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 using geometry_testing::npy_data;
@@ -40,7 +40,7 @@ class GrainsRun : public TemporaryFolder {
   Scene scene() const {
     write_labels(two_grains());
     Scene s;
-    GrainsSettings settings;
+    Settings settings;
     settings.threads = 1;
     settings.density_scaling = 100;
     s.numerics = settings;
@@ -52,9 +52,7 @@ class GrainsRun : public TemporaryFolder {
   }
 };
 
-const GrainsMethod& grains_of(const Simulation& sim) {
-  return dynamic_cast<const GrainsMethod&>(sim.solver());
-}
+const Solver& grains_of(const Simulation& sim) { return dynamic_cast<const Solver&>(sim.solver()); }
 
 const auto to_the_end = [](const RunReport&) { return true; };
 
@@ -107,7 +105,7 @@ double carried(const LoadingStresses& s) { return std::min(s.top_stress, s.botto
 TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   Scene s = scene();
   s.loading.resize(1);
-  GrainsSettings settings;  // some thousand steps
+  Settings settings;  // some thousand steps
   settings.threads = 1;
   s.numerics = settings;
   Simulation sim(s);
@@ -258,4 +256,4 @@ TEST(LoadingProgress, IsThatOfTheStrainWeightedWithTime) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

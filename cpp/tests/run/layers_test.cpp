@@ -29,7 +29,7 @@ Snow light_snow() {
 
 /// The small scene with a light layer below the scene's own snow in every event, and more of that
 /// in the second.
-Scene layered_scene(Transfer transfer = Transfer::flip) {
+Scene layered_scene(mpm::Transfer transfer = mpm::Transfer::flip) {
   Scene scene = small_scene(transfer);
   scene.slab->thickness = 0;
   scene.slab->layers = {{0.01, light_snow(), 0}, {0.02, {}, 0}, {0.01, {}, 2}};
@@ -80,7 +80,7 @@ TEST_F(Layers, OfTheScenesOwnSnowNeedNoMaterialIds) {
 
 TEST_F(Layers, AResumedRunEqualsAnUninterruptedOneBitForBit) {
   for (Between between : {Between::carry, Between::reseed}) {
-    Scene scene = layered_scene(Transfer::apic);
+    Scene scene = layered_scene(mpm::Transfer::apic);
     scene.events.between = between;
     const auto resumed = with_interruptions(scene, 1, path("checkpoint"));
     expect_same_bits(*resumed, *run_all(scene));
@@ -91,7 +91,7 @@ TEST_F(Layers, OfTwoThreadsHaveTheSameBits) {
   Scene scene = layered_scene();
   scene.events.count = 2;
   const auto one = run_all(scene);
-  scene.numerics.as<MpmSettings>().threads = 2;
+  scene.numerics.as<mpm::Settings>().threads = 2;
   expect_same_bits(*run_all(scene), *one);
 }
 

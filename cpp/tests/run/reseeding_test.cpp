@@ -12,7 +12,7 @@ namespace {
 /// no new particle is nearest to it.
 ParticleState heap_with_a_hidden_grain() {
   ParticleState heap;
-  heap.positions = filled_box(2, Vec3(1, 0, 0), Vec3(1.1, 0, 0.1), 0.005).positions;
+  heap.positions = mpm::filled_box(2, Vec3(1, 0, 0), Vec3(1.1, 0, 0.1), 0.005).positions;
   heap.material_ids.assign(heap.positions.size(), 0);
   heap.positions.push_back(heap.positions.front());
   heap.material_ids.push_back(1);

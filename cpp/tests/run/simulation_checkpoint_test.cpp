@@ -24,8 +24,8 @@ Scene drop(double dx) {
   body.shape.radius = 0.05;
   body.shape.center = {0, 0, 0.06};
   scene.bodies.push_back(body);
-  scene.numerics.as<MpmSettings>().dx = dx;
-  scene.numerics.as<MpmSettings>().threads = 1;
+  scene.numerics.as<mpm::Settings>().dx = dx;
+  scene.numerics.as<mpm::Settings>().threads = 1;
   return scene;
 }
 
@@ -67,7 +67,7 @@ TEST_F(SimulationCheckpoint, IsTheSameOnAnyNumberOfThreads) {
   scene.output.energy = true;
   std::string first;
   for (const int threads : {1, 2, 3}) {
-    scene.numerics.as<MpmSettings>().threads = threads;
+    scene.numerics.as<mpm::Settings>().threads = threads;
     Simulation sim(scene);
     sim.begin_event();
     ASSERT_GT(sim.solver().size(), 4000u);

@@ -15,7 +15,7 @@ namespace {
 class SimulationTest : public TemporaryFolder {};
 
 TEST_F(SimulationTest, AResumedRunEqualsAnUninterruptedOneBitForBit) {
-  for (Transfer transfer : {Transfer::flip, Transfer::apic})
+  for (mpm::Transfer transfer : {mpm::Transfer::flip, mpm::Transfer::apic})
     for (Between between : {Between::carry, Between::reseed}) {
       Scene scene = small_scene(transfer);
       scene.events.between = between;
@@ -36,7 +36,7 @@ TEST_F(SimulationTest, ThreadsDoNotChangeTheBits) {
   Simulation one(scene);
   one.begin_event();
   one.run(go_on, never);
-  scene.numerics.as<MpmSettings>().threads = 2;
+  scene.numerics.as<mpm::Settings>().threads = 2;
   Simulation two(scene);
   two.begin_event();
   two.run(go_on, never);
@@ -50,7 +50,7 @@ TEST_F(SimulationTest, EventsBringTheirSnowAndKeepTheOld) {
     EXPECT_FALSE(sim.begin_event().has_value());
     EXPECT_TRUE(sim.event_running());
     EXPECT_THROW(sim.begin_event(), SimulationError);
-    EXPECT_NEAR(total_mass(sim.solver().state()), event * 210 * 0.1 * 0.03, 1e-6 * event);
+    EXPECT_NEAR(mpm::total_mass(sim.solver().state()), event * 210 * 0.1 * 0.03, 1e-6 * event);
     sim.run(go_on, never);
     EXPECT_THROW(sim.run(go_on, never), SimulationError);
   }
@@ -58,7 +58,7 @@ TEST_F(SimulationTest, EventsBringTheirSnowAndKeepTheOld) {
   EXPECT_EQ(s.events.front(), 1);
   EXPECT_EQ(s.events.back(), 3);
   for (const Vec3& x : s.positions)
-    EXPECT_GT(x.z(), -scene.numerics.as<MpmSettings>().dx);  // none in the ground
+    EXPECT_GT(x.z(), -scene.numerics.as<mpm::Settings>().dx);  // none in the ground
 }
 
 TEST_F(SimulationTest, ReseedingKeepsTheMass) {
@@ -67,10 +67,10 @@ TEST_F(SimulationTest, ReseedingKeepsTheMass) {
   Simulation sim(scene);
   EXPECT_FALSE(sim.begin_event().has_value());
   sim.run(go_on, never);
-  const double before = total_mass(sim.solver().state());
+  const double before = mpm::total_mass(sim.solver().state());
   EXPECT_TRUE(sim.begin_event().has_value());
   const ParticleState s = sim.solver().state();
-  EXPECT_NEAR(total_mass(s), 2 * before, 1e-5 * before);
+  EXPECT_NEAR(mpm::total_mass(s), 2 * before, 1e-5 * before);
 }
 
 /// A grid file of a solid, spacing 0.02 m.

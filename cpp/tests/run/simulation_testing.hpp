@@ -12,7 +12,7 @@
 namespace snowshed {
 
 /// A slab that slides off a small panel onto the ground, in some 2000 steps per event.
-inline Scene small_scene(Transfer transfer = Transfer::flip) {
+inline Scene small_scene(mpm::Transfer transfer = mpm::Transfer::flip) {
   Scene scene;
   scene.dimension = 2;
   scene.panel.emplace();
@@ -23,8 +23,8 @@ inline Scene small_scene(Transfer transfer = Transfer::flip) {
   scene.slab.emplace();
   scene.slab->thickness = 0.03;
   scene.ground.emplace();
-  scene.numerics.as<MpmSettings>().transfer = transfer;
-  scene.numerics.as<MpmSettings>().threads = 1;
+  scene.numerics.as<mpm::Settings>().transfer = transfer;
+  scene.numerics.as<mpm::Settings>().threads = 1;
   scene.events.count = 3;
   scene.events.max_time = 0.3;
   scene.output.energy = true;

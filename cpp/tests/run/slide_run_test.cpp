@@ -7,7 +7,7 @@
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 class SlideRun : public TemporaryFolder {
@@ -52,4 +52,4 @@ TEST_F(SlideRun, ACheckpointWithTheMarkOfAFileThatItsSceneDoesNotNameIsRefused) 
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::slide

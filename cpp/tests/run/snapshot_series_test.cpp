@@ -11,8 +11,8 @@ namespace {
 using SnapshotSeriesTest = TemporaryFolder;
 
 std::unique_ptr<Method> falling_snow() {
-  auto solver = make_solver(options_for({2, Precision::float32}), {});
-  solver->add(filled_box(2, Vec3::Zero(), Vec3(0.02, 0, 0.02), 0.005));
+  auto solver = mpm::make_solver(mpm::options_for({2, mpm::Precision::float32}), {});
+  solver->add(mpm::filled_box(2, Vec3::Zero(), Vec3(0.02, 0, 0.02), 0.005));
   return solver;
 }
 
@@ -42,12 +42,12 @@ TEST_F(SnapshotSeriesTest, AResumedSeriesGoesOnWithoutRepetition) {
   {
     SnapshotSeries series(path("snapshots"), 0.01, 0.0);
     series.write(*solver);
-    run_until(*solver, 0.01);
+    mpm::run_until(*solver, 0.01);
     series.write(*solver);
   }
   SnapshotSeries series(path("snapshots"), 0.01, solver->time());
   EXPECT_FALSE(series.due(solver->time()));
-  run_until(*solver, 0.02);
+  mpm::run_until(*solver, 0.02);
   EXPECT_TRUE(series.due(solver->time()));
   series.write(*solver);
   EXPECT_TRUE(std::filesystem::exists(path("snapshots") / "snapshot_000002.vtp"));

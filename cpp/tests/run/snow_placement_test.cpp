@@ -212,8 +212,8 @@ TEST(SnowPlacementNotes, TellOfASlabThatMeetsTheStackAndLetTheWinterGoOn) {
   sim.run(go_on, never);
   // A stack that has grown through the panel's lower end, on which hardly any snow counts as lying.
   const PanelFrame panel = panel_frame(resolve(scene));
-  ParticleBatch stack = filled_box(2, panel.lower_edge() + Vec3(-0.01, 0, -0.1),
-                                   panel.lower_edge() + Vec3(0.15, 0, 0.1), 0.004);
+  ParticleBatch stack = mpm::filled_box(2, panel.lower_edge() + Vec3(-0.01, 0, -0.1),
+                                        panel.lower_edge() + Vec3(0.15, 0, 0.1), 0.004);
   scene.misplaced_snow = MisplacedSnow::allow;
   Simulation grown(scene);
   grown.begin_event();
@@ -291,15 +291,15 @@ TEST(MassOfBodies, IsDensityTimesVolumeWhateverTheResolution) {
           Scene scene = with_bodies(dimension, method, R"({"shape": )" + solid.shape + "}");
           double density = scene.snow.density;
           if (method == "mps") {
-            MpsSettings& s = scene.numerics.as<MpsSettings>();
+            mps::Settings& s = scene.numerics.as<mps::Settings>();
             s.spacing = size;
             density = s.density;
           } else {
-            scene.numerics.as<MpmSettings>().dx = size;
+            scene.numerics.as<mpm::Settings>().dx = size;
           }
           Simulation sim(scene);
           sim.begin_event();
-          const double mass = total_mass(sim.solver().state());
+          const double mass = mpm::total_mass(sim.solver().state());
           const double error = solid.shape.find("sphere") == std::string::npos ? 1e-6 : 2e-3;
           EXPECT_NEAR(mass / (density * solid.volume), 1, error) << solid.shape << " " << size;
           if (method == "mps")
@@ -313,7 +313,7 @@ Scene mps_slab(double thickness, double spacing) {
       R"({"snowshed": 2, "dimension": 2, "method": "mps", "ground": {}, "numerics": {"threads": 1},
           "panel": {"height": 0.5, "length": 1.0, "tilt": 45}, "slab": {"thickness": 0.05}})");
   scene.slab->thickness = thickness;
-  scene.numerics.as<MpsSettings>().spacing = spacing;
+  scene.numerics.as<mps::Settings>().spacing = spacing;
   return scene;
 }
 
@@ -322,8 +322,8 @@ TEST(MassOfBodies, IsThatOfTheSlabByMps) {
     for (const double spacing : {0.01, 0.02, 0.03}) {
       Simulation sim(mps_slab(thickness, spacing));
       sim.begin_event();
-      const double density = sim.scene().numerics.as<MpsSettings>().density;
-      EXPECT_NEAR(total_mass(sim.solver().state()), density * thickness, 1e-9);
+      const double density = sim.scene().numerics.as<mps::Settings>().density;
+      EXPECT_NEAR(mpm::total_mass(sim.solver().state()), density * thickness, 1e-9);
       EXPECT_EQ(double(sim.solver().size()), sim.cost().particles.front());
       EXPECT_NEAR(double(sim.solver().size()), thickness / (spacing * spacing), 0.5 + 1e-9);
       EXPECT_EQ(sim.notes().empty(), thickness > spacing) << thickness << " " << spacing;
@@ -343,8 +343,8 @@ TEST(MassOfBodies, IsThatOfTheLayersByMps) {
   scene.slab->layers = {{0.03, {}, 0}, {0.025, {}, 0}};
   Simulation sim(scene);
   sim.begin_event();
-  const double density = sim.scene().numerics.as<MpsSettings>().density;
-  EXPECT_NEAR(total_mass(sim.solver().state()), density * 0.055, 1e-9);
+  const double density = sim.scene().numerics.as<mps::Settings>().density;
+  EXPECT_NEAR(mpm::total_mass(sim.solver().state()), density * 0.055, 1e-9);
   EXPECT_TRUE(sim.notes().empty()) << sim.notes().front();
 }
 

@@ -22,7 +22,7 @@ Scene panel_scene(double tilt, double ground_tilt = 0.0) {
   panel.tilt = tilt;
   scene.slab.emplace().thickness = 0.1;
   scene.ground.emplace().tilt = ground_tilt;
-  scene.numerics.as<MpmSettings>().dx = 0.01;
+  scene.numerics.as<mpm::Settings>().dx = 0.01;
   return scene;
 }
 

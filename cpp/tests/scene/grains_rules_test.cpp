@@ -8,7 +8,7 @@
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/validation.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 Scene good_scene() {
@@ -19,7 +19,7 @@ Scene good_scene() {
     "cone": {"radius": 0.001}})");
 }
 
-GrainsSettings& settings(Scene& scene) { return scene.numerics.as<GrainsSettings>(); }
+Settings& settings(Scene& scene) { return scene.numerics.as<Settings>(); }
 
 struct Break {
   const char* where;
@@ -94,4 +94,4 @@ TEST(GrainsScene, OtherMethodsTakeNoneOfItsParts) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -26,7 +26,7 @@ void expect_conditions(const Scene& scene) {
   EXPECT_EQ(scene.panel->condition, Condition::separate);
   EXPECT_EQ(scene.ground->condition, Condition::sticky);
   EXPECT_EQ(scene.ground->tilt, 0.0);
-  EXPECT_EQ(scene.numerics.as<MpmSettings>().dx, 0.01);
+  EXPECT_EQ(scene.numerics.as<mpm::Settings>().dx, 0.01);
   EXPECT_EQ(scene.gravity, 9.81);
 }
 

@@ -77,10 +77,10 @@ class Randomizer {
     fill(settings);
   }
   void method_ahead(const char*, MethodChoice& settings) {
-    if (chance(0.2)) settings = MpsSettings();
+    if (chance(0.2)) settings = mps::Settings();
     if (dimension_ != 3) return;
-    if (chance(0.3)) settings = SlideSettings();
-    if (chance(0.2)) settings = GrainsSettings();
+    if (chance(0.3)) settings = slide::Settings();
+    if (chance(0.2)) settings = grains::Settings();
   }
   bool shows(const MethodChoice& settings, Part part) { return settings.takes(part); }
   void taken_by(Part) {}
@@ -125,9 +125,9 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   scene.terrain->max_thickness = 100;  // as thick as an area may be
   scene.events.count = 1;
   scene.output.energy = false;
-  SlideSettings& settings = scene.numerics.as<SlideSettings>();
+  slide::Settings& settings = scene.numerics.as<slide::Settings>();
   settings.explicit_friction = false;
-  if (settings.mode == SlideMode::compatible) scene.terrain->thickness_file.clear();
+  if (settings.mode == slide::Mode::compatible) scene.terrain->thickness_file.clear();
 }
 
 /// Makes a scene one of grains: a sample that is loaded, in stages that may follow on each other.
@@ -142,7 +142,7 @@ inline void mend_grains(Randomizer& randomizer, Scene& scene) {
   scene.seeding = {};
   if (!scene.sample) describe(randomizer, scene.sample.emplace());
   scene.events.count = 1;
-  scene.numerics.as<GrainsSettings>().bonded_plates = true;
+  scene.numerics.as<grains::Settings>().bonded_plates = true;
   scene.loading.insert(scene.loading.begin(), LoadingStage{});
   for (LoadingStage& stage : scene.loading) {
     stage.strain = std::min(stage.strain, 0.1);
@@ -160,9 +160,9 @@ inline void mend_mps(Scene& scene) {
   for (auto& body : scene.bodies) body.snow.reset();
   if (scene.slab)
     for (auto& layer : scene.slab->layers) layer.snow.reset();
-  MpsSettings& settings = scene.numerics.as<MpsSettings>();
+  mps::Settings& settings = scene.numerics.as<mps::Settings>();
   settings.erosion = false;
-  settings.order = MpsOrder::single_move;
+  settings.order = mps::Order::single_move;
 }
 
 /// Its fields are independent of each other, so what the rules between them demand is mended.
@@ -176,15 +176,15 @@ inline Scene random_scene(std::uint64_t seed) {
   scene.domain.reset();
   scene.seeding.allow_sparse = true;
   scene.events.rest_time = std::min(scene.events.rest_time, scene.events.max_time);
-  if (!scene.numerics.is<GrainsSettings>()) {
+  if (!scene.numerics.is<grains::Settings>()) {
     scene.sample.reset();
     scene.cone.reset();
   }
-  if (scene.numerics.is<SlideSettings>()) {
+  if (scene.numerics.is<slide::Settings>()) {
     mend_slide(randomizer, scene);
     return scene;
   }
-  if (scene.numerics.is<GrainsSettings>()) {
+  if (scene.numerics.is<grains::Settings>()) {
     mend_grains(randomizer, scene);
     return scene;
   }
@@ -201,12 +201,12 @@ inline Scene random_scene(std::uint64_t seed) {
       scene.slab->thickness = 0.1;
   }
   if (!scene.slab) describe(randomizer, scene.bodies.emplace_back());
-  if (scene.numerics.is<MpsSettings>()) {
+  if (scene.numerics.is<mps::Settings>()) {
     mend_mps(scene);
   } else {
-    MpmSettings& numerics = scene.numerics.as<MpmSettings>();
-    if (numerics.transfer != Transfer::flip) numerics.damping_rate.reset();
-    if (numerics.damping_rate) numerics.flip_ratio = MpmSettings{}.flip_ratio;
+    mpm::Settings& numerics = scene.numerics.as<mpm::Settings>();
+    if (numerics.transfer != mpm::Transfer::flip) numerics.damping_rate.reset();
+    if (numerics.damping_rate) numerics.flip_ratio = mpm::Settings{}.flip_ratio;
   }
   for (auto& body : scene.bodies) body.event = std::min(body.event, scene.events.count);
   for (auto& obstacle : scene.obstacles)

@@ -44,14 +44,14 @@ Scene scene_with(const MethodChoice& numerics, int dimension) {
   return scene;
 }
 
-MpmSettings cells() {
-  MpmSettings settings;
+mpm::Settings cells() {
+  mpm::Settings settings;
   settings.dx = 0.02;
   return settings;
 }
 
-MpsSettings spacings() {
-  MpsSettings settings;
+mps::Settings spacings() {
+  mps::Settings settings;
   settings.spacing = 0.02;
   return settings;
 }

@@ -62,7 +62,7 @@ inline auto tied(const TerrainSpec& s) {
   auto& [a, b, c, d, e, f, g, h, i, j] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j);
 }
-inline auto tied(const SlideSettings& s) {
+inline auto tied(const slide::Settings& s) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w);
 }
@@ -70,7 +70,7 @@ inline auto tied(const Seeding& s) {
   auto& [a, b, c, d] = s;
   return std::tie(a, b, c, d);
 }
-inline auto tied(const MpmSettings& s) {
+inline auto tied(const mpm::Settings& s) {
   auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
@@ -98,11 +98,11 @@ inline auto tied(const Cone& s) {
   auto& [a, b] = s;
   return std::tie(a, b);
 }
-inline auto tied(const GrainsSettings& s) {
+inline auto tied(const grains::Settings& s) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
 }
-inline auto tied(const MpsSettings& s) {
+inline auto tied(const mps::Settings& s) {
   auto& [s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14, s15, s16, s17, s18, s19,
          s20, s21, s22, s23, s24, s25, s26, s27, s28, s29, s30, s31, s32, s33, s34] = s;
   return std::tie(s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14, s15, s16, s17,
@@ -126,8 +126,8 @@ bool have_same(const MethodChoice& a, const MethodChoice& b) {
   return a.is<Settings>() && b.is<Settings>() && a.as<Settings>() == b.as<Settings>();
 }
 inline bool operator==(const MethodChoice& a, const MethodChoice& b) {
-  return have_same<MpmSettings>(a, b) || have_same<SlideSettings>(a, b) ||
-         have_same<GrainsSettings>(a, b) || have_same<MpsSettings>(a, b);
+  return have_same<mpm::Settings>(a, b) || have_same<slide::Settings>(a, b) ||
+         have_same<grains::Settings>(a, b) || have_same<mps::Settings>(a, b);
 }
 
 }  // namespace snowshed

@@ -399,9 +399,9 @@ TEST(SceneErrorsText, ScenesMadeInCodeAreHeldAgainstTheSameRanges) {
   scene.bodies[0].shape.type = "transform";
   EXPECT_EQ(where(), "/bodies/0/shape/shapes");
   scene.bodies[0].shape.type = "sphere";
-  scene.numerics.as<MpmSettings>().basis = static_cast<Basis>(17);
+  scene.numerics.as<mpm::Settings>().basis = static_cast<mpm::Basis>(17);
   EXPECT_EQ(where(), "/numerics/basis");
-  scene.numerics.as<MpmSettings>().basis = Basis::cubic;
+  scene.numerics.as<mpm::Settings>().basis = mpm::Basis::cubic;
   scene.dimension = 5;
   EXPECT_EQ(where(), "/dimension");
 }

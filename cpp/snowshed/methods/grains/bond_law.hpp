@@ -2,50 +2,25 @@
 #pragma once
 
 #include "snowshed/core/simd_pack.hpp"
+#include "snowshed/core/simd_vec.hpp"
 
-SNOWSHED_VARIANT_BEGIN
-
-/// Three components, each a number or a pack of them.
-template <class V>
-struct Triple {
-  V x, y, z;
-};
-template <class V>
-SNOWSHED_INLINE Triple<V> operator+(const Triple<V>& a, const Triple<V>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class V>
-SNOWSHED_INLINE Triple<V> operator-(const Triple<V>& a, const Triple<V>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class V>
-SNOWSHED_INLINE Triple<V> scaled(const V& s, const Triple<V>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-template <class V>
-SNOWSHED_INLINE V dot(const Triple<V>& a, const Triple<V>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class V>
-SNOWSHED_INLINE Triple<V> cross(const Triple<V>& a, const Triple<V>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+SNOWSHED_METHOD_VARIANT_BEGIN(grains)
 
 /// How the second of two spheres has moved in a step, as the first sees it.
 template <class V>
 struct ContactMotion {
-  V gap;             // m, between the surfaces, now; negative where they overlap
-  V parting;         // m, growth of the gap in this step
-  Triple<V> normal;  // unit vector from the first to the second
-  Triple<V> shear;   // m, displacement in this step normal to it
-  V twist;           // rad, mean rotation of both about the normal in this step
+  V gap;              // m, between the surfaces, now; negative where they overlap
+  V parting;          // m, growth of the gap in this step
+  SimdVec<V> normal;  // unit vector from the first to the second
+  SimdVec<V> shear;   // m, displacement in this step normal to it
+  V twist;            // rad, mean rotation of both about the normal in this step
 };
 
 /// What a contact does in a step.
 template <class V, class Mask>
 struct ContactForce {
   V push;           // N, negative in tension
-  Triple<V> drag;   // N, on the first sphere, normal to the normal
+  SimdVec<V> drag;  // N, on the first sphere, normal to the normal
   V heat;           // J, lost to friction
   V broken_energy;  // J, lost with the bond
   Mask touching, tension_break, shear_break;
@@ -66,11 +41,11 @@ struct BondLaw {
   /// with the contact. What is lost is what the mean of the forces before and after does, less what
   /// the springs store of it: so energies close with a trapezoidal integration of the motion.
   template <class V, class Mask>
-  SNOWSHED_INLINE ContactForce<V, Mask> operator()(const ContactMotion<V>& m, Triple<V>& u,
+  SNOWSHED_INLINE ContactForce<V, Mask> operator()(const ContactMotion<V>& m, SimdVec<V>& u,
                                                    Mask& bonded) const {
     const V zero{}, kn = broadcast<V>(normal_stiffness), ks = broadcast<V>(shear_stiffness);
-    const Triple<V> before = turned(m, u);
-    const Triple<V> trial = before + m.shear;
+    const SimdVec<V> before = turned(m, u);
+    const SimdVec<V> trial = before + m.shear;
     const V length = sqrt(dot(trial, trial));
     const V spring = -kn * m.gap, cap = friction * max(spring, zero);
 
@@ -85,8 +60,8 @@ struct BondLaw {
     const Mask slips = (holds == 0) & (V(ks * length) > cap);
     const V least = broadcast<V>(1e-300);
     const V kept = select(slips, V(cap / max(V(ks * length), least)), broadcast<V>(1.0));
-    u = scaled(select(f.touching, kept, zero), trial);
-    f.drag = scaled(ks, u);
+    u = V(select(f.touching, kept, zero)) * trial;
+    f.drag = ks * u;
 
     const V lost = V(0.5 * ks) * dot(before + u, trial - u);
     const V gap_before = m.gap - m.parting;
@@ -102,12 +77,12 @@ struct BondLaw {
  private:
   /// A displacement in the plane of the contact as it is now, of the same length.
   template <class V>
-  static SNOWSHED_INLINE Triple<V> turned(const ContactMotion<V>& m, const Triple<V>& u) {
-    const Triple<V> twisted = u + scaled(m.twist, cross(m.normal, u));
-    const Triple<V> flat = twisted - scaled(dot(m.normal, twisted), m.normal);
+  static SNOWSHED_INLINE SimdVec<V> turned(const ContactMotion<V>& m, const SimdVec<V>& u) {
+    const SimdVec<V> twisted = u + m.twist * cross(m.normal, u);
+    const SimdVec<V> flat = twisted - dot(m.normal, twisted) * m.normal;
     const V square = dot(flat, flat);
-    return scaled(sqrt(V(dot(u, u) / max(square, broadcast<V>(1e-300)))), flat);
+    return V(sqrt(V(dot(u, u) / max(square, broadcast<V>(1e-300))))) * flat;
   }
 };
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

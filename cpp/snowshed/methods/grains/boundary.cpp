@@ -5,15 +5,15 @@
 
 #include "snowshed/core/angles.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-void GrainsBoundary::move(double dt) {
+void Boundary::move(double dt) {
   for (int p = 0; p < 2; ++p) plate[p] += dt * plate_velocity[p];
   for (int s = 0; s < 4; ++s) side[s] += dt * side_velocity[s];
   tip += dt * tip_velocity;
 }
 
-double GrainsBoundary::travel_since(const GrainsBoundary& earlier) const {
+double Boundary::travel_since(const Boundary& earlier) const {
   double farthest = (tip - earlier.tip).norm();
   for (int p = 0; p < 2; ++p) farthest = std::max(farthest, (plate[p] - earlier.plate[p]).norm());
   // Two sides together move an image.
@@ -22,7 +22,7 @@ double GrainsBoundary::travel_since(const GrainsBoundary& earlier) const {
   return farthest;
 }
 
-double GrainsBoundary::top_speed() const {
+double Boundary::top_speed() const {
   double fastest = tip_velocity.norm();
   for (int p = 0; p < 2; ++p) fastest = std::max(fastest, plate_velocity[p].norm());
   for (int s = 0; s < 4; ++s) fastest = std::max(fastest, 2 * std::abs(side_velocity[s]));
@@ -52,4 +52,4 @@ SurfaceContact meet_cone(const Cone& cone, const Vec3& centre, double radius) {
   return {(inside ? -depth : depth) - radius, in[0] * outward + in[1] * Vec3::UnitZ()};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

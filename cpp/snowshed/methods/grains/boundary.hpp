@@ -7,7 +7,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// What a grain can meet besides grains, numbered after the last of them.
 enum class Partner : std::uint32_t { bottom_plate, top_plate, west, east, south, north, cone };
@@ -15,7 +15,7 @@ inline constexpr std::uint32_t partners = 7;
 
 /// Positions and velocities, and the forces of the grains on each part. A plate is an endless
 /// square grid of spheres, of which one lies half a spacing from the plate's origin along x and y.
-struct GrainsBoundary {
+struct Boundary {
   Vec3 plate[2] = {Vec3::Zero(), Vec3::Zero()};  // m, origins: bottom, top
   Vec3 plate_velocity[2] = {Vec3::Zero(), Vec3::Zero()};
   double side[4] = {0, 0, 0, 0};  // m: west, east, south, north; periodic sides are a period apart
@@ -35,7 +35,7 @@ struct GrainsBoundary {
   }
   void move(double dt);
   /// The farthest that a part has come since an earlier time, m.
-  double travel_since(const GrainsBoundary& earlier) const;
+  double travel_since(const Boundary& earlier) const;
   double top_speed() const;  // m/s, of the fastest part
 
   /// Calls visit(number) for each of the numbers.
@@ -70,11 +70,10 @@ struct SurfaceContact {
 SurfaceContact meet_cone(const Cone&, const Vec3& centre, double radius);
 
 /// The wall that a sphere with this centre meets.
-inline SurfaceContact meet_side(const GrainsBoundary& b, int side, const Vec3& centre,
-                                double radius) {
+inline SurfaceContact meet_side(const Boundary& b, int side, const Vec3& centre, double radius) {
   const int axis = side / 2;
   const double sign = side % 2 == 0 ? -1 : 1;  // outward
   return {sign * (b.side[side] - centre[axis]) - radius, sign * Vec3::Unit(axis)};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

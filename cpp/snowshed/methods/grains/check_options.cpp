@@ -7,7 +7,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 [[noreturn]] void refuse(const std::string& where, double value, const std::string& allowed) {
@@ -16,7 +16,7 @@ namespace {
   throw InputError(where, text.str());
 }
 
-void check_settings(const GrainsSettings& s) {
+void check_settings(const Settings& s) {
   const auto positive = [](const char* name, double value) {
     if (!(value > 0 && std::isfinite(value)))
       refuse(std::string("/numerics/") + name, value, "positive");
@@ -41,7 +41,7 @@ void check_settings(const GrainsSettings& s) {
     refuse("/numerics/courant_factor", s.courant_factor, "above 0, and 1 at most");
 }
 
-void check_clump(const GrainSample& sample, std::size_t c, std::size_t spheres) {
+void check_clump(const Sample& sample, std::size_t c, std::size_t spheres) {
   const Clump& clump = sample.clumps[c];
   const std::string where = "grain " + std::to_string(c);
   if (clump.first_sphere != spheres)
@@ -56,7 +56,7 @@ void check_clump(const GrainSample& sample, std::size_t c, std::size_t spheres) 
   if (!(moments[0] > 1e-9 * moments[2])) throw InputError(where, "its inertia is not positive");
 }
 
-void check_sample(const GrainSample& sample) {
+void check_sample(const Sample& sample) {
   if (!(sample.radius > 0 && std::isfinite(sample.radius)))
     throw InputError("sample", "the radius of its spheres must be positive");
   if (!sample.box.allFinite() || !(sample.box.minCoeff() >= 1.999 * sample.radius))
@@ -79,7 +79,7 @@ void check_sample(const GrainSample& sample) {
       throw InputError("sample", "a sphere lies outside of the box");
 }
 
-void check_bonds(const GrainSample& sample) {
+void check_bonds(const Sample& sample) {
   std::vector<std::uint32_t> grain(sample.spheres.size());
   for (std::uint32_t c = 0; c < sample.clumps.size(); ++c)
     for (std::uint32_t s = 0; s < sample.clumps[c].spheres; ++s)
@@ -96,7 +96,7 @@ void check_bonds(const GrainSample& sample) {
   }
 }
 
-void check_loading(const GrainsOptions& o) {
+void check_loading(const Options& o) {
   bool penetrated = false;
   for (std::size_t i = 0; i < o.loading.size(); ++i) {
     const LoadingStage& stage = o.loading[i];
@@ -125,15 +125,15 @@ void check_loading(const GrainsOptions& o) {
 
 }  // namespace
 
-void check_grains(const GrainsOptions& o) {
+void check_grains(const Options& o) {
   check_settings(o.settings);
   if (!std::isfinite(o.gravity)) refuse("gravity", o.gravity, "finite");
   check_sample(o.sample);
   check_bonds(o.sample);
   check_loading(o);
-  if (o.settings.sides == GrainSides::periodic &&
+  if (o.settings.sides == Sides::periodic &&
       std::min(o.sample.box.x(), o.sample.box.y()) < 3 * (2 + 0.5) * o.sample.radius)
     throw InputError("sample", "a periodic sample must be at least four spheres wide");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

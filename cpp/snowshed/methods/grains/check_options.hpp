@@ -3,9 +3,9 @@
 
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// Throws InputError where they do not.
-void check_grains(const GrainsOptions&);
+void check_grains(const Options&);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -9,7 +9,7 @@
 #include "snowshed/methods/grains/listing.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// A pair of spheres as an archive has it.
@@ -23,7 +23,7 @@ struct StoredPair {
 /// What an archive holds besides the state: of the boundaries their flags.
 struct Stored {
   std::vector<StoredPair> pairs;
-  std::vector<GrainsBoundary> now, listed;  // one each
+  std::vector<Boundary> now, listed;  // one each
   std::int64_t grains = 0, flags = 0, listed_flags = 0;
 };
 
@@ -52,9 +52,7 @@ void visit_state(Archive& archive, State& s, StoredParts& stored) {
                   column("pairs/shifts", &StoredPair::shift),
                   column("pairs/shear", &StoredPair::shear),
                   column("pairs/bonded", &StoredPair::bonded));
-  const auto numbers = [](auto& b, const auto& number) {
-    GrainsBoundary::for_each_number(b, number);
-  };
+  const auto numbers = [](auto& b, const auto& number) { Boundary::for_each_number(b, number); };
   archive.packed("boundary/now", stored.now, 1, numbers);
   archive.packed("boundary/listed", stored.listed, 1, numbers);
   auto& l = s.loading;
@@ -67,12 +65,12 @@ void visit_state(Archive& archive, State& s, StoredParts& stored) {
                  stored.flags, stored.listed_flags, s.boundary.top_contacts);
 }
 
-std::int64_t flags_of(const GrainsBoundary& b) { return std::int64_t(b.has_top) + 2 * b.has_cone; }
+std::int64_t flags_of(const Boundary& b) { return std::int64_t(b.has_top) + 2 * b.has_cone; }
 
-double farthest(const GrainsModel& model) { return 5e4 * model.radius + 10 * model.box.maxCoeff(); }
+double farthest(const Model& model) { return 5e4 * model.radius + 10 * model.box.maxCoeff(); }
 
-GrainsBoundary checked_boundary(const StateReader& archive, GrainsBoundary b, std::int64_t flags,
-                                const GrainsModel& model) {
+Boundary checked_boundary(const StateReader& archive, Boundary b, std::int64_t flags,
+                          const Model& model) {
   b.has_top = (flags & 1) != 0;
   b.has_cone = (flags & 2) != 0;
   const Vec3 extent(b.period(0), b.period(1), b.plate[1].z() - b.plate[0].z());
@@ -85,7 +83,7 @@ GrainsBoundary checked_boundary(const StateReader& archive, GrainsBoundary b, st
 
 /// Of bodies and poses.
 template <class Poses>
-void check_poses(const StateReader& archive, const Poses& poses, const GrainsModel& model) {
+void check_poses(const StateReader& archive, const Poses& poses, const Model& model) {
   for (const auto& pose : poses) {
     if (!(pose.position.cwiseAbs().maxCoeff() < farthest(model)))
       archive.refuse("a grain lies too far away");
@@ -102,8 +100,7 @@ StoredPair stored(const PairHistory& h) {
 }
 
 std::vector<PairHistory> checked_pairs(const StateReader& archive,
-                                       const std::vector<StoredPair>& pairs,
-                                       const GrainsModel& model) {
+                                       const std::vector<StoredPair>& pairs, const Model& model) {
   std::vector<PairHistory> past;
   const std::size_t grains = model.grains.size(), spheres = model.spheres.offsets.size();
   for (const StoredPair& pair : pairs) {
@@ -127,8 +124,8 @@ std::vector<PairHistory> checked_pairs(const StateReader& archive,
   return past;
 }
 
-void check_counts(const StateReader& archive, const GrainsState& s, const Stored& stored,
-                  const GrainsModel& model) {
+void check_counts(const StateReader& archive, const State& s, const Stored& stored,
+                  const Model& model) {
   if (stored.grains != 0 && stored.grains != std::int64_t(model.grains.size()))
     archive.refuse(std::to_string(stored.grains) + " grains; the sample has " +
                    std::to_string(model.grains.size()));
@@ -143,7 +140,7 @@ void check_counts(const StateReader& archive, const GrainsState& s, const Stored
 
 }  // namespace
 
-void GrainsSolver::save(BinaryWriter& out) const {
+void SolverImpl::save(BinaryWriter& out) const {
   soundness_.require();
   Stored parts;
   for (const PairHistory& h : state_.pairs.all()) parts.pairs.push_back(stored(h));
@@ -156,10 +153,10 @@ void GrainsSolver::save(BinaryWriter& out) const {
   visit_state(archive, state_, parts);
 }
 
-GrainsSolver::Restored GrainsSolver::restored(const BinaryReader& in) const {
+SolverImpl::Restored SolverImpl::restored(const BinaryReader& in) const {
   const StateReader archive(in);
   Restored result;
-  GrainsState& next = result.state;
+  State& next = result.state;
   Stored parts;
   visit_state(archive, next, parts);
   check_counts(archive, next, parts, model_);
@@ -171,7 +168,7 @@ GrainsSolver::Restored GrainsSolver::restored(const BinaryReader& in) const {
   next.listed_boundary = checked_boundary(archive, parts.listed[0], parts.listed_flags, model_);
   const std::vector<PairHistory> past = checked_pairs(archive, parts.pairs, model_);
 
-  GrainsWork& work = result.work;
+  Work& work = result.work;
   const std::size_t grains = next.bodies.size();
   if (grains > 0) {
     Listing listing;
@@ -193,7 +190,7 @@ GrainsSolver::Restored GrainsSolver::restored(const BinaryReader& in) const {
   return result;
 }
 
-void GrainsSolver::load(const BinaryReader& in) {
+void SolverImpl::load(const BinaryReader& in) {
   Restored next = restored(in);
   std::vector<std::uint32_t> order(next.state.bodies.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -203,6 +200,6 @@ void GrainsSolver::load(const BinaryReader& in) {
   soundness_ = {};
 }
 
-void GrainsSolver::check(const BinaryReader& in) const { restored(in); }
+void SolverImpl::check(const BinaryReader& in) const { restored(in); }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -10,7 +10,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 constexpr std::uint32_t no_sphere = std::numeric_limits<std::uint32_t>::max();
@@ -149,7 +149,7 @@ void check_grain_diameter(double median) {
   throw InputError("", text);
 }
 
-double median_diameter(const GrainSample& sample) {
+double median_diameter(const Sample& sample) {
   std::vector<double> volumes;
   for (const Clump& c : sample.clumps) volumes.push_back(c.volume);
   const auto middle = volumes.begin() + std::ptrdiff_t(volumes.size() / 2);
@@ -157,11 +157,11 @@ double median_diameter(const GrainSample& sample) {
   return std::cbrt(6 / pi * *middle);
 }
 
-GrainSample make_sample(const LabelImage& image) {
+Sample make_sample(const LabelImage& image) {
   check_image(image);
   ClumpOfLabel clump_of(image);
   if (clump_of.size() == 0) throw InputError("labels", "no grain: all voxels are air");
-  GrainSample sample;
+  Sample sample;
   sample.radius = 0.5 * image.voxel_size;
   sample.box =
       image.voxel_size * Vec3(double(image.size[0]), double(image.size[1]), double(image.size[2]));
@@ -194,4 +194,4 @@ GrainSample make_sample(const LabelImage& image) {
   return sample;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

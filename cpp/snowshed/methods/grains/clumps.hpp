@@ -8,9 +8,9 @@
 #include "snowshed/methods/grains/label_image.hpp"
 #include "snowshed/methods/grains/label_pieces.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-/// A grain: a rigid body with spheres on its surface. Spheres are those of GrainSample from
+/// A grain: a rigid body with spheres on its surface. Spheres are those of Sample from
 /// `first_sphere` on.
 struct Clump {
   Vec3 centre = Vec3::Zero();   // m, of mass
@@ -25,7 +25,7 @@ struct BondedPair {
 };
 
 /// Clumps in a box that begins at the origin.
-struct GrainSample {
+struct Sample {
   Vec3 box = Vec3::Zero();  // m
   double radius = 0;        // m, of all spheres
   std::vector<Clump> clumps;
@@ -48,11 +48,11 @@ inline constexpr double smallest_grain = 2e-5, largest_grain = 1e-2;
 void check_grain_diameter(double median);
 
 /// The median over the grains of the diameter of spheres with their volumes, m.
-double median_diameter(const GrainSample&);
+double median_diameter(const Sample&);
 
 /// Every voxel at an interface, with air or another grain, becomes a sphere of the voxel's size
 /// with the voxel's centre; bonds join voxels of two grains that share a face. Mass and inertia are
 /// those of all voxels of a grain. Throws InputError without a grain.
-GrainSample make_sample(const LabelImage&);
+Sample make_sample(const LabelImage&);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

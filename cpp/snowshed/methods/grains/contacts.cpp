@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 Vec3 triple(const AlignedVector<double>& x, const AlignedVector<double>& y,
@@ -12,10 +12,9 @@ Vec3 triple(const AlignedVector<double>& x, const AlignedVector<double>& y,
 
 }  // namespace
 
-PairGeometry pair_geometry(const GrainsModel& model, const GrainsBoundary& boundary,
-                           const PairList& list, const PairGroup& g, std::size_t p,
-                           const Vec3& position_a, const Mat3& rotation_a,
-                           const GrainPose* second) {
+PairGeometry pair_geometry(const Model& model, const Boundary& boundary, const PairList& list,
+                           const PairGroup& g, std::size_t p, const Vec3& position_a,
+                           const Mat3& rotation_a, const GrainPose* second) {
   const Vec3 from_a = rotation_a * triple(list.ax, list.ay, list.az, p);
   const std::uint32_t kind = g.second - std::uint32_t(model.grains.size());
   if (!second && kind >= std::uint32_t(Partner::west)) {
@@ -38,4 +37,4 @@ PairGeometry pair_geometry(const GrainsModel& model, const GrainsBoundary& bound
   return {distance - 2 * model.radius, way / distance, arm, arm - apart};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

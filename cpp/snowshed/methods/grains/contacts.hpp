@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// Where a pair meets.
 struct PairGeometry {
@@ -14,14 +14,14 @@ struct PairGeometry {
 
 /// Of a sphere at `from_a` from the centre of its grain, whose pose is given, with whatever its
 /// group is paired with. `second` is the pose of the second grain, if it is one.
-PairGeometry pair_geometry(const GrainsModel&, const GrainsBoundary&, const PairList&,
-                           const PairGroup&, std::size_t pair, const Vec3& position_a,
-                           const Mat3& rotation_a, const GrainPose* second);
+PairGeometry pair_geometry(const Model&, const Boundary&, const PairList&, const PairGroup&,
+                           std::size_t pair, const Vec3& position_a, const Mat3& rotation_a,
+                           const GrainPose* second);
 
 /// Calls visit(group, pair, geometry) for all pairs of a list, but for those that only fill it up.
 template <class PoseOf, class Visit>
-void for_each_listed_pair(const GrainsModel& model, const GrainsBoundary& boundary,
-                          const PairList& list, const PoseOf& pose_of, const Visit& visit) {
+void for_each_listed_pair(const Model& model, const Boundary& boundary, const PairList& list,
+                          const PoseOf& pose_of, const Visit& visit) {
   for (const PairGroup& g : list.groups) {
     const GrainPose first = pose_of(g.first);
     const Mat3 rotation = first.orientation.toRotationMatrix();
@@ -39,7 +39,7 @@ inline GrainPose pose_of(const GrainBody& body) { return {body.position, body.or
 
 /// Calls visit(group, pair, geometry) for the pairs that touch now, or are bonded.
 template <class Visit>
-void for_each_touching(const GrainsModel& model, const GrainsState& state, const Visit& visit) {
+void for_each_touching(const Model& model, const State& state, const Visit& visit) {
   for_each_listed_pair(
       model, state.boundary, state.pairs,
       [&](std::uint32_t body) { return pose_of(state.bodies[body]); },
@@ -48,4 +48,4 @@ void for_each_touching(const GrainsModel& model, const GrainsState& state, const
       });
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -7,7 +7,7 @@
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/enum_names.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// The time of a stage over the sample's height, s/m.
@@ -42,8 +42,7 @@ void check_loading_time(const SceneView& scene, double height) {
                                              " m, longer than " + show(allowed) + " s");
 }
 
-CostEstimate estimate_cost(const SceneView& scene, const GrainSample& sample,
-                           const Method& grains) {
+CostEstimate estimate_cost(const SceneView& scene, const Sample& sample, const Method& grains) {
   CostEstimate cost;
   cost.particles = {double(sample.clumps.size())};
   cost.total_particles = cost.particles.front();
@@ -56,7 +55,7 @@ CostEstimate estimate_cost(const SceneView& scene, const GrainSample& sample,
   return cost;
 }
 
-std::vector<Feature> features_of(const GrainsSettings& s, const SceneView& scene) {
+std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
   std::vector<Feature> features;
   for (const auto& [kind, name] : EnumNames<LoadingKind>::list)
     features.push_back({name, std::any_of(scene.loading.begin(), scene.loading.end(),
@@ -64,7 +63,7 @@ std::vector<Feature> features_of(const GrainsSettings& s, const SceneView& scene
                                             return stage.kind == kind;
                                           })});
   features.insert(features.end(),
-                  {{"periodic sides", s.sides == GrainSides::periodic},
+                  {{"periodic sides", s.sides == Sides::periodic},
                    {"bonded plates", s.bonded_plates},
                    {"density scaling", s.density_scaling > 1},
                    {"gravity", scene.gravity > 0},
@@ -73,4 +72,4 @@ std::vector<Feature> features_of(const GrainsSettings& s, const SceneView& scene
   return features;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

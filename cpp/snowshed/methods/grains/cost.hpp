@@ -6,7 +6,7 @@
 #include "snowshed/methods/cost.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// The time that the stages take on a sample of that height (m), if none ends before its strain, s;
 /// to hold takes none.
@@ -19,8 +19,8 @@ void check_loading_time(const SceneView&, double height);
 double loading_progress(const std::vector<LoadingStage>&, int stage, double strain);
 
 /// The first time step and the memory are those of `grains`, which hold the sample.
-CostEstimate estimate_cost(const SceneView&, const GrainSample&, const Method& grains);
+CostEstimate estimate_cost(const SceneView&, const Sample&, const Method& grains);
 
-std::vector<Feature> features_of(const GrainsSettings&, const SceneView&);
+std::vector<Feature> features_of(const Settings&, const SceneView&);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

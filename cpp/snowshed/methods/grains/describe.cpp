@@ -2,9 +2,9 @@
 
 #include "snowshed/methods/allowed.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-void describe(SettingsVisitor& v, GrainsSettings& s) {
+void describe(SettingsVisitor& v, Settings& s) {
   v.accuracy({"density_scaling", "courant_factor"});
   v.number("elastic_modulus", s.elastic_modulus, "Pa", allowed::pressure,
            "Young's modulus of the contact law");
@@ -28,4 +28,4 @@ void describe(SettingsVisitor& v, GrainsSettings& s) {
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -8,12 +8,16 @@
 namespace snowshed {
 
 template <>
-struct EnumNames<GrainSides> {
-  static constexpr Named<GrainSides> list[] = {{GrainSides::walls, "walls"},
-                                               {GrainSides::periodic, "periodic"}};
+struct EnumNames<grains::Sides> {
+  static constexpr Named<grains::Sides> list[] = {{grains::Sides::walls, "walls"},
+                                                  {grains::Sides::periodic, "periodic"}};
 };
 
-/// Shows a visitor each setting in turn: key, unit, range and meaning.
-void describe(SettingsVisitor&, GrainsSettings&);
-
 }  // namespace snowshed
+
+namespace snowshed::grains {
+
+/// Shows a visitor each setting in turn: key, unit, range and meaning.
+void describe(SettingsVisitor&, Settings&);
+
+}  // namespace snowshed::grains

@@ -3,9 +3,9 @@
 #include "snowshed/methods/grains/contacts.hpp"
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-NamedEnergies named_energies(const GrainsEnergy& e) {
+NamedEnergies named_energies(const Energy& e) {
   return {{"kinetic_j", e.kinetic},       {"potential_j", e.potential},
           {"elastic_normal_j", e.normal}, {"elastic_shear_j", e.shear},
           {"friction_j", e.friction},     {"damping_j", e.damping},
@@ -13,7 +13,7 @@ NamedEnergies named_energies(const GrainsEnergy& e) {
           {"added_j", e.added},           {"residual_j", e.residual()}};
 }
 
-double kinetic_energy(const GrainsModel& model, const GrainsState& state) {
+double kinetic_energy(const Model& model, const State& state) {
   double twice = 0;
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
     const GrainBody& body = state.bodies[i];
@@ -24,7 +24,7 @@ double kinetic_energy(const GrainsModel& model, const GrainsState& state) {
   return 0.5 * twice;
 }
 
-void store_energy(const GrainsModel& model, const GrainsState& state, GrainsEnergy& e) {
+void store_energy(const Model& model, const State& state, Energy& e) {
   e.kinetic = kinetic_energy(model, state);
   e.potential = e.normal = e.shear = 0;
   for (std::size_t i = 0; i < state.bodies.size(); ++i)
@@ -35,4 +35,4 @@ void store_energy(const GrainsModel& model, const GrainsState& state, GrainsEner
   });
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -3,14 +3,14 @@
 
 #include "snowshed/methods/energy_balance.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-struct GrainsModel;
-struct GrainsState;
+struct Model;
+struct State;
 
 /// The energy of grains, J. The first four are the present store; the others are sums over all
 /// steps. The balance closes when `residual` is small beside the work.
-struct GrainsEnergy {
+struct Energy {
   double kinetic = 0;            // with the scaled masses
   double potential = 0;          // of the weight
   double normal = 0, shear = 0;  // elastic
@@ -25,12 +25,12 @@ struct GrainsEnergy {
 };
 
 /// Returns the balance as tables have it, names with units.
-NamedEnergies named_energies(const GrainsEnergy&);
+NamedEnergies named_energies(const Energy&);
 
 /// The kinetic energy of all grains, J.
-double kinetic_energy(const GrainsModel&, const GrainsState&);
+double kinetic_energy(const Model&, const State&);
 
 /// Fills in what is stored now.
-void store_energy(const GrainsModel&, const GrainsState&, GrainsEnergy&);
+void store_energy(const Model&, const State&, Energy&);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

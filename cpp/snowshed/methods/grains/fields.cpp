@@ -4,11 +4,11 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// Calls visit(info, view) for each field; view() returns its view.
 template <class Visit>
-void GrainsSolver::visit_fields(Visit visit) const {
+void SolverImpl::visit_fields(Visit visit) const {
   const auto of_each = [&](const char* name, auto value) {
     const FieldInfo info = field_of(quantity(name), FieldType::float64, false);
     visit(info, [&] { return computed_view(info, values_of_each(size(), model_.threads, value)); });
@@ -44,15 +44,15 @@ void GrainsSolver::visit_fields(Visit visit) const {
   visit(event, [&] { return computed_view(event, state_.events); });
 }
 
-std::vector<FieldInfo> GrainsSolver::fields() const {
+std::vector<FieldInfo> SolverImpl::fields() const {
   return listed_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
-FieldView GrainsSolver::field(const std::string& name) const {
+FieldView SolverImpl::field(const std::string& name) const {
   return found_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
-ParticleState GrainsSolver::state() const {
+ParticleState SolverImpl::state() const {
   ParticleState s;
   for (std::size_t i = 0; i < size(); ++i) {
     s.positions.push_back(state_.bodies[i].position);
@@ -66,21 +66,21 @@ ParticleState GrainsSolver::state() const {
   return s;
 }
 
-MotionSummary GrainsSolver::motion(double limit) const {
+MotionSummary SolverImpl::motion(double limit) const {
   return motion_of(
       size(), limit,
       [this](std::size_t i) { return model_.settings.density * model_.grains[i].volume; },
       [this](std::size_t i) { return state_.bodies[i].velocity.squaredNorm(); });
 }
 
-NamedEnergies GrainsSolver::energies() const {
-  if (!model_.keeps_energy) return named_energies(GrainsEnergy{});
-  GrainsEnergy energy = state_.energy;
+NamedEnergies SolverImpl::energies() const {
+  if (!model_.keeps_energy) return named_energies(Energy{});
+  Energy energy = state_.energy;
   store_energy(model_, state_, energy);
   return named_energies(energy);
 }
 
-std::size_t GrainsSolver::bytes() const {
+std::size_t SolverImpl::bytes() const {
   return state_.pairs.bytes() + bytes_of(model_.grains, model_.spheres.offsets,
                                          model_.spheres.grain, model_.bonds, state_.bodies,
                                          state_.events, state_.listed, work_.next, work_.frames,
@@ -88,4 +88,4 @@ std::size_t GrainsSolver::bytes() const {
                                          work_.groups_of.entry, work_.damped, order_);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

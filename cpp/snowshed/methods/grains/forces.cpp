@@ -6,7 +6,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/contacts.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 constexpr std::ptrdiff_t groups_in_piece = 16, bodies_in_piece = 32;
@@ -24,7 +24,7 @@ BodyFrame frame_of(const GrainBody& body, const Vec3& inertia) {
   return f;
 }
 
-BodyFrame frame_of_plate(const GrainsBoundary& b, int plate) {
+BodyFrame frame_of_plate(const Boundary& b, int plate) {
   BodyFrame f{};
   for (int i = 0; i < 3; ++i) {
     f.position[i] = b.plate[plate][i];
@@ -34,9 +34,9 @@ BodyFrame frame_of_plate(const GrainsBoundary& b, int plate) {
   return f;
 }
 
-GrainsView view_of(const GrainsModel& model, GrainsState& state, GrainsWork& work, double dt) {
+View view_of(const Model& model, State& state, Work& work, double dt) {
   PairList& l = state.pairs;
-  GrainsView v{};
+  View v{};
   v.bodies = work.frames.data();
   v.groups = l.groups.data();
   v.ax = l.ax.data();
@@ -64,19 +64,18 @@ GrainsView view_of(const GrainsModel& model, GrainsState& state, GrainsWork& wor
   return v;
 }
 
-Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
+SimdVec<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Vec3 vec(const SimdVec<double>& t) { return {t.x, t.y, t.z}; }
 Vec3 vec(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-Vec3 surface_velocity(const GrainsBoundary& b, Partner partner) {
+Vec3 surface_velocity(const Boundary& b, Partner partner) {
   if (partner == Partner::cone) return b.tip_velocity;
   const int side = int(partner) - int(Partner::west);
   return b.side_velocity[side] * Vec3::Unit(side / 2);
 }
 
 /// The forces of a wall, without friction, or of the cone on the spheres of a grain.
-void surface_forces(const GrainsModel& model, GrainsState& state, GrainsWork& work,
-                    std::size_t group, double dt) {
+void surface_forces(const Model& model, State& state, Work& work, std::size_t group, double dt) {
   const PairGroup& g = state.pairs.groups[group];
   const Partner partner = Partner(g.second - std::uint32_t(model.grains.size()));
   const double rough = partner == Partner::cone ? 1 : 0;  // sides do not take shear
@@ -97,7 +96,7 @@ void surface_forces(const GrainsModel& model, GrainsState& state, GrainsWork& wo
     const ContactMotion<double> motion{pair.gap, dt * along, triple(pair.normal),
                                        triple(rough * dt * (velocity - along * pair.normal)),
                                        0.5 * dt * spin.dot(pair.normal)};
-    Triple<double> u{list.ux[p], list.uy[p], list.uz[p]};
+    SimdVec<double> u{list.ux[p], list.uy[p], list.uz[p]};
     bool bonded = false;
     const auto f = model.law(motion, u, bonded);
     list.ux[p] = u.x;
@@ -128,7 +127,7 @@ Vec3 damping_of(double share, const Vec3& force, const Vec3& velocity) {
 }
 
 /// Adds up what the groups do to a grain, in their order.
-void gather(const GrainsModel& model, GrainsState& state, const GrainsWork& work, std::size_t i) {
+void gather(const Model& model, State& state, const Work& work, std::size_t i) {
   GrainBody& body = state.bodies[i];
   body.force = Vec3(0, 0, -model.grains[i].weight);
   body.torque.setZero();
@@ -147,8 +146,8 @@ void gather(const GrainsModel& model, GrainsState& state, const GrainsWork& work
 }
 
 /// What the grains do to plates, sides and the cone, and what was lost, group by group.
-void sum_up(const GrainsModel& model, GrainsState& state, const GrainsWork& work) {
-  GrainsBoundary& b = state.boundary;
+void sum_up(const Model& model, State& state, const Work& work) {
+  Boundary& b = state.boundary;
   for (Vec3* f : {&b.plate_force[0], &b.plate_force[1], &b.cone_force}) f->setZero();
   for (double& f : b.side_force) f = 0;
   b.top_contacts = 0;
@@ -181,7 +180,7 @@ void sum_up(const GrainsModel& model, GrainsState& state, const GrainsWork& work
 
 }  // namespace
 
-void evaluate_forces(const GrainsModel& model, GrainsState& state, GrainsWork& work, double dt) {
+void evaluate_forces(const Model& model, State& state, Work& work, double dt) {
   const std::size_t grains = state.bodies.size();
   const int threads = model.threads_for(state.pairs.size());
   parallel_pieces(std::ptrdiff_t(grains), threads, bodies_in_piece,
@@ -192,8 +191,8 @@ void evaluate_forces(const GrainsModel& model, GrainsState& state, GrainsWork& w
                   });
   for (int plate = 0; plate < 2; ++plate)
     work.frames[grains + std::size_t(plate)] = frame_of_plate(state.boundary, plate);
-  const GrainsView view = view_of(model, state, work, dt);
-  const GrainsKernels& kernels = grains_kernels();
+  const View view = view_of(model, state, work, dt);
+  const Kernels& kernels = chosen_kernels();
   const std::size_t first_surface = grains + std::size_t(Partner::west);
   parallel_pieces(std::ptrdiff_t(state.pairs.groups.size()), threads, groups_in_piece,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -211,4 +210,4 @@ void evaluate_forces(const GrainsModel& model, GrainsState& state, GrainsWork& w
   sum_up(model, state, work);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -3,11 +3,11 @@
 
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// Finds the forces on all grains and on what surrounds them, moves the contacts by a time step of
 /// length dt (s), breaks bonds and counts what they lose. The velocities are those of the middle of
 /// the step. Throws nothing.
-void evaluate_forces(const GrainsModel&, GrainsState&, GrainsWork&, double dt);
+void evaluate_forces(const Model&, State&, Work&, double dt);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

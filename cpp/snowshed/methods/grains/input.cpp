@@ -8,7 +8,7 @@
 #include "snowshed/geometry/readers/npy_io.hpp"
 #include "snowshed/io/fingerprint.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// Throws InputError where the image holds no grain, or its clumps do not fit into memory.
@@ -24,7 +24,7 @@ void check_size(const LabelImage& image) {
                              "; give a smaller image, or one of larger voxels");
 }
 
-GrainSample read_sample(const SampleSpec& spec, const std::filesystem::path& base_dir) {
+Sample read_sample(const SampleSpec& spec, const std::filesystem::path& base_dir) {
   const std::filesystem::path file = base_dir / spec.file;
   NpyLabels array = read_npy_labels(file);
   LabelImage image;
@@ -36,7 +36,7 @@ GrainSample read_sample(const SampleSpec& spec, const std::filesystem::path& bas
     const LabelPieces pieces = count_pieces(image);
     check_labels(pieces);
     if (spec.split_labels) split_pieces(image);
-    GrainSample sample = make_sample(image);
+    Sample sample = make_sample(image);
     sample.pieces = pieces;
     check_grain_diameter(median_diameter(sample));
     return sample;
@@ -47,10 +47,10 @@ GrainSample read_sample(const SampleSpec& spec, const std::filesystem::path& bas
 
 }  // namespace
 
-GrainsInput::GrainsInput(const SampleSpec& spec, const std::filesystem::path& base_dir)
+Input::Input(const SampleSpec& spec, const std::filesystem::path& base_dir)
     : file_(spec.file), split_labels_(spec.split_labels), sample_(read_sample(spec, base_dir)) {}
 
-std::vector<FilePrint> GrainsInput::files() const {
+std::vector<FilePrint> Input::files() const {
   Fingerprint print;
   print.add(sample_.box.data(), 3);
   print.add(&sample_.radius, 1);
@@ -67,4 +67,4 @@ std::vector<FilePrint> GrainsInput::files() const {
   return {{file_, print.value()}};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

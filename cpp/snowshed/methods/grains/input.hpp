@@ -7,23 +7,23 @@
 #include "snowshed/methods/scene_parts.hpp"
 #include "snowshed/methods/surroundings.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-class GrainsInput final : public MethodInput {
+class Input final : public MethodInput {
  public:
   /// Reads the image, checks that its clumps fit into memory, and makes them. Throws InputError.
-  GrainsInput(const SampleSpec&, const std::filesystem::path& base_dir);
+  Input(const SampleSpec&, const std::filesystem::path& base_dir);
 
   const char* section() const override { return "sample"; }
   std::vector<FilePrint> files() const override;
   std::string remark() const override { return label_note(sample_.pieces, split_labels_); }
 
-  const GrainSample& sample() const { return sample_; }
+  const Sample& sample() const { return sample_; }
 
  private:
   std::string file_;
   bool split_labels_;
-  GrainSample sample_;
+  Sample sample_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// Sphere pairs are taken so many at a time: each group of them fills a multiple of it.
 inline constexpr std::uint32_t pairs_at_once = 4;
@@ -33,7 +33,7 @@ struct GroupForce {
   std::int32_t touching, tension_breaks, shear_breaks;
 };
 
-struct GrainsView {
+struct View {
   const BodyFrame* bodies;
   const PairGroup* groups;
   // Of each pair: centres of the spheres in their bodies' frames, m; shear displacement, m;
@@ -50,12 +50,12 @@ struct GrainsView {
   double normal_stiffness, shear_stiffness, tension_limit, shear_limit, friction;  // see BondLaw
 };
 
-struct GrainsKernels {
+struct Kernels {
   /// Finds the forces of the sphere pairs of a group, and moves their contacts by a time step.
-  void (*pair_forces)(const GrainsView&, std::size_t group);
+  void (*pair_forces)(const View&, std::size_t group);
 };
 
 /// Returns those of the instruction set in use.
-const GrainsKernels& grains_kernels();
+const Kernels& chosen_kernels();
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -6,7 +6,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// Sets of voxels, each known by its first in the order of storage.
@@ -108,4 +108,4 @@ void split_pieces(LabelImage& image) {
   }
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -6,7 +6,7 @@
 
 #include "snowshed/methods/grains/label_image.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// How many labels an image has, and of how many pieces they are. Voxels of one label are one piece
 /// where they share a face, an edge or a corner.
@@ -28,4 +28,4 @@ std::string label_note(const LabelPieces&, bool split);
 /// Makes each piece a label of its own, from 1 on in the order of storage.
 void split_pieces(LabelImage&);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -5,10 +5,10 @@
 #include "snowshed/methods/grains/contacts.hpp"
 #include "snowshed/methods/grains/time_step.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
-PairSearch search_of(const GrainsModel& model) {
+PairSearch search_of(const Model& model) {
   const std::size_t spheres = model.spheres.offsets.size();
   return {model.spheres,      std::uint32_t(model.grains.size()),
           model.radius,       skin_per_radius * model.radius,
@@ -17,7 +17,7 @@ PairSearch search_of(const GrainsModel& model) {
 }
 
 /// Whether a pair that touches at the beginning is ice there that the image cuts apart.
-bool is_frozen(const GrainsModel& model, const PairKey& key) {
+bool is_frozen(const Model& model, const PairKey& key) {
   const std::uint32_t grains = std::uint32_t(model.grains.size());
   if (key.second < grains) return key.shift[0] != 0 || key.shift[1] != 0;
   return model.settings.bonded_plates && key.second < grains + std::uint32_t(Partner::west);
@@ -32,8 +32,8 @@ std::vector<GrainPose> poses_of(const std::vector<GrainBody>& bodies) {
   return poses;
 }
 
-Listing listing_of(const GrainsModel& model, std::vector<GrainPose> poses,
-                   const GrainsBoundary& boundary, const std::vector<PairHistory>& past) {
+Listing listing_of(const Model& model, std::vector<GrainPose> poses, const Boundary& boundary,
+                   const std::vector<PairHistory>& past) {
   Listing listing;
   const PairSearch search = search_of(model);
   listing.pairs = make_list(search, find_pairs(search, poses, boundary), past);
@@ -44,9 +44,8 @@ Listing listing_of(const GrainsModel& model, std::vector<GrainPose> poses,
   return listing;
 }
 
-std::vector<PairHistory> initial_bonds(const GrainsModel& model,
-                                       const std::vector<GrainPose>& poses,
-                                       const GrainsBoundary& boundary) {
+std::vector<PairHistory> initial_bonds(const Model& model, const std::vector<GrainPose>& poses,
+                                       const Boundary& boundary) {
   std::vector<PairHistory> bonds;
   for (const BondedPair& bond : model.bonds) {
     std::uint32_t a = bond.first, b = bond.second;
@@ -74,4 +73,4 @@ std::vector<PairHistory> initial_bonds(const GrainsModel& model,
   return bonds;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

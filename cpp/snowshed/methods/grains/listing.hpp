@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// A list and all that has its sizes.
 struct Listing {
@@ -15,15 +15,15 @@ struct Listing {
 };
 
 /// Looks for the near pairs of these poses. Contacts keep their past.
-Listing listing_of(const GrainsModel&, std::vector<GrainPose>, const GrainsBoundary&,
+Listing listing_of(const Model&, std::vector<GrainPose>, const Boundary&,
                    const std::vector<PairHistory>&);
 
 /// The pairs that are bonded at the beginning: those of the sample, those across the sides of a
 /// periodic sample, and with bonded plates those that touch a plate.
-std::vector<PairHistory> initial_bonds(const GrainsModel&, const std::vector<GrainPose>&,
-                                       const GrainsBoundary&);
+std::vector<PairHistory> initial_bonds(const Model&, const std::vector<GrainPose>&,
+                                       const Boundary&);
 
 /// Poses of grains that stand in a state, or where they began.
 std::vector<GrainPose> poses_of(const std::vector<GrainBody>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

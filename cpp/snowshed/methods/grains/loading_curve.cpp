@@ -7,7 +7,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// Peaks are added behind these, then energies.
@@ -103,7 +103,7 @@ void LoadingCurve::watch(const LoadingStresses& s) {
 }
 
 void LoadingCurve::record(const Method& method) {
-  const auto& grains = dynamic_cast<const GrainsMethod&>(method);
+  const auto& grains = dynamic_cast<const Solver&>(method);
   const int stage = grains.stage();
   const double time = grains.time();
   watch(grains.stresses());
@@ -121,7 +121,7 @@ void LoadingCurve::record(const Method& method) {
   }
 }
 
-void LoadingCurve::add_row(const GrainsMethod& grains) {
+void LoadingCurve::add_row(const Solver& grains) {
   const LoadingMeasures m = grains.measures();
   const double row[] = {grains.time(),
                         double(stage_ + 1),
@@ -182,4 +182,4 @@ void LoadingCurve::load(const BinaryReader& in) {
   points_done_ = int(stage[1]);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -7,7 +7,7 @@
 
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// Rows of instantaneous values at the beginning of the test, at `points` strains of each stage,
 /// and where a stage ends. The strains are (k / points)^2 of that at which the stage ends: a
@@ -38,7 +38,7 @@ class LoadingCurve final : public Curve {
   double next_time() const;
   double carried(const LoadingStresses&) const;
   void watch(const LoadingStresses&);
-  void add_row(const GrainsMethod&);
+  void add_row(const Solver&);
 
   std::vector<LoadingStage> stages_;
   double height_;
@@ -51,4 +51,4 @@ class LoadingCurve final : public Curve {
   std::optional<LoadingStresses> peak_;  // of the steps since the last row, if there was one
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

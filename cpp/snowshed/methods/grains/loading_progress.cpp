@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// The plate then acts as a dashpot, which takes energy and cannot make the snow swing; explicit
@@ -10,7 +10,7 @@ namespace {
 constexpr double servo_steps = 5;
 
 /// Upward, so that the force on the top plate comes near to what the stage asks for.
-double servo_speed(const LoadingStage& stage, const LoadedSample& sample, const GrainsBoundary& b,
+double servo_speed(const LoadingStage& stage, const LoadedSample& sample, const Boundary& b,
                    double dt) {
   const double excess = b.plate_force[1].z() - stage.stress * sample.box.x() * sample.box.y();
   const double stiffness =
@@ -39,8 +39,8 @@ bool has_ended(const LoadingStage& stage, const LoadedSample& sample, const Load
 
 }  // namespace
 
-GrainsBoundary initial_boundary(const LoadedSample& sample) {
-  GrainsBoundary b;
+Boundary initial_boundary(const LoadedSample& sample) {
+  Boundary b;
   b.plate[0] = Vec3(0, 0, -sample.radius);
   b.plate[1] = Vec3(0, 0, sample.box.z() + sample.radius);
   b.side[1] = sample.box.x();
@@ -49,7 +49,7 @@ GrainsBoundary initial_boundary(const LoadedSample& sample) {
 }
 
 void begin_stage(const std::vector<LoadingStage>& stages, const LoadedSample& sample,
-                 const LoadingProgress& progress, GrainsBoundary& b) {
+                 const LoadingProgress& progress, Boundary& b) {
   if (progress.stage >= int(stages.size()) || b.has_cone) return;
   if (stages[std::size_t(progress.stage)].kind != LoadingKind::penetrate) return;
   b.has_top = false;
@@ -59,7 +59,7 @@ void begin_stage(const std::vector<LoadingStage>& stages, const LoadedSample& sa
 }
 
 void set_velocities(const std::vector<LoadingStage>& stages, const LoadedSample& sample,
-                    const LoadingProgress& progress, double dt, GrainsBoundary& b) {
+                    const LoadingProgress& progress, double dt, Boundary& b) {
   for (Vec3* v : {&b.plate_velocity[0], &b.plate_velocity[1], &b.tip_velocity}) v->setZero();
   for (double& v : b.side_velocity) v = 0;
   if (progress.stage >= int(stages.size())) return;
@@ -92,8 +92,7 @@ void set_velocities(const std::vector<LoadingStage>& stages, const LoadedSample&
 }
 
 void count_step(const std::vector<LoadingStage>& stages, const LoadedSample& sample,
-                const LoadingGauge& gauge, double dt, LoadingProgress& progress,
-                GrainsBoundary& b) {
+                const LoadingGauge& gauge, double dt, LoadingProgress& progress, Boundary& b) {
   if (progress.stage >= int(stages.size())) return;
   const LoadingStage& stage = stages[std::size_t(progress.stage)];
   if (stage.kind != LoadingKind::hold) progress.displacement += dt * stage.speed;
@@ -104,4 +103,4 @@ void count_step(const std::vector<LoadingStage>& stages, const LoadedSample& sam
   begin_stage(stages, sample, progress, b);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

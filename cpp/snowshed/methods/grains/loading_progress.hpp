@@ -6,7 +6,7 @@
 #include "snowshed/methods/grains/boundary.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 struct LoadingProgress {
   int stage = 0;            // the number of stages when all are done
@@ -32,20 +32,20 @@ struct LoadedSample {
 inline constexpr double rest_per_peak = 1e-4;
 
 /// The plates, sides and cone of a sample that is not loaded yet.
-GrainsBoundary initial_boundary(const LoadedSample&);
+Boundary initial_boundary(const LoadedSample&);
 
 /// Prepares what the present stage needs: penetration takes the top plate away and brings the cone.
 void begin_stage(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
-                 GrainsBoundary&);
+                 Boundary&);
 
 /// Sets the velocities for a step of this length. A normal stress in shear is kept by the top
 /// plate's speed: the error of the force over the stiffness of the plate's contacts is mended
 /// within five steps, at the stage's speed at most.
 void set_velocities(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingProgress&,
-                    double dt, GrainsBoundary&);
+                    double dt, Boundary&);
 
 /// Counts a step, and goes on to the next stage where this one has ended.
 void count_step(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingGauge&,
-                double dt, LoadingProgress&, GrainsBoundary&);
+                double dt, LoadingProgress&, Boundary&);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

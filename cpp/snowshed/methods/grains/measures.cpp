@@ -6,10 +6,10 @@
 #include "snowshed/methods/grains/loading_curve.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-LoadingStresses GrainsSolver::stresses() const {
-  const GrainsBoundary& b = state_.boundary;
+LoadingStresses SolverImpl::stresses() const {
+  const Boundary& b = state_.boundary;
   const double height = model_.box.z();
   LoadingStresses m;
   m.axial_strain = shortened_by() / height;
@@ -24,14 +24,14 @@ LoadingStresses GrainsSolver::stresses() const {
 }
 
 /// How much nearer the plates are than at the beginning, m.
-double GrainsSolver::shortened_by() const {
-  const GrainsBoundary& b = state_.boundary;
+double SolverImpl::shortened_by() const {
+  const Boundary& b = state_.boundary;
   const double r = model_.radius;
   return (model_.box.z() + r - b.plate[1].z()) + (b.plate[0].z() + r);
 }
 
-LoadingMeasures GrainsSolver::measures() const {
-  const GrainsBoundary& b = state_.boundary;
+LoadingMeasures SolverImpl::measures() const {
+  const Boundary& b = state_.boundary;
   const double height = model_.box.z();
   LoadingMeasures m{stresses()};
   m.stage = state_.loading.stage;
@@ -47,7 +47,7 @@ LoadingMeasures GrainsSolver::measures() const {
   return m;
 }
 
-std::vector<GrainContact> GrainsSolver::grain_contacts() const {
+std::vector<GrainContact> SolverImpl::grain_contacts() const {
   std::vector<GrainContact> contacts;
   std::vector<double> pairs;
   const PairGroup* last = nullptr;
@@ -70,19 +70,19 @@ std::vector<GrainContact> GrainsSolver::grain_contacts() const {
   return contacts;
 }
 
-std::optional<double> GrainsSolver::progress() const {
+std::optional<double> SolverImpl::progress() const {
   return loading_progress(model_.loading, state_.loading.stage,
                           state_.loading.displacement / model_.box.z());
 }
 
-std::unique_ptr<Curve> GrainsSolver::empty_curve() const {
+std::unique_ptr<Curve> SolverImpl::empty_curve() const {
   return std::make_unique<LoadingCurve>(model_.loading, model_.box.z(),
                                         model_.keeps_energy ? energies() : NamedEnergies{});
 }
 
 /// The spheres, with what is known of the grain that each belongs to: its number, its velocity, how
 /// many grains it touches and is bonded to, and half the sum of its contact forces.
-PointCloud GrainsSolver::snapshot() const {
+PointCloud SolverImpl::snapshot() const {
   const std::vector<std::uint32_t>& of = model_.spheres.grain;
   std::vector<std::int32_t> touching(size(), 0), bonded(size(), 0);
   std::vector<float> force(size(), 0);
@@ -109,7 +109,7 @@ PointCloud GrainsSolver::snapshot() const {
   return cloud;
 }
 
-std::vector<Vec3> GrainsSolver::sphere_positions() const {
+std::vector<Vec3> SolverImpl::sphere_positions() const {
   std::vector<Vec3> positions;
   if (size() == 0) return positions;
   positions.reserve(count_spheres());
@@ -122,4 +122,4 @@ std::vector<Vec3> GrainsSolver::sphere_positions() const {
   return positions;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -9,12 +9,10 @@
 #include "snowshed/methods/grains/input.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed {
-namespace grains {
+namespace snowshed::grains {
 namespace {
 
-void check_stage(const LoadingStage& stage, const std::string& path,
-                 const GrainsSettings& settings) {
+void check_stage(const LoadingStage& stage, const std::string& path, const Settings& settings) {
   const std::string kind = quote(name_of(stage.kind));
   if (stage.kind == LoadingKind::stretch && !settings.bonded_plates)
     throw InputError(path + "/kind", kind + " pulls at the plates; set /numerics/bonded_plates");
@@ -25,7 +23,7 @@ void check_stage(const LoadingStage& stage, const std::string& path,
 }
 
 /// Stages follow on each other: what a stage undoes must have been done.
-void check_stages(const std::vector<LoadingStage>& stages, const GrainsSettings& settings) {
+void check_stages(const std::vector<LoadingStage>& stages, const Settings& settings) {
   constexpr double most_shortening = 0.95;  // or nothing is left between the plates
   double shortening = 0;
   bool loaded = false, open = false;
@@ -51,7 +49,7 @@ void check_stages(const std::vector<LoadingStage>& stages, const GrainsSettings&
   }
 }
 
-class Descriptor final : public DescriptorOf<Descriptor, GrainsSettings> {
+class Descriptor final : public DescriptorOf<Descriptor, Settings> {
  public:
   const MethodFacts& facts() const override {
     static const MethodFacts facts{
@@ -59,7 +57,7 @@ class Descriptor final : public DescriptorOf<Descriptor, GrainsSettings> {
         "Discrete elements of snow: rigid clumps of spheres with bonds that break",
         {Part::sample},
         "cells",
-        names_of(named_energies(GrainsEnergy{})),
+        names_of(named_energies(Energy{})),
         {{"angular_velocity", "rad/s", "Angular velocity", 3},
          {"equivalent_radius", "m", "Radius of the sphere with a grain's volume"},
          {"coordination", "1", "Number of grains that a grain touches", 1, 1.0}}};
@@ -84,7 +82,7 @@ class Descriptor final : public DescriptorOf<Descriptor, GrainsSettings> {
   }
   std::shared_ptr<const MethodInput> read(const SceneView& scene,
                                           const std::filesystem::path& base_dir) const override {
-    return std::make_shared<const GrainsInput>(*scene.sample, base_dir);
+    return std::make_shared<const Input>(*scene.sample, base_dir);
   }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
@@ -92,7 +90,7 @@ class Descriptor final : public DescriptorOf<Descriptor, GrainsSettings> {
   }
 
   CostEstimate cost(const CostRequest& request) const override {
-    const GrainSample& sample = sample_of(*request.surroundings);
+    const Sample& sample = sample_of(*request.surroundings);
     check_loading_time(request.scene, sample.box.z());
     const auto grains = filled_later(request.scene, *request.surroundings);
     try {
@@ -107,12 +105,12 @@ class Descriptor final : public DescriptorOf<Descriptor, GrainsSettings> {
   }
 
  private:
-  static const GrainSample& sample_of(const Surroundings& surroundings) {
-    return dynamic_cast<const GrainsInput&>(*surroundings.input).sample();
+  static const Sample& sample_of(const Surroundings& surroundings) {
+    return dynamic_cast<const Input&>(*surroundings.input).sample();
   }
-  std::unique_ptr<GrainsMethod> filled_later(const SceneView& scene,
-                                             const Surroundings& surroundings) const {
-    return make_grains({settings_, scene.gravity, sample_of(surroundings), scene.loading,
+  std::unique_ptr<Solver> filled_later(const SceneView& scene,
+                                       const Surroundings& surroundings) const {
+    return make_solver({settings_, scene.gravity, sample_of(surroundings), scene.loading,
                         scene.cone.value_or(Cone{}), scene.output.energy});
   }
 };
@@ -124,5 +122,4 @@ const MethodDescriptor& descriptor() {
   return own;
 }
 
-}  // namespace grains
-}  // namespace snowshed
+}  // namespace snowshed::grains

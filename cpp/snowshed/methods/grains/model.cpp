@@ -5,18 +5,18 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// k_n = 2 E r1 r2 / (r1 + r2) and k_s = ratio k_n, with spheres of one radius; limits are
 /// strengths times the face of a voxel, (2 r)^2. The area is inferred, see docs/grains.md.
-BondLaw bond_law(const GrainsSettings& s, double radius) {
+BondLaw bond_law(const Settings& s, double radius) {
   const double stiffness = s.elastic_modulus * radius, area = 4 * radius * radius;
   return {stiffness, s.stiffness_ratio * stiffness, s.tensile_strength * area,
           s.shear_strength * area, s.friction};
 }
 
-GrainConstants constants_of(const Clump& clump, const GrainsSettings& s, double gravity) {
+GrainConstants constants_of(const Clump& clump, const Settings& s, double gravity) {
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(clump.inertia);
   Mat3 axes = principal.eigenvectors();
   if (axes.determinant() < 0) axes.col(2) = -axes.col(2);
@@ -35,7 +35,7 @@ GrainConstants constants_of(const Clump& clump, const GrainsSettings& s, double 
 
 }  // namespace
 
-GrainsModel::GrainsModel(GrainsOptions o)
+Model::Model(Options o)
     : settings(o.settings),
       gravity(o.gravity),
       loading(std::move(o.loading)),
@@ -63,4 +63,4 @@ GrainsModel::GrainsModel(GrainsOptions o)
   }
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

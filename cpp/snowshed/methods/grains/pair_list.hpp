@@ -10,7 +10,7 @@
 #include "snowshed/methods/grains/kernel_api.hpp"
 #include "snowshed/methods/grains/rotor.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// Spheres as parts of rigid bodies.
 struct SphereBodies {
@@ -48,7 +48,7 @@ struct PairHistory {
 /// found.
 struct PairList {
   std::vector<PairGroup> groups;
-  AlignedVector<double> ax, ay, az, bx, by, bz, ux, uy, uz;  // see GrainsView
+  AlignedVector<double> ax, ay, az, bx, by, bz, ux, uy, uz;  // see View
   AlignedVector<std::uint8_t> bonded;
   std::vector<std::uint32_t> a, b;
 
@@ -85,8 +85,7 @@ Vec3 plate_sphere(std::uint32_t number, double radius);
 
 /// All pairs nearer than the skin, ordered. Throws SimulationError where they are more than
 /// `most_pairs`, or the period too short.
-std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&,
-                                const GrainsBoundary&);
+std::vector<PairKey> find_pairs(const PairSearch&, const std::vector<GrainPose>&, const Boundary&);
 
 /// A list of these pairs, and of those to be kept, however far apart.
 PairList make_list(const PairSearch&, const std::vector<PairKey>&, const std::vector<PairHistory>&);
@@ -97,4 +96,4 @@ struct BodyGroups {
 };
 BodyGroups groups_of_bodies(const PairList&, std::size_t grains);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -7,7 +7,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/pair_list.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 constexpr int half_grid = 32768;  // spheres of a plate to each side of its origin
@@ -20,8 +20,7 @@ std::uint32_t plate_number(int i, int j) {
 /// cells of its border, or to those of its image where the box is periodic.
 class SphereCells {
  public:
-  SphereCells(const PairSearch& s, const std::vector<Vec3>& places, const GrainsBoundary& b,
-              double reach)
+  SphereCells(const PairSearch& s, const std::vector<Vec3>& places, const Boundary& b, double reach)
       : periodic_(s.periodic), boundary_(b) {
     const double bottom = std::min(b.plate[0].z(), b.plate[1].z());
     low_ = Vec3(b.side[0], b.side[2], bottom);
@@ -83,7 +82,7 @@ class SphereCells {
   }
 
   bool periodic_;
-  const GrainsBoundary& boundary_;
+  const Boundary& boundary_;
   Vec3 low_;
   int count_[3];
   double per_width_[3];
@@ -105,7 +104,7 @@ std::vector<Vec3> places_of(const PairSearch& s, const std::vector<GrainPose>& p
 /// Sees the spheres in the order of their cells.
 class Finder {
  public:
-  Finder(const PairSearch& s, const std::vector<GrainPose>& poses, const GrainsBoundary& b)
+  Finder(const PairSearch& s, const std::vector<GrainPose>& poses, const Boundary& b)
       : s_(s),
         b_(b),
         reach_(2 * s.radius + s.skin),
@@ -252,7 +251,7 @@ class Finder {
   }
 
   const PairSearch& s_;
-  const GrainsBoundary& b_;
+  const Boundary& b_;
   double reach_;
   std::vector<Vec3> places_;
   SphereCells cells_;
@@ -268,8 +267,8 @@ Vec3 plate_sphere(std::uint32_t number, double radius) {
 }
 
 std::vector<PairKey> find_pairs(const PairSearch& search, const std::vector<GrainPose>& poses,
-                                const GrainsBoundary& boundary) {
+                                const Boundary& boundary) {
   return Finder(search, poses, boundary).find();
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

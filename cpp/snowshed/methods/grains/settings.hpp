@@ -1,15 +1,15 @@
 // What a scene may choose of the discrete elements of snow.
 #pragma once
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// The four vertical sides of a sample: rigid walls without friction, or periodic in x and y.
-enum class GrainSides { walls, periodic };
+enum class Sides { walls, periodic };
 
 /// Settings of the grains: rigid clumps of spheres with bonds that break (Hagenmuller, Chambon and
 /// Naaim 2015, doi:10.5194/tc-9-1969-2015). Its table of parameters is not at hand; the defaults
 /// are of the literature, see docs/grains.md.
-struct GrainsSettings {
+struct Settings {
   double elastic_modulus = 1e9;   // Pa, E of the contact law
   double stiffness_ratio = 0.3;   // shear over normal stiffness of a contact
   double tensile_strength = 1e6;  // Pa, of bonds
@@ -19,7 +19,7 @@ struct GrainsSettings {
   double density_scaling = 1;   // of the grains' inertia, to take longer steps; not of their weight
   double damping = 0.2;         // local, of unbalanced forces
   double courant_factor = 0.3;  // time step over the root of mass over stiffness
-  GrainSides sides = GrainSides::walls;
+  Sides sides = Sides::walls;
   bool bonded_plates = false;  // the snow is frozen to the plates
   int threads = 0;             // 0: all
 
@@ -27,4 +27,4 @@ struct GrainsSettings {
   double resolution() const { return 0; }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -13,18 +13,18 @@
 #include "snowshed/methods/grains/solver_impl.hpp"
 #include "snowshed/methods/grains/time_step.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-std::unique_ptr<GrainsMethod> make_grains(GrainsOptions options) {
+std::unique_ptr<Solver> make_solver(Options options) {
   check_grains(options);
-  return std::make_unique<GrainsSolver>(std::move(options));
+  return std::make_unique<SolverImpl>(std::move(options));
 }
 
 namespace {
 
 /// The state without grains.
-GrainsState empty_state(const GrainsModel& model) {
-  GrainsState state;
+State empty_state(const Model& model) {
+  State state;
   state.boundary = initial_boundary(model.loaded());
   begin_stage(model.loading, model.loaded(), state.loading, state.boundary);
   state.listed_boundary = state.boundary;
@@ -50,7 +50,7 @@ double push(const GrainConstants& grain, GrainBody& body, double half_step) {
 constexpr std::ptrdiff_t bodies_in_push = 32;
 
 /// What the grains do to their surroundings does work on them, for half a step.
-double boundary_work(const GrainsBoundary& b, double half_step) {
+double boundary_work(const Boundary& b, double half_step) {
   double power = b.cone_force.dot(b.tip_velocity);
   for (int p = 0; p < 2; ++p) power += b.plate_force[p].dot(b.plate_velocity[p]);
   for (int s = 0; s < 4; ++s) power += (s % 2 == 0 ? -1 : 1) * b.side_force[s] * b.side_velocity[s];
@@ -59,13 +59,13 @@ double boundary_work(const GrainsBoundary& b, double half_step) {
 
 }  // namespace
 
-GrainsSolver::GrainsSolver(GrainsOptions o) : model_(std::move(o)), state_(empty_state(model_)) {}
+SolverImpl::SolverImpl(Options o) : model_(std::move(o)), state_(empty_state(model_)) {}
 
-void GrainsSolver::require_grains() const {
+void SolverImpl::require_grains() const {
   if (state_.bodies.empty()) throw SimulationError("there are no grains");
 }
 
-std::vector<ParticleBatch> GrainsSolver::seed(const StopRequest&) const {
+std::vector<ParticleBatch> SolverImpl::seed(const StopRequest&) const {
   ParticleBatch batch;
   for (const GrainConstants& grain : model_.grains) {
     batch.positions.push_back(grain.initial_position);
@@ -75,8 +75,8 @@ std::vector<ParticleBatch> GrainsSolver::seed(const StopRequest&) const {
 }
 
 /// A fresh sample with velocities and events of the batches, which must be those of `seed`.
-GrainsState GrainsSolver::with_batches(const std::vector<ParticleBatch>& batches) const {
-  GrainsState next = empty_state(model_);
+State SolverImpl::with_batches(const std::vector<ParticleBatch>& batches) const {
+  State next = empty_state(model_);
   std::size_t i = 0;
   for (const ParticleBatch& batch : batches) {
     check_batch(batch, 1);
@@ -99,7 +99,7 @@ GrainsState GrainsSolver::with_batches(const std::vector<ParticleBatch>& batches
 }
 
 /// Takes over a fresh sample: lists, forces, energies.
-void GrainsSolver::accept(GrainsState next, GrainsWork work) {
+void SolverImpl::accept(State next, Work work) {
   std::vector<GrainPose> poses = poses_of(next.bodies);
   const std::vector<PairHistory> bonds = initial_bonds(model_, poses, next.boundary);
   Listing listing = listing_of(model_, std::move(poses), next.boundary, bonds);
@@ -120,7 +120,7 @@ void GrainsSolver::accept(GrainsState next, GrainsWork work) {
   std::vector<std::uint32_t> order(next.bodies.size());
   std::iota(order.begin(), order.end(), 0u);
   if (model_.keeps_energy) {
-    GrainsEnergy before = state_.energy, after = next.energy;
+    Energy before = state_.energy, after = next.energy;
     store_energy(model_, state_, before);
     store_energy(model_, next, after);
     next.energy.added += after.stored() - before.stored();
@@ -130,20 +130,20 @@ void GrainsSolver::accept(GrainsState next, GrainsWork work) {
   order_ = std::move(order);
 }
 
-void GrainsSolver::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
+void SolverImpl::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
   soundness_.require();
   if (std::all_of(batches.begin(), batches.end(),
                   [](const ParticleBatch& b) { return b.positions.empty(); }))
     return;
   if (!state_.bodies.empty()) throw InputError("particles", "the grains of the sample are there");
-  GrainsState next = with_batches(batches);
+  State next = with_batches(batches);
   next.next_id = std::uint32_t(next.bodies.size());
   accept(std::move(next), {});
 }
 
-void GrainsSolver::replace(const std::vector<ParticleBatch>& batches) {
+void SolverImpl::replace(const std::vector<ParticleBatch>& batches) {
   soundness_.require();
-  GrainsState next = with_batches(batches);
+  State next = with_batches(batches);
   next.time = state_.time;
   next.counters = state_.counters;
   next.energy = state_.energy;
@@ -152,7 +152,7 @@ void GrainsSolver::replace(const std::vector<ParticleBatch>& batches) {
   accept(std::move(next), {});
 }
 
-void GrainsSolver::add_velocity(const std::vector<Vec3>& changes) {
+void SolverImpl::add_velocity(const std::vector<Vec3>& changes) {
   soundness_.require();
   check_velocity_changes(changes, size());
   double added = 0;
@@ -166,7 +166,7 @@ void GrainsSolver::add_velocity(const std::vector<Vec3>& changes) {
 }
 
 /// Half a step's forces, then a step's motion, into the workspace.
-void GrainsSolver::drift(double dt) {
+void SolverImpl::drift(double dt) {
   parallel_pieces(std::ptrdiff_t(size()), model_.threads_for(state_.pairs.size()), bodies_in_push,
                   [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
@@ -180,7 +180,7 @@ void GrainsSolver::drift(double dt) {
 }
 
 /// Throws where a grain has gone astray.
-void GrainsSolver::check_places() const {
+void SolverImpl::check_places() const {
   const double farthest = 5e4 * model_.radius + 10 * model_.box.maxCoeff();
   for (std::size_t i = 0; i < work_.next.size(); ++i) {
     const GrainBody& body = work_.next[i];
@@ -191,8 +191,8 @@ void GrainsSolver::check_places() const {
 }
 
 /// Whether a sphere may have moved more than half the skin since pairs were looked for.
-bool GrainsSolver::must_relist(const GrainsBoundary& moved) const {
-  const GrainsBoundary& then = state_.listed_boundary;
+bool SolverImpl::must_relist(const Boundary& moved) const {
+  const Boundary& then = state_.listed_boundary;
   if (moved.has_top != then.has_top || moved.has_cone != then.has_cone) return true;
   const double most = 0.5 * skin_per_radius * model_.radius;
   if (!(moved.travel_since(then) < most)) return true;
@@ -208,11 +208,11 @@ bool GrainsSolver::must_relist(const GrainsBoundary& moved) const {
 }
 
 /// All or nothing: the list for the poses in the workspace.
-void GrainsSolver::relist(const GrainsBoundary& moved) {
+void SolverImpl::relist(const Boundary& moved) {
   Listing listing = listing_of(model_, poses_of(work_.next), moved, state_.pairs.histories());
   double gone = 0;  // J, with a plate that is taken away
   if (model_.keeps_energy && moved.has_top != state_.listed_boundary.has_top) {
-    GrainsEnergy e;
+    Energy e;
     store_energy(model_, state_, e);
     gone = e.normal + e.shear;
     std::swap(state_.pairs, listing.pairs);
@@ -230,11 +230,11 @@ void GrainsSolver::relist(const GrainsBoundary& moved) {
   ++state_.counters.sorts;
 }
 
-void GrainsSolver::step() {
+void SolverImpl::step() {
   soundness_.require();
   require_grains();
   const double dt = choose_step(model_, state_, work_.longest_step);
-  GrainsBoundary moved = state_.boundary;
+  Boundary moved = state_.boundary;
   set_velocities(model_.loading, model_.loaded(), state_.loading, dt, moved);
   moved.move(dt);
   drift(dt);
@@ -244,7 +244,7 @@ void GrainsSolver::step() {
 }
 
 /// From here on nothing throws but for forces that are not finite.
-void GrainsSolver::end_step(const GrainsBoundary& moved, double dt) {
+void SolverImpl::end_step(const Boundary& moved, double dt) {
   state_.energy.boundary += boundary_work(moved, 0.5 * dt);  // with the forces of before
   std::swap(state_.bodies, work_.next);
   state_.boundary = moved;
@@ -261,7 +261,7 @@ void GrainsSolver::end_step(const GrainsBoundary& moved, double dt) {
     const GrainBody& body = state_.bodies[i];
     sound = sound && std::isfinite(body.velocity.squaredNorm() + body.spin_momentum.squaredNorm());
   }
-  const GrainsBoundary& b = state_.boundary;
+  const Boundary& b = state_.boundary;
   LoadingGauge gauge;
   gauge.top_stress = b.plate_force[1].z() / model_.area();
   const double sides[2] = {model_.box.y() * model_.box.z(), model_.box.x() * model_.box.z()};
@@ -282,4 +282,4 @@ void GrainsSolver::end_step(const GrainsBoundary& moved, double dt) {
   soundness_.fail("the forces on a grain are not finite");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -13,12 +13,12 @@
 #include "snowshed/methods/grains/settings.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-struct GrainsOptions {
-  GrainsSettings settings;
+struct Options {
+  Settings settings;
   double gravity = 0;  // m/s2, along -z
-  GrainSample sample;  // clumps, bonds between them, the box they lie in
+  Sample sample;       // clumps, bonds between them, the box they lie in
   std::vector<LoadingStage> loading;
   Cone cone;
   bool energy = false;  // whether to keep the energy balance
@@ -55,7 +55,7 @@ struct GrainContact {
 
 /// Grains as a method, and what only they have. Its particles are the grains; `seed` gives those of
 /// the sample, at rest, and `add` takes these and no other.
-class GrainsMethod : public Method, public SeedsItself, public KeepsEnergy, public HasCurve {
+class Solver : public Method, public SeedsItself, public KeepsEnergy, public HasCurve {
  public:
   virtual std::size_t count_spheres() const = 0;
   virtual LoadingMeasures measures() const = 0;
@@ -67,6 +67,6 @@ class GrainsMethod : public Method, public SeedsItself, public KeepsEnergy, publ
 };
 
 /// Throws InputError where settings, sample and loading do not fit each other.
-std::unique_ptr<GrainsMethod> make_grains(GrainsOptions);
+std::unique_ptr<Solver> make_solver(Options);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -4,11 +4,11 @@
 #include "snowshed/methods/grains/state.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
-class GrainsSolver final : public GrainsMethod {
+class SolverImpl final : public Solver {
  public:
-  explicit GrainsSolver(GrainsOptions);
+  explicit SolverImpl(Options);
 
   using Method::add;
   void add(const std::vector<ParticleBatch>&, const StopRequest&) override;
@@ -54,28 +54,28 @@ class GrainsSolver final : public GrainsMethod {
  private:
   /// What an archive holds.
   struct Restored {
-    GrainsState state;
-    GrainsWork work;
+    State state;
+    Work work;
   };
   Restored restored(const BinaryReader&) const;
 
-  GrainsState with_batches(const std::vector<ParticleBatch>&) const;
-  void accept(GrainsState, GrainsWork);
+  State with_batches(const std::vector<ParticleBatch>&) const;
+  void accept(State, Work);
   double shortened_by() const;
   void require_grains() const;
   void drift(double dt);
   void check_places() const;
-  bool must_relist(const GrainsBoundary&) const;
-  void relist(const GrainsBoundary&);
-  void end_step(const GrainsBoundary& moved, double dt);
+  bool must_relist(const Boundary&) const;
+  void relist(const Boundary&);
+  void end_step(const Boundary& moved, double dt);
   template <class Visit>
   void visit_fields(Visit) const;
 
-  GrainsModel model_;
-  GrainsState state_;
-  GrainsWork work_;
+  Model model_;
+  State state_;
+  Work work_;
   Soundness soundness_;
   std::vector<std::uint32_t> order_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

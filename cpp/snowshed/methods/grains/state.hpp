@@ -14,7 +14,7 @@
 #include "snowshed/methods/grains/rotor.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// What moves of a grain, and what acts on it.
 struct GrainBody {
@@ -38,10 +38,10 @@ struct GrainConstants {
 /// The fewest pairs that a thread is started for.
 inline constexpr std::size_t pairs_per_thread = 512;
 
-struct GrainsModel {
-  explicit GrainsModel(GrainsOptions);
+struct Model {
+  explicit Model(Options);
 
-  GrainsSettings settings;
+  Settings settings;
   double gravity;  // m/s2, along -z
   std::vector<LoadingStage> loading;
   Cone cone;
@@ -61,25 +61,25 @@ struct GrainsModel {
   }
   double area() const { return box.x() * box.y(); }
   LoadedSample loaded() const { return {box, radius, law.normal_stiffness}; }
-  bool periodic() const { return settings.sides == GrainSides::periodic; }
+  bool periodic() const { return settings.sides == Sides::periodic; }
 };
 
-struct GrainsState {
+struct State {
   std::vector<GrainBody> bodies;  // empty before the grains are added
   std::vector<std::uint16_t> events;
   std::uint32_t first_id = 0, next_id = 0;
-  GrainsBoundary boundary;
+  Boundary boundary;
   LoadingProgress loading;
   PairList pairs;
   std::vector<GrainPose> listed;  // of the grains as the pairs were looked for
-  GrainsBoundary listed_boundary;
+  Boundary listed_boundary;
   double time = 0, dt = 0;  // s
   std::int64_t bonds = 0, broken_in_tension = 0, broken_in_shear = 0;
   StepCounters counters;
-  GrainsEnergy energy;  // its sums over steps
+  Energy energy;  // its sums over steps
 };
 
-struct GrainsWork {
+struct Work {
   std::vector<GrainBody> next;      // where grains will be at the end of a step
   std::vector<BodyFrame> frames;    // of grains and plates
   std::vector<GroupForce> results;  // of the groups of pairs
@@ -88,4 +88,4 @@ struct GrainsWork {
   std::vector<double> damped;       // J, of each grain in a step
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -8,7 +8,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/grains/contacts.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// Against displacement and against turning, in the frame of the grain.
@@ -24,7 +24,7 @@ struct GrainStiffness {
 
 }  // namespace
 
-double longest_step(const GrainsModel& model, const GrainsBoundary& boundary, const PairList& list,
+double longest_step(const Model& model, const Boundary& boundary, const PairList& list,
                     const std::vector<GrainPose>& poses) {
   const double k = std::max(model.law.normal_stiffness, model.law.shear_stiffness);
   std::vector<GrainStiffness> stiffness(poses.size());
@@ -48,7 +48,7 @@ double longest_step(const GrainsModel& model, const GrainsBoundary& boundary, co
   return model.settings.courant_factor / std::sqrt(fastest);
 }
 
-double choose_step(const GrainsModel& model, const GrainsState& state, double longest) {
+double choose_step(const Model& model, const State& state, double longest) {
   double fastest = state.boundary.top_speed();
   if (state.loading.stage < int(model.loading.size()))
     fastest = std::max(fastest, model.loading[std::size_t(state.loading.stage)].speed);
@@ -65,4 +65,4 @@ double choose_step(const GrainsModel& model, const GrainsState& state, double lo
   return dt;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

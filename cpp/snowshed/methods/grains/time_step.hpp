@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 /// The Courant factor times the least, over grains, of sqrt(m / K) and of the same for rotation.
 /// K is the stiffness of all pairs that are listed, whether they touch yet or not: no others can
@@ -11,11 +11,10 @@ namespace snowshed {
 /// against turning, sum k (c^2 - c c^T) with the arms c of the contacts, relative to the inertia.
 /// The pairs' springs can move at most four times as fast as sqrt(K / m) squared (two bodies, each
 /// with displacement and rotation), so that factors up to 1 are stable for small displacements.
-double longest_step(const GrainsModel&, const GrainsBoundary&, const PairList&,
-                    const std::vector<GrainPose>&);
+double longest_step(const Model&, const Boundary&, const PairList&, const std::vector<GrainPose>&);
 
 /// A step no longer than that, in which nothing moves farther than a tenth of a sphere's diameter.
 /// Throws SimulationError where it falls to nothing.
-double choose_step(const GrainsModel&, const GrainsState&, double longest);
+double choose_step(const Model&, const State&, double longest);
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

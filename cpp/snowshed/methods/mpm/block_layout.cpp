@@ -4,7 +4,7 @@
 
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// Calls f(neighbour index, key) for the 3^D blocks around one, itself included.
@@ -70,4 +70,4 @@ void BlockLayout<D>::connect(int threads) {
 template struct BlockLayout<2>;
 template struct BlockLayout<3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

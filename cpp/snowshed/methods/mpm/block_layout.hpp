@@ -8,7 +8,7 @@
 
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// Integer position of a block; its first node is at coordinate * block_edge.
 template <int D>
@@ -64,4 +64,4 @@ struct BlockLayout {
   void connect(int threads);
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

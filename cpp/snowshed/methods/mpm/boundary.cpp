@@ -7,7 +7,7 @@
 
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 ThickSolid as_grid_sees(Shape shape, double dx, int dimension) {
   return thickened(std::move(shape), dx, dimension);
@@ -190,4 +190,4 @@ template class Contacts<float, 3>;
 template class Contacts<double, 2>;
 template class Contacts<double, 3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -15,7 +15,7 @@
 #include "snowshed/methods/mpm/block_layout.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// A solid as the grid must see it: parts thinner than two cells would slip between the nodes, so
 /// their surface is moved out until they are two cells thick.
@@ -110,4 +110,4 @@ class Contacts {
   std::vector<Contact<T>> contacts_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

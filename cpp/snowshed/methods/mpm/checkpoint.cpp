@@ -6,7 +6,7 @@
 #include "snowshed/methods/archive.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// What a checkpoint holds of contacts and sleep, besides the particles and the numbers.
@@ -99,7 +99,7 @@ void check_materials(const StateReader& archive, const AlignedVector<std::uint8_
 }  // namespace
 
 template <class T, int D>
-void MpmSolver<T, D>::save(BinaryWriter& out) const {
+void SolverImpl<T, D>::save(BinaryWriter& out) const {
   soundness_.require();
   StateWriter archive(out);
   Stored<T, D> stored{state_.contacts.stored_impulses(), state_.sleep.states()};
@@ -108,9 +108,9 @@ void MpmSolver<T, D>::save(BinaryWriter& out) const {
 }
 
 template <class T, int D>
-MpmState<T, D> MpmSolver<T, D>::read_state(const BinaryReader& in) const {
+State<T, D> SolverImpl<T, D>::read_state(const BinaryReader& in) const {
   const StateReader archive(in);
-  MpmState<T, D> next(model_);
+  State<T, D> next(model_);
   Stored<T, D> stored;
   visit_particles(archive, next.particles, model_.materials.size());
   check_materials(archive, next.particles.material_id, model_.materials.size());
@@ -126,20 +126,20 @@ MpmState<T, D> MpmSolver<T, D>::read_state(const BinaryReader& in) const {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::load(const BinaryReader& in) {
+void SolverImpl<T, D>::load(const BinaryReader& in) {
   accept(read_state(in));
   work_.since_sort = 0;
   soundness_ = {};
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::check(const BinaryReader& in) const {
+void SolverImpl<T, D>::check(const BinaryReader& in) const {
   read_state(in);
 }
 
-template class MpmSolver<float, 2>;
-template class MpmSolver<float, 3>;
-template class MpmSolver<double, 2>;
-template class MpmSolver<double, 3>;
+template class SolverImpl<float, 2>;
+template class SolverImpl<float, 3>;
+template class SolverImpl<double, 2>;
+template class SolverImpl<double, 3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

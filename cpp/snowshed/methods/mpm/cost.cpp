@@ -9,7 +9,7 @@
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// Memory of the solver. A particle holds position, velocity, deformation gradient, affine
@@ -49,7 +49,7 @@ constexpr double scattered_snow(int dimension) { return dimension == 2 ? 4.0 : 1
 
 /// Nodes of the grid blocks around the snow of an event, were each body compact: many small bodies
 /// far apart use more of them than the volume of their snow tells.
-double count_nodes(const MpmSettings& n, const std::vector<double>& volumes, int dimension) {
+double count_nodes(const Settings& n, const std::vector<double>& volumes, int dimension) {
   constexpr double reached = 1.5;  // blocks beyond its own that the splines of a body reach
   const double edge = (dimension == 2 ? block_edge<2> : block_edge<3>)*n.dx;
   double blocks = 0;
@@ -61,13 +61,13 @@ double count_nodes(const MpmSettings& n, const std::vector<double>& volumes, int
 }
 
 /// Memory of the grid where snow is scattered, and of the obstacles and the contacts with them.
-double surroundings_bytes(const MpmSettings& n, const SceneOutline& outline, double nodes) {
+double surroundings_bytes(const Settings& n, const SceneOutline& outline, double nodes) {
   const auto [per_contact, per_obstacle] = obstacle_storage(n.precision);
   return nodes * outline.most_overlapping * per_contact + per_obstacle * outline.obstacles;
 }
 
 /// New snow is awake from its release to rest, older snow in part, once something lands on it.
-double count_updates(const MpmSettings& n, int events, const SnowMotion& motion,
+double count_updates(const Settings& n, int events, const SnowMotion& motion,
                      const CostEstimate& estimate) {
   double old_awake = 1.0;
   if (n.sleep_speed > 0.0)
@@ -82,14 +82,14 @@ double count_updates(const MpmSettings& n, int events, const SnowMotion& motion,
 
 /// Time over the step at rest, and more for the distance: a step gets shorter with speed, as in
 /// `next_time_step`.
-double steps_per_event(const MpmSettings& n, const SnowMotion& motion, double time_step) {
+double steps_per_event(const Settings& n, const SnowMotion& motion, double time_step) {
   return std::ceil(motion.event_time / time_step +
                    2.0 * motion.distance / (n.dx * n.courant_factor));
 }
 
 }  // namespace
 
-double stable_time_step(const MpmSettings& n, const std::vector<Snow>& snows, int dimension) {
+double stable_time_step(const Settings& n, const std::vector<Snow>& snows, int dimension) {
   double limit = std::numeric_limits<double>::infinity();
   for (const Snow& snow : snows)
     limit = std::min(limit, elastic_time_step(snow.youngs_modulus, snow.poissons_ratio,
@@ -97,7 +97,7 @@ double stable_time_step(const MpmSettings& n, const std::vector<Snow>& snows, in
   return next_time_step(limit, 0.0, n.dx, n.courant_factor);
 }
 
-CostEstimate estimate_cost(const MpmSettings& n, const CostRequest& request) {
+CostEstimate estimate_cost(const Settings& n, const CostRequest& request) {
   const int dimension = request.scene.dimension, events = request.scene.events.count;
   const SceneOutline& outline = *request.outline;
   CostEstimate estimate;
@@ -119,7 +119,7 @@ CostEstimate estimate_cost(const MpmSettings& n, const CostRequest& request) {
   return estimate;
 }
 
-std::vector<Feature> features_of(const MpmSettings& n, const SceneView& scene,
+std::vector<Feature> features_of(const Settings& n, const SceneView& scene,
                                  const SceneOutline& outline) {
   const bool yields = std::any_of(outline.snows.begin(), outline.snows.end(), [](const Snow& snow) {
     return snow.model == SnowModel::cam_clay;
@@ -146,4 +146,4 @@ std::vector<Feature> features_of(const MpmSettings& n, const SceneView& scene,
   return features;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -6,13 +6,13 @@
 #include "snowshed/methods/cost.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// The first time step of snow at rest, of the stiffest, s.
-double stable_time_step(const MpmSettings&, const std::vector<Snow>&, int dimension);
+double stable_time_step(const Settings&, const std::vector<Snow>&, int dimension);
 
-CostEstimate estimate_cost(const MpmSettings&, const CostRequest&);
+CostEstimate estimate_cost(const Settings&, const CostRequest&);
 
-std::vector<Feature> features_of(const MpmSettings&, const SceneView&, const SceneOutline&);
+std::vector<Feature> features_of(const Settings&, const SceneView&, const SceneOutline&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

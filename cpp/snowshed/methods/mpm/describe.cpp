@@ -2,9 +2,9 @@
 
 #include "snowshed/methods/allowed.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
-void describe(SettingsVisitor& v, MpmSettings& n) {
+void describe(SettingsVisitor& v, Settings& n) {
   v.accuracy({"dx", "precision", "transfer", "flip_ratio", "damping_rate", "basis",
               "courant_factor", "strain_limit", "sleep_speed", "sleep_time"});
   v.alias("courant_factor", "step_factor");  // its name up to version 0.1
@@ -28,4 +28,4 @@ void describe(SettingsVisitor& v, MpmSettings& n) {
   v.integer("threads", n.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -8,22 +8,28 @@
 namespace snowshed {
 
 template <>
-struct EnumNames<Precision> {
-  static constexpr Named<Precision> list[] = {{Precision::float32, "float"},
-                                              {Precision::float64, "double"}};
+struct EnumNames<mpm::Precision> {
+  static constexpr Named<mpm::Precision> list[] = {{mpm::Precision::float32, "float"},
+                                                   {mpm::Precision::float64, "double"}};
 };
 
 template <>
-struct EnumNames<Transfer> {
-  static constexpr Named<Transfer> list[] = {{Transfer::flip, "flip"}, {Transfer::apic, "apic"}};
+struct EnumNames<mpm::Transfer> {
+  static constexpr Named<mpm::Transfer> list[] = {{mpm::Transfer::flip, "flip"},
+                                                  {mpm::Transfer::apic, "apic"}};
 };
 
 template <>
-struct EnumNames<Basis> {
-  static constexpr Named<Basis> list[] = {{Basis::quadratic, "quadratic"}, {Basis::cubic, "cubic"}};
+struct EnumNames<mpm::Basis> {
+  static constexpr Named<mpm::Basis> list[] = {{mpm::Basis::quadratic, "quadratic"},
+                                               {mpm::Basis::cubic, "cubic"}};
 };
-
-/// Shows a visitor each setting in turn: key, unit, range and meaning.
-void describe(SettingsVisitor&, MpmSettings&);
 
 }  // namespace snowshed
+
+namespace snowshed::mpm {
+
+/// Shows a visitor each setting in turn: key, unit, range and meaning.
+void describe(SettingsVisitor&, Settings&);
+
+}  // namespace snowshed::mpm

@@ -5,12 +5,12 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// Appends the batches to a state and makes all else follow.
 template <class T, int D>
-void add_to(MpmState<T, D>& state, const MpmModel<T, D>& model,
+void add_to(State<T, D>& state, const Model<T, D>& model,
             const std::vector<ParticleBatch>& batches) {
   const bool energy = model.options.energy;
   const double before = energy ? state.energy(model).stored() : 0.0;
@@ -24,23 +24,23 @@ void add_to(MpmState<T, D>& state, const MpmModel<T, D>& model,
 }  // namespace
 
 template <class T, int D>
-void MpmSolver<T, D>::accept(MpmState<T, D> next) noexcept {
+void SolverImpl<T, D>::accept(State<T, D> next) noexcept {
   state_ = std::move(next);
   work_.tiles_valid = false;
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
+void SolverImpl<T, D>::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
   soundness_.require();
-  MpmState<T, D> next = state_;
+  State<T, D> next = state_;
   add_to(next, model_, batches);
   accept(std::move(next));
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::replace(const std::vector<ParticleBatch>& batches) {
+void SolverImpl<T, D>::replace(const std::vector<ParticleBatch>& batches) {
   soundness_.require();
-  MpmState<T, D> next(model_);
+  State<T, D> next(model_);
   next.progress = state_.progress;
   if (model_.options.energy) {
     EnergyBalance& balance = next.progress.energy;
@@ -52,7 +52,7 @@ void MpmSolver<T, D>::replace(const std::vector<ParticleBatch>& batches) {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
+void SolverImpl<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
   soundness_.require();
   const std::vector<std::uint32_t>& at = order_by_id();
   check_velocity_changes(velocity_changes, at.size());
@@ -80,8 +80,8 @@ void MpmSolver<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::settle(const std::vector<double>& drops,
-                             const std::vector<double>& plastic_changes) {
+void SolverImpl<T, D>::settle(const std::vector<double>& drops,
+                              const std::vector<double>& plastic_changes) {
   soundness_.require();
   const std::vector<std::uint32_t>& at = order_by_id();
   check_count("drops", drops.size(), at.size());
@@ -89,9 +89,9 @@ void MpmSolver<T, D>::settle(const std::vector<double>& drops,
   for (std::size_t k = 0; k < at.size(); ++k)
     if (!std::isfinite(drops[k]) || !std::isfinite(plastic_changes[k]))
       throw InputError("settling", "not finite");
-  const MpmSettings& n = model_.options.settings;
+  const Settings& n = model_.options.settings;
   const double stored = model_.options.energy ? energy().stored() : 0.0;
-  MpmState<T, D> next = state_;
+  State<T, D> next = state_;
   std::vector<BlockKey> blocks = blocks_of_particles(next.layout);
   for (std::size_t k = 0; k < at.size(); ++k) {
     const std::size_t i = at[k];
@@ -110,9 +110,9 @@ void MpmSolver<T, D>::settle(const std::vector<double>& drops,
   accept(std::move(next));
 }
 
-template class MpmSolver<float, 2>;
-template class MpmSolver<float, 3>;
-template class MpmSolver<double, 2>;
-template class MpmSolver<double, 3>;
+template class SolverImpl<float, 2>;
+template class SolverImpl<float, 3>;
+template class SolverImpl<double, 2>;
+template class SolverImpl<double, 3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

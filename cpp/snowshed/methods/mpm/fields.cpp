@@ -5,7 +5,7 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// One component of a vector or tensor, such as velocity_x.
@@ -30,35 +30,35 @@ std::string symmetric_axes(int k) {
 }  // namespace
 
 template <class T, int D>
-Sym<double, D> MpmSolver<T, D>::elastic_strain(std::size_t i) const {
+Sym<double, D> SolverImpl<T, D>::elastic_strain(std::size_t i) const {
   Sym<double, D> a;
   for (int k = 0; k < a.size; ++k) a.c[k] = double(state_.particles.be_minus_identity[k][i]);
   return hencky_strain(a);
 }
 
 template <class T, int D>
-double MpmSolver<T, D>::elastic_volume(std::size_t i) const {
+double SolverImpl<T, D>::elastic_volume(std::size_t i) const {
   return trace(elastic_strain(i));
 }
 
 template <class T, int D>
-double MpmSolver<T, D>::plastic_strain(std::size_t i) const {
+double SolverImpl<T, D>::plastic_strain(std::size_t i) const {
   return state_.particles.has_plastic ? double(state_.particles.plastic[i]) : 0.0;
 }
 
 template <class T, int D>
-double MpmSolver<T, D>::volume_ratio(std::size_t i) const {
+double SolverImpl<T, D>::volume_ratio(std::size_t i) const {
   return std::exp(elastic_volume(i) + plastic_strain(i) -
                   state_.material_of(model_, i).initial_plastic_strain);
 }
 
 template <class T, int D>
-double MpmSolver<T, D>::pressure(std::size_t i) const {
+double SolverImpl<T, D>::pressure(std::size_t i) const {
   return -state_.material_of(model_, i).elastic.bulk * elastic_volume(i);
 }
 
 template <class T, int D>
-double MpmSolver<T, D>::deviatoric_stress(std::size_t i) const {
+double SolverImpl<T, D>::deviatoric_stress(std::size_t i) const {
   Sym<double, D> deviator = elastic_strain(i);
   const double mean = trace(deviator) / D;
   for (int k = 0; k < D; ++k) deviator.c[k] -= mean;
@@ -66,12 +66,12 @@ double MpmSolver<T, D>::deviatoric_stress(std::size_t i) const {
 }
 
 template <class T, int D>
-double MpmSolver<T, D>::preconsolidation_pressure(std::size_t i) const {
+double SolverImpl<T, D>::preconsolidation_pressure(std::size_t i) const {
   return state_.material_of(model_, i).law.preconsolidation(plastic_strain(i));
 }
 
 template <class T, int D>
-Vec3 MpmSolver<T, D>::velocity(std::size_t i) const {
+Vec3 SolverImpl<T, D>::velocity(std::size_t i) const {
   VecD<D> v;
   for (int d = 0; d < D; ++d) v[d] = double(state_.particles.velocity[d][i]);
   return embed(v);
@@ -79,7 +79,7 @@ Vec3 MpmSolver<T, D>::velocity(std::size_t i) const {
 
 /// In the space (x, y, z); without y in 2D.
 template <class T, int D>
-Mat3 MpmSolver<T, D>::affine(std::size_t i) const {
+Mat3 SolverImpl<T, D>::affine(std::size_t i) const {
   const auto axis = [](int d) { return d == D - 1 ? 2 : d; };
   Mat3 c = Mat3::Zero();
   for (int r = 0; r < D; ++r)
@@ -88,7 +88,7 @@ Mat3 MpmSolver<T, D>::affine(std::size_t i) const {
 }
 
 template <class T, int D>
-std::vector<double> MpmSolver<T, D>::positions() const {
+std::vector<double> SolverImpl<T, D>::positions() const {
   std::vector<double> values(3 * state_.particles.size());
   parallel_for(std::ptrdiff_t(state_.layout.particle_blocks.size()), model_.max_threads, 64,
                [&](std::ptrdiff_t b) {
@@ -103,7 +103,7 @@ std::vector<double> MpmSolver<T, D>::positions() const {
 /// Calls visit(info, view) for each field; view() returns its view.
 template <class T, int D>
 template <class Visit>
-void MpmSolver<T, D>::visit_fields(Visit visit) const {
+void SolverImpl<T, D>::visit_fields(Visit visit) const {
   const auto stored = [&visit](const FieldInfo& info, const auto& array) {
     visit(info, [&] { return stored_view(info, array); });
   };
@@ -156,18 +156,65 @@ void MpmSolver<T, D>::visit_fields(Visit visit) const {
 }
 
 template <class T, int D>
-std::vector<FieldInfo> MpmSolver<T, D>::fields() const {
+std::vector<FieldInfo> SolverImpl<T, D>::fields() const {
   return listed_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 template <class T, int D>
-FieldView MpmSolver<T, D>::field(const std::string& name) const {
+FieldView SolverImpl<T, D>::field(const std::string& name) const {
   return found_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
-template class MpmSolver<float, 2>;
-template class MpmSolver<float, 3>;
-template class MpmSolver<double, 2>;
-template class MpmSolver<double, 3>;
+template <class T, int D>
+ParticleState SolverImpl<T, D>::state() const {
+  const std::vector<std::uint32_t>& at = order_by_id();
+  const std::vector<double> x = positions();
+  const auto by_id = [&](auto& values, auto value) {
+    values.resize(at.size());
+    parallel_for_each(std::ptrdiff_t(at.size()), model_.max_threads,
+                      [&](std::ptrdiff_t k) { values[k] = value(at[k]); });
+  };
+  ParticleState s;
+  by_id(s.positions, [&](std::size_t i) { return Vec3::Map(&x[3 * i]); });
+  by_id(s.velocities, [this](std::size_t i) { return velocity(i); });
+  by_id(s.masses, [this](std::size_t i) { return double(state_.particles.mass[i]); });
+  by_id(s.volume_ratios, [this](std::size_t i) { return volume_ratio(i); });
+  by_id(s.pressures, [this](std::size_t i) { return pressure(i); });
+  by_id(s.plastic_strains, [this](std::size_t i) { return plastic_strain(i); });
+  if (state_.particles.has_affine) by_id(s.affine, [this](std::size_t i) { return affine(i); });
+  by_id(s.ids, [this](std::size_t i) { return state_.particles.id[i]; });
+  by_id(s.events, [this](std::size_t i) { return state_.particles.event[i]; });
+  if (model_.options.snows.size() > 1)
+    by_id(s.material_ids, [this](std::size_t i) { return state_.particles.material_id[i]; });
+  s.densities.resize(at.size());
+  for (std::size_t k = 0; k < at.size(); ++k)
+    s.densities[k] = state_.material_of(model_, at[k]).density / s.volume_ratios[k];
+  return s;
+}
 
-}  // namespace snowshed
+template <class T, int D>
+MotionSummary SolverImpl<T, D>::motion(double speed) const {
+  const Particles<T, D>& p = state_.particles;
+  return motion_of(
+      p.size(), speed, [&p](std::size_t i) { return double(p.mass[i]); },
+      [&p](std::size_t i) {
+        double v2 = 0;
+        for (const auto& v : p.velocity) v2 += double(v[i]) * double(v[i]);
+        return v2;
+      });
+}
+
+template <class T, int D>
+std::size_t SolverImpl<T, D>::bytes() const {
+  std::size_t total = work_.grid.bytes();
+  state_.particles.for_each_array(
+      [&total](const char*, const auto& array) { total += bytes_of(array); });
+  return total;
+}
+
+template class SolverImpl<float, 2>;
+template class SolverImpl<float, 3>;
+template class SolverImpl<double, 2>;
+template class SolverImpl<double, 3>;
+
+}  // namespace snowshed::mpm

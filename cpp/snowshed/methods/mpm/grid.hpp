@@ -5,7 +5,7 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/methods/mpm/block_layout.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 template <class T, int D>
 struct Grid {
@@ -47,4 +47,4 @@ struct Grid {
   }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -10,7 +10,7 @@
 #include "snowshed/methods/contact_law.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// Nodes along one edge of a grid block.
 template <int D>
@@ -195,4 +195,4 @@ struct KernelChoice {
 template <class T>
 Kernels<T> select_kernels(const KernelChoice&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -2,7 +2,7 @@
 
 #include "snowshed/methods/mpm/time_step.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 template <class T>
@@ -13,11 +13,11 @@ CamClay<T> law_of(const Snow& s, int dimension) {
 
 }  // namespace
 
-Material::Material(const Snow& s, int dimension, const MpmSettings& n)
+Material::Material(const Snow& s, int dimension, const Settings& n)
     : elastic(Elasticity<double>::from(s.youngs_modulus, s.poissons_ratio, dimension)),
       density(s.density),
-      elastic_time_step(snowshed::elastic_time_step(s.youngs_modulus, s.poissons_ratio, s.density,
-                                                    dimension, n.dx, n.transfer, n.basis)) {
+      elastic_time_step(mpm::elastic_time_step(s.youngs_modulus, s.poissons_ratio, s.density,
+                                               dimension, n.dx, n.transfer, n.basis)) {
   if (s.model == SnowModel::elastic) return;
   law = law_of<double>(s, dimension);
   initial_plastic_strain = law.initial_plastic_strain(s.preconsolidation_pressure);
@@ -38,4 +38,4 @@ MaterialConstants<T> material_constants(const Snow& s, int dimension) {
 template MaterialConstants<float> material_constants(const Snow&, int);
 template MaterialConstants<double> material_constants(const Snow&, int);
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -7,7 +7,7 @@
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 struct Material {
   Elasticity<double> elastic;
@@ -16,7 +16,7 @@ struct Material {
   CamClay<double> law;                // all zero for elastic snow
   double elastic_time_step = 0;       // s
 
-  Material(const Snow&, int dimension, const MpmSettings&);
+  Material(const Snow&, int dimension, const Settings&);
 };
 
 /// The constants the kernels take. Those of elastic snow are Cam-Clay's with a yield function that
@@ -24,4 +24,4 @@ struct Material {
 template <class T>
 MaterialConstants<T> material_constants(const Snow&, int dimension);
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

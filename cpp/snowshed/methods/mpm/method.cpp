@@ -6,11 +6,10 @@
 #include "snowshed/methods/mpm/describe.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
-namespace snowshed {
-namespace mpm {
+namespace snowshed::mpm {
 namespace {
 
-class Descriptor final : public DescriptorOf<Descriptor, MpmSettings> {
+class Descriptor final : public DescriptorOf<Descriptor, Settings> {
  public:
   const MethodFacts& facts() const override {
     static const MethodFacts facts{
@@ -50,14 +49,14 @@ class Descriptor final : public DescriptorOf<Descriptor, MpmSettings> {
   }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
-    MpmOptions o;
+    Options o;
     o.dimension = scene.dimension;
     o.gravity = scene.gravity;
     o.snows = surroundings.snows;
     o.settings = settings_;
     o.obstacles = surroundings.resolved;
     o.energy = scene.output.energy;
-    return make_mpm(std::move(o));
+    return make_solver(std::move(o));
   }
 
   CostEstimate cost(const CostRequest& request) const override {
@@ -76,5 +75,4 @@ const MethodDescriptor& descriptor() {
   return own;
 }
 
-}  // namespace mpm
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -9,16 +9,16 @@
 #include "snowshed/methods/mpm/material_constants.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// Fewer particles than this are not worth waking another thread for, twice a step.
 inline constexpr int particles_per_thread = 2000;
 
 template <class T, int D>
-struct MpmModel {
-  explicit MpmModel(MpmOptions o) : MpmModel(std::move(o), choice_of(o)) {}
+struct Model {
+  explicit Model(Options o) : Model(std::move(o), choice_of(o)) {}
 
-  MpmOptions options;
+  Options options;
   bool material_per_particle;
   Kernels<T> kernels;
   int max_threads;
@@ -37,13 +37,13 @@ struct MpmModel {
   }
 
  private:
-  static KernelChoice choice_of(const MpmOptions& options) {
-    const MpmSettings& n = options.settings;
+  static KernelChoice choice_of(const Options& options) {
+    const Settings& n = options.settings;
     return {options.dimension,        n.transfer,    n.basis, options.snows.front().model,
             options.snows.size() > 1, options.energy};
   }
 
-  MpmModel(MpmOptions&& o, const KernelChoice& choice)
+  Model(Options&& o, const KernelChoice& choice)
       : options(std::move(o)),
         material_per_particle(choice.material_per_particle()),
         kernels(select_kernels<T>(choice)),
@@ -56,4 +56,4 @@ struct MpmModel {
   }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

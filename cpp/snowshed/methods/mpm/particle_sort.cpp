@@ -8,7 +8,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 template <int D>
 Placement<D> Placement<D>::of(const VecD<D>& position, double dx, Basis basis) {
@@ -142,4 +142,4 @@ template class ParticleSort<double, 3>;
 template std::vector<BlockKey> blocks_of_particles(const BlockLayout<2>&);
 template std::vector<BlockKey> blocks_of_particles(const BlockLayout<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -5,7 +5,7 @@
 #include "snowshed/methods/mpm/block_layout.hpp"
 #include "snowshed/methods/mpm/particles.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// Where a position (metres) lies: its block, and within it the `cell` coordinates.
 template <int D>
@@ -55,4 +55,4 @@ class ParticleSort {
 template <int D>
 std::vector<BlockKey> blocks_of_particles(const BlockLayout<D>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

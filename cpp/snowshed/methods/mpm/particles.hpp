@@ -17,7 +17,7 @@
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/particles/id_order.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// State of all particles in D dimensions. Arrays that a scene does not need stay empty.
 template <class T, int D>
@@ -149,4 +149,4 @@ struct Particles {
   mutable std::vector<std::uint32_t> order_by_id_;  // empty: not known
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <optional>
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 enum class Precision { float32, float64 };
 enum class Transfer { flip, apic };
 enum class Basis { quadratic, cubic };
 
 /// Settings of the material point method: grid, transfer, time step, sleep.
-struct MpmSettings {
+struct Settings {
   double dx = 0.01;  // m, grid and voxel size
   Precision precision = Precision::float32;
   Transfer transfer = Transfer::flip;
@@ -45,4 +45,4 @@ struct MpmSettings {
   }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -21,7 +21,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/mpm/block_layout.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 template <int D>
 class Sleep {
@@ -95,4 +95,4 @@ class Sleep {
   std::int64_t awake_particles_ = 0;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

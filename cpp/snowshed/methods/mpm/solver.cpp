@@ -10,7 +10,7 @@
 #include "snowshed/methods/mpm/solver_impl.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// Memory of the contacts' friction for fast snow, in cells that it slides over. The impulse it
@@ -22,14 +22,14 @@ constexpr double friction_reach = 0.5;
 }  // namespace
 
 template <class T, int D>
-MpmSolver<T, D>::MpmSolver(MpmOptions options)
+SolverImpl<T, D>::SolverImpl(Options options)
     : model_(std::move(options)),
       state_(model_),
       work_(model_.options.settings.basis, model_.boundary.laws().size()) {}
 
 template <class T, int D>
-StepParameters<T> MpmSolver<T, D>::parameters(double dt) const {
-  const MpmSettings& n = model_.options.settings;
+StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
+  const Settings& n = model_.options.settings;
   return {T(dt),
           T(n.dx),
           T(model_.options.gravity),
@@ -41,7 +41,7 @@ StepParameters<T> MpmSolver<T, D>::parameters(double dt) const {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::step() {
+void SolverImpl<T, D>::step() {
   soundness_.require();
   if (size() == 0) throw SimulationError("there is no snow to simulate");
   const Progress before = state_.progress;
@@ -61,12 +61,12 @@ void MpmSolver<T, D>::step() {
 
 /// All of a step that can fail for want of time step or memory; particles move last.
 template <class T, int D>
-double MpmSolver<T, D>::try_step() {
+double SolverImpl<T, D>::try_step() {
   if (!work_.tiles_valid) {
     sort();
     scatter();
   }
-  const MpmSettings& n = model_.options.settings;
+  const Settings& n = model_.options.settings;
   double dt = next_time_step(state_.elastic_limit, state_.progress.speed, n.dx, n.courant_factor);
   gather_and_update(dt);
   try {
@@ -81,7 +81,7 @@ double MpmSolver<T, D>::try_step() {
 
 /// Enters a step that particles have taken.
 template <class T, int D>
-void MpmSolver<T, D>::record_step(double dt) noexcept {
+void SolverImpl<T, D>::record_step(double dt) noexcept {
   Progress& p = state_.progress;
   double speed_squared = 0;
   for (std::int32_t b : state_.sleep.awake()) {
@@ -101,7 +101,7 @@ void MpmSolver<T, D>::record_step(double dt) noexcept {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::sort() {
+void SolverImpl<T, D>::sort() {
   state_.arrange(model_, blocks_of_particles(state_.layout));
   work_.since_sort = 0;
   const double share =
@@ -111,7 +111,7 @@ void MpmSolver<T, D>::sort() {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::scatter() {
+void SolverImpl<T, D>::scatter() {
   work_.grid.resize(state_.layout);
   const ParticleView<T> view = state_.particles.view();
   const StepParameters<T> step = parameters(state_.progress.dt);
@@ -122,8 +122,8 @@ void MpmSolver<T, D>::scatter() {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::scatter_block(const StepParameters<T>& step, const ParticleView<T>& view,
-                                    std::ptrdiff_t b) {
+void SolverImpl<T, D>::scatter_block(const StepParameters<T>& step, const ParticleView<T>& view,
+                                     std::ptrdiff_t b) {
   work_.grid.block_stats[b] = {};
   model_.kernels.scatter(step, view, state_.layout.first[b],
                          state_.layout.first[b + 1] - state_.layout.first[b], work_.grid.tile(b),
@@ -132,7 +132,7 @@ void MpmSolver<T, D>::scatter_block(const StepParameters<T>& step, const Particl
 
 /// First half of a step: the node sums, and at once the node velocities for a step of dt.
 template <class T, int D>
-void MpmSolver<T, D>::gather_and_update(double dt) {
+void SolverImpl<T, D>::gather_and_update(double dt) {
   state_.contacts.follow(model_.boundary, time(), threads());
   if (model_.boundary.any_slip()) state_.contacts.find_pushing_shares(work_.pushing);
   const StepParameters<T> step = parameters(dt);
@@ -156,7 +156,7 @@ void MpmSolver<T, D>::gather_and_update(double dt) {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::update(double dt) {
+void SolverImpl<T, D>::update(double dt) {
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
   parallel_for(std::ptrdiff_t(active.size()), threads(), 8,
@@ -164,7 +164,7 @@ void MpmSolver<T, D>::update(double dt) {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t g) {
+void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t g) {
   work_.grid.node_stats[g] = {};
   if (!work_.grid.touched[g]) return leave_empty(g);
   model_.kernels.update(step, work_.grid.sum(g), work_.grid.velocity(g),
@@ -174,7 +174,7 @@ void MpmSolver<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t
 
 /// No particle touches these nodes, so nobody asks for their velocities.
 template <class T, int D>
-void MpmSolver<T, D>::leave_empty(std::ptrdiff_t g) {
+void SolverImpl<T, D>::leave_empty(std::ptrdiff_t g) {
   std::fill_n(work_.grid.node_stats[g].low, D, infinity);
   std::fill_n(work_.grid.node_stats[g].high, D, -infinity);
   Contact<T>* contacts = state_.contacts.of_block(g);
@@ -184,7 +184,7 @@ void MpmSolver<T, D>::leave_empty(std::ptrdiff_t g) {
 /// A step that would strain a particle beyond the limit is not taken: the grid's sums do not
 /// depend on dt, so only the node velocities are computed again with a smaller one.
 template <class T, int D>
-double MpmSolver<T, D>::shorten_to_limits(double dt) {
+double SolverImpl<T, D>::shorten_to_limits(double dt) {
   const double limit = model_.options.settings.strain_limit;
   while (true) {
     const double strain = largest_strain() * dt;
@@ -206,7 +206,7 @@ double MpmSolver<T, D>::shorten_to_limits(double dt) {
 /// differences, so the range of the nodal velocities bounds it: of all nodes, or of those around a
 /// block. Only where these bounds are too large are the particles themselves asked.
 template <class T, int D>
-double MpmSolver<T, D>::largest_strain() {
+double SolverImpl<T, D>::largest_strain() {
   const double dx = model_.options.settings.dx;
   const double rate_limit =
       model_.options.settings.strain_limit /
@@ -242,14 +242,14 @@ double MpmSolver<T, D>::largest_strain() {
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::velocities_around(std::int32_t b,
-                                        const T* (&velocities)[neighbour_count<D>]) {
+void SolverImpl<T, D>::velocities_around(std::int32_t b,
+                                         const T* (&velocities)[neighbour_count<D>]) {
   for (int k = 0; k < neighbour_count<D>; ++k)
     velocities[k] = work_.grid.velocity(state_.layout.around_particles[b][k]);
 }
 
 template <class T, int D>
-void MpmSolver<T, D>::g2p2g(double dt) {
+void SolverImpl<T, D>::g2p2g(double dt) {
   const StepParameters<T> step = parameters(dt);
   const ParticleView<T> view = state_.particles.view();
   const std::vector<std::int32_t>& awake = state_.sleep.awake();
@@ -267,7 +267,7 @@ void MpmSolver<T, D>::g2p2g(double dt) {
 /// Throws where a particle is not sound any more. The step cannot be taken back: the particles have
 /// moved, and a copy of them in each step would cost more than it is worth.
 template <class T, int D>
-void MpmSolver<T, D>::check_particles() {
+void SolverImpl<T, D>::check_particles() {
   for (std::int32_t b : state_.sleep.awake()) {
     if (work_.grid.block_stats[b].unsound < 0) continue;
     soundness_.lose();  // also if the memory for the message is missing
@@ -276,9 +276,9 @@ void MpmSolver<T, D>::check_particles() {
 }
 
 template <class T, int D>
-std::string MpmSolver<T, D>::describe_unsound(std::int32_t b) const {
+std::string SolverImpl<T, D>::describe_unsound(std::int32_t b) const {
   const BlockStats& s = work_.grid.block_stats[b];
-  const MpmSettings& n = model_.options.settings;
+  const Settings& n = model_.options.settings;
   const std::size_t i = std::size_t(s.unsound);
   const VecD<D> x =
       position_of(state_.particles, i, state_.layout.particle_blocks[b], n.dx, n.basis);
@@ -297,8 +297,8 @@ std::string MpmSolver<T, D>::describe_unsound(std::int32_t b) const {
 }
 
 template <class T, int D>
-BlockStats MpmSolver<T, D>::probe(const StepParameters<T>& step, const ParticleView<T>& view,
-                                  std::int32_t b) {
+BlockStats SolverImpl<T, D>::probe(const StepParameters<T>& step, const ParticleView<T>& view,
+                                   std::int32_t b) {
   const T* velocities[neighbour_count<D>];
   velocities_around(b, velocities);
   BlockStats stats = BlockStats::reaching(work_.grid.block_stats[b].reach);
@@ -307,19 +307,19 @@ BlockStats MpmSolver<T, D>::probe(const StepParameters<T>& step, const ParticleV
   return stats;
 }
 
-template class MpmSolver<float, 2>;
-template class MpmSolver<float, 3>;
-template class MpmSolver<double, 2>;
-template class MpmSolver<double, 3>;
+template class SolverImpl<float, 2>;
+template class SolverImpl<float, 3>;
+template class SolverImpl<double, 2>;
+template class SolverImpl<double, 3>;
 
-std::unique_ptr<MpmMethod> make_mpm(MpmOptions options) {
+std::unique_ptr<Solver> make_solver(Options options) {
   const bool single = options.settings.precision == Precision::float32;
   if (options.dimension == 2) {
-    if (single) return std::make_unique<MpmSolver<float, 2>>(std::move(options));
-    return std::make_unique<MpmSolver<double, 2>>(std::move(options));
+    if (single) return std::make_unique<SolverImpl<float, 2>>(std::move(options));
+    return std::make_unique<SolverImpl<double, 2>>(std::move(options));
   }
-  if (single) return std::make_unique<MpmSolver<float, 3>>(std::move(options));
-  return std::make_unique<MpmSolver<double, 3>>(std::move(options));
+  if (single) return std::make_unique<SolverImpl<float, 3>>(std::move(options));
+  return std::make_unique<SolverImpl<double, 3>>(std::move(options));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -10,7 +10,7 @@
 #include "snowshed/methods/mpm/state.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// What can be computed from a state before any sort, and be thrown away then.
 template <class T, int D>
@@ -26,9 +26,9 @@ struct Workspace {
 };
 
 template <class T, int D>
-class MpmSolver final : public MpmMethod {
+class SolverImpl final : public Solver {
  public:
-  explicit MpmSolver(MpmOptions options);
+  explicit SolverImpl(Options options);
 
   using Method::add;
   void add(const std::vector<ParticleBatch>&, const StopRequest&) override;
@@ -57,7 +57,7 @@ class MpmSolver final : public MpmMethod {
   void check(const BinaryReader&) const override;
 
  private:
-  MpmState<T, D> read_state(const BinaryReader&) const;
+  State<T, D> read_state(const BinaryReader&) const;
 
   // The phases of a step.
   double try_step();  ///< returns its dt
@@ -84,7 +84,7 @@ class MpmSolver final : public MpmMethod {
   void check_particles();  ///< throws SimulationError
   std::string describe_unsound(std::int32_t block) const;
   void update_energy_balance() noexcept;
-  void accept(MpmState<T, D> next) noexcept;
+  void accept(State<T, D> next) noexcept;
   Sym<double, D> elastic_strain(std::size_t particle) const;  ///< Hencky's
   double elastic_volume(std::size_t particle) const;  ///< logarithm of the elastic volume ratio
   double plastic_strain(std::size_t particle) const;
@@ -98,10 +98,10 @@ class MpmSolver final : public MpmMethod {
   template <class Visit>
   void visit_fields(Visit visit) const;
 
-  const MpmModel<T, D> model_;
-  MpmState<T, D> state_;
+  const Model<T, D> model_;
+  State<T, D> state_;
   Workspace<T, D> work_;
   Soundness soundness_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

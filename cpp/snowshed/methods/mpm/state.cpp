@@ -9,7 +9,7 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/material/sym_tensor.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// Memory of the contacts' friction, in elastic time steps of the slowest snow: longer than the
@@ -19,7 +19,7 @@ constexpr double friction_memory_steps = 40;
 }  // namespace
 
 template <class T, int D>
-MpmState<T, D>::MpmState(const MpmModel<T, D>& model)
+State<T, D>::State(const Model<T, D>& model)
     : sleep(model.options.settings.sleep_speed, model.options.settings.sleep_time,
             model.options.gravity) {
   particles.has_affine = model.has_affine();
@@ -30,7 +30,7 @@ MpmState<T, D>::MpmState(const MpmModel<T, D>& model)
 }
 
 template <class T, int D>
-void MpmState<T, D>::find_elastic_limits(const MpmModel<T, D>& model) {
+void State<T, D>::find_elastic_limits(const Model<T, D>& model) {
   const std::vector<Material>& materials = model.materials;
   std::vector<bool> present(materials.size(), !particles.has_material_id || particles.size() == 0);
   for (const std::uint8_t material_id : particles.material_id) present[material_id] = true;
@@ -45,8 +45,8 @@ void MpmState<T, D>::find_elastic_limits(const MpmModel<T, D>& model) {
 }
 
 template <class T, int D>
-void MpmState<T, D>::append(const MpmModel<T, D>& model, const ParticleBatch& batch,
-                            std::vector<BlockKey>& blocks) {
+void State<T, D>::append(const Model<T, D>& model, const ParticleBatch& batch,
+                         std::vector<BlockKey>& blocks) {
   check_batch(batch, model.materials.size());
   const std::size_t old = particles.size();
   particles.resize(old + batch.positions.size());
@@ -70,16 +70,15 @@ void MpmState<T, D>::append(const MpmModel<T, D>& model, const ParticleBatch& ba
 }
 
 template <class T, int D>
-BlockKey MpmState<T, D>::put(const MpmModel<T, D>& model, std::size_t particle,
-                             const VecD<D>& position) {
-  const MpmSettings& n = model.options.settings;
+BlockKey State<T, D>::put(const Model<T, D>& model, std::size_t particle, const VecD<D>& position) {
+  const Settings& n = model.options.settings;
   const auto place = Placement<D>::of(position, n.dx, n.basis);
   for (int d = 0; d < D; ++d) particles.cell[d][particle] = T(place.cell[d]);
   return block_key<D>(place.block);
 }
 
 template <class T, int D>
-void MpmState<T, D>::arrange(const MpmModel<T, D>& model, std::vector<BlockKey> blocks) {
+void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks) {
   const int threads = model.threads(sleep.awake_particles());
   ParticleSort<T, D> sort(particles, std::move(blocks), layout, threads);
   std::optional<Contacts<T, D>> relocated;
@@ -94,8 +93,8 @@ void MpmState<T, D>::arrange(const MpmModel<T, D>& model, std::vector<BlockKey> 
 }
 
 template <class T, int D>
-double MpmState<T, D>::gravitational_energy(const MpmModel<T, D>& model) const {
-  const MpmSettings& n = model.options.settings;
+double State<T, D>::gravitational_energy(const Model<T, D>& model) const {
+  const Settings& n = model.options.settings;
   double sum = 0;
   for (std::size_t b = 0; b < layout.particle_blocks.size(); ++b)
     for (std::int32_t i = layout.first[b]; i < layout.first[b + 1]; ++i)
@@ -106,8 +105,8 @@ double MpmState<T, D>::gravitational_energy(const MpmModel<T, D>& model) const {
 }
 
 template <class T, int D>
-double MpmState<T, D>::kinetic_energy(const MpmModel<T, D>& model) const {
-  const MpmSettings& n = model.options.settings;
+double State<T, D>::kinetic_energy(const Model<T, D>& model) const {
+  const Settings& n = model.options.settings;
   const double inertia = n.dx * n.dx / apic_inverse_inertia(n.basis);
   double sum = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -121,7 +120,7 @@ double MpmState<T, D>::kinetic_energy(const MpmModel<T, D>& model) const {
 }
 
 template <class T, int D>
-double MpmState<T, D>::elastic_energy(const MpmModel<T, D>& model) const {
+double State<T, D>::elastic_energy(const Model<T, D>& model) const {
   double sum = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const Material& snow = material_of(model, i);
@@ -137,14 +136,14 @@ double MpmState<T, D>::elastic_energy(const MpmModel<T, D>& model) const {
 }
 
 template <class T, int D>
-EnergyBalance MpmState<T, D>::energy(const MpmModel<T, D>& model) const {
+EnergyBalance State<T, D>::energy(const Model<T, D>& model) const {
   EnergyBalance balance = progress.energy;
   balance.gravitational = gravitational_energy(model);
   return balance;
 }
 
 template <class T, int D>
-void MpmState<T, D>::record_added(const MpmModel<T, D>& model, double before) {
+void State<T, D>::record_added(const Model<T, D>& model, double before) {
   EnergyBalance& balance = progress.energy;
   balance.gravitational = gravitational_energy(model);
   balance.kinetic = kinetic_energy(model);
@@ -152,9 +151,9 @@ void MpmState<T, D>::record_added(const MpmModel<T, D>& model, double before) {
   balance.added += balance.stored() - before;
 }
 
-template struct MpmState<float, 2>;
-template struct MpmState<float, 3>;
-template struct MpmState<double, 2>;
-template struct MpmState<double, 3>;
+template struct State<float, 2>;
+template struct State<float, 3>;
+template struct State<double, 2>;
+template struct State<double, 3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

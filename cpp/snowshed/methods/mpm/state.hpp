@@ -10,13 +10,13 @@
 #include "snowshed/methods/mpm/particle_sort.hpp"
 #include "snowshed/methods/mpm/sleep.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// The numbers of a state, cheap to copy: a step that fails puts them back.
 struct Progress {
   double time = 0, dt = 0;  // s; dt: of the last step
   double speed = 0;         // m/s, of the fastest particle
-  double stress_power = 0;  // W, see MpmSolver::update_energy_balance
+  double stress_power = 0;  // W, see SolverImpl::update_energy_balance
   std::uint32_t next_id = 0;
   StepCounters counters;
   std::int64_t slept_updates = 0;
@@ -24,8 +24,8 @@ struct Progress {
 };
 
 template <class T, int D>
-struct MpmState {
-  explicit MpmState(const MpmModel<T, D>& model);
+struct State {
+  explicit State(const Model<T, D>& model);
 
   Particles<T, D> particles;
   BlockLayout<D> layout;
@@ -39,28 +39,27 @@ struct MpmState {
 
   /// Appends particles; `blocks` gets the block of each. Throws InputError for a batch that is not
   /// of this model, SimulationError outside the addressable grid.
-  void append(const MpmModel<T, D>& model, const ParticleBatch& batch,
-              std::vector<BlockKey>& blocks);
+  void append(const Model<T, D>& model, const ParticleBatch& batch, std::vector<BlockKey>& blocks);
 
   /// Puts a particle at a position (m); returns the block it is in.
-  BlockKey put(const MpmModel<T, D>& model, std::size_t particle, const VecD<D>& position);
+  BlockKey put(const Model<T, D>& model, std::size_t particle, const VecD<D>& position);
 
   /// Sorts the particles, which lie in `blocks`, into the layout, and makes contacts and sleep
   /// follow. All or nothing.
-  void arrange(const MpmModel<T, D>& model, std::vector<BlockKey> blocks);
+  void arrange(const Model<T, D>& model, std::vector<BlockKey> blocks);
 
-  void find_elastic_limits(const MpmModel<T, D>& model);
+  void find_elastic_limits(const Model<T, D>& model);
 
-  const Material& material_of(const MpmModel<T, D>& model, std::size_t particle) const {
+  const Material& material_of(const Model<T, D>& model, std::size_t particle) const {
     return model.materials[particles.has_material_id ? particles.material_id[particle] : 0];
   }
-  double kinetic_energy(const MpmModel<T, D>& model) const;
-  double gravitational_energy(const MpmModel<T, D>& model) const;
-  double elastic_energy(const MpmModel<T, D>& model) const;
+  double kinetic_energy(const Model<T, D>& model) const;
+  double gravitational_energy(const Model<T, D>& model) const;
+  double elastic_energy(const Model<T, D>& model) const;
   /// The energy balance up to now.
-  EnergyBalance energy(const MpmModel<T, D>& model) const;
+  EnergyBalance energy(const Model<T, D>& model) const;
   /// Enters the present energies and, as added, what they are over `before` (J).
-  void record_added(const MpmModel<T, D>& model, double before);
+  void record_added(const Model<T, D>& model, double before);
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

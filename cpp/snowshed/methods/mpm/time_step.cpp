@@ -4,7 +4,7 @@
 
 #include "snowshed/material/elasticity.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 double elastic_time_step(double youngs_modulus, double poissons_ratio, double density,
                          int dimension, double dx, Transfer transfer, Basis basis) {
@@ -17,4 +17,4 @@ double next_time_step(double elastic_limit, double speed, double dx, double fact
   return factor / (1 / elastic_limit + 2 * speed / dx);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Particles that follow on each other in memory lie near to each other.
@@ -54,7 +54,7 @@ std::vector<PlacedObstacle> place_obstacles(const std::vector<Obstacle>& obstacl
 
 template <int D>
 void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
-                   const MpsParticles<D>& particles, double time, int threads,
+                   const Particles<D>& particles, double time, int threads,
                    RowLists<WallContact<D>>& contacts) {
   const std::vector<PlacedObstacle> placed = place_obstacles(obstacles, time);
   const AlignedVector<VecD<D>>& points = particles.position;
@@ -92,11 +92,11 @@ double largest_wall_speed(const RowLists<WallContact<D>>& contacts) {
   return std::sqrt(fastest2);
 }
 
-template void find_contacts(const std::vector<Obstacle>&, double, const MpsParticles<2>&, double,
-                            int, RowLists<WallContact<2>>&);
-template void find_contacts(const std::vector<Obstacle>&, double, const MpsParticles<3>&, double,
-                            int, RowLists<WallContact<3>>&);
+template void find_contacts(const std::vector<Obstacle>&, double, const Particles<2>&, double, int,
+                            RowLists<WallContact<2>>&);
+template void find_contacts(const std::vector<Obstacle>&, double, const Particles<3>&, double, int,
+                            RowLists<WallContact<3>>&);
 template double largest_wall_speed(const RowLists<WallContact<2>>&);
 template double largest_wall_speed(const RowLists<WallContact<3>>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -9,7 +9,7 @@
 #include "snowshed/methods/mps/row_lists.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// A solid as the particles must see it. Parts of solids that are not convex are made two spacings
 /// thick if they are thinner. Thin boxes and other convex solids stay as they are: they have walls
@@ -48,11 +48,11 @@ std::vector<PlacedObstacle> place_obstacles(const std::vector<Obstacle>&, double
 /// Finds the contacts of the snow within `reach` of obstacles, m, ordered by obstacle.
 template <int D>
 void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
-                   const MpsParticles<D>& particles, double time, int threads,
+                   const Particles<D>& particles, double time, int threads,
                    RowLists<WallContact<D>>& contacts);
 
 /// The largest speed of an obstacle's surface at a contact, m/s.
 template <int D>
 double largest_wall_speed(const RowLists<WallContact<D>>& contacts);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

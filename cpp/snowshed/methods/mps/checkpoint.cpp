@@ -6,7 +6,7 @@
 #include "snowshed/methods/archive.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 template <class Archive, class State>
@@ -27,14 +27,13 @@ void visit_state(Archive& archive, State& s) {
 }
 
 template <int D>
-void check_particles(const StateReader& archive, const MpsParticles<D>& p,
-                     const MpsModel<D>& model) {
+void check_particles(const StateReader& archive, const Particles<D>& p, const Model<D>& model) {
   const double period = model.options.period;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.position[i].allFinite() || !p.velocity[i].allFinite() || !(p.pressure[i] >= 0) ||
         !std::isfinite(p.pressure[i]) || !(p.mass[i] > 0) || !std::isfinite(p.mass[i]))
       archive.refuse("a particle is not sound");
-    if (p.kind[i] > MpsKind::dummy_wall) archive.refuse("there is no such kind of particle");
+    if (p.kind[i] > Kind::dummy_wall) archive.refuse("there is no such kind of particle");
     if (period > 0 && !(p.position[i][0] >= 0 && p.position[i][0] <= period))
       archive.refuse("a particle lies outside of the period");
   }
@@ -48,15 +47,15 @@ void check_particles(const StateReader& archive, const MpsParticles<D>& p,
 }  // namespace
 
 template <int D>
-void MpsSolver<D>::save(BinaryWriter& out) const {
+void SolverImpl<D>::save(BinaryWriter& out) const {
   StateWriter archive(out);
   visit_state(archive, state_);
 }
 
 template <int D>
-MpsState<D> MpsSolver<D>::restored(const BinaryReader& in) const {
+State<D> SolverImpl<D>::restored(const BinaryReader& in) const {
   const StateReader archive(in);
-  MpsState<D> next;
+  State<D> next;
   visit_state(archive, next);
   check_particles(archive, next.particles, model_);
   next.solves.pressure.converged = next.solves.viscosity.converged = true;
@@ -64,17 +63,17 @@ MpsState<D> MpsSolver<D>::restored(const BinaryReader& in) const {
 }
 
 template <int D>
-void MpsSolver<D>::load(const BinaryReader& in) {
+void SolverImpl<D>::load(const BinaryReader& in) {
   state_ = restored(in);
   order_.forget();
 }
 
 template <int D>
-void MpsSolver<D>::check(const BinaryReader& in) const {
+void SolverImpl<D>::check(const BinaryReader& in) const {
   restored(in);
 }
 
-template class MpsSolver<2>;
-template class MpsSolver<3>;
+template class SolverImpl<2>;
+template class SolverImpl<3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Of a particle with its neighbours, measured in 2D and 3D.
@@ -12,7 +12,7 @@ constexpr double bytes_per_particle[] = {1200, 3000};
 
 }  // namespace
 
-CostEstimate estimate_cost(const MpsSettings& s, const CostRequest& request) {
+CostEstimate estimate_cost(const Settings& s, const CostRequest& request) {
   const SceneView& scene = request.scene;
   CostEstimate cost;
   cost.particles = request.particles;
@@ -30,17 +30,17 @@ CostEstimate estimate_cost(const MpsSettings& s, const CostRequest& request) {
   return cost;
 }
 
-std::vector<Feature> features_of(const MpsSettings& s, const SceneView& scene) {
+std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
   return {{"third dimension", scene.dimension == 3},
-          {"yield stress", s.rheology != MpsRheology::newtonian},
-          {"dilatant branch", s.rheology == MpsRheology::bingham_dilatant},
+          {"yield stress", s.rheology != ShearLaw::newtonian},
+          {"dilatant branch", s.rheology == ShearLaw::bingham_dilatant},
           {"erosion and deposition", s.erosion},
-          {"wall particles", s.walls == MpsWalls::particles},
-          {"collisions", s.spacing_law == MpsSpacing::collision},
-          {"particle shifting", s.spacing_law == MpsSpacing::shifting},
-          {"multigrid", s.preconditioner == MpsPreconditioner::multigrid},
+          {"wall particles", s.walls == Walls::particles},
+          {"collisions", s.spacing_law == SpacingLaw::collision},
+          {"particle shifting", s.spacing_law == SpacingLaw::shifting},
+          {"multigrid", s.preconditioner == Preconditioner::multigrid},
           {"energy balance", scene.output.energy},
           {"snapshots during events", scene.output.snapshot_interval > 0}};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -7,10 +7,10 @@
 #include "snowshed/methods/cost.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
-CostEstimate estimate_cost(const MpsSettings&, const CostRequest&);
+CostEstimate estimate_cost(const Settings&, const CostRequest&);
 
-std::vector<Feature> features_of(const MpsSettings&, const SceneView&);
+std::vector<Feature> features_of(const Settings&, const SceneView&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -2,9 +2,9 @@
 
 #include "snowshed/methods/allowed.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
-void describe(SettingsVisitor& v, MpsSettings& s) {
+void describe(SettingsVisitor& v, Settings& s) {
   v.accuracy({"spacing", "radius", "max_time_step", "courant_factor", "pressure_tolerance",
               "viscosity_tolerance"});
   v.number("spacing", s.spacing, "m", allowed::size, "Distance between particles, l0");
@@ -61,4 +61,4 @@ void describe(SettingsVisitor& v, MpsSettings& s) {
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -9,78 +9,85 @@
 namespace snowshed {
 
 template <>
-struct EnumNames<MpsRheology> {
-  static constexpr Named<MpsRheology> list[] = {
-      {MpsRheology::newtonian, "newtonian"},
-      {MpsRheology::bingham, "bingham"},
-      {MpsRheology::bingham_dilatant, "bingham_dilatant"}};
+struct EnumNames<mps::ShearLaw> {
+  static constexpr Named<mps::ShearLaw> list[] = {
+      {mps::ShearLaw::newtonian, "newtonian"},
+      {mps::ShearLaw::bingham, "bingham"},
+      {mps::ShearLaw::bingham_dilatant, "bingham_dilatant"}};
 };
 
 template <>
-struct EnumNames<MpsYield> {
-  static constexpr Named<MpsYield> list[] = {{MpsYield::papanastasiou, "papanastasiou"},
-                                             {MpsYield::bi_viscous, "bi_viscous"}};
+struct EnumNames<mps::Regularisation> {
+  static constexpr Named<mps::Regularisation> list[] = {
+      {mps::Regularisation::papanastasiou, "papanastasiou"},
+      {mps::Regularisation::bi_viscous, "bi_viscous"}};
 };
 
 template <>
-struct EnumNames<MpsWalls> {
-  static constexpr Named<MpsWalls> list[] = {{MpsWalls::mirrors, "mirrors"},
-                                             {MpsWalls::particles, "particles"}};
+struct EnumNames<mps::Walls> {
+  static constexpr Named<mps::Walls> list[] = {{mps::Walls::mirrors, "mirrors"},
+                                               {mps::Walls::particles, "particles"}};
 };
 
 template <>
-struct EnumNames<MpsSource> {
-  static constexpr Named<MpsSource> list[] = {{MpsSource::published, "published"},
-                                              {MpsSource::compensated, "compensated"}};
+struct EnumNames<mps::Source> {
+  static constexpr Named<mps::Source> list[] = {{mps::Source::published, "published"},
+                                                {mps::Source::compensated, "compensated"}};
 };
 
 template <>
-struct EnumNames<MpsGradient> {
-  static constexpr Named<MpsGradient> list[] = {{MpsGradient::published, "published"},
-                                                {MpsGradient::conservative, "conservative"},
-                                                {MpsGradient::corrected, "corrected"}};
+struct EnumNames<mps::Gradient> {
+  static constexpr Named<mps::Gradient> list[] = {{mps::Gradient::published, "published"},
+                                                  {mps::Gradient::conservative, "conservative"},
+                                                  {mps::Gradient::corrected, "corrected"}};
 };
 
 template <>
-struct EnumNames<MpsCoupling> {
-  static constexpr Named<MpsCoupling> list[] = {
-      {MpsCoupling::none, "none"}, {MpsCoupling::stiff, "stiff"}, {MpsCoupling::always, "always"}};
+struct EnumNames<mps::Coupling> {
+  static constexpr Named<mps::Coupling> list[] = {{mps::Coupling::none, "none"},
+                                                  {mps::Coupling::stiff, "stiff"},
+                                                  {mps::Coupling::always, "always"}};
 };
 
 template <>
-struct EnumNames<MpsSplitting> {
-  static constexpr Named<MpsSplitting> list[] = {{MpsSplitting::viscosity_first, "viscosity_first"},
-                                                 {MpsSplitting::pressure_first, "pressure_first"}};
+struct EnumNames<mps::Splitting> {
+  static constexpr Named<mps::Splitting> list[] = {
+      {mps::Splitting::viscosity_first, "viscosity_first"},
+      {mps::Splitting::pressure_first, "pressure_first"}};
 };
 
 template <>
-struct EnumNames<MpsSurface> {
-  static constexpr Named<MpsSurface> list[] = {{MpsSurface::published, "published"},
-                                               {MpsSurface::mirrored, "mirrored"}};
+struct EnumNames<mps::Surface> {
+  static constexpr Named<mps::Surface> list[] = {{mps::Surface::published, "published"},
+                                                 {mps::Surface::mirrored, "mirrored"}};
 };
 
 template <>
-struct EnumNames<MpsOrder> {
-  static constexpr Named<MpsOrder> list[] = {{MpsOrder::published, "published"},
-                                             {MpsOrder::single_move, "single_move"}};
+struct EnumNames<mps::Order> {
+  static constexpr Named<mps::Order> list[] = {{mps::Order::published, "published"},
+                                               {mps::Order::single_move, "single_move"}};
 };
 
 template <>
-struct EnumNames<MpsSpacing> {
-  static constexpr Named<MpsSpacing> list[] = {{MpsSpacing::none, "none"},
-                                               {MpsSpacing::collision, "collision"},
-                                               {MpsSpacing::shifting, "shifting"}};
+struct EnumNames<mps::SpacingLaw> {
+  static constexpr Named<mps::SpacingLaw> list[] = {{mps::SpacingLaw::none, "none"},
+                                                    {mps::SpacingLaw::collision, "collision"},
+                                                    {mps::SpacingLaw::shifting, "shifting"}};
 };
 
 template <>
-struct EnumNames<MpsPreconditioner> {
-  static constexpr Named<MpsPreconditioner> list[] = {
-      {MpsPreconditioner::jacobi, "jacobi"},
-      {MpsPreconditioner::incomplete_cholesky, "incomplete_cholesky"},
-      {MpsPreconditioner::multigrid, "multigrid"}};
+struct EnumNames<mps::Preconditioner> {
+  static constexpr Named<mps::Preconditioner> list[] = {
+      {mps::Preconditioner::jacobi, "jacobi"},
+      {mps::Preconditioner::incomplete_cholesky, "incomplete_cholesky"},
+      {mps::Preconditioner::multigrid, "multigrid"}};
 };
-
-/// Shows a visitor each setting in turn: key, unit, range and meaning.
-void describe(SettingsVisitor&, MpsSettings&);
 
 }  // namespace snowshed
+
+namespace snowshed::mps {
+
+/// Shows a visitor each setting in turn: key, unit, range and meaning.
+void describe(SettingsVisitor&, Settings&);
+
+}  // namespace snowshed::mps

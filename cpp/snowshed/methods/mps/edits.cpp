@@ -5,7 +5,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Particles push each other as if they stood for the same mass, that of a cell. Those of a body
@@ -24,10 +24,10 @@ void check_mass(double mass, double of_cell) {
 }  // namespace
 
 template <int D>
-void MpsSolver<D>::append(MpsState<D>& state, const ParticleBatch& batch) const {
+void SolverImpl<D>::append(State<D>& state, const ParticleBatch& batch) const {
   check_batch(batch, 1);
-  const MpsSettings& s = model_.settings();
-  MpsParticles<D>& p = state.particles;
+  const Settings& s = model_.settings();
+  Particles<D>& p = state.particles;
   const std::vector<PlacedObstacle> walls = place_obstacles(model_.options.obstacles, state.time);
   const std::size_t old = p.size();
   p.resize(old + batch.positions.size());
@@ -46,12 +46,12 @@ void MpsSolver<D>::append(MpsState<D>& state, const ParticleBatch& batch) const 
     p.mass[i] = batch.mass_of(k);
     p.density[i] = 1;
     p.viscosity[i] = model_.rheology.viscosity;
-    p.kind[i] = MpsKind::moving;
+    p.kind[i] = Kind::moving;
     if (s.erosion && s.erodible_thickness > 0)
       for (const PlacedObstacle& wall : walls)
         if (!wall.obstacle->motion && wall.distance(embed(p.position[i])) < s.erodible_thickness)
-          p.kind[i] = MpsKind::erodible;
-    if (p.kind[i] == MpsKind::erodible) p.velocity[i].setZero();
+          p.kind[i] = Kind::erodible;
+    if (p.kind[i] == Kind::erodible) p.velocity[i].setZero();
     p.id[i] = state.next_id++;
     p.event[i] = std::uint16_t(batch.event);
   }
@@ -59,7 +59,7 @@ void MpsSolver<D>::append(MpsState<D>& state, const ParticleBatch& batch) const 
 
 /// Takes over a state; the balance counts what it holds beyond the present one as added.
 template <int D>
-void MpsSolver<D>::accept(MpsState<D> next) {
+void SolverImpl<D>::accept(State<D> next) {
   CellOrder<D>().update(next.particles.position, model_.reach(), model_.options.period);
   if (model_.options.energy)
     next.energy.added += stored_energy(model_, next.particles).stored() -
@@ -69,31 +69,31 @@ void MpsSolver<D>::accept(MpsState<D> next) {
 }
 
 template <int D>
-void MpsSolver<D>::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
-  MpsState<D> next = state_;
+void SolverImpl<D>::add(const std::vector<ParticleBatch>& batches, const StopRequest&) {
+  State<D> next = state_;
   for (const ParticleBatch& batch : batches) append(next, batch);
   accept(std::move(next));
 }
 
 template <int D>
-void MpsSolver<D>::replace(const std::vector<ParticleBatch>& batches) {
-  MpsState<D> next = state_;
+void SolverImpl<D>::replace(const std::vector<ParticleBatch>& batches) {
+  State<D> next = state_;
   next.particles.resize(0);
   for (const ParticleBatch& batch : batches) append(next, batch);
   accept(std::move(next));
 }
 
 template <int D>
-void MpsSolver<D>::add_velocity(const std::vector<Vec3>& changes) {
+void SolverImpl<D>::add_velocity(const std::vector<Vec3>& changes) {
   const std::vector<std::uint32_t>& at = order_by_id();
   check_velocity_changes(changes, at.size());
-  MpsState<D> next = state_;
+  State<D> next = state_;
   for (std::size_t k = 0; k < at.size(); ++k)
     if (next.particles.moves(at[k])) next.particles.velocity[at[k]] += section<D>(changes[k]);
   accept(std::move(next));
 }
 
-template class MpsSolver<2>;
-template class MpsSolver<3>;
+template class SolverImpl<2>;
+template class SolverImpl<3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -4,7 +4,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::mps {
 
 template <int D>
 SolveReport solve_with_eigen(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
@@ -49,4 +49,4 @@ template SolveReport solve_with_eigen(const NeighbourLists<3>&, const AlignedVec
                                       const AlignedVector<double>&, const AlignedVector<double>&,
                                       double, int, AlignedVector<double>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

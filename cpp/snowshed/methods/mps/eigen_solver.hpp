@@ -4,7 +4,7 @@
 #include "snowshed/methods/mps/conjugate_gradients.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// The matrix has the given diagonal, and -weight for each pair. Unknowns with a zero diagonal keep
 /// their values. The residual is relative to the source.
@@ -14,4 +14,4 @@ SolveReport solve_with_eigen(const NeighbourLists<D>& lists, const AlignedVector
                              const AlignedVector<double>& source, double tolerance, int most,
                              AlignedVector<double>& x);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

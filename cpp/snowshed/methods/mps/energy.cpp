@@ -1,10 +1,10 @@
 // The balance of energy.
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 template <int D>
-EnergyBalance stored_energy(const MpsModel<D>& model, const MpsParticles<D>& particles) {
+EnergyBalance stored_energy(const Model<D>& model, const Particles<D>& particles) {
   EnergyBalance e;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     if (particles.is_wall(i)) continue;
@@ -19,8 +19,8 @@ EnergyBalance stored_energy(const MpsModel<D>& model, const MpsParticles<D>& par
 /// change of its potential, since particles move with the velocity after the step; that is the
 /// residual.
 template <int D>
-void MpsSolver<D>::book_energy(MpsState<D>& next, double dt) const {
-  const MpsParticles<D>& after = next.particles;
+void SolverImpl<D>::book_energy(State<D>& next, double dt) const {
+  const Particles<D>& after = next.particles;
   EnergyBalance& e = next.energy;
   for (std::size_t i = 0; i < after.size(); ++i) {
     if (!work_.moved[i]) continue;
@@ -43,9 +43,9 @@ void MpsSolver<D>::book_energy(MpsState<D>& next, double dt) const {
   }
 }
 
-template EnergyBalance stored_energy(const MpsModel<2>&, const MpsParticles<2>&);
-template EnergyBalance stored_energy(const MpsModel<3>&, const MpsParticles<3>&);
-template void MpsSolver<2>::book_energy(MpsState<2>&, double) const;
-template void MpsSolver<3>::book_energy(MpsState<3>&, double) const;
+template EnergyBalance stored_energy(const Model<2>&, const Particles<2>&);
+template EnergyBalance stored_energy(const Model<3>&, const Particles<3>&);
+template void SolverImpl<2>::book_energy(State<2>&, double) const;
+template void SolverImpl<3>::book_energy(State<3>&, double) const;
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -1,7 +1,7 @@
 // Snow at rest that is taken up, and moving snow that is deposited.
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Snow is deposited on what is no farther away than this, in l0.
@@ -13,8 +13,8 @@ struct NearSnow {
   double fastest2 = 0;
   bool carried = false;
 
-  NearSnow(const MpsModel<D>& model, const MpsParticles<D>& particles,
-           const MpsNeighbourhood<D>& near, std::size_t i) {
+  NearSnow(const Model<D>& model, const Particles<D>& particles, const Neighbourhood<D>& near,
+           std::size_t i) {
     const double limit = touching * model.settings().spacing;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
@@ -33,14 +33,14 @@ struct NearSnow {
 /// rest where the pressure is below p_d and its speed below u_d. p_d < p_e and u_d < u_e, so that
 /// it does not change its mind at once.
 template <int D>
-void erode_and_deposit(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
-  const MpsSettings& s = model.settings();
+void erode_and_deposit(const Model<D>& model, Particles<D>& particles, Work<D>& work) {
+  const Settings& s = model.settings();
   if (!s.erosion) return;
   work.fixed.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.fixed[i] = false;
     const double pressure = particles.pressure[i];
-    if (particles.kind[i] == MpsKind::erodible && pressure > s.erosion_pressure) {
+    if (particles.kind[i] == Kind::erodible && pressure > s.erosion_pressure) {
       const NearSnow<D> around(model, particles, work.near, i);
       work.fixed[i] = around.fastest2 > s.erosion_speed * s.erosion_speed;
     } else if (particles.moves(i) && pressure < s.deposition_pressure &&
@@ -50,13 +50,13 @@ void erode_and_deposit(const MpsModel<D>& model, MpsParticles<D>& particles, Mps
   });
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     if (!work.fixed[i]) return;
-    const bool erodes = particles.kind[i] == MpsKind::erodible;
-    particles.kind[i] = erodes ? MpsKind::moving : MpsKind::erodible;
+    const bool erodes = particles.kind[i] == Kind::erodible;
+    particles.kind[i] = erodes ? Kind::moving : Kind::erodible;
     if (!erodes) particles.velocity[i].setZero();
   });
 }
 
-template void erode_and_deposit(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
-template void erode_and_deposit(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
+template void erode_and_deposit(const Model<2>&, Particles<2>&, Work<2>&);
+template void erode_and_deposit(const Model<3>&, Particles<3>&, Work<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -4,13 +4,13 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// Calls visit(info, view) for each field; view() returns its view.
 template <int D>
 template <class Visit>
-void MpsSolver<D>::visit_fields(Visit visit) const {
-  const MpsParticles<D>& p = state_.particles;
+void SolverImpl<D>::visit_fields(Visit visit) const {
+  const Particles<D>& p = state_.particles;
   const auto column = [&](const char* name, const auto& array) {
     const FieldInfo info =
         field_of(quantity(name), field_type<std::decay_t<decltype(array[0])>>(), true);
@@ -40,18 +40,18 @@ void MpsSolver<D>::visit_fields(Visit visit) const {
 }
 
 template <int D>
-std::vector<FieldInfo> MpsSolver<D>::fields() const {
+std::vector<FieldInfo> SolverImpl<D>::fields() const {
   return listed_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 template <int D>
-FieldView MpsSolver<D>::field(const std::string& name) const {
+FieldView SolverImpl<D>::field(const std::string& name) const {
   return found_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
 template <int D>
-ParticleState MpsSolver<D>::state() const {
-  const MpsParticles<D>& p = state_.particles;
+ParticleState SolverImpl<D>::state() const {
+  const Particles<D>& p = state_.particles;
   ParticleState s;
   for (const std::uint32_t i : order_by_id()) {
     s.positions.push_back(embed(p.position[i]));
@@ -66,7 +66,7 @@ ParticleState MpsSolver<D>::state() const {
 }
 
 template <int D>
-EnergyBalance MpsSolver<D>::energy() const {
+EnergyBalance SolverImpl<D>::energy() const {
   if (!model_.options.energy) return {};
   EnergyBalance e = state_.energy;
   const EnergyBalance now = stored_energy(model_, state_.particles);
@@ -76,16 +76,16 @@ EnergyBalance MpsSolver<D>::energy() const {
 }
 
 template <int D>
-MotionSummary MpsSolver<D>::motion(double limit) const {
-  const MpsParticles<D>& p = state_.particles;
+MotionSummary SolverImpl<D>::motion(double limit) const {
+  const Particles<D>& p = state_.particles;
   return motion_of(
       size(), limit, [&p](std::size_t i) { return p.mass[i]; },
       [&p](std::size_t i) { return p.velocity[i].squaredNorm(); });
 }
 
 template <int D>
-std::size_t MpsSolver<D>::bytes() const {
-  const MpsNeighbourhood<D>& near = work_.near;
+std::size_t SolverImpl<D>::bytes() const {
+  const Neighbourhood<D>& near = work_.near;
   std::size_t total = near.cells.bytes() + near.lists.bytes() + near.contacts.bytes() +
                       work_.multigrid.bytes() + work_.velocity_multigrid.bytes() +
                       work_.walls.bytes();
@@ -101,7 +101,7 @@ std::size_t MpsSolver<D>::bytes() const {
                   work_.source, work_.pressure, work_.cg.r, work_.cg.z, work_.cg.p, work_.cg.q);
 }
 
-template class MpsSolver<2>;
-template class MpsSolver<3>;
+template class SolverImpl<2>;
+template class SolverImpl<3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

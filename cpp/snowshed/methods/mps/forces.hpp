@@ -5,22 +5,21 @@
 
 #include "snowshed/methods/mps/state.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// Sorts the particles by cells, and finds neighbours, walls, number densities and the free surface
 /// where they stand.
 template <int D>
-void find_neighbours(const MpsModel<D>&, MpsParticles<D>&, double time, MpsWork<D>&);
+void find_neighbours(const Model<D>&, Particles<D>&, double time, Work<D>&);
 
 /// The slope of each pair, but zero where the neighbour is a wall of this kind or one farther in;
 /// until it is asked for the next time.
 template <int D>
-const float* slope_without(MpsKind, const MpsModel<D>&, const MpsParticles<D>&,
-                           MpsNeighbourhood<D>&);
+const float* slope_without(Kind, const Model<D>&, const Particles<D>&, Neighbourhood<D>&);
 
 /// The pressures of the yield stress: those of the particles, smoothed and not negative.
 template <int D>
-void smooth_pressures(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
+void smooth_pressures(const Model<D>&, const Particles<D>&, Work<D>&);
 
 /// sqrt(2 D:D) of a velocity gradient, 1/s.
 template <int D>
@@ -30,49 +29,48 @@ double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
 
 /// Makes ready what find_rates needs of the places where particles stand.
 template <int D>
-void prepare_rates(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
+void prepare_rates(const Model<D>&, const Particles<D>&, Work<D>&);
 
 /// The sums of slope (u_j - u_i) r^T over each particle's neighbours, left in `velocity_gradient`.
 template <int D>
-void sum_velocity_gradients(const MpsModel<D>&, const MpsParticles<D>&, const float* slope,
-                            MpsWork<D>&);
+void sum_velocity_gradients(const Model<D>&, const Particles<D>&, const float* slope, Work<D>&);
 
 /// The velocity gradients and shear rates of the present velocities.
 template <int D>
-void find_rates(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);
+void find_rates(const Model<D>&, Particles<D>&, Work<D>&);
 
 /// The apparent viscosities of particles, from the shear rates and the smoothed pressures.
 template <int D>
-void find_viscosities(const MpsModel<D>&, MpsParticles<D>&, const MpsWork<D>&);
+void find_viscosities(const Model<D>&, Particles<D>&, const Work<D>&);
 
 /// What every particle gains in a step by gravity, m/s.
 template <int D>
-void add_gravity(const MpsModel<D>&, double dt, MpsParticles<D>&);
+void add_gravity(const Model<D>&, double dt, Particles<D>&);
 
 /// Replaces the velocities by those that viscosity leaves after a step, which are implicit in
 /// equation (10). A solve that has not converged leaves them unsound.
 template <int D>
-SolveReport apply_viscosity(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
+SolveReport apply_viscosity(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 
 /// Makes the matrix of the pressure equations of a step.
 template <int D>
-void prepare_pressure(const MpsModel<D>&, const MpsParticles<D>&, MpsWork<D>&);
+void prepare_pressure(const Model<D>&, const Particles<D>&, Work<D>&);
 
 /// Solves the pressure equation (18). A solve that has not converged leaves the pressures unsound.
 template <int D>
-SolveReport solve_pressure(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
+SolveReport solve_pressure(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 
 /// Adds to the velocities what the pressure does to them, equation (15), and keeps particles from
 /// entering walls within the step. What was added is left in `change`.
 template <int D>
-void apply_pressure(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
+void apply_pressure(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 
 /// Keeps particles apart as the settings say.
 template <int D>
-void keep_spacing(const MpsModel<D>&, double dt, MpsParticles<D>&, MpsWork<D>&);
+void keep_spacing(const Model<D>&, double dt, Particles<D>&, Work<D>&);
 
 /// Erodible particles begin to move, and moving ones are deposited, equation (23).
 template <int D>
-void erode_and_deposit(const MpsModel<D>&, MpsParticles<D>&, MpsWork<D>&);
+void erode_and_deposit(const Model<D>&, Particles<D>&, Work<D>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Particles do not come nearer to walls than this, in l0, and those that are nearer are pushed out
@@ -13,11 +13,10 @@ constexpr double nearest_place = 0.25, largest_push = 0.1;
 
 /// The least pressure among a particle and its neighbours, Pa.
 template <int D>
-double least_pressure(const MpsParticles<D>& particles, const MpsNeighbourhood<D>& near,
-                      std::size_t i) {
+double least_pressure(const Particles<D>& particles, const Neighbourhood<D>& near, std::size_t i) {
   double least = particles.pressure[i];
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-    if (particles.kind[near.lists.neighbour(e)] != MpsKind::dummy_wall)
+    if (particles.kind[near.lists.neighbour(e)] != Kind::dummy_wall)
       least = std::min(least, particles.pressure[near.lists.neighbour(e)]);
   return least;
 }
@@ -29,23 +28,22 @@ double least_pressure(const MpsParticles<D>& particles, const MpsNeighbourhood<D
 /// second is the first. (A particle that rises above others would be pushed up the more by the
 /// second.)
 template <int D>
-double base_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                     const MpsNeighbourhood<D>& near, std::size_t i) {
+double base_pressure(const Model<D>& model, const Particles<D>& particles,
+                     const Neighbourhood<D>& near, std::size_t i) {
   const double own = particles.pressure[i];
   switch (model.settings().gradient) {
-    case MpsGradient::conservative:
+    case Gradient::conservative:
       return own;
-    case MpsGradient::corrected:
+    case Gradient::corrected:
       return near.surface[i] ? own : -own;
-    case MpsGradient::published:
+    case Gradient::published:
       break;
   }
   return -least_pressure(particles, near, i);
 }
 
 template <int D>
-void find_base_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                         MpsWork<D>& work) {
+void find_base_pressures(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
   work.base_pressure.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.base_pressure[i] =
@@ -57,17 +55,17 @@ void find_base_pressures(const MpsModel<D>& model, const MpsParticles<D>& partic
 /// have the pressure of the particle itself where pairs are to have equal and opposite forces, and
 /// else no part.
 template <int D>
-void sum_beside_wall_particles(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                               MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
-  const bool conservative = model.settings().gradient == MpsGradient::conservative;
+void sum_beside_wall_particles(const Model<D>& model, const Particles<D>& particles,
+                               Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
+  const bool conservative = model.settings().gradient == Gradient::conservative;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     VecD<D>& sum = work.pressure_sum[i];
     sum.setZero();
     if (!particles.moves(i)) return;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
-      const bool dummy = particles.kind[j] == MpsKind::dummy_wall;
+      const bool dummy = particles.kind[j] == Kind::dummy_wall;
       if (dummy && !conservative) continue;
       const double other = dummy ? particles.pressure[i] : particles.pressure[j];
       sum += (other + work.base_pressure[i]) * double(near.slope[e]) * near.way(e);
@@ -77,8 +75,8 @@ void sum_beside_wall_particles(const MpsModel<D>& model, const MpsParticles<D>& 
 
 /// The part of the neighbours in gradients of the pressure, Pa/m over the factor of gradients.
 template <int D>
-void sum_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles, MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+void sum_pressures(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   find_base_pressures(model, particles, work);
   work.pressure_sum.resize(n);
@@ -93,11 +91,11 @@ void sum_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles, M
 /// The part of the images behind walls. Their pressure grows along the normal as it must to stop
 /// what moves into the wall; a wall never pulls.
 template <int D>
-VecD<D> gradient_at_walls(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                          const MpsNeighbourhood<D>& near, std::size_t i, double base, double dt) {
+VecD<D> gradient_at_walls(const Model<D>& model, const Particles<D>& particles,
+                          const Neighbourhood<D>& near, std::size_t i, double base, double dt) {
   VecD<D> sum = VecD<D>::Zero();
   const double per_velocity = model.settings().density / dt;
-  const bool corrected = model.settings().gradient == MpsGradient::corrected;
+  const bool corrected = model.settings().gradient == Gradient::corrected;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
     const double level = particles.pressure[m->of];
     double pressure = level;
@@ -132,11 +130,10 @@ void keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& veloc
 }  // namespace
 
 template <int D>
-void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
-                    MpsWork<D>& work) {
-  const MpsSettings& s = model.settings();
-  const MpsNeighbourhood<D>& near = work.near;
-  const bool corrected = s.gradient == MpsGradient::corrected;
+void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& work) {
+  const Settings& s = model.settings();
+  const Neighbourhood<D>& near = work.near;
+  const bool corrected = s.gradient == Gradient::corrected;
   sum_pressures(model, particles, work);
   work.change.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
@@ -158,7 +155,7 @@ void apply_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& partic
                     [&](std::size_t i) { particles.velocity[i] += work.change[i]; });
 }
 
-template void apply_pressure(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
-template void apply_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
+template void apply_pressure(const Model<2>&, double, Particles<2>&, Work<2>&);
+template void apply_pressure(const Model<3>&, double, Particles<3>&, Work<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

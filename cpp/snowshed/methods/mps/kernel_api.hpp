@@ -9,7 +9,7 @@
 
 #include "snowshed/particles/neighbour_search.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// The pairs of all particles, in compressed rows.
 struct PairRows {
@@ -25,7 +25,7 @@ struct RowMoments {
 };
 
 template <int D>
-struct MpsKernels {
+struct Kernels {
   NeighbourSearch<D> search;
   /// Weights r_e/r - 1, weights over r^2, and the sums of the weights and of filling_weight of each
   /// row. `offset`: of each pair, by axes.
@@ -68,6 +68,6 @@ struct MpsKernels {
 
 /// Those of the instruction set in use.
 template <int D>
-const MpsKernels<D>& mps_kernels();
+const Kernels<D>& chosen_kernels();
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

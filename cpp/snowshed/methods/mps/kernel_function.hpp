@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// Number of axes over which Koshizuka and Oka's operators are normalised, with the constants of a
 /// regular lattice, in units of the spacing l0.
@@ -77,4 +77,4 @@ inline SurfaceLack second_layer_lack(int dimension, const KernelConstants& k) {
   return sum;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

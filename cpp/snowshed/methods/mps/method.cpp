@@ -9,11 +9,10 @@
 #include "snowshed/methods/mps/solver.hpp"
 #include "snowshed/sampling/lattice.hpp"
 
-namespace snowshed {
-namespace mps {
+namespace snowshed::mps {
 namespace {
 
-class Descriptor final : public DescriptorOf<Descriptor, MpsSettings> {
+class Descriptor final : public DescriptorOf<Descriptor, Settings> {
  public:
   const MethodFacts& facts() const override {
     static const MethodFacts facts{
@@ -37,7 +36,7 @@ class Descriptor final : public DescriptorOf<Descriptor, MpsSettings> {
   }
 
   void validate(const SceneView& scene) const override {
-    const MpsSettings& s = settings_;
+    const Settings& s = settings_;
     if (s.erosion && s.deposition_pressure >= s.erosion_pressure)
       throw InputError("/numerics/deposition_pressure",
                        show(s.deposition_pressure) + " Pa must be less than " +
@@ -46,11 +45,11 @@ class Descriptor final : public DescriptorOf<Descriptor, MpsSettings> {
       throw InputError("/numerics/deposition_speed",
                        show(s.deposition_speed) + " m/s must be less than " +
                            "/numerics/erosion_speed = " + show(s.erosion_speed));
-    if (s.order == MpsOrder::published && s.splitting == MpsSplitting::pressure_first)
+    if (s.order == Order::published && s.splitting == Splitting::pressure_first)
       throw InputError("/numerics/splitting",
                        "with /numerics/order \"published\" particles move before the pressure is "
                        "known; allowed: viscosity_first");
-    if (scene.output.energy && s.order == MpsOrder::published)
+    if (scene.output.energy && s.order == Order::published)
       throw InputError("/output/energy",
                        "the balance is kept with /numerics/order \"single_move\" only");
   }
@@ -59,13 +58,13 @@ class Descriptor final : public DescriptorOf<Descriptor, MpsSettings> {
   }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
-    MpsOptions o;
+    Options o;
     o.dimension = scene.dimension;
     o.gravity = -scene.gravity * Vec3::UnitZ();
     o.settings = settings_;
     o.obstacles = surroundings.resolved;
     o.energy = scene.output.energy;
-    return make_mps(std::move(o));
+    return make_solver(std::move(o));
   }
 
   std::size_t count_particles(const LevelSet& shape, int dimension) const override {
@@ -91,5 +90,4 @@ const MethodDescriptor& descriptor() {
   return own;
 }
 
-}  // namespace mps
-}  // namespace snowshed
+}  // namespace snowshed::mps

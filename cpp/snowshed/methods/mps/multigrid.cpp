@@ -5,7 +5,7 @@
 
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 constexpr float jacobi_damping = 0.9f;  // of Jacobi sweeps
@@ -311,4 +311,4 @@ template class Multigrid<3, 3>;
 template void Multigrid<2, 2>::correct(const double*, double*);
 template void Multigrid<3, 3>::correct(const double*, double*);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -11,7 +11,7 @@
 #include "snowshed/particles/cell_order.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// Aggregation multigrid (Notay 2010; Braess 1995, doi:10.1007/BF02238484): the unknowns of a cell
 /// are one unknown of the next level, those of 2^D cells one of the level after it. Corrections are
@@ -68,7 +68,7 @@ class Multigrid {
   void sweep(Level& level);
   void residual(Level& level);
 
-  const MpsKernels<D>& kernels_ = mps_kernels<D>();
+  const Kernels<D>& kernels_ = chosen_kernels<D>();
   const NeighbourLists<D>* lists_ = nullptr;
   const float* weight_ = nullptr;
   std::size_t size_ = 0;
@@ -80,4 +80,4 @@ class Multigrid {
   Eigen::LLT<Eigen::MatrixXf> coarsest_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -6,7 +6,7 @@
 #include "snowshed/methods/mps/forces.hpp"
 #include "snowshed/methods/mps/moments.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Particles that see the fluid on all sides are within it, however low their density: the sum of
@@ -22,20 +22,20 @@ constexpr double sparse = 0.75;
 constexpr double least_determinant = 0.1;
 
 template <int D>
-void sort_particles(const CellOrder<D>& cells, MpsParticles<D>& particles, MpsParticles<D>& spare,
+void sort_particles(const CellOrder<D>& cells, Particles<D>& particles, Particles<D>& spare,
                     int threads) {
   if (cells.is_sorted()) return;
   const std::size_t n = particles.size();
   spare.resize(n);
   const std::vector<std::uint32_t>& order = cells.order();
-  MpsParticles<D>::visit_arrays(particles, spare, [&](const char*, const auto& from, auto& to) {
+  Particles<D>::visit_arrays(particles, spare, [&](const char*, const auto& from, auto& to) {
     for_each_particle(n, threads, [&](std::size_t k) { to[k] = from[order[k]]; });
   });
   std::swap(particles, spare);
 }
 
 template <int D>
-void weigh_pairs(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int threads) {
+void weigh_pairs(const Model<D>& model, Neighbourhood<D>& near, int threads) {
   near.weight.resize(near.lists.pairs());
   near.slope.resize(near.lists.pairs());
   near.weight_sum.resize(near.lists.size());
@@ -50,7 +50,7 @@ void weigh_pairs(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int thread
 /// Walls are at the surface only where snow is: else disorder of the snow beside a wall would let
 /// all pressure out through it.
 template <int D>
-void leave_walls_within(const MpsParticles<D>& particles, MpsNeighbourhood<D>& near, int threads) {
+void leave_walls_within(const Particles<D>& particles, Neighbourhood<D>& near, int threads) {
   const auto is_snow_at_surface = [&](std::size_t j) {
     return !particles.is_wall(j) && near.surface[j];
   };
@@ -65,10 +65,10 @@ void leave_walls_within(const MpsParticles<D>& particles, MpsNeighbourhood<D>& n
 
 /// Equation (7), with the images of the neighbours, and equation (19).
 template <int D>
-void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                  MpsNeighbourhood<D>& near, int threads) {
+void find_surface(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near,
+                  int threads) {
   const double n0 = model.kernel.number_density, ratio = model.settings().surface_ratio;
-  const bool published = model.settings().surface == MpsSurface::published;
+  const bool published = model.settings().surface == Surface::published;
   near.density.resize(particles.size());
   near.filling.resize(particles.size());
   near.surface.resize(particles.size());
@@ -80,7 +80,7 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
     }
     near.density[i] = n;
     near.filling[i] = filling / model.kernel.filling;
-    bool surface = particles.kind[i] != MpsKind::dummy_wall && n < ratio * n0;
+    bool surface = particles.kind[i] != Kind::dummy_wall && n < ratio * n0;
     if (surface && !published && n >= sparse * n0) {
       VecD<D> side = VecD<D>::Zero();
       for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
@@ -109,15 +109,15 @@ void find_surface(const MpsModel<D>& model, const MpsParticles<D>& particles,
 /// direction of a pair, that makes the sum of w r r^T, and with it Laplacians of quadratic fields,
 /// that of a lattice. Dummy walls have no pressure, and no part in gradients.
 template <int D>
-void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                      MpsNeighbourhood<D>& near, int threads) {
+void find_corrections(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near,
+                      int threads) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const std::size_t n = near.lists.size();
   near.correction.resize(n);
   near.asymmetry.resize(n);
   near.spread.resize(n);
   near.moments.resize(n);
-  const float* const slope = slope_without(MpsKind::dummy_wall, model, particles, near);
+  const float* const slope = slope_without(Kind::dummy_wall, model, particles, near);
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.sum_moments(near.rows(), near.offsets().data(), near.weight.data(), slope,
                               near.moments.data(), begin, end);
@@ -149,7 +149,7 @@ void find_corrections(const MpsModel<D>& model, const MpsParticles<D>& particles
 
 /// The weights of pairs in the Laplacians of velocities, see find_corrections.
 template <int D>
-void find_even_weights(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int threads) {
+void find_even_weights(const Model<D>& model, Neighbourhood<D>& near, int threads) {
   near.even_weight.resize(near.lists.pairs());
   for_each_piece(near.lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.even_weights(near.rows(), near.offsets().data(), near.weight.data(),
@@ -159,27 +159,27 @@ void find_even_weights(const MpsModel<D>& model, MpsNeighbourhood<D>& near, int 
 
 /// Inner walls that no snow touches are dummies: no pressure spreads along a wall beyond the snow.
 template <int D>
-void leave_dry_walls(MpsParticles<D>& particles, MpsNeighbourhood<D>& near, int threads) {
+void leave_dry_walls(Particles<D>& particles, Neighbourhood<D>& near, int threads) {
   near.dry.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     near.dry[i] = false;
-    if (particles.kind[i] != MpsKind::inner_wall) return;
+    if (particles.kind[i] != Kind::inner_wall) return;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
       if (!particles.is_wall(near.lists.neighbour(e))) return;
     near.dry[i] = true;
   });
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
-    if (near.dry[i]) particles.kind[i] = MpsKind::dummy_wall;
+    if (near.dry[i]) particles.kind[i] = Kind::dummy_wall;
   });
 }
 
 /// Inner walls are made anew in each step: what their pressure will be near, the hydrostatic one
 /// of the snow around.
 template <int D>
-void guess_wall_pressures(const MpsModel<D>& model, MpsParticles<D>& particles,
-                          const MpsNeighbourhood<D>& near) {
+void guess_wall_pressures(const Model<D>& model, Particles<D>& particles,
+                          const Neighbourhood<D>& near) {
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    if (particles.kind[i] != MpsKind::inner_wall || near.surface[i]) return;
+    if (particles.kind[i] != Kind::inner_wall || near.surface[i]) return;
     double sum = 0, weight = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
@@ -195,8 +195,8 @@ void guess_wall_pressures(const MpsModel<D>& model, MpsParticles<D>& particles,
 }  // namespace
 
 template <int D>
-const float* slope_without(MpsKind kind, const MpsModel<D>& model, const MpsParticles<D>& particles,
-                           MpsNeighbourhood<D>& near) {
+const float* slope_without(Kind kind, const Model<D>& model, const Particles<D>& particles,
+                           Neighbourhood<D>& near) {
   if (!model.has_wall_particles()) return near.slope.data();
   near.snow_slope.resize(near.lists.pairs());
   for_each_particle(near.lists.size(), model.threads_for(particles.size()), [&](std::size_t i) {
@@ -207,9 +207,8 @@ const float* slope_without(MpsKind kind, const MpsModel<D>& model, const MpsPart
 }
 
 template <int D>
-void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, double time,
-                     MpsWork<D>& work) {
-  MpsNeighbourhood<D>& near = work.near;
+void find_neighbours(const Model<D>& model, Particles<D>& particles, double time, Work<D>& work) {
+  Neighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
   const double reach = model.reach(), period = model.options.period;
   near.cells.update(particles.position, reach, period);
@@ -230,7 +229,7 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
   }
   find_surface(model, particles, near, threads);
   if (model.has_wall_particles()) guess_wall_pressures(model, particles, near);
-  if (model.settings().gradient == MpsGradient::corrected) {
+  if (model.settings().gradient == Gradient::corrected) {
     find_corrections(model, particles, near, threads);
     find_even_weights(model, near, threads);
   } else {
@@ -238,11 +237,9 @@ void find_neighbours(const MpsModel<D>& model, MpsParticles<D>& particles, doubl
   }
 }
 
-template const float* slope_without(MpsKind, const MpsModel<2>&, const MpsParticles<2>&,
-                                    MpsNeighbourhood<2>&);
-template const float* slope_without(MpsKind, const MpsModel<3>&, const MpsParticles<3>&,
-                                    MpsNeighbourhood<3>&);
-template void find_neighbours(const MpsModel<2>&, MpsParticles<2>&, double, MpsWork<2>&);
-template void find_neighbours(const MpsModel<3>&, MpsParticles<3>&, double, MpsWork<3>&);
+template const float* slope_without(Kind, const Model<2>&, const Particles<2>&, Neighbourhood<2>&);
+template const float* slope_without(Kind, const Model<3>&, const Particles<3>&, Neighbourhood<3>&);
+template void find_neighbours(const Model<2>&, Particles<2>&, double, Work<2>&);
+template void find_neighbours(const Model<3>&, Particles<3>&, double, Work<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

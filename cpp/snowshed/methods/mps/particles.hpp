@@ -7,15 +7,15 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// The kinds of particles of Saito and others. All but the moving ones keep their places; dummy
 /// walls only fill the space behind a wall, so that it is not taken for a free surface.
-enum class MpsKind : std::uint8_t { moving, erodible, inner_wall, dummy_wall };
+enum class Kind : std::uint8_t { moving, erodible, inner_wall, dummy_wall };
 
 /// One array for each quantity, all of one length.
 template <int D>
-struct MpsParticles {
+struct Particles {
   AlignedVector<VecD<D>> position;  // m
   AlignedVector<VecD<D>> velocity;  // m/s
   AlignedVector<double> pressure;   // Pa
@@ -27,13 +27,13 @@ struct MpsParticles {
   // normal
   AlignedVector<VecD<D>> push;
   AlignedVector<VecD<D>> shear;  // m/s2, by viscosity, in the last step
-  AlignedVector<MpsKind> kind;
+  AlignedVector<Kind> kind;
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;  // of wall particles: the number of the obstacle
 
   std::size_t size() const { return position.size(); }
-  bool moves(std::size_t i) const { return kind[i] == MpsKind::moving; }
-  bool is_wall(std::size_t i) const { return kind[i] >= MpsKind::inner_wall; }
+  bool moves(std::size_t i) const { return kind[i] == Kind::moving; }
+  bool is_wall(std::size_t i) const { return kind[i] >= Kind::inner_wall; }
 
   /// Calls visit(name, array) for each array.
   template <class Visit>
@@ -66,4 +66,4 @@ struct MpsParticles {
   }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -5,18 +5,17 @@
 #include "snowshed/methods/mps/eigen_solver.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Inner walls conduct pressure as snow does. In divergences they therefore move as the snow around
 /// them does; that nothing flows into the wall is what dummies behind them say (ours).
 template <int D>
-void find_slip(const MpsModel<D>& model, const MpsParticles<D>& particles,
-               MpsNeighbourhood<D>& near) {
+void find_slip(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near) {
   near.slip.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     near.slip[i] = particles.velocity[i];
-    if (particles.kind[i] != MpsKind::inner_wall) return;
+    if (particles.kind[i] != Kind::inner_wall) return;
     VecD<D> sum = VecD<D>::Zero();
     double weight = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
@@ -32,14 +31,14 @@ void find_slip(const MpsModel<D>& model, const MpsParticles<D>& particles,
 /// The divergence beside walls of particles, 1/s, in which inner walls move as `slip` says, and
 /// dummies tell what flows into the wall.
 template <int D>
-double slip_divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                       const MpsNeighbourhood<D>& near,
-                       const Eigen::Matrix<double, D, D>& correction, std::size_t i) {
+double slip_divergence(const Model<D>& model, const Particles<D>& particles,
+                       const Neighbourhood<D>& near, const Eigen::Matrix<double, D, D>& correction,
+                       std::size_t i) {
   double sum = 0, flow = 0;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
     const VecD<D> way = near.way(e);
-    if (particles.kind[j] == MpsKind::dummy_wall) {
+    if (particles.kind[j] == Kind::dummy_wall) {
       const VecD<D>& normal = particles.push[j];
       flow -= double(near.weight[e]) * way.dot(normal) *
               (near.slip[i] - particles.velocity[j]).dot(normal);
@@ -54,9 +53,9 @@ double slip_divergence(const MpsModel<D>& model, const MpsParticles<D>& particle
 /// What flows through the wall counts as the pressure's slope does in the Laplacian, so that both
 /// cancel at rest.
 template <int D>
-double image_divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                        const MpsNeighbourhood<D>& near,
-                        const Eigen::Matrix<double, D, D>& correction, std::size_t i) {
+double image_divergence(const Model<D>& model, const Particles<D>& particles,
+                        const Neighbourhood<D>& near, const Eigen::Matrix<double, D, D>& correction,
+                        std::size_t i) {
   const VecD<D>& own = particles.velocity[i];
   double sum = 0, flow = 0;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
@@ -74,11 +73,11 @@ double image_divergence(const MpsModel<D>& model, const MpsParticles<D>& particl
 
 /// The divergence of the velocity, 1/s.
 template <int D>
-double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                  const MpsWork<D>& work, std::size_t i) {
+double divergence(const Model<D>& model, const Particles<D>& particles, const Work<D>& work,
+                  std::size_t i) {
   using Matrix = Eigen::Matrix<double, D, D>;
-  const MpsNeighbourhood<D>& near = work.near;
-  const bool corrected = model.settings().gradient == MpsGradient::corrected && !near.surface[i];
+  const Neighbourhood<D>& near = work.near;
+  const bool corrected = model.settings().gradient == Gradient::corrected && !near.surface[i];
   const Matrix correction = corrected ? near.correction[i] : Matrix(Matrix::Identity());
   if (model.has_wall_particles()) return slip_divergence(model, particles, near, correction, i);
   return model.gradient() * correction.cwiseProduct(work.velocity_gradient[i]).sum() +
@@ -87,9 +86,8 @@ double divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
 
 /// What `divergence` needs of the present velocities; the published source has none.
 template <int D>
-void prepare_divergence(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                        MpsWork<D>& work) {
-  if (model.settings().source == MpsSource::published) return;
+void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+  if (model.settings().source == Source::published) return;
   if (model.has_wall_particles())
     find_slip(model, particles, work.near);
   else
@@ -101,8 +99,8 @@ void prepare_divergence(const MpsModel<D>& model, const MpsParticles<D>& particl
 /// longer. With the step alone, snow that one fast particle slows down would be pushed the harder,
 /// the shorter the step. (Ours.)
 template <int D>
-double compensation_time(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles) {
-  const MpsSettings& s = model.settings();
+double compensation_time(const Model<D>& model, double dt, const Particles<D>& particles) {
+  const Settings& s = model.settings();
   double square = 0;
   for (const VecD<D>& u : particles.velocity) square += u.squaredNorm();
   const double usual = 3 * std::sqrt(square / double(particles.size())) +
@@ -124,8 +122,8 @@ constexpr double surface_tolerance = 0.002;
 /// that of a lattice: what is missing beyond that counts, so that room that is made there does not
 /// stay.
 template <int D>
-double compensated_excess(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                          const MpsNeighbourhood<D>& near, std::size_t i) {
+double compensated_excess(const Model<D>& model, const Particles<D>& particles,
+                          const Neighbourhood<D>& near, std::size_t i) {
   const bool beside_walls = model.has_wall_particles() &&
                             (particles.is_wall(i) || near.contacts.begin(i) < near.contacts.end(i));
   const double excess =
@@ -141,11 +139,11 @@ double compensated_excess(const MpsModel<D>& model, const MpsParticles<D>& parti
 /// error. They weigh the divergence with one less the share, which would take as much from the
 /// pressure of snow at rest; here its weight is one.
 template <int D>
-double source(const MpsModel<D>& model, double dt, double compensation_time,
-              const MpsParticles<D>& particles, const MpsWork<D>& work, std::size_t i) {
-  const MpsSettings& s = model.settings();
-  const MpsNeighbourhood<D>& near = work.near;
-  if (s.source == MpsSource::published)
+double source(const Model<D>& model, double dt, double compensation_time,
+              const Particles<D>& particles, const Work<D>& work, std::size_t i) {
+  const Settings& s = model.settings();
+  const Neighbourhood<D>& near = work.near;
+  if (s.source == Source::published)
     return -s.density / (dt * dt) * (near.density[i] / model.kernel.number_density - 1);
   return s.density / dt * divergence(model, particles, work, i) -
          s.compensation * s.density / (dt * compensation_time) *
@@ -155,7 +153,7 @@ double source(const MpsModel<D>& model, double dt, double compensation_time,
 /// A fluid without a free surface knows its pressure up to a constant: takes the mean from the
 /// sources, so that there is a solution.
 template <int D>
-void balance_sources(MpsWork<D>& work, std::size_t n) {
+void balance_sources(Work<D>& work, std::size_t n) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < n; ++i)
     if (!work.fixed[i]) {
@@ -170,23 +168,22 @@ void balance_sources(MpsWork<D>& work, std::size_t n) {
 
 /// All is divided by -2 d/(lambda n0): sum of w (p_i - p_j) + diagonal of the surface.
 template <int D>
-void prepare_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                      MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const double n0 = model.kernel.number_density;
-  const bool mirrored = model.settings().surface == MpsSurface::mirrored;
+  const bool mirrored = model.settings().surface == Surface::mirrored;
   work.fixed.resize(n);
   work.diagonal.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    work.fixed[i] = particles.kind[i] == MpsKind::dummy_wall || (near.surface[i] && !mirrored);
+    work.fixed[i] = particles.kind[i] == Kind::dummy_wall || (near.surface[i] && !mirrored);
     work.diagonal[i] = 0;
     if (work.fixed[i]) return;
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
-      if (particles.kind[j] != MpsKind::dummy_wall)
+      if (particles.kind[j] != Kind::dummy_wall)
         sum += double(near.coupling[e]);
       else if (mirrored && near.dry[j] && particles.is_wall(i))
         sum += 2 * double(near.coupling[e]);
@@ -197,7 +194,7 @@ void prepare_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles
   });
   work.enclosed = std::none_of(near.surface.begin(), near.surface.begin() + std::ptrdiff_t(n),
                                [](std::uint8_t at_surface) { return at_surface != 0; });
-  if (model.settings().preconditioner == MpsPreconditioner::multigrid)
+  if (model.settings().preconditioner == Preconditioner::multigrid)
     work.multigrid.update(near.lists, near.coupling, work.diagonal, near.cells,
                           near.cells.period_cells(), threads);
 }
@@ -206,9 +203,9 @@ namespace {
 
 /// Solves for work.pressure from what stands there.
 template <int D>
-SolveReport solve(const MpsModel<D>& model, MpsWork<D>& work) {
-  const MpsSettings& s = model.settings();
-  const MpsNeighbourhood<D>& near = work.near;
+SolveReport solve(const Model<D>& model, Work<D>& work) {
+  const Settings& s = model.settings();
+  const Neighbourhood<D>& near = work.near;
   const std::size_t n = near.lists.size();
   const int threads = model.threads_for(n);
   const auto apply = [&](const double* p, double* q) {
@@ -222,9 +219,9 @@ SolveReport solve(const MpsModel<D>& model, MpsWork<D>& work) {
                                threads, work.cg, work.pressure.data(), work.source.data(), apply,
                                precondition);
   };
-  if (s.preconditioner == MpsPreconditioner::multigrid)
+  if (s.preconditioner == Preconditioner::multigrid)
     return by_conjugate_gradients([&](const double* r, double* z) { work.multigrid.apply(r, z); });
-  if (s.preconditioner == MpsPreconditioner::jacobi)
+  if (s.preconditioner == Preconditioner::jacobi)
     return by_conjugate_gradients([&](const double* r, double* z) {
       for_each_particle(n, threads, [&](std::size_t i) {
         z[i] = work.diagonal[i] > 0 ? r[i] / work.diagonal[i] : 0.0;
@@ -237,14 +234,14 @@ SolveReport solve(const MpsModel<D>& model, MpsWork<D>& work) {
 }  // namespace
 
 template <int D>
-SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
-                           MpsWork<D>& work) {
-  MpsNeighbourhood<D>& near = work.near;
+SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& particles,
+                           Work<D>& work) {
+  Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   prepare_divergence(model, particles, work);
   const double relaxation = compensation_time(model, dt, particles);
   // What the Laplacian would make of a linear pressure, since neighbours do not lie evenly around.
-  const bool corrected = model.settings().gradient == MpsGradient::corrected;
+  const bool corrected = model.settings().gradient == Gradient::corrected;
   work.source.resize(n);
   work.pressure.resize(n);
   for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
@@ -270,9 +267,9 @@ SolveReport solve_pressure(const MpsModel<D>& model, double dt, MpsParticles<D>&
   return report;
 }
 
-template SolveReport solve_pressure(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
-template SolveReport solve_pressure(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
-template void prepare_pressure(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
-template void prepare_pressure(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
+template SolveReport solve_pressure(const Model<2>&, double, Particles<2>&, Work<2>&);
+template SolveReport solve_pressure(const Model<3>&, double, Particles<3>&, Work<3>&);
+template void prepare_pressure(const Model<2>&, const Particles<2>&, Work<2>&);
+template void prepare_pressure(const Model<3>&, const Particles<3>&, Work<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

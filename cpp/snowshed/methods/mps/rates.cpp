@@ -5,7 +5,7 @@
 #include "snowshed/methods/mps/forces.hpp"
 #include "snowshed/methods/mps/moments.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Nearer to a wall than this, in l0, the velocity behind it grows no further.
@@ -23,8 +23,8 @@ double no_slip_factor(const WallContact<D>& c, const VecD<D>& way, double spacin
 /// velocity, and wall particles one that makes the velocity at the surface that of the wall (Morris
 /// and others 1997, doi:10.1006/jcph.1997.5776).
 template <int D, class Visit>
-void visit_walls(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                 const MpsNeighbourhood<D>& near, std::size_t i, const Visit& visit) {
+void visit_walls(const Model<D>& model, const Particles<D>& particles, const Neighbourhood<D>& near,
+                 std::size_t i, const Visit& visit) {
   if (model.has_wall_particles())
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
       const std::size_t j = near.lists.neighbour(e);
@@ -48,9 +48,8 @@ void visit_walls(const MpsModel<D>& model, const MpsParticles<D>& particles,
 /// What makes velocity gradients right for linear velocities however the neighbours lie (as
 /// find_corrections).
 template <int D>
-Eigen::Matrix<double, D, D> rate_correction(const MpsModel<D>& model,
-                                            const MpsParticles<D>& particles,
-                                            const MpsNeighbourhood<D>& near, std::size_t i) {
+Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particles<D>& particles,
+                                            const Neighbourhood<D>& near, std::size_t i) {
   using Matrix = Eigen::Matrix<double, D, D>;
   Matrix moment = symmetric<D>(near.moments[i].slope);
   visit_walls(model, particles, near, i, [&](const VecD<D>& way, double slope, const VecD<D>&) {
@@ -66,14 +65,14 @@ Eigen::Matrix<double, D, D> rate_correction(const MpsModel<D>& model,
 /// off at zero. Walls continue them hydrostatically, and the free surface with the opposite sign,
 /// so that a pressure that grows linearly stays as it is.
 template <int D>
-double smooth_pressure(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                       const MpsNeighbourhood<D>& near, std::size_t i) {
+double smooth_pressure(const Model<D>& model, const Particles<D>& particles,
+                       const Neighbourhood<D>& near, std::size_t i) {
   const double own = particles.pressure[i], n = near.density[i];
   double sum = own, weight = 1 + n;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
     sum += double(near.weight[e]) *
-           (particles.kind[j] == MpsKind::dummy_wall ? own : particles.pressure[j]);
+           (particles.kind[j] == Kind::dummy_wall ? own : particles.pressure[j]);
   }
   const double weight_of_snow = model.settings().density;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
@@ -94,8 +93,7 @@ double smooth_pressure(const MpsModel<D>& model, const MpsParticles<D>& particle
 }  // namespace
 
 template <int D>
-void smooth_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                      MpsWork<D>& work) {
+void smooth_pressures(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
   work.smooth_pressure.resize(particles.size());
   if (model.rheology.friction == 0) return;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
@@ -104,12 +102,12 @@ void smooth_pressures(const MpsModel<D>& model, const MpsParticles<D>& particles
 }
 
 template <int D>
-void prepare_rates(const MpsModel<D>& model, const MpsParticles<D>& particles, MpsWork<D>& work) {
-  MpsNeighbourhood<D>& near = work.near;
+void prepare_rates(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+  Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   near.moments.resize(n);
-  work.snow_slope = slope_without(MpsKind::inner_wall, model, particles, near);
+  work.snow_slope = slope_without(Kind::inner_wall, model, particles, near);
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.sum_moments(near.rows(), near.offsets().data(), near.weight.data(),
                               work.snow_slope, near.moments.data(), begin, end);
@@ -121,9 +119,9 @@ void prepare_rates(const MpsModel<D>& model, const MpsParticles<D>& particles, M
 }
 
 template <int D>
-void sum_velocity_gradients(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                            const float* slope, MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+void sum_velocity_gradients(const Model<D>& model, const Particles<D>& particles,
+                            const float* slope, Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
   work.velocity_gradient.resize(particles.size());
   for_each_piece(particles.size(), model.threads_for(particles.size()),
                  [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -134,9 +132,9 @@ void sum_velocity_gradients(const MpsModel<D>& model, const MpsParticles<D>& par
 }
 
 template <int D>
-void find_rates(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>& work) {
+void find_rates(const Model<D>& model, Particles<D>& particles, Work<D>& work) {
   using Matrix = Eigen::Matrix<double, D, D>;
-  const MpsNeighbourhood<D>& near = work.near;
+  const Neighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
   sum_velocity_gradients(model, particles, work.snow_slope, work);
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
@@ -155,8 +153,7 @@ void find_rates(const MpsModel<D>& model, MpsParticles<D>& particles, MpsWork<D>
 }
 
 template <int D>
-void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles,
-                      const MpsWork<D>& work) {
+void find_viscosities(const Model<D>& model, Particles<D>& particles, const Work<D>& work) {
   const Rheology& law = model.rheology;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     const double pressure = law.friction > 0 ? work.smooth_pressure[i] : 0.0;
@@ -164,17 +161,15 @@ void find_viscosities(const MpsModel<D>& model, MpsParticles<D>& particles,
   });
 }
 
-template void smooth_pressures(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
-template void smooth_pressures(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
-template void prepare_rates(const MpsModel<2>&, const MpsParticles<2>&, MpsWork<2>&);
-template void prepare_rates(const MpsModel<3>&, const MpsParticles<3>&, MpsWork<3>&);
-template void sum_velocity_gradients(const MpsModel<2>&, const MpsParticles<2>&, const float*,
-                                     MpsWork<2>&);
-template void sum_velocity_gradients(const MpsModel<3>&, const MpsParticles<3>&, const float*,
-                                     MpsWork<3>&);
-template void find_rates(const MpsModel<2>&, MpsParticles<2>&, MpsWork<2>&);
-template void find_rates(const MpsModel<3>&, MpsParticles<3>&, MpsWork<3>&);
-template void find_viscosities(const MpsModel<2>&, MpsParticles<2>&, const MpsWork<2>&);
-template void find_viscosities(const MpsModel<3>&, MpsParticles<3>&, const MpsWork<3>&);
+template void smooth_pressures(const Model<2>&, const Particles<2>&, Work<2>&);
+template void smooth_pressures(const Model<3>&, const Particles<3>&, Work<3>&);
+template void prepare_rates(const Model<2>&, const Particles<2>&, Work<2>&);
+template void prepare_rates(const Model<3>&, const Particles<3>&, Work<3>&);
+template void sum_velocity_gradients(const Model<2>&, const Particles<2>&, const float*, Work<2>&);
+template void sum_velocity_gradients(const Model<3>&, const Particles<3>&, const float*, Work<3>&);
+template void find_rates(const Model<2>&, Particles<2>&, Work<2>&);
+template void find_rates(const Model<3>&, Particles<3>&, Work<3>&);
+template void find_viscosities(const Model<2>&, Particles<2>&, const Work<2>&);
+template void find_viscosities(const Model<3>&, Particles<3>&, const Work<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -7,7 +7,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// The shear stress over the shear rate, gdot = sqrt(2 D:D).
 ///
@@ -23,15 +23,15 @@ struct Rheology {
   double dilatant_rate, exponent;        // 1/s; the rate is infinite without that branch
   bool bi_viscous;
 
-  static Rheology from(const MpsSettings& s) {
-    const bool yields = s.rheology != MpsRheology::newtonian;
+  static Rheology from(const Settings& s) {
+    const bool yields = s.rheology != ShearLaw::newtonian;
     return {s.viscosity,
             yields ? s.cohesion : 0.0,
             yields ? std::tan(radians(s.friction_angle)) : 0.0,
             s.stress_growth,
-            s.rheology == MpsRheology::bingham_dilatant ? s.dilatant_rate : HUGE_VAL,
+            s.rheology == ShearLaw::bingham_dilatant ? s.dilatant_rate : HUGE_VAL,
             s.dilatant_exponent,
-            s.regularisation == MpsYield::bi_viscous};
+            s.regularisation == Regularisation::bi_viscous};
   }
 
   bool is_newtonian() const { return cohesion == 0 && friction == 0 && dilatant_rate == HUGE_VAL; }
@@ -61,4 +61,4 @@ struct Rheology {
   }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -7,7 +7,7 @@
 
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 template <class T>
 class RowLists {
@@ -46,4 +46,4 @@ class RowLists {
   std::vector<std::vector<T>> parts_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -6,13 +6,13 @@
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/sampling/lattice.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 std::string in_millimetres(double metres) { return show_rounded(1000 * metres) + " mm"; }
 
 /// Says what becomes of a body that is too small for a lattice of particles of equal mass.
-void tell_of_coarse_lattice(const LevelSet& shape, const MpsSettings& settings, double mass_ratio,
+void tell_of_coarse_lattice(const LevelSet& shape, const Settings& settings, double mass_ratio,
                             std::size_t particles, std::vector<std::string>& notes) {
   constexpr double most_uneven = 0.02;
   const double thickness = 2 * shape.inradius();
@@ -31,7 +31,7 @@ void tell_of_coarse_lattice(const LevelSet& shape, const MpsSettings& settings, 
 
 }  // namespace
 
-void seed_on_lattice(const MpsSettings& s, const LevelSet& shape, int dimension,
+void seed_on_lattice(const Settings& s, const LevelSet& shape, int dimension,
                      const StopRequest& stop, ParticleBatch& batch,
                      std::vector<std::string>& notes) {
   LatticeFilling filling = fill_lattice(shape, dimension, s.spacing, stop);
@@ -42,4 +42,4 @@ void seed_on_lattice(const MpsSettings& s, const LevelSet& shape, int dimension,
   tell_of_coarse_lattice(shape, s, filling.volume / (cell * double(count)), count, notes);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -1,45 +1,45 @@
 // What a scene may choose of the moving particle semi-implicit method.
 #pragma once
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// Laws of the shear stress, see rheology.hpp.
-enum class MpsRheology { newtonian, bingham, bingham_dilatant };
+enum class ShearLaw { newtonian, bingham, bingham_dilatant };
 /// How the yield stress is approached at small shear rates.
-enum class MpsYield { papanastasiou, bi_viscous };
+enum class Regularisation { papanastasiou, bi_viscous };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
-enum class MpsSource { published, compensated };
+enum class Source { published, compensated };
 /// Pressure gradient: from the least neighbouring pressure, with equal and opposite forces, or
 /// right for linear pressures however the neighbours lie.
-enum class MpsGradient { published, conservative, corrected };
+enum class Gradient { published, conservative, corrected };
 /// Whether viscosity acts before the pressure, or after it and then the pressure once more.
-enum class MpsSplitting { viscosity_first, pressure_first };
+enum class Splitting { viscosity_first, pressure_first };
 /// When pressure and viscosity of a step are found together: never, where the plastic viscosity is
 /// stiff, or always. Only where the pressure acts first.
-enum class MpsCoupling { none, stiff, always };
+enum class Coupling { none, stiff, always };
 /// Where the pressure is zero: at particles of low number density, or half a spacing above them.
-enum class MpsSurface { published, mirrored };
+enum class Surface { published, mirrored };
 /// When particles move: before the pressure is solved, or once at the end of the step.
-enum class MpsOrder { published, single_move };
+enum class Order { published, single_move };
 /// What keeps particles apart besides the pressure.
-enum class MpsSpacing { none, collision, shifting };
+enum class SpacingLaw { none, collision, shifting };
 /// What walls are made of: images of the particles near them, or particles of their own.
-enum class MpsWalls { mirrors, particles };
+enum class Walls { mirrors, particles };
 /// Preconditioner of the pressure equation.
-enum class MpsPreconditioner { jacobi, incomplete_cholesky, multigrid };
+enum class Preconditioner { jacobi, incomplete_cholesky, multigrid };
 
 /// Settings of the moving particle semi-implicit method, with the snow of Saito and others (2012,
 /// Annals of Glaciology 53(61)). Their growth coefficient, dilatant branch and thresholds of
 /// erosion are not printed: those here are ours, see docs/mps.md.
-struct MpsSettings {
+struct Settings {
   double spacing = 0.01;        // m, l0, of particles
   double radius = 2.1;          // r_e over l0
   double max_time_step = 0.01;  // s
   double courant_factor = 0.2;  // longest way of a particle in a step, over l0
   double density = 200;         // kg/m3
 
-  MpsRheology rheology = MpsRheology::bingham_dilatant;
-  MpsYield regularisation = MpsYield::papanastasiou;
+  ShearLaw rheology = ShearLaw::bingham_dilatant;
+  Regularisation regularisation = Regularisation::papanastasiou;
   double viscosity = 0.012;    // Pa s, plastic
   double cohesion = 0;         // Pa, "adhesive force"
   double friction_angle = 24;  // degrees
@@ -55,17 +55,17 @@ struct MpsSettings {
   double deposition_pressure = 25;  // Pa
   double deposition_speed = 0.05;   // m/s
 
-  MpsWalls walls = MpsWalls::mirrors;
-  MpsSource source = MpsSource::compensated;
+  Walls walls = Walls::mirrors;
+  Source source = Source::compensated;
   double compensation = 0.1;  // share of the density's error that a step takes away
-  MpsGradient gradient = MpsGradient::corrected;
-  MpsSplitting splitting = MpsSplitting::pressure_first;
-  MpsCoupling coupling = MpsCoupling::stiff;
-  MpsSurface surface = MpsSurface::mirrored;
+  Gradient gradient = Gradient::corrected;
+  Splitting splitting = Splitting::pressure_first;
+  Coupling coupling = Coupling::stiff;
+  Surface surface = Surface::mirrored;
   double surface_ratio = 0.97;  // beta, of number densities
-  MpsOrder order = MpsOrder::single_move;
-  MpsSpacing spacing_law = MpsSpacing::shifting;
-  MpsPreconditioner preconditioner = MpsPreconditioner::multigrid;
+  Order order = Order::single_move;
+  SpacingLaw spacing_law = SpacingLaw::shifting;
+  Preconditioner preconditioner = Preconditioner::multigrid;
   double pressure_tolerance = 1e-4;
   double viscosity_tolerance = 1e-4;
   int max_iterations = 1000;
@@ -75,4 +75,4 @@ struct MpsSettings {
   double resolution() const { return spacing; }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

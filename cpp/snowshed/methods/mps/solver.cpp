@@ -8,7 +8,7 @@
 #include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// A particle that would move farther than this in a step, in l0, has it repeated with half its
@@ -55,18 +55,18 @@ void add_solve(const SolveReport& one, SolveReport& all) {
 
 }  // namespace
 
-std::unique_ptr<MpsMethod> make_mps(MpsOptions options) {
-  const MpsSettings& s = options.settings;
+std::unique_ptr<Solver> make_solver(Options options) {
+  const Settings& s = options.settings;
   if (options.period > 0 && options.period < 3 * s.radius * s.spacing)
     throw InputError("period", show_rounded(options.period) + " m is less than three radii");
-  if (s.order == MpsOrder::published && s.splitting == MpsSplitting::pressure_first)
+  if (s.order == Order::published && s.splitting == Splitting::pressure_first)
     throw InputError("splitting", "particles move before the pressure is known (order)");
-  if (options.dimension == 2) return std::make_unique<MpsSolver<2>>(std::move(options));
-  return std::make_unique<MpsSolver<3>>(std::move(options));
+  if (options.dimension == 2) return std::make_unique<SolverImpl<2>>(std::move(options));
+  return std::make_unique<SolverImpl<3>>(std::move(options));
 }
 
 template <int D>
-MpsModel<D>::MpsModel(MpsOptions o)
+Model<D>::Model(Options o)
     : options(std::move(o)),
       gravity(section<D>(options.gravity)),
       kernel(kernel_constants(D, options.settings.radius)),
@@ -79,7 +79,7 @@ MpsModel<D>::MpsModel(MpsOptions o)
 }
 
 template <int D>
-double MpsSolver<D>::largest_speed(const MpsParticles<D>& particles) const {
+double SolverImpl<D>::largest_speed(const Particles<D>& particles) const {
   double fastest2 = 0;
   for (const VecD<D>& u : particles.velocity) {
     const double speed2 = u.squaredNorm();
@@ -89,9 +89,9 @@ double MpsSolver<D>::largest_speed(const MpsParticles<D>& particles) const {
 }
 
 template <int D>
-double MpsSolver<D>::pressure_step(const MpsParticles<D>& particles) const {
-  const MpsSettings& s = model_.settings();
-  if (s.gradient == MpsGradient::corrected) return HUGE_VAL;
+double SolverImpl<D>::pressure_step(const Particles<D>& particles) const {
+  const Settings& s = model_.settings();
+  if (s.gradient == Gradient::corrected) return HUGE_VAL;
   double highest = 0;
   for (const double p : particles.pressure) highest = std::max(highest, p);
   return highest > 0 ? pressure_courant * s.spacing * std::sqrt(s.density / highest) : HUGE_VAL;
@@ -101,8 +101,8 @@ double MpsSolver<D>::pressure_step(const MpsParticles<D>& particles) const {
 /// also with the speed that gravity adds in it: (u + g dt) dt = C l0. Viscosity is implicit and
 /// does not limit it.
 template <int D>
-double MpsSolver<D>::choose_step(const MpsParticles<D>& particles) const {
-  const MpsSettings& s = model_.settings();
+double SolverImpl<D>::choose_step(const Particles<D>& particles) const {
+  const Settings& s = model_.settings();
   const double speed = std::max(largest_speed(particles), largest_wall_speed(work_.near.contacts));
   const double g = model_.gravity.norm(), way = s.courant_factor * s.spacing;
   const double root = std::sqrt(speed * speed + 4 * g * way);
@@ -115,7 +115,7 @@ double MpsSolver<D>::choose_step(const MpsParticles<D>& particles) const {
 }
 
 template <int D>
-void MpsSolver<D>::move(double dt, MpsParticles<D>& particles) const {
+void SolverImpl<D>::move(double dt, Particles<D>& particles) const {
   const double period = model_.options.period;
   for_each_particle(particles.size(), model_.threads_for(particles.size()), [&](std::size_t i) {
     if (!particles.moves(i)) return;
@@ -127,17 +127,17 @@ void MpsSolver<D>::move(double dt, MpsParticles<D>& particles) const {
 
 /// The velocities and pressures after a step of dt, from those in the workspace.
 template <int D>
-void MpsSolver<D>::attempt(double dt, MpsState<D>& next) {
+void SolverImpl<D>::attempt(double dt, State<D>& next) {
   add_gravity(model_, dt, next.particles);
-  if (model_.settings().splitting == MpsSplitting::pressure_first)
+  if (model_.settings().splitting == Splitting::pressure_first)
     act_after_pressure(dt, next);
   else
     act_before_pressure(dt, next);
 }
 
 template <int D>
-void MpsSolver<D>::act_viscosity(double dt, MpsState<D>& next) {
-  MpsParticles<D>& p = next.particles;
+void SolverImpl<D>::act_viscosity(double dt, State<D>& next) {
+  Particles<D>& p = next.particles;
   const AlignedVector<VecD<D>> before = p.velocity;
   smooth_pressures(model_, p, work_);
   next.solves.viscosity = apply_viscosity(model_, dt, p, work_);
@@ -151,9 +151,9 @@ void MpsSolver<D>::act_viscosity(double dt, MpsState<D>& next) {
 
 /// Whether pressure and viscosity of a step are found together.
 template <int D>
-bool MpsSolver<D>::couples(double dt) const {
-  const MpsSettings& s = model_.settings();
-  if (s.coupling != MpsCoupling::stiff) return s.coupling == MpsCoupling::always;
+bool SolverImpl<D>::couples(double dt) const {
+  const Settings& s = model_.settings();
+  if (s.coupling != Coupling::stiff) return s.coupling == Coupling::always;
   const double per_speed = s.viscosity / (s.density * s.spacing * s.spacing);  // 1/s
   if (dt * per_speed < least_stiffness) return false;
   double square = 0;
@@ -169,47 +169,48 @@ bool MpsSolver<D>::couples(double dt) const {
 /// viscosity compresses nevertheless, the pressure of the next step takes away; or, where they are
 /// coupled, both act anew until the force is the expected one, accelerated. Ours.
 template <int D>
-void MpsSolver<D>::act_after_pressure(double dt, MpsState<D>& next) {
-  MpsParticles<D>& p = next.particles;
+void SolverImpl<D>::act_after_pressure(double dt, State<D>& next) {
+  Particles<D>& p = next.particles;
   const std::size_t n = p.size();
   const int threads = model_.threads_for(n);
   const bool coupled = couples(dt);
   prepare_pressure(model_, p, work_);
   work_.predicted_velocity = p.velocity;
   work_.flowing.resize(n);
-  work_.expected.resize(n);
+  work_.expected_shear.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
     work_.flowing[i] = p.moves(i) && model_.rheology.flows(p.rate[i]);
-    work_.expected[i].setZero();
-    if (work_.flowing[i]) work_.expected[i] = (coupled ? first_shear : expected_shear) * p.shear[i];
+    work_.expected_shear[i].setZero();
+    if (work_.flowing[i])
+      work_.expected_shear[i] = (coupled ? first_shear : expected_shear) * p.shear[i];
   });
   AndersonMixing<D> mixing;
   SolveReport pressure, viscosity;
   for (int k = 0;; ++k) {
     for_each_particle(n, threads, [&](std::size_t i) {
-      p.velocity[i] = work_.predicted_velocity[i] + dt * work_.expected[i];
+      p.velocity[i] = work_.predicted_velocity[i] + dt * work_.expected_shear[i];
     });
     act_with_expected_shear(dt, next);
     add_solve(next.solves.pressure, pressure);
     add_solve(next.solves.viscosity, viscosity);
     if (!coupled || k + 1 == most_couplings) break;
-    work_.found = p.shear;
+    work_.shear = p.shear;
     double square = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!work_.flowing[i]) work_.found[i].setZero();
-      square += (work_.found[i] - work_.expected[i]).squaredNorm();
+      if (!work_.flowing[i]) work_.shear[i].setZero();
+      square += (work_.shear[i] - work_.expected_shear[i]).squaredNorm();
     }
     const double limit = coupling_tolerance * model_.gravity.norm();
     if (square <= limit * limit * double(n)) break;
-    mixing.mix(work_.expected, work_.found);
-    std::swap(work_.expected, work_.found);
+    mixing.mix(work_.expected_shear, work_.shear);
+    std::swap(work_.expected_shear, work_.shear);
   }
   next.solves = {pressure, viscosity};
 }
 
 template <int D>
-void MpsSolver<D>::act_with_expected_shear(double dt, MpsState<D>& next) {
-  MpsParticles<D>& p = next.particles;
+void SolverImpl<D>::act_with_expected_shear(double dt, State<D>& next) {
+  Particles<D>& p = next.particles;
   next.solves.pressure = solve_pressure(model_, dt, p, work_);
   require_converged(next.solves.pressure, "pressure", model_.settings().max_iterations);
   apply_pressure(model_, dt, p, work_);
@@ -221,11 +222,11 @@ void MpsSolver<D>::act_with_expected_shear(double dt, MpsState<D>& next) {
 
 /// As published.
 template <int D>
-void MpsSolver<D>::act_before_pressure(double dt, MpsState<D>& next) {
-  const MpsSettings& s = model_.settings();
-  MpsParticles<D>& p = next.particles;
+void SolverImpl<D>::act_before_pressure(double dt, State<D>& next) {
+  const Settings& s = model_.settings();
+  Particles<D>& p = next.particles;
   act_viscosity(dt, next);
-  if (s.order == MpsOrder::published) {
+  if (s.order == Order::published) {
     move(dt, p);
     find_neighbours(model_, p, state_.time + dt, work_);
   }
@@ -233,7 +234,7 @@ void MpsSolver<D>::act_before_pressure(double dt, MpsState<D>& next) {
   next.solves.pressure = solve_pressure(model_, dt, p, work_);
   require_converged(next.solves.pressure, "pressure", s.max_iterations);
   apply_pressure(model_, dt, p, work_);
-  if (s.order == MpsOrder::published) {
+  if (s.order == Order::published) {
     std::swap(p.velocity, work_.change);
     move(dt, p);
     std::swap(p.velocity, work_.change);
@@ -241,9 +242,9 @@ void MpsSolver<D>::act_before_pressure(double dt, MpsState<D>& next) {
 }
 
 template <int D>
-void MpsSolver<D>::step() {
+void SolverImpl<D>::step() {
   if (size() == 0) throw SimulationError("there is no snow");
-  MpsState<D>&next = work_.next, &start = work_.start;
+  State<D>&next = work_.next, &start = work_.start;
   next = state_;
   if (model_.has_wall_particles())
     work_.walls.append_near(state_.time, model_.options.period, model_.particle_mass(),
@@ -252,7 +253,7 @@ void MpsSolver<D>::step() {
   double dt = choose_step(next.particles);
   start = next;
   work_.before = start.particles.velocity;
-  const MpsSettings& s = model_.settings();
+  const Settings& s = model_.settings();
   for (int halvings = 0;; ++halvings) {
     attempt(dt, next);
     const double way = largest_speed(next.particles) * dt;
@@ -271,7 +272,7 @@ void MpsSolver<D>::step() {
   }
   keep_spacing(model_, dt, next.particles, work_);
   if (model_.options.energy) work_.projected = next.particles.velocity;
-  if (s.order == MpsOrder::single_move) move(dt, next.particles);
+  if (s.order == Order::single_move) move(dt, next.particles);
   erode_and_deposit(model_, next.particles, work_);
   for (std::size_t i = 0; i < next.particles.size(); ++i)
     next.particles.density[i] = work_.near.density[i] / model_.kernel.number_density;
@@ -290,8 +291,8 @@ void MpsSolver<D>::step() {
 }
 
 template <int D>
-MpsReport MpsSolver<D>::report() const {
-  MpsReport r;
+Report SolverImpl<D>::report() const {
+  Report r;
   r.pressure_iterations = state_.solves.pressure.iterations;
   r.viscosity_iterations = state_.solves.viscosity.iterations;
   r.pressure_residual = state_.solves.pressure.residual;
@@ -313,8 +314,8 @@ MpsReport MpsSolver<D>::report() const {
 
 /// How well the equations were solved, in the last step and on average, and how dense the snow is.
 template <int D>
-ReportsRun::Section MpsSolver<D>::run_section() const {
-  const MpsReport r = report();
+ReportsRun::Section SolverImpl<D>::run_section() const {
+  const Report r = report();
   return {"equations",
           {{"pressure_iterations", std::int64_t(r.pressure_iterations)},
            {"pressure_residual", r.pressure_residual},
@@ -326,9 +327,9 @@ ReportsRun::Section MpsSolver<D>::run_section() const {
            {"largest_density", r.largest_density}}};
 }
 
-template struct MpsModel<2>;
-template struct MpsModel<3>;
-template class MpsSolver<2>;
-template class MpsSolver<3>;
+template struct Model<2>;
+template struct Model<3>;
+template class SolverImpl<2>;
+template class SolverImpl<3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -10,11 +10,11 @@
 #include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
-struct MpsOptions {
+struct Options {
   int dimension = 3;
-  MpsSettings settings;
+  Settings settings;
   Vec3 gravity = Vec3::Zero();  // m/s2
   std::vector<Obstacle> obstacles;
   bool energy = false;  // whether to keep the energy balance
@@ -22,7 +22,7 @@ struct MpsOptions {
 };
 
 /// The equations of the last step, and of all steps.
-struct MpsReport {
+struct Report {
   int pressure_iterations = 0, viscosity_iterations = 0;
   double pressure_residual = 0, viscosity_residual = 0;  // relative
   double mean_pressure_iterations = 0, mean_viscosity_iterations = 0;
@@ -31,12 +31,12 @@ struct MpsReport {
 };
 
 /// MPS as a method, and what only it has.
-class MpsMethod : public Method, public BalancesEnergy, public ReportsRun {
+class Solver : public Method, public BalancesEnergy, public ReportsRun {
  public:
-  virtual MpsReport report() const = 0;
+  virtual Report report() const = 0;
 };
 
 /// Throws InputError where the settings do not fit each other.
-std::unique_ptr<MpsMethod> make_mps(MpsOptions);
+std::unique_ptr<Solver> make_solver(Options);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -4,12 +4,12 @@
 #include "snowshed/methods/mps/forces.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 template <int D>
-class MpsSolver final : public MpsMethod {
+class SolverImpl final : public Solver {
  public:
-  explicit MpsSolver(MpsOptions options) : model_(std::move(options)) {
+  explicit SolverImpl(Options options) : model_(std::move(options)) {
     if (model_.has_wall_particles())
       work_.walls =
           WallParticles<D>(model_.options.obstacles, model_.settings().spacing, model_.reach());
@@ -42,35 +42,35 @@ class MpsSolver final : public MpsMethod {
   void load(const BinaryReader&) override;
   void check(const BinaryReader&) const override;
 
-  MpsReport report() const override;
+  Report report() const override;
   ReportsRun::Section run_section() const override;
 
  private:
-  void append(MpsState<D>&, const ParticleBatch&) const;
-  void accept(MpsState<D>);
-  void attempt(double dt, MpsState<D>& next);
-  void act_viscosity(double dt, MpsState<D>& next);
+  void append(State<D>&, const ParticleBatch&) const;
+  void accept(State<D>);
+  void attempt(double dt, State<D>& next);
+  void act_viscosity(double dt, State<D>& next);
   bool couples(double dt) const;
-  void act_after_pressure(double dt, MpsState<D>& next);
-  void act_with_expected_shear(double dt, MpsState<D>& next);
-  void act_before_pressure(double dt, MpsState<D>& next);
-  void move(double dt, MpsParticles<D>&) const;
-  void book_energy(MpsState<D>& next, double dt) const;
-  double choose_step(const MpsParticles<D>&) const;
-  double pressure_step(const MpsParticles<D>&) const;
-  double largest_speed(const MpsParticles<D>&) const;
-  MpsState<D> restored(const BinaryReader&) const;
+  void act_after_pressure(double dt, State<D>& next);
+  void act_with_expected_shear(double dt, State<D>& next);
+  void act_before_pressure(double dt, State<D>& next);
+  void move(double dt, Particles<D>&) const;
+  void book_energy(State<D>& next, double dt) const;
+  double choose_step(const Particles<D>&) const;
+  double pressure_step(const Particles<D>&) const;
+  double largest_speed(const Particles<D>&) const;
+  State<D> restored(const BinaryReader&) const;
   template <class Visit>
   void visit_fields(Visit) const;
 
-  MpsModel<D> model_;
-  MpsState<D> state_;
-  MpsWork<D> work_;
+  Model<D> model_;
+  State<D> state_;
+  Work<D> work_;
   IdOrder order_;
 };
 
 /// Kinetic and gravitational energy, J.
 template <int D>
-EnergyBalance stored_energy(const MpsModel<D>&, const MpsParticles<D>&);
+EnergyBalance stored_energy(const Model<D>&, const Particles<D>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Particles nearer to each other than this, in l0, bounce; so much of their speed is left.
@@ -24,9 +24,8 @@ constexpr Collision inelastic{1.0, 0.0};
 constexpr double shift_factor = 0.05;
 
 template <int D>
-void collide(const MpsModel<D>& model, const Collision& law, MpsParticles<D>& particles,
-             MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+void collide(const Model<D>& model, const Collision& law, Particles<D>& particles, Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   work.yielding.resize(n);
@@ -45,8 +44,8 @@ void collide(const MpsModel<D>& model, const Collision& law, MpsParticles<D>& pa
 
 /// d/n0 times the sum of w r/r^2: from where there are fewer particles, 1/m.
 template <int D>
-void find_concentration_gradients(const MpsModel<D>& model, std::size_t n, MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+void find_concentration_gradients(const Model<D>& model, std::size_t n, Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
   work.concentration.resize(n);
   for_each_piece(n, model.threads_for(n), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.sum_ways(near.rows(), near.offsets().data(), near.slope.data(), nullptr, nullptr,
@@ -63,7 +62,7 @@ void find_concentration_gradients(const MpsModel<D>& model, std::size_t n, MpsWo
 /// The direction into the snow at its surface: that of the gradients of a particle and of its
 /// neighbours.
 template <int D>
-VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const MpsNeighbourhood<D>& near,
+VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const Neighbourhood<D>& near,
                std::size_t i) {
   VecD<D> sum = gradients[i];
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
@@ -77,8 +76,8 @@ VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const MpsNeighbourhood<D
 /// shifted, at the speed of a fall over l0: the corrected gradient does not keep its particles
 /// apart (ours).
 template <int D>
-void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+void shift(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
   const double l0 = model.settings().spacing;
   const double fall = std::sqrt(model.gravity.norm() * l0);
   const int threads = model.threads_for(particles.size());
@@ -105,20 +104,19 @@ void shift(const MpsModel<D>& model, double dt, MpsParticles<D>& particles, MpsW
 }  // namespace
 
 template <int D>
-void keep_spacing(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
-                  MpsWork<D>& work) {
+void keep_spacing(const Model<D>& model, double dt, Particles<D>& particles, Work<D>& work) {
   switch (model.settings().spacing_law) {
-    case MpsSpacing::none:
+    case SpacingLaw::none:
       return;
-    case MpsSpacing::collision:
+    case SpacingLaw::collision:
       return collide(model, common, particles, work);
-    case MpsSpacing::shifting:
+    case SpacingLaw::shifting:
       collide(model, inelastic, particles, work);
       shift(model, dt, particles, work);
   }
 }
 
-template void keep_spacing(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
-template void keep_spacing(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
+template void keep_spacing(const Model<2>&, double, Particles<2>&, Work<2>&);
+template void keep_spacing(const Model<3>&, double, Particles<3>&, Work<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -20,16 +20,16 @@
 #include "snowshed/methods/mps/wall_particles.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// How many particles a thread is started for: one that has little to do costs more than it saves.
-inline constexpr std::size_t mps_particles_per_thread = 500;
+inline constexpr std::size_t particles_per_thread = 500;
 
 template <int D>
-struct MpsModel {
-  explicit MpsModel(MpsOptions);
+struct Model {
+  explicit Model(Options);
 
-  const MpsSettings& settings() const { return options.settings; }
+  const Settings& settings() const { return options.settings; }
   double reach() const { return settings().spacing * settings().radius; }
   /// 2 d/(lambda n0), 1/m2: turns a sum of weighted differences into a Laplacian, equation (5).
   double laplacian() const {
@@ -40,67 +40,71 @@ struct MpsModel {
   double gradient() const { return D / kernel.number_density; }
   double particle_mass() const { return settings().density * std::pow(settings().spacing, D); }
 
-  MpsOptions options;
+  Options options;
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
   double second_layer;       // see second_layer_share
   SurfaceLack surface_lack;  // below a surface that is no lattice's
   Rheology rheology;
-  const MpsKernels<D>& kernels = mps_kernels<D>();
+  const Kernels<D>& kernels = chosen_kernels<D>();
   int threads;
 
-  bool has_wall_particles() const { return settings().walls == MpsWalls::particles; }
+  bool has_wall_particles() const { return settings().walls == Walls::particles; }
   bool is_sticky(const WallContact<D>& c) const {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
   }
 
   /// Threads for a step of so many particles.
   int threads_for(std::size_t particles) const {
-    return int(
-        std::clamp<std::size_t>(particles / mps_particles_per_thread, 1, std::size_t(threads)));
+    return int(std::clamp<std::size_t>(particles / particles_per_thread, 1, std::size_t(threads)));
   }
 };
 
 /// How well the equations of a step were solved.
-struct MpsSolves {
+struct Solves {
   SolveReport pressure, viscosity;
 };
 
 template <int D>
-struct MpsState {
-  MpsParticles<D> particles;
+struct State {
+  Particles<D> particles;
   double time = 0, dt = 0;  // s
   std::uint32_t next_id = 0;
   StepCounters counters;
   EnergyBalance energy;                                            // its sums over steps
-  MpsSolves solves;                                                // of the last step
+  Solves solves;                                                   // of the last step
   std::int64_t pressure_iterations = 0, viscosity_iterations = 0;  // of all steps
 };
 
 /// What a step finds out about the particles where they stand.
 template <int D>
-struct MpsNeighbourhood {
+struct Neighbourhood {
   CellOrder<D> cells;
   NeighbourLists<D> lists;
   RowLists<WallContact<D>> contacts;
   WallImages<D> images;
-  AlignedVector<float> weight;                // w of each pair
-  AlignedVector<float> coupling;              // w of each pair and of the neighbour's images
-  AlignedVector<float> slope;                 // w/r^2 of each pair, 1/m2
-  AlignedVector<float> even_weight;           // w of each pair in Laplacians of velocities
-  AlignedVector<float> snow_slope;            // the same, but zero for walls, see slope_without
-  AlignedVector<float> weight_sum;            // of each particle's pairs
-  AlignedVector<float> filling_sum;           // of filling_weight of each particle's pairs
-  AlignedVector<RowMoments<D>> moments;       // of each particle's pairs
-  AlignedVector<double> density;              // number density
-  AlignedVector<double> filling;              // over that of a lattice, see filling_weight
-  AlignedVector<std::uint8_t> surface;        // whether a particle lies at the free surface
-  AlignedVector<std::uint8_t> below_surface;  // or has such a neighbour
-  AlignedVector<Eigen::Matrix<double, D, D>> correction;  // of gradients, see find_corrections
-  AlignedVector<std::uint8_t> dry;                        // inner walls that no snow touches
-  AlignedVector<VecD<D>> slip;                            // m/s, with wall particles, see find_slip
-  AlignedVector<VecD<D>> asymmetry;                       // sum of w r, 0 at the surface, m
-  AlignedVector<std::array<float, RowMoments<D>::half>> spread;  // of Laplacians, upper halves
+  // Of each pair of particles, in the order of the lists.
+  AlignedVector<float> weight;       // w(r)
+  AlignedVector<float> coupling;     // the sum of w over the neighbour and its images behind walls
+  AlignedVector<float> slope;        // w(r)/r^2, 1/m2
+  AlignedVector<float> snow_slope;   // the same, 0 if the neighbour is a wall particle
+  AlignedVector<float> even_weight;  // w(r), corrected for the spread of both, for viscosity
+
+  // Of each particle, summed over its pairs.
+  AlignedVector<float> weight_sum;                        // of w(r)
+  AlignedVector<float> filling_sum;                       // of filling_weight(r)
+  AlignedVector<RowMoments<D>> moments;                   // of w(r)
+  AlignedVector<double> density;                          // number density
+  AlignedVector<double> filling;                          // the filling over that of a lattice
+  AlignedVector<VecD<D>> asymmetry;                       // of w(r) r, m; 0 at the free surface
+  AlignedVector<Eigen::Matrix<double, D, D>> correction;  // of gradients, find_corrections
+  AlignedVector<std::array<float, RowMoments<D>::half>> spread;  // of Laplacians: upper half of B
+
+  // What each particle is.
+  AlignedVector<std::uint8_t> surface;        // at the free surface
+  AlignedVector<std::uint8_t> below_surface;  // a neighbour of one at the free surface
+  AlignedVector<std::uint8_t> dry;            // of an inner wall that no snow touches
+  AlignedVector<VecD<D>> slip;                // velocity of a wall particle as snow sees it, m/s
 
   /// A particle's contact with an obstacle, or null.
   const WallContact<D>* contact_with(std::size_t i, std::uint32_t obstacle) const {
@@ -121,16 +125,16 @@ struct MpsNeighbourhood {
 };
 
 template <int D>
-struct MpsWork {
-  WallParticles<D> walls;   // where the settings say so
-  MpsState<D> next, start;  // of a step, and what it begins with once walls are there
-  MpsParticles<D> spare;
-  MpsNeighbourhood<D> near;
+struct Work {
+  WallParticles<D> walls;  // where the settings say so
+  State<D> next, start;    // of a step, and what it begins with once walls are there
+  Particles<D> spare;
+  Neighbourhood<D> near;
   AlignedVector<VecD<D>> velocity;                    // right-hand side, m/s
   AlignedVector<VecD<D>> before, viscous, projected;  // velocities of a step, m/s; for the energy
   AlignedVector<VecD<D>> predicted_velocity;          // by gravity alone, m/s
-  AlignedVector<VecD<D>> expected, found;             // viscous force over mass, m/s2
-  AlignedVector<std::uint8_t> flowing;                // whether it is expected of a particle
+  AlignedVector<VecD<D>> expected_shear, shear;       // viscous force over mass, m/s2
+  AlignedVector<std::uint8_t> flowing;                // whether a particle is expected to have one
   AlignedVector<VecD<D>> viscous_change;              // of velocities by viscosity, m/s
   AlignedVector<std::uint8_t> moved;                  // whether a particle could move in the step
   AlignedVector<double> drag;                         // of each contact with a wall, 1/s
@@ -158,12 +162,12 @@ struct MpsWork {
   AlignedVector<VecD<D>> velocity_residual;  // m/s
 };
 
-inline constexpr std::ptrdiff_t mps_particles_in_piece = 256;
+inline constexpr std::ptrdiff_t particles_in_piece = 256;
 
 /// f(begin, end) for all particles, in pieces.
 template <class F>
 void for_each_piece(std::size_t count, int threads, F f) {
-  parallel_pieces(std::ptrdiff_t(count), threads, mps_particles_in_piece, f);
+  parallel_pieces(std::ptrdiff_t(count), threads, particles_in_piece, f);
 }
 /// f(i) for all particles, in pieces.
 template <class F>
@@ -173,4 +177,4 @@ void for_each_particle(std::size_t count, int threads, F f) {
   });
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

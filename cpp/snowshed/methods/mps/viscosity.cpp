@@ -6,7 +6,7 @@
 #include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Nearer to a wall than this, in l0, its friction grows no further.
@@ -24,8 +24,7 @@ double share_of_mirror(double distance, double second) {
 /// How much of a wall particle's friction a particle takes that touches its obstacle, m; none where
 /// the wall particle is not of the layer at the surface.
 template <int D>
-double hold(const MpsModel<D>& model, float weight, const VecD<D>& to_wall,
-            const WallContact<D>& c) {
+double hold(const Model<D>& model, float weight, const VecD<D>& to_wall, const WallContact<D>& c) {
   const double below = -to_wall.dot(c.normal);
   const bool at_surface = below - c.distance < model.settings().spacing;
   return at_surface ? double(weight) * std::max(0.0, below) : 0.0;
@@ -34,8 +33,8 @@ double hold(const MpsModel<D>& model, float weight, const VecD<D>& to_wall,
 /// What the particles that touch a wall particle's obstacle take of its friction together, but not
 /// less than most of what they do on a lattice: a wall particle beside the snow has less friction.
 template <int D>
-double hold_of_all(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                   const MpsNeighbourhood<D>& near, std::size_t wall) {
+double hold_of_all(const Model<D>& model, const Particles<D>& particles,
+                   const Neighbourhood<D>& near, std::size_t wall) {
   double sum = 0;
   for (std::uint32_t e = near.lists.begin(wall); e < near.lists.end(wall); ++e) {
     const std::size_t i = near.lists.neighbour(e);
@@ -51,8 +50,8 @@ double hold_of_all(const MpsModel<D>& model, const MpsParticles<D>& particles,
 /// The share of each contact with a wall in the wall's shear stress. That of a wall particle acts
 /// on the particles around it, and is theirs wholly.
 template <int D>
-void find_shares(const MpsModel<D>& model, const MpsParticles<D>& particles, MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+void find_shares(const Model<D>& model, const Particles<D>& particles, Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
   work.share.resize(near.contacts.all().size());
   if (!model.has_wall_particles()) {
@@ -81,9 +80,9 @@ void find_shares(const MpsModel<D>& model, const MpsParticles<D>& particles, Mps
 /// The coupling of the velocities of each pair, from the viscosity between them: that of the shear
 /// rate midway, and of the mean of both pressures. Walls have none: they act by their drag.
 template <int D>
-void find_couplings(const MpsModel<D>& model, double factor, const MpsParticles<D>& particles,
-                    MpsWork<D>& work) {
-  const MpsNeighbourhood<D>& near = work.near;
+void find_couplings(const Model<D>& model, double factor, const Particles<D>& particles,
+                    Work<D>& work) {
+  const Neighbourhood<D>& near = work.near;
   const NeighbourLists<D>& lists = near.lists;
   const Rheology& law = model.rheology;
   const int threads = model.threads_for(lists.size());
@@ -145,9 +144,9 @@ constexpr double sweep_damping = 0.9;
 /// distance, and at the pressure on the wall. It acts on the particles next to the wall. Where the
 /// obstacle is not sticky, it is at most the obstacle's own friction.
 template <int D>
-double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, double share,
-                 std::size_t i, const WallContact<D>& c) {
-  const MpsSettings& s = model.settings();
+double wall_drag(const Model<D>& model, const Particles<D>& particles, double share, std::size_t i,
+                 const WallContact<D>& c) {
+  const Settings& s = model.settings();
   const double height = std::max(c.distance, nearest_friction * s.spacing);
   if (share == 0) return 0;
   const VecD<D> relative = particles.velocity[i] - c.velocity;
@@ -164,8 +163,8 @@ double wall_drag(const MpsModel<D>& model, const MpsParticles<D>& particles, dou
 
 /// The levels above the particles know their walls' drag as if it acted in all directions alike.
 template <int D>
-void prepare_velocity_multigrid(const MpsModel<D>& model, const MpsParticles<D>& particles,
-                                MpsWork<D>& work) {
+void prepare_velocity_multigrid(const Model<D>& model, const Particles<D>& particles,
+                                Work<D>& work) {
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   work.velocity_diagonal.resize(n);
@@ -179,7 +178,7 @@ void prepare_velocity_multigrid(const MpsModel<D>& model, const MpsParticles<D>&
 /// z = M^-1 r: a damped Jacobi sweep, the levels above, and another sweep.
 template <int D, class Apply, class Smooth>
 void precondition_velocities(std::size_t n, int threads, const Apply& apply, const Smooth& smooth,
-                             MpsWork<D>& work, const double* r, double* z) {
+                             Work<D>& work, const double* r, double* z) {
   double* const residual = work.velocity_residual.data()->data();
   const auto find_residual = [&] {
     apply(z, residual);
@@ -201,13 +200,13 @@ void precondition_velocities(std::size_t n, int threads, const Apply& apply, con
 /// The equation of the present apparent viscosities; `start` are the velocities before viscosity
 /// acts, particles.velocity a guess that becomes the solution.
 template <int D>
-SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocities<D>& start,
-                            double tolerance, double scale, MpsParticles<D>& particles,
-                            MpsWork<D>& work) {
+SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D>& start,
+                            double tolerance, double scale, Particles<D>& particles,
+                            Work<D>& work) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
-  const MpsNeighbourhood<D>& near = work.near;
+  const Neighbourhood<D>& near = work.near;
   find_couplings(model, dt / model.settings().density * model.laplacian(), particles, work);
   work.velocity.resize(n);
   work.block.resize(n);
@@ -262,7 +261,7 @@ SolveReport solve_viscosity(const MpsModel<D>& model, double dt, const Velocitie
 /// What residuals and changes of all velocities are compared with: what gravity adds in a step,
 /// m/s.
 template <int D>
-double velocity_scale(const MpsModel<D>& model, double dt, const MpsParticles<D>& particles) {
+double velocity_scale(const Model<D>& model, double dt, const Particles<D>& particles) {
   double speed2 = 0;
   for (const VecD<D>& u : particles.velocity) speed2 += u.squaredNorm();
   return std::sqrt(double(particles.size())) * model.gravity.norm() * dt + 1e-3 * std::sqrt(speed2);
@@ -285,7 +284,7 @@ double distance(const Velocities<D>& a, const Velocities<D>& b) {
 }  // namespace
 
 template <int D>
-void add_gravity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles) {
+void add_gravity(const Model<D>& model, double dt, Particles<D>& particles) {
   for (std::size_t i = 0; i < particles.size(); ++i)
     if (particles.moves(i)) particles.velocity[i] += dt * model.gravity;
 }
@@ -294,9 +293,9 @@ void add_gravity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles
 /// iteration (Kacanov's, which descends for Bingham fluids), from the rates of the last step, and
 /// accelerated.
 template <int D>
-SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>& particles,
-                            MpsWork<D>& work) {
-  const MpsSettings& s = model.settings();
+SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& particles,
+                            Work<D>& work) {
+  const Settings& s = model.settings();
   // From nearly the velocities before the step, not from those that forces have driven apart: what
   // creeps comes to rest. Nor quite from rest, which viscosity would keep for too many iterations.
   const Velocities<D> start = particles.velocity;
@@ -334,9 +333,9 @@ SolveReport apply_viscosity(const MpsModel<D>& model, double dt, MpsParticles<D>
   return report;
 }
 
-template void add_gravity(const MpsModel<2>&, double, MpsParticles<2>&);
-template void add_gravity(const MpsModel<3>&, double, MpsParticles<3>&);
-template SolveReport apply_viscosity(const MpsModel<2>&, double, MpsParticles<2>&, MpsWork<2>&);
-template SolveReport apply_viscosity(const MpsModel<3>&, double, MpsParticles<3>&, MpsWork<3>&);
+template void add_gravity(const Model<2>&, double, Particles<2>&);
+template void add_gravity(const Model<3>&, double, Particles<3>&);
+template SolveReport apply_viscosity(const Model<2>&, double, Particles<2>&, Work<2>&);
+template SolveReport apply_viscosity(const Model<3>&, double, Particles<3>&, Work<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

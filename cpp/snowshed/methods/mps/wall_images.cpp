@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 constexpr std::size_t particles_with_images = 256;
@@ -96,4 +96,4 @@ void WallImages<D>::clear(std::size_t particles) {
 template class WallImages<2>;
 template class WallImages<3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

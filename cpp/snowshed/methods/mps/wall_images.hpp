@@ -5,7 +5,7 @@
 #include "snowshed/methods/mps/kernel_function.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// The image of particle k behind a wall, or behind two at once in a corner, as particle i sees it.
 /// For a plane wall r'^2 = r^2 + 4 h_i h_k with the distances h from the wall, which is used for
@@ -39,4 +39,4 @@ class WallImages {
   RowLists<WallImage<D>> images_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// Wall particles nearer to each other than this, in l0, push each other apart, so often.
@@ -206,7 +206,7 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
     const bool has_inner = 2 * shape.half_thickness(x) >= edge_ + spacing_;
     const VecD<D> normal = section<D>(shape.normal(x)).stableNormalized();
     to.push_back({points[i], normal, number,
-                  has_inner && depth[i] < spacing_ ? MpsKind::inner_wall : MpsKind::dummy_wall});
+                  has_inner && depth[i] < spacing_ ? Kind::inner_wall : Kind::dummy_wall});
   }
 }
 
@@ -236,7 +236,7 @@ const typename WallParticles<D>::Points& WallParticles<D>::points_in(Group& grou
         p.normal.setZero();
       }
     }
-    if (deepest > spacing_) p.kind = MpsKind::dummy_wall;
+    if (deepest > spacing_) p.kind = Kind::dummy_wall;
     if (is_first) kept.push_back(p);
   }
   return group.made.emplace(cell, std::move(kept)).first->second;
@@ -262,7 +262,7 @@ bool WallParticles<D>::is_near_wall(Group& group, const Cell& cell) {
 template <int D>
 void WallParticles<D>::append_group(Group& group, const RigidPose& pose, double period,
                                     const std::vector<Cell>& snow_cells, double mass,
-                                    MpsParticles<D>& to) {
+                                    Particles<D>& to) {
   std::vector<Cell> cells;
   for (const Cell& c : snow_cells)
     if (is_near_wall(group, c)) for_cells_around(c, 2, [&](const Cell& k) { cells.push_back(k); });
@@ -293,7 +293,7 @@ void WallParticles<D>::append_group(Group& group, const RigidPose& pose, double 
 }
 
 template <int D>
-void WallParticles<D>::append_near(double time, double period, double mass, MpsParticles<D>& snow) {
+void WallParticles<D>::append_near(double time, double period, double mass, Particles<D>& snow) {
   const AlignedVector<VecD<D>> points = snow.position;
   for (Group& group : groups_) {
     if (group.obstacles.empty()) continue;
@@ -322,7 +322,7 @@ std::size_t WallParticles<D>::bytes() const {
 }
 
 template <int D>
-void remove_walls(MpsParticles<D>& particles) {
+void remove_walls(Particles<D>& particles) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     if (particles.is_wall(i)) continue;
@@ -335,7 +335,7 @@ void remove_walls(MpsParticles<D>& particles) {
 
 template class WallParticles<2>;
 template class WallParticles<3>;
-template void remove_walls(MpsParticles<2>&);
-template void remove_walls(MpsParticles<3>&);
+template void remove_walls(Particles<2>&);
+template void remove_walls(Particles<3>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -9,7 +9,7 @@
 #include "snowshed/methods/mps/boundary.hpp"
 #include "snowshed/methods/mps/particles.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// Wall particles of obstacles, made where snow comes near.
 ///
@@ -29,7 +29,7 @@ class WallParticles {
 
   /// Appends to the snow all wall particles that it, or inner walls next to it, can reach.
   /// `period` as in CellOrder.
-  void append_near(double time, double period, double mass, MpsParticles<D>& snow);
+  void append_near(double time, double period, double mass, Particles<D>& snow);
 
   std::size_t bytes() const;
 
@@ -41,7 +41,7 @@ class WallParticles {
   struct Point {
     VecD<D> position, normal;  // m, in the frame of the group
     std::uint32_t obstacle;
-    MpsKind kind;
+    Kind kind;
   };
   using Points = std::vector<Point>;
   /// A point of a lattice, moved to the middle of its layer, where it has one.
@@ -72,7 +72,7 @@ class WallParticles {
   void push_apart(const LevelSet&, std::vector<VecD<D>>& points,
                   const std::vector<double>& depth) const;
   void append_group(Group&, const RigidPose&, double period, const std::vector<Cell>& snow_cells,
-                    double mass, MpsParticles<D>& to);
+                    double mass, Particles<D>& to);
 
   const std::vector<Obstacle>* obstacles_ = nullptr;
   double spacing_ = 0, edge_ = 0;
@@ -83,6 +83,6 @@ class WallParticles {
 
 /// Removes the wall particles; the others keep their order.
 template <int D>
-void remove_walls(MpsParticles<D>&);
+void remove_walls(Particles<D>&);
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

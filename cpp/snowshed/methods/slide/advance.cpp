@@ -6,14 +6,14 @@
 #include <numeric>
 #include <type_traits>
 
-namespace snowshed {
+namespace snowshed::slide {
 
-void advance(const SlideModel& model, SlideState& state, SlideWork& work) {
-  const SlideParticles& p = state.particles;
-  const SlideView view = view_of(model, state, work);
+void advance(const Model& model, State& state, Work& work) {
+  const Particles& p = state.particles;
+  const View view = view_of(model, state, work);
   for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     work.piece_sums[std::size_t(begin / particles_in_piece)] =
-        slide_kernels().advance(view, begin, end);
+        chosen_kernels().advance(view, begin, end);
   });
   // Piece by piece, so that the sum does not depend on the threads.
   const std::ptrdiff_t pieces =
@@ -49,9 +49,9 @@ void reorder(const std::vector<std::uint32_t>& order, AlignedVector<double>& scr
 
 }  // namespace
 
-void remove_marked(SlideState& state, SlideWork& work) {
+void remove_marked(State& state, Work& work) {
   if (!std::memchr(work.removed.data(), 1, work.removed.size())) return;
-  SlideParticles& p = state.particles;
+  Particles& p = state.particles;
   std::vector<std::uint32_t>& new_place = work.new_places;
   new_place.resize(p.size());
   std::uint32_t kept = 0;
@@ -72,8 +72,8 @@ namespace {
 
 /// Gives the particles from `begin` on, which have the ids of those they split from, ids of their
 /// own, in the order of these: the order in which particles are stored must not tell.
-void number_new(SlideState& state, SlideWork& work, std::size_t begin) {
-  SlideParticles& p = state.particles;
+void number_new(State& state, Work& work, std::size_t begin) {
+  Particles& p = state.particles;
   std::vector<std::uint32_t>& order = work.new_places;
   order.resize(p.size() - begin);
   std::iota(order.begin(), order.end(), std::uint32_t(begin));
@@ -84,14 +84,14 @@ void number_new(SlideState& state, SlideWork& work, std::size_t begin) {
 
 }  // namespace
 
-void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
-  SlideParticles& p = state.particles;
+void split_heavy(const Model& model, State& state, Work& work) {
+  Particles& p = state.particles;
   if (work.none_splits || (state.erodible.empty() && !model.compatible())) return;
   const std::size_t before = p.size();
   for (std::size_t i = 0; i < before; ++i) {
     if (!(p.mass[i] > p.fresh_mass[i] * model.settings.split_ratio)) continue;
     const double area =
-        p.mass[i] / (model.settings.density * std::max(work.thickness[i], least_slide_thickness));
+        p.mass[i] / (model.settings.density * std::max(work.thickness[i], least_thickness));
     const double distance = 0.41 * std::sqrt(area / 3.14159265358979323846);
     Vec3 along{p.ux[i], p.uy[i], p.uz[i]};
     const double speed = along.norm();
@@ -121,7 +121,7 @@ void split_heavy(const SlideModel& model, SlideState& state, SlideWork& work) {
   work.bond_lists.update(state.bonds, p.size());
 }
 
-void sort_by_cell(SlideState& state, SlideWork& work) {
+void sort_by_cell(State& state, Work& work) {
   const std::vector<std::uint32_t>& order = work.cells.order();
   AlignedVector<double> scratch(order.size());
   work.new_places.resize(order.size());
@@ -134,4 +134,4 @@ void sort_by_cell(SlideState& state, SlideWork& work) {
                       [&](std::ptrdiff_t b) { (*ends)[b] = work.new_places[(*ends)[b]]; });
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -3,20 +3,20 @@
 
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// New velocities and positions, brought back onto the ground. Particles that leave the terrain
 /// are marked in `work.removed`. Updates the kinetic energy and whether the slide has stopped.
-void advance(const SlideModel&, SlideState&, SlideWork&);
+void advance(const Model&, State&, Work&);
 
 /// Removes the marked particles and their bonds, and counts the mass that they carry.
-void remove_marked(SlideState&, SlideWork&);
+void remove_marked(State&, Work&);
 
 /// Splits particles that have become too heavy.
-void split_heavy(const SlideModel&, SlideState&, SlideWork&);
+void split_heavy(const Model&, State&, Work&);
 
 /// Stores the particles in the order of their cells. Of the workspace only the cells' order is
 /// read; it does not follow. All or nothing.
-void sort_by_cell(SlideState&, SlideWork&);
+void sort_by_cell(State&, Work&);
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

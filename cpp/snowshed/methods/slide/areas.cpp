@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 /// Whether most corners are passed counterclockwise as seen from the first one.
@@ -46,10 +46,10 @@ Ring widened_as_avaframe(const Ring& outline, double radius) {
   return moved_aside(outline, mostly_counterclockwise(outline) ? radius / 2 : -radius / 2);
 }
 
-std::vector<double> thickness_at_nodes(const std::vector<SlideArea>& areas, const Terrain& terrain,
+std::vector<double> thickness_at_nodes(const std::vector<Area>& areas, const Terrain& terrain,
                                        Reach reach) {
   std::vector<double> thickness(std::size_t(terrain.columns()) * std::size_t(terrain.rows()), 0.0);
-  for (const SlideArea& area : areas) {
+  for (const Area& area : areas) {
     const Ring ring =
         widened_as_avaframe(scaled(area.polygon.outline, terrain.cell()), radius_of(reach));
     std::vector<Ring> holes;
@@ -67,4 +67,4 @@ std::vector<double> thickness_at_nodes(const std::vector<SlideArea>& areas, cons
   return thickness;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

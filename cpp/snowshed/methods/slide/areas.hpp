@@ -8,10 +8,10 @@
 #include "snowshed/geometry/polygon.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// Coordinates are given from the south-west node of the terrain, m.
-struct SlideArea {
+struct Area {
   std::string name;
   Polygon polygon;
   double thickness = 0;  // m of snow, normal to the ground; unused where there is resistance only
@@ -20,8 +20,8 @@ struct SlideArea {
   double max_thickness = 100;  // m, that the map may tell of
 };
 
-struct SlideAreas {
-  std::vector<SlideArea> release, entrainment, resistance;
+struct Areas {
+  std::vector<Area> release, entrainment, resistance;
 };
 
 /// How far around an area a node still belongs to it.
@@ -32,7 +32,7 @@ enum class Reach {
 
 /// Returns the thickness at each node of a grid, 0 outside of the areas. Where areas overlap, each
 /// further area gives the mean of its own thickness and of that so far, as in AvaFrame.
-std::vector<double> thickness_at_nodes(const std::vector<SlideArea>& areas, const Terrain& terrain,
+std::vector<double> thickness_at_nodes(const std::vector<Area>& areas, const Terrain& terrain,
                                        Reach reach);
 
 /// Returns the outline of an area, widened by half of `radius` as AvaFrame 2.1 does it. Which side
@@ -40,4 +40,4 @@ std::vector<double> thickness_at_nodes(const std::vector<SlideArea>& areas, cons
 /// For some outlines with deep bays this sense is wrong, and they become narrower.
 Ring widened_as_avaframe(const Ring& outline, double radius);
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

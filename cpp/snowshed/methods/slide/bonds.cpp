@@ -6,7 +6,7 @@
 
 #include "snowshed/particles/point_grid.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -15,8 +15,7 @@ constexpr double longest_ratio = 1.1;
 
 class MapPoints {
  public:
-  MapPoints(const SlideParticles& particles, std::size_t begin, double reach,
-            const StopRequest& stop)
+  MapPoints(const Particles& particles, std::size_t begin, double reach, const StopRequest& stop)
       : points_(points_of(particles, begin)), grid_(points_, reach, stop), reach_(reach) {}
 
   /// Calls visit(triangle, longest side) for the Delaunay triangles with no side beyond the reach,
@@ -43,7 +42,7 @@ class MapPoints {
   }
 
  private:
-  static std::vector<Vec3> points_of(const SlideParticles& particles, std::size_t begin) {
+  static std::vector<Vec3> points_of(const Particles& particles, std::size_t begin) {
     std::vector<Vec3> points;
     points.reserve(particles.size() - begin);
     for (std::size_t i = begin; i < particles.size(); ++i)
@@ -93,8 +92,8 @@ bool crosses(const Ring& ring, const MapPoint& a, const MapPoint& b) {
   return false;
 }
 
-bool crosses_outline(const std::vector<SlideArea>& areas, const MapPoint& a, const MapPoint& b) {
-  for (const SlideArea& area : areas) {
+bool crosses_outline(const std::vector<Area>& areas, const MapPoint& a, const MapPoint& b) {
+  for (const Area& area : areas) {
     if (crosses(area.polygon.outline, a, b)) return true;
     for (const Ring& hole : area.polygon.holes)
       if (crosses(hole, a, b)) return true;
@@ -127,8 +126,8 @@ class PairSet {
 
 }  // namespace
 
-Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double spacing,
-                    const std::vector<SlideArea>* areas, const StopRequest& stop) {
+Bonds bonds_between(const Particles& particles, std::size_t begin, double spacing,
+                    const std::vector<Area>* areas, const StopRequest& stop) {
   StopCheck give_up(stop);
   Bonds bonds;
   if (particles.size() < begin + 3) return bonds;
@@ -160,7 +159,7 @@ Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double s
   return bonds;
 }
 
-double longest_bond_step(const Bonds& bonds, const SlideParticles& particles,
+double longest_bond_step(const Bonds& bonds, const Particles& particles,
                          const AlignedVector<double>& thickness, double modulus) {
   std::vector<double> stiffness(particles.size(), 0.0);
   for (std::size_t b = 0; b < bonds.size(); ++b) {
@@ -218,4 +217,4 @@ void BondLists::update(const Bonds& bonds, std::size_t particles) {
   begin_[0] = 0;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -9,7 +9,7 @@
 #include "snowshed/methods/slide/particles.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// The bonds that hold, each between two particles (by where they are stored).
 struct Bonds {
@@ -33,8 +33,8 @@ struct Bonds {
 /// seen from above. Only triangles count whose longest side is at most 1.1 times the shortest of
 /// all the longest sides. With `areas`, bonds that cross the outline of one of them are left out.
 /// Throws Stopped on request.
-Bonds bonds_between(const SlideParticles& particles, std::size_t begin, double spacing,
-                    const std::vector<SlideArea>* areas, const StopRequest& stop = {});
+Bonds bonds_between(const Particles& particles, std::size_t begin, double spacing,
+                    const std::vector<Area>* areas, const StopRequest& stop = {});
 
 /// Removes the bonds of particles that are gone and renumbers the rest: `new_place[i]` is where
 /// particle i is stored now, `gone` where it is not.
@@ -45,7 +45,7 @@ void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place);
 /// A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the stiffness
 /// K in all vibrates with omega^2 <= 2 K / m (Gershgorin), and forces at the end points of the
 /// velocities before are stable where omega dt <= sqrt(2).
-double longest_bond_step(const Bonds& bonds, const SlideParticles& particles,
+double longest_bond_step(const Bonds& bonds, const Particles& particles,
                          const AlignedVector<double>& thickness, double modulus);
 
 /// Removes the bonds that are marked.
@@ -73,4 +73,4 @@ class BondLists {
   std::vector<std::uint32_t> begin_, entry_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/slide/kernel_api.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 void CellLists::reserve(std::size_t particles, const Terrain& terrain) {
   begin_.reserve((std::size_t(terrain.columns()) + 2) * (std::size_t(terrain.rows()) + 2) + 2);
@@ -17,8 +17,8 @@ void CellLists::find_rectangle(const AlignedVector<std::int32_t>& column,
   std::int32_t low[2] = {0, 0}, high[2] = {-1, -1};
   if (!column.empty()) {
     const auto count = std::ptrdiff_t(column.size());
-    slide_kernels().bounds(column.data(), count, low[0], high[0]);
-    slide_kernels().bounds(row.data(), count, low[1], high[1]);
+    chosen_kernels().bounds(column.data(), count, low[0], high[0]);
+    chosen_kernels().bounds(row.data(), count, low[1], high[1]);
   }
   first_column_ = low[0] - 1;
   first_row_ = low[1] - 1;
@@ -48,4 +48,4 @@ void CellLists::update(const AlignedVector<std::int32_t>& column,
   }
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

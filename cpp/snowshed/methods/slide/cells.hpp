@@ -7,7 +7,7 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// The particles in the order of their cells, row by row, within the smallest rectangle of cells
 /// that holds them all and a margin of one cell. Within a cell they keep the order of storage.
@@ -62,4 +62,4 @@ class CellLists {
   AlignedVector<double> x_, y_, z_, mass_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -4,7 +4,7 @@
 #include "snowshed/methods/archive.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 template <class Archive, class State>
@@ -31,7 +31,7 @@ void visit_state(Archive& archive, State& s) {
                  s.stopped, s.next_id);
 }
 
-void check_places(const StateReader& archive, const SlideParticles& p, const Terrain& terrain) {
+void check_places(const StateReader& archive, const Particles& p, const Terrain& terrain) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const GridPlace place = terrain.place(p.x[i], p.y[i]);
     if (!place.inside() || !terrain.known(place))
@@ -47,9 +47,9 @@ void check_bonds(const StateReader& archive, const Bonds& bonds, std::size_t par
       archive.refuse("a bond is not sound");
 }
 
-SlideState read_state(const BinaryReader& in, const SlideModel& model) {
+State read_state(const BinaryReader& in, const Model& model) {
   const StateReader archive(in);
-  SlideState next(model);
+  State next(model);
   visit_state(archive, next);
   check_places(archive, next.particles, model.terrain);
   check_bonds(archive, next.bonds, next.particles.size());
@@ -60,17 +60,17 @@ SlideState read_state(const BinaryReader& in, const SlideModel& model) {
 
 }  // namespace
 
-void SlideSolver::save(BinaryWriter& out) const {
+void SolverImpl::save(BinaryWriter& out) const {
   soundness_.require();
   StateWriter archive(out);
   visit_state(archive, state_);
 }
 
-void SlideSolver::check(const BinaryReader& in) const { read_state(in, model_); }
+void SolverImpl::check(const BinaryReader& in) const { read_state(in, model_); }
 
-void SlideSolver::load(const BinaryReader& in) {
-  SlideState next = read_state(in, model_);
-  SlideWork work;
+void SolverImpl::load(const BinaryReader& in) {
+  State next = read_state(in, model_);
+  Work work;
   refresh(model_, next, work);
   state_ = std::move(next);
   work_ = std::move(work);
@@ -78,4 +78,4 @@ void SlideSolver::load(const BinaryReader& in) {
   soundness_ = {};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

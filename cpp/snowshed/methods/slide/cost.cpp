@@ -5,7 +5,7 @@
 
 #include "snowshed/methods/slide/friction.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 /// Memory of a particle with three bonds, and of a node of the terrain.
@@ -19,7 +19,7 @@ MapPoint middle(const Ring& ring) {
 
 }  // namespace
 
-double block_travel_time(const Terrain& terrain, const SlideSettings& s, const SlideArea& release,
+double block_travel_time(const Terrain& terrain, const Settings& s, const Area& release,
                          double gravity, double max_time) {
   const BasalFriction law = BasalFriction::from(s, gravity);
   const double dt = 0.05, drag = law.drag / (s.density * release.thickness);
@@ -41,8 +41,8 @@ double block_travel_time(const Terrain& terrain, const SlideSettings& s, const S
   return std::max(time, dt);
 }
 
-CostEstimate estimate_cost(const SlideSettings& s, const SceneView& scene, const SlideArea& release,
-                           const SlideMethod& slide) {
+CostEstimate estimate_cost(const Settings& s, const SceneView& scene, const Area& release,
+                           const Solver& slide) {
   const Terrain& terrain = slide.terrain();
   const auto particles = double(slide.count_seeds());
   const double max_time = scene.events.max_time;
@@ -61,9 +61,9 @@ CostEstimate estimate_cost(const SlideSettings& s, const SceneView& scene, const
   return cost;
 }
 
-std::vector<Feature> features_of(const SlideSettings& s, const SceneView& scene) {
+std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
   return {{"cohesive bonds", s.bonds},
-          {"turbulent friction (Voellmy)", s.friction_law == SlideFriction::voellmy},
+          {"turbulent friction (Voellmy)", s.friction_law == FrictionLaw::voellmy},
           {"artificial viscosity", s.artificial_viscosity > 0},
           {"entrainment and splitting", !scene.terrain->entrainment.empty()},
           {"resistance areas", !scene.terrain->resistance.empty()},
@@ -71,4 +71,4 @@ std::vector<Feature> features_of(const SlideSettings& s, const SceneView& scene)
           {"snapshots during the slide", scene.output.snapshot_interval > 0}};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -2,9 +2,9 @@
 
 #include "snowshed/methods/allowed.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
-void describe(SettingsVisitor& v, SlideSettings& s) {
+void describe(SettingsVisitor& v, Settings& s) {
   v.accuracy({"cell", "time_step", "layer_thickness"});
   v.choice("mode", s.mode,
            "Without the known faults of com5SnowSlide, or step by step as AvaFrame 2.1 does it");
@@ -44,4 +44,4 @@ void describe(SettingsVisitor& v, SlideSettings& s) {
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -8,18 +8,22 @@
 namespace snowshed {
 
 template <>
-struct EnumNames<SlideMode> {
-  static constexpr Named<SlideMode> list[] = {{SlideMode::improved, "improved"},
-                                              {SlideMode::compatible, "compatible"}};
+struct EnumNames<slide::Mode> {
+  static constexpr Named<slide::Mode> list[] = {{slide::Mode::improved, "improved"},
+                                                {slide::Mode::compatible, "compatible"}};
 };
 
 template <>
-struct EnumNames<SlideFriction> {
-  static constexpr Named<SlideFriction> list[] = {{SlideFriction::voellmy, "voellmy"},
-                                                  {SlideFriction::coulomb, "coulomb"}};
+struct EnumNames<slide::FrictionLaw> {
+  static constexpr Named<slide::FrictionLaw> list[] = {{slide::FrictionLaw::voellmy, "voellmy"},
+                                                       {slide::FrictionLaw::coulomb, "coulomb"}};
 };
 
-/// Shows a visitor each setting in turn: key, unit, range and meaning.
-void describe(SettingsVisitor&, SlideSettings&);
-
 }  // namespace snowshed
+
+namespace snowshed::slide {
+
+/// Shows a visitor each setting in turn: key, unit, range and meaning.
+void describe(SettingsVisitor&, Settings&);
+
+}  // namespace snowshed::slide

@@ -5,11 +5,11 @@
 
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
-Vec3 velocity_at(const SlideState& state, std::size_t i) {
-  const SlideParticles& p = state.particles;
+Vec3 velocity_at(const State& state, std::size_t i) {
+  const Particles& p = state.particles;
   return {p.ux[i], p.uy[i], p.uz[i]};
 }
 
@@ -23,16 +23,16 @@ double bond_energy(double modulus, double thickness, double length, double rest)
 struct Drag {
   double turbulent, resistance;
 };
-Drag drag_parts(const SlideModel& model, const SlideWork& work, std::size_t i) {
-  const double h = std::max(work.thickness[i], least_slide_thickness);
+Drag drag_parts(const Model& model, const Work& work, std::size_t i) {
+  const double h = std::max(work.thickness[i], least_thickness);
   const double all = work.loads.drag[i];
   const double turbulent = std::min(all, model.friction.drag / (model.settings.density * h));
   return model.resistance.empty() ? Drag{all, 0.0} : Drag{turbulent, all - turbulent};
 }
 
 /// The sum over the neighbours of a particle of m_l (R - r)^3; R is the width of a cell.
-double cover_of(const SlideParticles& p, const CellLists& cells, const Places& places,
-                std::uint32_t i, double radius) {
+double cover_of(const Particles& p, const CellLists& cells, const Places& places, std::uint32_t i,
+                double radius) {
   const int column = places.column[i] - cells.first_column();
   const int row = places.row[i] - cells.first_row();
   double sum = 0;
@@ -56,9 +56,9 @@ double raised_integral(double n) {
 
 /// The potential of the pressure (kernels/surface_pressure.hpp), J: sum_k m_k g n_z h_k / 2, by
 /// which the snow's centre of mass lies above the ground, raised at few neighbours.
-double pressure_energy(const SlideModel& model, const SlideState& state, const SlideWork& work) {
+double pressure_energy(const Model& model, const State& state, const Work& work) {
   const double radius = model.terrain.cell(), pi = 3.14159265358979323846;
-  const SlideParticles& p = state.particles;
+  const Particles& p = state.particles;
   double sum = 0;
   for (std::uint32_t i = 0; i < p.size(); ++i) {
     const double cover = cover_of(p, work.cells, work.places, i, radius);
@@ -72,7 +72,7 @@ double pressure_energy(const SlideModel& model, const SlideState& state, const S
 
 }  // namespace
 
-NamedEnergies named_energies(const SlideEnergy& e) {
+NamedEnergies named_energies(const Energy& e) {
   return {{"kinetic_j", e.kinetic},     {"potential_j", e.potential},
           {"bonds_j", e.bonds},         {"coulomb_j", e.coulomb},
           {"turbulent_j", e.turbulent}, {"resistance_j", e.resistance},
@@ -81,9 +81,8 @@ NamedEnergies named_energies(const SlideEnergy& e) {
           {"added_j", e.added},         {"residual_j", e.residual()}};
 }
 
-void store_energy(const SlideModel& model, const SlideState& state, const SlideWork& work,
-                  SlideEnergy& e) {
-  const SlideParticles& p = state.particles;
+void store_energy(const Model& model, const State& state, const Work& work, Energy& e) {
+  const Particles& p = state.particles;
   e.kinetic = e.bonds = 0;
   e.potential = pressure_energy(model, state, work);
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -100,7 +99,7 @@ void store_energy(const SlideModel& model, const SlideState& state, const SlideW
   }
 }
 
-void EnergyAudit::begin_step(const SlideState& state) {
+void EnergyAudit::begin_step(const State& state) {
   const std::size_t n = state.particles.size();
   before_.resize(n);
   for (std::size_t i = 0; i < n; ++i) before_[i] = velocity_at(state, i);
@@ -108,8 +107,8 @@ void EnergyAudit::begin_step(const SlideState& state) {
   heights_.assign(state.particles.z.begin(), state.particles.z.end());
 }
 
-void EnergyAudit::after_ground(const SlideModel& model, const SlideState& state,
-                               const SlideWork& work, SlideEnergy& e) {
+void EnergyAudit::after_ground(const Model& model, const State& state, const Work& work,
+                               Energy& e) {
   for (std::size_t i = 0; i < before_.size(); ++i) {
     const double mixed = work.loads.speed[i] * work.loads.speed[i];
     const Vec3 u = velocity_at(state, i);
@@ -122,8 +121,8 @@ void EnergyAudit::after_ground(const SlideModel& model, const SlideState& state,
 }
 
 /// The energy of the bonds that break.
-void EnergyAudit::add_broken(const SlideModel& model, const SlideState& state,
-                             const SlideWork& work, SlideEnergy& e) const {
+void EnergyAudit::add_broken(const Model& model, const State& state, const Work& work,
+                             Energy& e) const {
   const Bonds& bonds = state.bonds;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
@@ -137,10 +136,10 @@ void EnergyAudit::add_broken(const SlideModel& model, const SlideState& state,
   }
 }
 
-void EnergyAudit::after_motion(const SlideModel& model, const SlideState& state,
-                               const SlideWork& work, SlideEnergy& e) const {
+void EnergyAudit::after_motion(const Model& model, const State& state, const Work& work,
+                               Energy& e) const {
   add_broken(model, state, work, e);
-  const SlideLoads& l = work.loads;
+  const Loads& l = work.loads;
   for (std::size_t i = 0; i < before_.size(); ++i) {
     const double mass = state.particles.mass[i];
     if (work.removed[i]) {
@@ -163,4 +162,4 @@ void EnergyAudit::after_motion(const SlideModel& model, const SlideState& state,
   }
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -6,16 +6,16 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/energy_balance.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
-struct SlideModel;
-struct SlideState;
-struct SlideWork;
+struct Model;
+struct State;
+struct Work;
 
 /// The energy of a slide, J. The first three are the present store; the others are sums over all
 /// steps of what left it. The balance closes when `residual` is small beside the drop of potential
 /// energy.
-struct SlideEnergy {
+struct Energy {
   double kinetic = 0, potential = 0;  // the latter with that of the snow's thickness
   double bonds = 0;                   // elastic
   double coulomb = 0, turbulent = 0;  // friction with the ground: mu sigma, and rho g u^2 / xi
@@ -34,10 +34,10 @@ struct SlideEnergy {
 };
 
 /// Returns the balance as tables have it, names with units.
-NamedEnergies named_energies(const SlideEnergy&);
+NamedEnergies named_energies(const Energy&);
 
 /// Fills in what is stored now.
-void store_energy(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&);
+void store_energy(const Model&, const State&, const Work&, Energy&);
 
 /// Follows the energy through a step: called between its parts, it looks at velocities and loads
 /// and changes nothing. What acts on a particle does the work of its force times the particle's
@@ -51,17 +51,17 @@ class EnergyAudit {
     heights_.reserve(particles);
   }
 
-  void begin_step(const SlideState&);
+  void begin_step(const State&);
   /// After friction, viscosity and entrainment are known.
-  void after_ground(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&);
+  void after_ground(const Model&, const State&, const Work&, Energy&);
   /// Before bonds that break and particles that left the terrain are removed.
-  void after_motion(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
+  void after_motion(const Model&, const State&, const Work&, Energy&) const;
 
  private:
-  void add_broken(const SlideModel&, const SlideState&, const SlideWork&, SlideEnergy&) const;
+  void add_broken(const Model&, const State&, const Work&, Energy&) const;
 
   std::vector<Vec3> before_;  // m/s
   std::vector<double> masses_, heights_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

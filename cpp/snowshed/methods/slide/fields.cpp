@@ -5,12 +5,12 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// Calls visit(info, view) for each field; view() returns its view.
 template <class Visit>
-void SlideSolver::visit_fields(Visit visit) const {
-  const SlideParticles& p = state_.particles;
+void SolverImpl::visit_fields(Visit visit) const {
+  const Particles& p = state_.particles;
   const auto stored = [&](const FieldInfo& info, const auto& array) {
     visit(info, [&] { return stored_view(info, array); });
   };
@@ -38,16 +38,16 @@ void SlideSolver::visit_fields(Visit visit) const {
   column("event", p.event);
 }
 
-std::vector<FieldInfo> SlideSolver::fields() const {
+std::vector<FieldInfo> SolverImpl::fields() const {
   return listed_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
-FieldView SlideSolver::field(const std::string& name) const {
+FieldView SolverImpl::field(const std::string& name) const {
   return found_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
-ParticleState SlideSolver::state() const {
-  const SlideParticles& p = state_.particles;
+ParticleState SolverImpl::state() const {
+  const Particles& p = state_.particles;
   ParticleState s;
   s.positions.reserve(size());
   s.velocities.reserve(size());
@@ -69,10 +69,10 @@ ParticleState SlideSolver::state() const {
 }
 
 /// Adds thickness, speed, how many bonds hold a particle, and the bonds as lines.
-PointCloud SlideSolver::snapshot() const {
+PointCloud SolverImpl::snapshot() const {
   PointCloud cloud = Method::snapshot();
   const std::vector<std::uint32_t>& order = order_by_id();
-  const SlideParticles& p = state_.particles;
+  const Particles& p = state_.particles;
   std::vector<std::uint32_t> place(order.size());
   std::vector<float> thickness, speed;
   thickness.reserve(order.size());
@@ -97,7 +97,7 @@ PointCloud SlideSolver::snapshot() const {
 }
 
 /// What was released and taken up, and where it is: the sums differ by rounding alone.
-ReportsRun::Section SlideSolver::run_section() const {
+ReportsRun::Section SolverImpl::run_section() const {
   const MassBalance& m = state_.balance;
   const double on_terrain = compensated_sum(state_.particles.mass.data(), size());
   return {"mass_balance",
@@ -108,20 +108,20 @@ ReportsRun::Section SlideSolver::run_section() const {
            {"residual_kg", m.released + m.entrained - m.left - on_terrain}}};
 }
 
-NamedEnergies SlideSolver::energies() const {
-  SlideEnergy energy = state_.energy;
+NamedEnergies SolverImpl::energies() const {
+  Energy energy = state_.energy;
   if (model_.keeps_energy) store_energy(model_, state_, work_, energy);
   return named_energies(energy);
 }
 
-MotionSummary SlideSolver::motion(double limit) const {
-  const SlideParticles& p = state_.particles;
+MotionSummary SolverImpl::motion(double limit) const {
+  const Particles& p = state_.particles;
   return motion_of(
       size(), limit, [&p](std::size_t i) { return p.mass[i]; },
       [&p](std::size_t i) { return Vec3(p.ux[i], p.uy[i], p.uz[i]).squaredNorm(); });
 }
 
-std::size_t SlideSolver::bytes() const {
+std::size_t SolverImpl::bytes() const {
   std::size_t total = model_.terrain.bytes() + work_.cells.bytes() + work_.fields.bytes() +
                       work_.bond_lists.bytes();
   state_.particles.for_each_array(
@@ -130,10 +130,10 @@ std::size_t SlideSolver::bytes() const {
   total += bytes_of(bonds.first, bonds.second, bonds.rest_length, state_.peaks.thickness,
                     state_.peaks.speed, state_.erodible, work_.thickness, work_.predicted,
                     work_.pushed, work_.sorted_pressing, work_.bond_force);
-  const SlideLoads& l = work_.loads;
+  const Loads& l = work_.loads;
   total += bytes_of(l.ax, l.ay, l.az, l.yield, l.drag, l.speed);
   Places::for_each_array(work_.places, [&](const auto& array) { total += bytes_of(array); });
   return total;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 constexpr double least_speed = 1e-6;  // m/s
@@ -15,9 +15,9 @@ std::size_t nearest_node(const Terrain& terrain, const GridPlace& p) {
 }
 
 /// Snow that a particle takes up; returns its mass (kg) and slows the particle down.
-double entrain(const SlideModel& model, double erodible, double stress, double area, double dt,
+double entrain(const Model& model, double erodible, double stress, double area, double dt,
                double speed, double& mass, Vec3& u) {
-  const SlideSettings& s = model.settings;
+  const Settings& s = model.settings;
   double taken, worked;  // kg, m2
   if (s.erosion_energy > 0) {
     taken = area * stress * speed * dt / s.erosion_energy;
@@ -35,10 +35,10 @@ double entrain(const SlideModel& model, double erodible, double stress, double a
 }
 
 /// Entrainment by one particle; returns the mass that it takes up, kg.
-double entrain_by(const SlideModel& model, const SlideState& state, SlideView& v, SlideParticles& p,
-                  std::size_t i, std::size_t node) {
+double entrain_by(const Model& model, const State& state, View& v, Particles& p, std::size_t i,
+                  std::size_t node) {
   const double density = model.settings.density, dt = state.step;
-  const double h = std::max(v.thickness[i], least_slide_thickness), speed = v.speed[i];
+  const double h = std::max(v.thickness[i], least_thickness), speed = v.speed[i];
   const double pressing = model.friction.friction > 0 ? v.yield[i] / model.friction.friction : 0.0;
   const double stress =
       v.drag[i] > 0 || pressing > 0 ? model.friction.stress(pressing * density * h, speed) : 0.0;
@@ -55,15 +55,15 @@ double entrain_by(const SlideModel& model, const SlideState& state, SlideView& v
 }
 
 /// The snow that particles sweep up, and the resistance of forest and the like.
-void sweep(const SlideModel& model, SlideState& state, SlideWork& work) {
-  SlideView v = view_of(model, state, work);
-  SlideParticles& p = state.particles;
+void sweep(const Model& model, State& state, Work& work) {
+  View v = view_of(model, state, work);
+  Particles& p = state.particles;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::size_t node = nearest_node(model.terrain, work.places.at(i));
     if (!work.entrained.empty())
       work.entrained[i] = state.erodible[node] > 0 ? entrain_by(model, state, v, p, i, node) : 0.0;
     if (!model.resistance.empty())
-      v.drag[i] += model.resistance[node] / std::max(v.thickness[i], least_slide_thickness);
+      v.drag[i] += model.resistance[node] / std::max(v.thickness[i], least_thickness);
     if (model.compatible() && !work.entrained.empty()) {  // forces on the mass before, there
       const double share = 1 - work.entrained[i] / p.mass[i];
       for (double* load : {v.ax, v.ay, v.az, v.yield, v.drag}) load[i] *= share;
@@ -80,19 +80,19 @@ void sweep(const SlideModel& model, SlideState& state, SlideWork& work) {
 
 }  // namespace
 
-void apply_ground(const SlideModel& model, SlideState& state, SlideWork& work) {
+void apply_ground(const Model& model, State& state, Work& work) {
   const std::size_t n = state.particles.size();
-  const SlideView view = view_of(model, state, work);
+  const View view = view_of(model, state, work);
   for_each_piece(work, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    slide_kernels().ground(view, begin, end);
+    chosen_kernels().ground(view, begin, end);
   });
   if (!state.erodible.empty() || !model.resistance.empty()) sweep(model, state, work);
 }
 
-void apply_neighbours(const SlideModel& model, SlideState& state, SlideWork& work) {
+void apply_neighbours(const Model& model, State& state, Work& work) {
   if (!work.entrained.empty()) work.cells.copy_masses(state.particles.mass);
-  const SlideView view = view_of(model, state, work);
-  const SlideKernels& kernels = slide_kernels();
+  const View view = view_of(model, state, work);
+  const Kernels& kernels = chosen_kernels();
   const std::ptrdiff_t rows = work.cells.rows() - 2;  // the margin holds no particles
   if (!model.compatible())
     parallel_pieces(rows, work.threads, 1, [&](std::ptrdiff_t j, std::ptrdiff_t) {
@@ -110,10 +110,10 @@ void apply_neighbours(const SlideModel& model, SlideState& state, SlideWork& wor
   work.bonds_break = breaks;
 }
 
-void remove_broken(SlideState& state, SlideWork& work) {
+void remove_broken(State& state, Work& work) {
   if (!work.bonds_break) return;
   remove_bonds(state.bonds, work.broken);
   work.bond_lists.update(state.bonds, state.particles.size());
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -3,19 +3,19 @@
 
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// The mixing of velocities, gravity, friction, resistance and entrainment: one particle at a time.
 /// Changes velocities, and masses where snow is entrained.
-void apply_ground(const SlideModel&, SlideState&, SlideWork&);
+void apply_ground(const Model&, State&, Work&);
 
 /// What particles do to each other: the gradient of the snow's own pressure by smoothed particle
 /// hydrodynamics, along the ground or, in compatible mode, along the map (see
 /// kernels/surface_pressure.hpp and kernels/map_pressure.hpp), and the forces of the bonds. Marks
 /// those that are strained too much.
-void apply_neighbours(const SlideModel&, SlideState&, SlideWork&);
+void apply_neighbours(const Model&, State&, Work&);
 
 /// Removes the bonds that are marked.
-void remove_broken(SlideState&, SlideWork&);
+void remove_broken(State&, Work&);
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// Shear stress at the base: a part that does not depend on the speed and one that grows with its
 /// square. Voellmy (1955): tau = mu sigma + rho g |u|^2 / xi; Coulomb: tau = mu sigma.
@@ -11,9 +11,9 @@ struct BasalFriction {
   double friction = 0;  // mu
   double drag = 0;      // rho g / xi, kg/m3; 0 without turbulence
 
-  static BasalFriction from(const SlideSettings& s, double gravity) {
+  static BasalFriction from(const Settings& s, double gravity) {
     return {s.friction,
-            s.friction_law == SlideFriction::voellmy ? s.density * gravity / s.turbulence : 0.0};
+            s.friction_law == FrictionLaw::voellmy ? s.density * gravity / s.turbulence : 0.0};
   }
 
   /// Returns the shear stress, Pa, at a normal stress (Pa) and a speed (m/s).
@@ -22,4 +22,4 @@ struct BasalFriction {
   }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::slide {
 void GridFields::reserve(const Terrain& terrain, bool keeps_sums) {
   const std::size_t most = (std::size_t(terrain.columns()) + 2) * (std::size_t(terrain.rows()) + 2);
   nodes_.reserve(most);
@@ -41,4 +41,4 @@ std::vector<double> GridFields::speed_everywhere(const Terrain& terrain) const {
   return values;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -7,7 +7,7 @@
 #include "snowshed/methods/slide/cells.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// Peaks over time at all nodes of the terrain, row by row from the south.
 struct PeakFields {
@@ -59,4 +59,4 @@ class GridFields {
   AlignedVector<Node> nodes_, sums_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -8,7 +8,7 @@
 #include "snowshed/geometry/readers/ascii_grid.hpp"
 #include "snowshed/io/fingerprint.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 Ring moved(const Ring& ring, const HeightField& field) {
@@ -18,16 +18,16 @@ Ring moved(const Ring& ring, const HeightField& field) {
 }
 
 template <class Spec>
-SlideArea area_of(const Spec& spec, const HeightField& field) {
-  SlideArea area;
+Area area_of(const Spec& spec, const HeightField& field) {
+  Area area;
   area.name = spec.name;
   area.polygon.outline = moved(spec.outline, field);
   for (const HoleSpec& hole : spec.holes) area.polygon.holes.push_back(moved(hole.outline, field));
   return area;
 }
 
-std::vector<SlideArea> areas_of(const std::vector<AreaSpec>& specs, const HeightField& field) {
-  std::vector<SlideArea> areas;
+std::vector<Area> areas_of(const std::vector<AreaSpec>& specs, const HeightField& field) {
+  std::vector<Area> areas;
   for (const AreaSpec& spec : specs) {
     areas.push_back(area_of(spec, field));
     areas.back().thickness = spec.thickness;
@@ -42,11 +42,11 @@ void check_cliff(const std::string& where, const std::string& cliff, double max_
                               show(max_slope) + " degrees are believed (terrain.max_slope)");
 }
 
-HeightField read_terrain(const TerrainSpec& terrain, const SlideSettings& settings,
+HeightField read_terrain(const TerrainSpec& terrain, const Settings& settings,
                          const std::filesystem::path& base_dir) {
   HeightField field = read_ascii_grid(base_dir / terrain.file);
   check_cliff("/terrain/file", impossible_cliff(field, terrain.max_slope), terrain.max_slope);
-  if (settings.mode == SlideMode::compatible && terrain.single_precision)
+  if (settings.mode == Mode::compatible && terrain.single_precision)
     for (double& height : field.heights) height = double(float(height));
   const double cell = settings.cell > 0 ? settings.cell : field.cell;
   try {
@@ -57,16 +57,16 @@ HeightField read_terrain(const TerrainSpec& terrain, const SlideSettings& settin
 }
 
 /// The areas, from the south-west node of the grid.
-SlideAreas read_areas(const TerrainSpec& terrain, const HeightField& field,
-                      const std::filesystem::path& base_dir) {
-  SlideAreas areas;
+Areas read_areas(const TerrainSpec& terrain, const HeightField& field,
+                 const std::filesystem::path& base_dir) {
+  Areas areas;
   areas.release = areas_of(terrain.release, field);
   if (!terrain.thickness_file.empty()) {
     HeightField map = read_ascii_grid(base_dir / terrain.thickness_file);
     map.west -= field.west;
     map.south -= field.south;
     const auto shared = std::make_shared<const HeightField>(std::move(map));
-    for (SlideArea& area : areas.release) {
+    for (Area& area : areas.release) {
       area.map = shared;
       area.max_thickness = terrain.max_thickness;
     }
@@ -88,14 +88,14 @@ void add(const HeightField& f, Fingerprint& print) {
 
 }  // namespace
 
-SlideInput::SlideInput(const TerrainSpec& terrain, const SlideSettings& settings,
-                       const std::filesystem::path& base_dir)
+Input::Input(const TerrainSpec& terrain, const Settings& settings,
+             const std::filesystem::path& base_dir)
     : file_(terrain.file),
       thickness_file_(terrain.thickness_file),
       terrain_(read_terrain(terrain, settings, base_dir)),
       areas_(read_areas(terrain, terrain_, base_dir)) {}
 
-std::vector<FilePrint> SlideInput::files() const {
+std::vector<FilePrint> Input::files() const {
   Fingerprint terrain, thickness;
   add(terrain_, terrain);
   if (!areas_.release.empty() && areas_.release.front().map)
@@ -103,4 +103,4 @@ std::vector<FilePrint> SlideInput::files() const {
   return {{file_, terrain.value()}, {thickness_file_, thickness.value()}};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -9,24 +9,24 @@
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/surroundings.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
-class SlideInput final : public MethodInput {
+class Input final : public MethodInput {
  public:
   /// Reads the raster and brings it onto the computing grid. In compatible mode elevations are
   /// rounded to single precision, as AvaFrame reads them. Throws InputError.
-  SlideInput(const TerrainSpec&, const SlideSettings&, const std::filesystem::path& base_dir);
+  Input(const TerrainSpec&, const Settings&, const std::filesystem::path& base_dir);
 
   const char* section() const override { return "ground"; }
   std::vector<FilePrint> files() const override;
 
   const HeightField& terrain() const { return terrain_; }
-  const SlideAreas& areas() const { return areas_; }
+  const Areas& areas() const { return areas_; }
 
  private:
   std::string file_, thickness_file_;
   HeightField terrain_;
-  SlideAreas areas_;  // from the terrain's south-west node
+  Areas areas_;  // from the terrain's south-west node
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

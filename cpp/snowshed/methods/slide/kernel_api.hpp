@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// How friction acts within a step.
 enum class FrictionScheme {
@@ -25,13 +25,13 @@ struct FewNeighbours {
 inline constexpr FewNeighbours few_neighbours{3.7, 1.32};
 
 /// Thinner snow counts as so thick where something is divided by it, m.
-inline constexpr double least_slide_thickness = 1e-6;
+inline constexpr double least_thickness = 1e-6;
 
 /// Entries that may be read, whatever they hold, after those of the sorted arrays.
 inline constexpr std::size_t sorted_padding = 8;
 
 /// Arrays of one value for each particle, and what all of them have in common.
-struct SlideView {
+struct View {
   // The ground: records of height, slopes along x and y, and area at the nodes, row by row.
   const double* ground;
   int columns, rows;
@@ -89,36 +89,36 @@ struct SlideView {
 };
 
 /// Each takes the particles (bonds, cells) of a range; ranges may run at the same time.
-struct SlideKernels {
+struct Kernels {
   /// Finds the places of the particles, all on the terrain, and the normals there.
-  void (*locate)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  void (*locate)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Mixes velocities with those of the snow around and finds how the ground acts.
-  void (*ground)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  void (*ground)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Default mode: finds for the particles of a row of cells what pressure is multiplied by.
-  void (*weigh_pressure)(const SlideView&, int row);
+  void (*weigh_pressure)(const View&, int row);
   /// Finds the force by the snow's pressure on the particles of a row of cells: along the ground,
   /// or along the map as AvaFrame does it.
-  void (*surface_pressure)(const SlideView&, int row);
-  void (*map_pressure)(const SlideView&, int row);
+  void (*surface_pressure)(const View&, int row);
+  void (*map_pressure)(const View&, int row);
   /// Finds the forces of bonds; returns whether one breaks.
-  bool (*stretch_bonds)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  bool (*stretch_bonds)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Moves the particles by all that acts on them; returns their kinetic energy, J.
-  double (*advance)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  double (*advance)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Sums mass and momentum of the particles of a row of cells on the nodes, and copies what their
   /// neighbours will read of them. The odd rows follow when all even ones are done; they turn the
   /// sums into thickness and velocity, and raise the peaks.
-  void (*sum_on_nodes)(const SlideView&, int row);
+  void (*sum_on_nodes)(const View&, int row);
   /// Default mode: raises the peak speed along a row of nodes, from two rows before the rectangle
   /// to two rows after it, when all sums are done.
-  void (*raise_mean_speed)(const SlideView&, int row);
+  void (*raise_mean_speed)(const View&, int row);
   /// Finds the thickness of the snow at the particles.
-  void (*thickness)(const SlideView&, std::ptrdiff_t begin, std::ptrdiff_t end);
+  void (*thickness)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Finds the smallest and the largest of at least one number.
   void (*bounds)(const std::int32_t* values, std::ptrdiff_t count, std::int32_t& low,
                  std::int32_t& high);
 };
 
 /// Returns those of the instruction set in use.
-const SlideKernels& slide_kernels();
+const Kernels& chosen_kernels();
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

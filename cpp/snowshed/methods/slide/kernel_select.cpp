@@ -2,35 +2,35 @@
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/methods/slide/kernel_api.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 namespace baseline {
-extern const SlideKernels slide_kernel_table;
+extern const Kernels kernel_table;
 }
 #ifdef SNOWSHED_HAS_KERNELS_avx2
 namespace avx2 {
-extern const SlideKernels slide_kernel_table;
+extern const Kernels kernel_table;
 }
 #endif
 #ifdef SNOWSHED_HAS_KERNELS_avx512
 namespace avx512 {
-extern const SlideKernels slide_kernel_table;
+extern const Kernels kernel_table;
 }
 #endif
 
-const SlideKernels& slide_kernels() {
+const Kernels& chosen_kernels() {
   switch (chosen_kernel_variant()) {
 #ifdef SNOWSHED_HAS_KERNELS_avx512
     case KernelVariant::avx512:
-      return avx512::slide_kernel_table;
+      return avx512::kernel_table;
 #endif
 #ifdef SNOWSHED_HAS_KERNELS_avx2
     case KernelVariant::avx2:
-      return avx2::slide_kernel_table;
+      return avx2::kernel_table;
 #endif
     default:
-      return baseline::slide_kernel_table;
+      return baseline::kernel_table;
   }
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -7,11 +7,10 @@
 #include "snowshed/methods/slide/input.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
-namespace snowshed {
-namespace slide {
+namespace snowshed::slide {
 namespace {
 
-class Descriptor final : public DescriptorOf<Descriptor, SlideSettings> {
+class Descriptor final : public DescriptorOf<Descriptor, Settings> {
  public:
   const MethodFacts& facts() const override {
     static const MethodFacts facts{
@@ -19,7 +18,7 @@ class Descriptor final : public DescriptorOf<Descriptor, SlideSettings> {
         "The snow slide: depth-averaged particles with cohesive bonds on terrain",
         {Part::terrain},
         "cells",
-        names_of(named_energies(SlideEnergy{})),
+        names_of(named_energies(Energy{})),
         {{"thickness", "m", "Thickness of the snow, normal to the ground", 1, 0.005}}};
     return facts;
   }
@@ -32,26 +31,26 @@ class Descriptor final : public DescriptorOf<Descriptor, SlideSettings> {
       throw InputError("/dimension", "a slide moves over ground in space; allowed: 3");
     if (scene.events.count != 1)
       throw InputError("/events/count", show(scene.events.count) + " events; a slide has 1");
-    if (!scene.terrain->thickness_file.empty() && settings_.mode == SlideMode::compatible)
+    if (!scene.terrain->thickness_file.empty() && settings_.mode == Mode::compatible)
       throw InputError("/terrain/thickness_file", "AvaFrame's com5SnowSlide takes no such raster");
-    if (settings_.explicit_friction && settings_.mode != SlideMode::compatible)
+    if (settings_.explicit_friction && settings_.mode != Mode::compatible)
       throw InputError("/numerics/explicit_friction", "only in the mode \"compatible\"");
   }
   std::shared_ptr<const MethodInput> read(const SceneView& scene,
                                           const std::filesystem::path& base_dir) const override {
-    return std::make_shared<const SlideInput>(*scene.terrain, settings_, base_dir);
+    return std::make_shared<const Input>(*scene.terrain, settings_, base_dir);
   }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
-    const auto& input = dynamic_cast<const SlideInput&>(*surroundings.input);
-    return make_slide(
+    const auto& input = dynamic_cast<const Input&>(*surroundings.input);
+    return make_solver(
         {settings_, scene.gravity, input.terrain(), input.areas(), scene.output.energy});
   }
 
   CostEstimate cost(const CostRequest& request) const override {
-    const auto& input = dynamic_cast<const SlideInput&>(*request.surroundings->input);
+    const auto& input = dynamic_cast<const Input&>(*request.surroundings->input);
     return estimate_cost(settings_, request.scene, input.areas().release.front(),
-                         dynamic_cast<const SlideMethod&>(*request.method));
+                         dynamic_cast<const Solver&>(*request.method));
   }
   std::vector<Feature> features(const SceneView& scene, const SceneOutline&) const override {
     return features_of(settings_, scene);
@@ -65,5 +64,4 @@ const MethodDescriptor& descriptor() {
   return own;
 }
 
-}  // namespace slide
-}  // namespace snowshed
+}  // namespace snowshed::slide

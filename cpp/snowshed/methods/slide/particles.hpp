@@ -6,11 +6,11 @@
 
 #include "snowshed/core/aligned_vector.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// One array for each quantity, all of one length. Positions are given from the south-west node of
 /// the terrain.
-struct SlideParticles {
+struct Particles {
   AlignedVector<double> x, y, z;     // m
   AlignedVector<double> ux, uy, uz;  // m/s, along the ground
   AlignedVector<double> mass;        // kg
@@ -48,4 +48,4 @@ struct SlideParticles {
   }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -8,7 +8,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 const double row_distance = std::sqrt(3.0) / 2;  // of a triangular lattice of side 1
@@ -58,15 +58,15 @@ double projected_share(const Terrain& terrain, const std::vector<double>& thickn
   return projected / sloping;
 }
 
-std::vector<ParticleBatch> seed_as_avaframe(const SlideSettings& s, const Terrain& terrain,
-                                            const std::vector<SlideArea>& areas,
+std::vector<ParticleBatch> seed_as_avaframe(const Settings& s, const Terrain& terrain,
+                                            const std::vector<Area>& areas,
                                             const StopRequest& stop) {
   StopCheck give_up(stop);
   const double cell = terrain.cell();
   const std::vector<double> thickness = thickness_at_nodes(areas, terrain, Reach::one_cell);
   const double share = projected_share(terrain, thickness);
   std::vector<Ring> outlines;
-  for (const SlideArea& area : areas)
+  for (const Area& area : areas)
     outlines.push_back(widened_as_avaframe(area.polygon.outline, 1e-3));
 
   ParticleBatch batch;
@@ -122,7 +122,7 @@ int node_of(double x, double first, double cell) {
   return int(std::floor((x - first) / cell + 0.5));
 }
 
-double thickness_at(const SlideArea& area, double x, double y) {
+double thickness_at(const Area& area, double x, double y) {
   if (!area.map) return area.thickness;
   const HeightField& m = *area.map;
   const int column = std::clamp(node_of(x, m.west, m.cell), 0, m.columns - 1);
@@ -146,7 +146,7 @@ SnowOfMap snow_of(const HeightField& map) {
 }
 
 /// The mean of a map's thickness over an area. Throws where it does not say it everywhere.
-double mean_thickness(const SlideArea& area, const Terrain& terrain, std::size_t index) {
+double mean_thickness(const Area& area, const Terrain& terrain, std::size_t index) {
   if (!area.map) return area.thickness;
   const HeightField& m = *area.map;
   const Bounds b = bounds_of(area.polygon.outline);
@@ -247,7 +247,7 @@ void for_lattice_points(const Ring& ring, const MapPoint& origin, const Ground& 
 
 /// Throws where a point lies within two areas: it is not clear how much snow is released there.
 /// Areas may touch.
-void refuse_overlap(const Terrain& terrain, const std::vector<SlideArea>& areas, std::size_t index,
+void refuse_overlap(const Terrain& terrain, const std::vector<Area>& areas, std::size_t index,
                     const ParticleBatch& batch) {
   const double aside = 1e-6 * terrain.cell();
   const auto well_within = [&](const Polygon& polygon, double x, double y) {
@@ -270,7 +270,7 @@ void refuse_overlap(const Terrain& terrain, const std::vector<SlideArea>& areas,
   }
 }
 
-ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const SlideArea& area,
+ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& area,
                         std::size_t index, const StopRequest& stop) {
   StopCheck give_up(stop);
   const double cell = terrain.cell();
@@ -298,19 +298,18 @@ ParticleBatch seed_area(const SlideSettings& s, const Terrain& terrain, const Sl
 
 }  // namespace
 
-double mass_per_particle(const SlideSettings& s, double cell) {
+double mass_per_particle(const Settings& s, double cell) {
   return s.density * cell * cell * s.layer_thickness;
 }
 
-void check_effort(const SlideSettings& s, const Terrain& terrain,
-                  const std::vector<SlideArea>& areas) {
+void check_effort(const Settings& s, const Terrain& terrain, const std::vector<Area>& areas) {
   constexpr double most_particles = 2e6;    // they take a gigabyte and some seconds
   constexpr double most_comparisons = 3e9;  // of a particle with a corner, some seconds
   const double cell = terrain.cell();
   double particles = 0, corners = 0;
   const HeightField* map = nullptr;  // all areas share one
   SnowOfMap snow;
-  for (const SlideArea& area : areas) {
+  for (const Area& area : areas) {
     const double on_map = map_area(area.polygon);
     double volume = on_map * area.thickness;
     if (area.map) {
@@ -352,12 +351,11 @@ double lattice_spacing(const ParticleBatch& batch) {
   return nearest[samples / 2];
 }
 
-std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,
-                                        const std::vector<SlideArea>& areas,
-                                        const StopRequest& stop) {
+std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain& terrain,
+                                        const std::vector<Area>& areas, const StopRequest& stop) {
   if (areas.empty()) throw InputError("/terrain/release", "names no area");
   std::vector<ParticleBatch> batches;
-  if (settings.mode == SlideMode::compatible) {
+  if (settings.mode == Mode::compatible) {
     batches = seed_as_avaframe(settings, terrain, areas, stop);
     for (std::size_t i = 1; i < areas.size(); ++i)
       refuse_overlap(terrain, areas, i, batches.front());
@@ -370,4 +368,4 @@ std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Ter
   return batches;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -8,11 +8,11 @@
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// Returns the largest mass of a fresh particle, kg: that of a layer of the given thickness over
 /// one cell.
-double mass_per_particle(const SlideSettings& settings, double cell);
+double mass_per_particle(const Settings& settings, double cell);
 
 /// Returns the distance on the map between neighbouring particles of a batch, m: the median over a
 /// sample. 0 for a single particle.
@@ -20,8 +20,7 @@ double lattice_spacing(const ParticleBatch& batch);
 
 /// Throws InputError where the release would be more particles than a slide is set up with in
 /// seconds and a gigabyte, or has so many corners that they take longer.
-void check_effort(const SlideSettings& settings, const Terrain& terrain,
-                  const std::vector<SlideArea>& areas);
+void check_effort(const Settings& settings, const Terrain& terrain, const std::vector<Area>& areas);
 
 /// Returns the particles of all release areas, on triangular lattices, a batch for each area.
 ///
@@ -35,8 +34,8 @@ void check_effort(const SlideSettings& settings, const Terrain& terrain,
 /// Throws InputError where an area holds no particle, or, in compatible mode, is too thin for one.
 ///
 /// Throws Stopped on request.
-std::vector<ParticleBatch> seed_release(const SlideSettings& settings, const Terrain& terrain,
-                                        const std::vector<SlideArea>& areas,
+std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain& terrain,
+                                        const std::vector<Area>& areas,
                                         const StopRequest& stop = {});
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -1,24 +1,24 @@
 // What a scene may choose of the snow slide.
 #pragma once
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// `improved` mends the known faults of com5SnowSlide; `compatible` does what AvaFrame 2.1 does.
-enum class SlideMode { improved, compatible };
+enum class Mode { improved, compatible };
 
 /// Laws of friction between snow and ground, see friction.hpp.
-enum class SlideFriction { voellmy, coulomb };
+enum class FrictionLaw { voellmy, coulomb };
 
 /// Settings of the snow slide: depth-averaged particles with cohesive bonds. The defaults are those
 /// of AvaFrame's com5SnowSlide.
-struct SlideSettings {
-  SlideMode mode = SlideMode::improved;
+struct Settings {
+  Mode mode = Mode::improved;
   double cell = 0;                // m, of the computing grid; 0: that of the terrain
   double time_step = 0.01;        // s
   double density = 300;           // kg/m3, of the snow that slides
   double layer_thickness = 0.25;  // m, of snow over a whole cell that makes one particle
 
-  SlideFriction friction_law = SlideFriction::voellmy;
+  FrictionLaw friction_law = FrictionLaw::voellmy;
   double friction = 0.325;         // Coulomb coefficient mu
   double turbulence = 58;          // m/s2, Voellmy's xi
   bool explicit_friction = false;  // compatible mode only
@@ -43,4 +43,4 @@ struct SlideSettings {
   double resolution() const { return cell; }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

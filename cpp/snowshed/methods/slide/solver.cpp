@@ -12,7 +12,7 @@
 #include "snowshed/methods/slide/forces.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 /// Between two times that particles are stored anew in the order of their cells.
@@ -50,7 +50,7 @@ void check_no_hole(const Terrain& terrain, const Polygon& area, const std::strin
 /// Steps that stiff bonds may need in place of one.
 constexpr double most_parts = 100;
 
-void check_on_terrain(const Terrain& terrain, const std::vector<SlideArea>& areas,
+void check_on_terrain(const Terrain& terrain, const std::vector<Area>& areas,
                       const std::string& kind) {
   for (std::size_t i = 0; i < areas.size(); ++i) {
     const std::string where = "/terrain/" + kind + "/" + std::to_string(i);
@@ -66,11 +66,11 @@ void check_on_terrain(const Terrain& terrain, const std::vector<SlideArea>& area
 
 }  // namespace
 
-std::unique_ptr<SlideMethod> make_slide(SlideOptions options) {
-  return std::make_unique<SlideSolver>(std::move(options));
+std::unique_ptr<Solver> make_solver(Options options) {
+  return std::make_unique<SolverImpl>(std::move(options));
 }
 
-SlideSolver::SlideSolver(SlideOptions o)
+SolverImpl::SolverImpl(Options o)
     : model_(o.settings, o.gravity, o.terrain, std::move(o.areas), o.energy), state_(model_) {
   check_on_terrain(model_.terrain, model_.areas.release, "release");
   check_effort(model_.settings, model_.terrain, model_.areas.release);
@@ -78,10 +78,9 @@ SlideSolver::SlideSolver(SlideOptions o)
 }
 
 /// Appends a batch and bonds its particles with each other.
-void SlideSolver::append(SlideState& state, const ParticleBatch& batch,
-                         const StopRequest& stop) const {
+void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequest& stop) const {
   check_batch(batch, 1);
-  SlideParticles& p = state.particles;
+  Particles& p = state.particles;
   const std::size_t old = p.size();
   const double fresh = mass_per_particle(model_.settings, model_.terrain.cell());
   p.resize(old + batch.positions.size());
@@ -116,8 +115,8 @@ void SlideSolver::append(SlideState& state, const ParticleBatch& batch,
 
 /// Shortens the steps to what the bonds need; snow may pile up to four times its thickness before
 /// they become too stiff even so. Compatible mode takes the step that was asked for.
-void SlideSolver::choose_step(SlideState& next, const SlideWork& work) const {
-  const SlideSettings& s = model_.settings;
+void SolverImpl::choose_step(State& next, const Work& work) const {
+  const Settings& s = model_.settings;
   if (model_.compatible()) return;
   const double longest =
       0.5 * longest_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
@@ -133,18 +132,17 @@ void SlideSolver::choose_step(SlideState& next, const SlideWork& work) const {
 }
 
 /// What a change from outside brings, beyond what there is now.
-void SlideSolver::count_as_added(const SlideState& next, const SlideWork& work,
-                                 SlideEnergy& sums) const {
+void SolverImpl::count_as_added(const State& next, const Work& work, Energy& sums) const {
   if (!model_.keeps_energy) return;
-  SlideEnergy before, after;
+  Energy before, after;
   store_energy(model_, state_, work_, before);
   store_energy(model_, next, work, after);
   sums.added += after.stored() - before.stored();
 }
 
 /// Takes over a state whose workspace must follow.
-void SlideSolver::accept(SlideState next) {
-  SlideWork work;
+void SolverImpl::accept(State next) {
+  Work work;
   refresh(model_, next, work, &next.peaks);
   choose_step(next, work);
   count_as_added(next, work, next.energy);
@@ -153,18 +151,18 @@ void SlideSolver::accept(SlideState next) {
   order_.forget();
 }
 
-void SlideSolver::add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) {
+void SolverImpl::add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) {
   soundness_.require();
-  SlideState next = state_;
+  State next = state_;
   for (const ParticleBatch& batch : batches) append(next, batch, stop);
   next.stopped = false;
   next.peak_kinetic = 0;
   accept(std::move(next));
 }
 
-void SlideSolver::replace(const std::vector<ParticleBatch>& batches) {
+void SolverImpl::replace(const std::vector<ParticleBatch>& batches) {
   soundness_.require();
-  SlideState next(model_);
+  State next(model_);
   next.time = state_.time;
   next.counters = state_.counters;
   next.next_id = state_.next_id;
@@ -175,9 +173,9 @@ void SlideSolver::replace(const std::vector<ParticleBatch>& batches) {
   accept(std::move(next));
 }
 
-void SlideSolver::add_velocity(const std::vector<Vec3>& changes) {
+void SolverImpl::add_velocity(const std::vector<Vec3>& changes) {
   soundness_.require();
-  SlideState next = state_;
+  State next = state_;
   check_velocity_changes(changes, size());
   const std::vector<std::uint32_t>& at = order_by_id();
   for (std::size_t k = 0; k < at.size(); ++k) {
@@ -193,7 +191,7 @@ void SlideSolver::add_velocity(const std::vector<Vec3>& changes) {
 
 /// In the order of their cells particles find their neighbours faster. All or nothing: the
 /// workspace has room for all that follows.
-void SlideSolver::sort_now_and_then() {
+void SolverImpl::sort_now_and_then() {
   if (state_.counters.steps % steps_between_sorts != 0) return;
   if (std::is_sorted(work_.cells.order().begin(), work_.cells.order().end())) return;
   sort_by_cell(state_, work_);
@@ -202,13 +200,13 @@ void SlideSolver::sort_now_and_then() {
   ++state_.counters.sorts;
 }
 
-void SlideSolver::choose_threads() {
+void SolverImpl::choose_threads() {
   const int most = model_.threads_for(size());
   const bool by_trial = size() < particles_for_threads;
   work_.threads = by_trial ? work_.thread_choice.begin(most) : most;
 }
 
-void SlideSolver::step() {
+void SolverImpl::step() {
   soundness_.require();
   if (size() == 0) throw SimulationError("there is no snow on the terrain");
   work_.make_room(model_, state_);
@@ -241,4 +239,4 @@ void SlideSolver::step() {
   }
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -11,19 +11,19 @@
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
-struct SlideOptions {
-  SlideSettings settings;
+struct Options {
+  Settings settings;
   double gravity = 9.81;  // m/s2, along -z
   HeightField terrain;    // on the computing grid
-  SlideAreas areas;       // from the terrain's south-west node
+  Areas areas;            // from the terrain's south-west node
   bool energy = false;    // whether to keep the energy balance
 };
 
 /// A slide as a method, and what only a slide has. `seed` gives the particles of the release areas
 /// (`seed_release`).
-class SlideMethod : public Method, public SeedsItself, public KeepsEnergy, public ReportsRun {
+class Solver : public Method, public SeedsItself, public KeepsEnergy, public ReportsRun {
  public:
   /// How many particles `seed` gives.
   virtual std::size_t count_seeds() const = 0;
@@ -36,6 +36,6 @@ class SlideMethod : public Method, public SeedsItself, public KeepsEnergy, publi
 };
 
 /// Throws InputError where an area does not lie on known terrain.
-std::unique_ptr<SlideMethod> make_slide(SlideOptions);
+std::unique_ptr<Solver> make_solver(Options);
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -5,11 +5,11 @@
 #include "snowshed/methods/slide/release.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
-class SlideSolver final : public SlideMethod {
+class SolverImpl final : public Solver {
  public:
-  explicit SlideSolver(SlideOptions);
+  explicit SolverImpl(Options);
 
   using Method::add;
   void add(const std::vector<ParticleBatch>&, const StopRequest&) override;
@@ -58,20 +58,20 @@ class SlideSolver final : public SlideMethod {
   const MassBalance& mass_balance() const override { return state_.balance; }
 
  private:
-  void append(SlideState&, const ParticleBatch&, const StopRequest&) const;
-  void accept(SlideState);
+  void append(State&, const ParticleBatch&, const StopRequest&) const;
+  void accept(State);
   void sort_now_and_then();
   void choose_threads();
-  void choose_step(SlideState& next, const SlideWork& work) const;
-  void count_as_added(const SlideState& next, const SlideWork& work, SlideEnergy& sums) const;
+  void choose_step(State& next, const Work& work) const;
+  void count_as_added(const State& next, const Work& work, Energy& sums) const;
   template <class Visit>
   void visit_fields(Visit) const;
 
-  SlideModel model_;
-  SlideState state_;
-  SlideWork work_;
+  Model model_;
+  State state_;
+  Work work_;
   Soundness soundness_;
   IdOrder order_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -1,25 +1,24 @@
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
-BorderSlope border_slope(const SlideSettings& s) {
-  return s.mode == SlideMode::compatible ? BorderSlope::level_in_the_south_west
-                                         : BorderSlope::one_sided;
+BorderSlope border_slope(const Settings& s) {
+  return s.mode == Mode::compatible ? BorderSlope::level_in_the_south_west : BorderSlope::one_sided;
 }
 
-std::vector<double> resistance_at_nodes(const SlideSettings& s, const SlideAreas& areas,
+std::vector<double> resistance_at_nodes(const Settings& s, const Areas& areas,
                                         const Terrain& terrain) {
   if (areas.resistance.empty()) return {};
-  std::vector<SlideArea> covered = areas.resistance;
-  for (SlideArea& area : covered) area.thickness = 1;
+  std::vector<Area> covered = areas.resistance;
+  for (Area& area : covered) area.thickness = 1;
   std::vector<double> values = thickness_at_nodes(covered, terrain, Reach::edge);
   for (double& value : values) value = value > 0 ? s.resistance : 0.0;
   return values;
 }
 
 /// Where snow is released, none is entrained.
-std::vector<double> erodible_at_nodes(const SlideModel& model) {
+std::vector<double> erodible_at_nodes(const Model& model) {
   if (model.areas.entrainment.empty()) return {};
   std::vector<double> values =
       thickness_at_nodes(model.areas.entrainment, model.terrain, Reach::edge);
@@ -33,8 +32,7 @@ std::vector<double> erodible_at_nodes(const SlideModel& model) {
 
 }  // namespace
 
-SlideModel::SlideModel(const SlideSettings& s, double g, const HeightField& field, SlideAreas a,
-                       bool keeps)
+Model::Model(const Settings& s, double g, const HeightField& field, Areas a, bool keeps)
     : settings(s),
       gravity(g),
       terrain(field, border_slope(s)),
@@ -44,12 +42,12 @@ SlideModel::SlideModel(const SlideSettings& s, double g, const HeightField& fiel
       threads(threads_to_use(s.threads)),
       keeps_energy(keeps) {}
 
-SlideState::SlideState(const SlideModel& model)
+State::State(const Model& model)
     : peaks(std::size_t(model.terrain.columns()) * std::size_t(model.terrain.rows())),
       erodible(erodible_at_nodes(model)),
       step(model.settings.time_step) {}
 
-void SlideWork::make_room(const SlideModel& model, SlideState& state) {
+void Work::make_room(const Model& model, State& state) {
   // Each particle may split.
   const std::size_t now = state.particles.size(), most = state.erodible.empty() ? now : 2 * now;
   state.particles.for_each_array([most](const char*, auto& array) { array.reserve(most); });
@@ -77,15 +75,15 @@ void SlideWork::make_room(const SlideModel& model, SlideState& state) {
 
 namespace {
 
-FrictionScheme friction_scheme(const SlideModel& model) {
+FrictionScheme friction_scheme(const Model& model) {
   if (!model.compatible()) return FrictionScheme::set_valued;
   return model.settings.explicit_friction ? FrictionScheme::avaframe_explicit
                                           : FrictionScheme::avaframe_implicit;
 }
 
-void view_model(const SlideModel& model, SlideView& v) {
+void view_model(const Model& model, View& v) {
   const Terrain& t = model.terrain;
-  const SlideSettings& s = model.settings;
+  const Settings& s = model.settings;
   static_assert(sizeof(Terrain::Node) == 4 * sizeof(double), "kernels read records of four");
   v.ground = &t.nodes()->height;
   v.columns = t.columns();
@@ -104,7 +102,7 @@ void view_model(const SlideModel& model, SlideView& v) {
   v.added_speed = model.compatible() ? 1e-6 : 0.0;
 }
 
-void view_places(const SlideModel& model, SlideWork& work, SlideView& v) {
+void view_places(const Model& model, Work& work, View& v) {
   Places& p = work.places;
   v.column = p.column.data();
   v.row = p.row.data();
@@ -132,8 +130,8 @@ void view_places(const SlideModel& model, SlideWork& work, SlideView& v) {
 }
 
 /// Whoever sees a state that must not change only reads it.
-void view_particles(const SlideState& state, SlideView& v) {
-  const SlideParticles& p = state.particles;
+void view_particles(const State& state, View& v) {
+  const Particles& p = state.particles;
   v.x = const_cast<double*>(p.x.data());
   v.y = const_cast<double*>(p.y.data());
   v.z = const_cast<double*>(p.z.data());
@@ -143,8 +141,8 @@ void view_particles(const SlideState& state, SlideView& v) {
   v.mass = p.mass.data();
 }
 
-void view_loads(SlideWork& work, SlideView& v) {
-  SlideLoads& l = work.loads;
+void view_loads(Work& work, View& v) {
+  Loads& l = work.loads;
   v.ax = l.ax.data();
   v.ay = l.ay.data();
   v.az = l.az.data();
@@ -156,7 +154,7 @@ void view_loads(SlideWork& work, SlideView& v) {
   v.removed = work.removed.data();
 }
 
-void view_bonds(const SlideState& state, SlideWork& work, SlideView& v) {
+void view_bonds(const State& state, Work& work, View& v) {
   if (state.bonds.size() == 0) return;
   v.bond_first = state.bonds.first.data();
   v.bond_second = state.bonds.second.data();
@@ -169,8 +167,8 @@ void view_bonds(const SlideState& state, SlideWork& work, SlideView& v) {
 
 }  // namespace
 
-SlideView view_of(const SlideModel& model, SlideState& state, SlideWork& work) {
-  SlideView v{};
+View view_of(const Model& model, State& state, Work& work) {
+  View v{};
   view_model(model, v);
   view_places(model, work, v);
   view_loads(work, v);
@@ -181,20 +179,19 @@ SlideView view_of(const SlideModel& model, SlideState& state, SlideWork& work) {
   return v;
 }
 
-void refresh_places(const SlideModel& model, const SlideState& state, SlideWork& work,
-                    std::size_t begin, std::size_t end) {
-  SlideView view{};
+void refresh_places(const Model& model, const State& state, Work& work, std::size_t begin,
+                    std::size_t end) {
+  View view{};
   view_model(model, view);
   view_places(model, work, view);
   view_particles(state, view);
   for_each_piece(work, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
     const auto from = std::ptrdiff_t(begin);
-    slide_kernels().locate(view, from + first, from + last);
+    chosen_kernels().locate(view, from + first, from + last);
   });
 }
 
-void refresh(const SlideModel& model, const SlideState& state, SlideWork& work,
-             PeakFields* raised) {
+void refresh(const Model& model, const State& state, Work& work, PeakFields* raised) {
   const std::size_t n = state.particles.size();
   work.threads = model.threads_for(n);
   work.none_splits = false;
@@ -210,19 +207,18 @@ namespace {
 constexpr double share_of_fading = 0.15;
 
 /// The mass of the lightest particle as it was seeded, kg; 0 without particles.
-double lightest(const SlideParticles& p) {
+double lightest(const Particles& p) {
   return p.size() == 0 ? 0.0 : *std::min_element(p.fresh_mass.begin(), p.fresh_mass.end());
 }
 
 }  // namespace
 
-void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork& work,
-                    PeakFields* raised) {
-  const SlideParticles& p = state.particles;
+void refresh_fields(const Model& model, const State& state, Work& work, PeakFields* raised) {
+  const Particles& p = state.particles;
   work.cells.update(work.places.column, work.places.row);
   work.fields.take_shape(work.cells);
   work.thickness.resize(p.size());
-  SlideView view{};
+  View view{};
   view_model(model, view);
   view_places(model, work, view);
   view_particles(state, view);
@@ -236,18 +232,18 @@ void refresh_fields(const SlideModel& model, const SlideState& state, SlideWork&
   for (const int parity : {0, 1})
     parallel_pieces((work.cells.rows() + 1 - parity) / 2, work.threads, 1,
                     [&](std::ptrdiff_t pair, std::ptrdiff_t) {
-                      slide_kernels().sum_on_nodes(view, int(2 * pair) + parity);
+                      chosen_kernels().sum_on_nodes(view, int(2 * pair) + parity);
                     });
   if (view.sums) {
     view.fading_mass = share_of_fading * lightest(p);
     parallel_pieces(work.cells.rows() + 4, work.threads, 1,
                     [&](std::ptrdiff_t row, std::ptrdiff_t) {
-                      slide_kernels().raise_mean_speed(view, int(row) - 2);
+                      chosen_kernels().raise_mean_speed(view, int(row) - 2);
                     });
   }
   for_each_piece(work, p.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    slide_kernels().thickness(view, begin, end);
+    chosen_kernels().thickness(view, begin, end);
   });
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

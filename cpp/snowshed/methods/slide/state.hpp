@@ -21,27 +21,26 @@
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// The fewest particles that a thread is started for.
 inline constexpr std::size_t particles_per_thread = 400;
 /// Steps of fewer particles find out by trial whether threads make them faster.
 inline constexpr std::size_t particles_for_threads = 20000;
 
-struct SlideModel {
-  SlideModel(const SlideSettings&, double gravity, const HeightField&, SlideAreas,
-             bool keeps_energy);
+struct Model {
+  Model(const Settings&, double gravity, const HeightField&, Areas, bool keeps_energy);
 
-  bool compatible() const { return settings.mode == SlideMode::compatible; }
+  bool compatible() const { return settings.mode == Mode::compatible; }
   /// The most threads for a step of so many particles.
   int threads_for(std::size_t particles) const {
     return int(std::clamp<std::size_t>(particles / particles_per_thread, 1, std::size_t(threads)));
   }
 
-  SlideSettings settings;
+  Settings settings;
   double gravity;  // m/s2, along -z
   Terrain terrain;
-  SlideAreas areas;
+  Areas areas;
   BasalFriction friction;
   std::vector<double> resistance;  // coefficient at each node; empty without such areas
   int threads;
@@ -54,10 +53,10 @@ struct MassBalance {
   std::int64_t particles_left = 0;
 };
 
-struct SlideState {
-  explicit SlideState(const SlideModel&);
+struct State {
+  explicit State(const Model&);
 
-  SlideParticles particles;
+  Particles particles;
   Bonds bonds;
   std::int64_t bonds_made = 0;
   PeakFields peaks;
@@ -69,7 +68,7 @@ struct SlideState {
   bool stopped = false;
   std::uint32_t next_id = 0;
   StepCounters counters;
-  SlideEnergy energy;  // its sums over steps
+  Energy energy;  // its sums over steps
 };
 
 /// Where particles lie in the grid, and the normal of the ground there.
@@ -97,8 +96,8 @@ struct Places {
   }
 };
 
-/// What acts on each particle during a step; see SlideView.
-struct SlideLoads {
+/// What acts on each particle during a step; see View.
+struct Loads {
   AlignedVector<double> ax, ay, az, yield, drag, speed;
 
   void resize(std::size_t n) {
@@ -106,15 +105,15 @@ struct SlideLoads {
   }
 };
 
-struct SlideWork {
+struct Work {
   Places places;
   AlignedVector<double> thickness;  // m, of the snow at the particles
   CellLists cells;
-  AlignedVector<double> sorted_pressing;  // in the order of the cells, see SlideView
+  AlignedVector<double> sorted_pressing;  // in the order of the cells, see View
   GridFields fields;
   BondLists bond_lists;
-  SlideLoads loads;
-  AlignedVector<double> predicted;   // records of four for each particle, see SlideView
+  Loads loads;
+  AlignedVector<double> predicted;   // records of four for each particle, see View
   AlignedVector<double> pushed;      // records of four for each particle
   AlignedVector<double> bond_force;  // records of four for each bond
   std::vector<double> entrained;     // kg, by each particle in this step; empty where there is none
@@ -129,28 +128,27 @@ struct SlideWork {
   ThreadChoice thread_choice;
 
   /// Makes room for all that a step of this state can need, so that nothing fails amid it.
-  void make_room(const SlideModel&, SlideState&);
+  void make_room(const Model&, State&);
 };
 
 /// Iterations that a thread takes at a time.
 inline constexpr std::ptrdiff_t particles_in_piece = 64;
 
 /// What the kernels see of a slide, until an array of it changes its size.
-SlideView view_of(const SlideModel&, SlideState&, SlideWork&);
+View view_of(const Model&, State&, Work&);
 
 /// Calls f(begin, end) for pieces of so many particles or bonds.
 template <class F>
-void for_each_piece(const SlideWork& work, std::size_t count, F f) {
+void for_each_piece(const Work& work, std::size_t count, F f) {
   parallel_pieces(std::ptrdiff_t(count), work.threads, particles_in_piece, f);
 }
 
 /// Makes the workspace follow from the particles: places, cells, fields, bonds. The fields raise
 /// the peaks that are given.
-void refresh(const SlideModel&, const SlideState&, SlideWork&, PeakFields* raised = nullptr);
+void refresh(const Model&, const State&, Work&, PeakFields* raised = nullptr);
 /// The places of the particles [begin, end), which the workspace has room for.
-void refresh_places(const SlideModel&, const SlideState&, SlideWork&, std::size_t begin,
-                    std::size_t end);
+void refresh_places(const Model&, const State&, Work&, std::size_t begin, std::size_t end);
 /// The same as `refresh` where bonds and the particles' places are known already.
-void refresh_fields(const SlideModel&, const SlideState&, SlideWork&, PeakFields* raised);
+void refresh_fields(const Model&, const State&, Work&, PeakFields* raised);
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

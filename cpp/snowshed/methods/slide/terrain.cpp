@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 struct Slope {
@@ -51,4 +51,4 @@ Terrain::Terrain(const HeightField& f, BorderSlope border)
     }
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

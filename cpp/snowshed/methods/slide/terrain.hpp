@@ -8,7 +8,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/geometry/height_field.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// Slopes at the first row and column of the grid. AvaFrame 2.1 takes these nodes as level.
 enum class BorderSlope { one_sided, level_in_the_south_west };
@@ -75,4 +75,4 @@ class Terrain {
   std::vector<Node> nodes_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -26,7 +26,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text.replace(text.find(old), old.size(), by);
 }
 
-TEST_F(AsciiGrid, nodes_are_the_middles_of_cells_and_the_first_row_is_the_southern_one) {
+TEST_F(AsciiGrid, NodesAreTheMiddlesOfCellsAndTheFirstRowIsTheSouthernOne) {
   const HeightField f = read(good);
   EXPECT_EQ(f.columns, 3);
   EXPECT_EQ(f.rows, 2);
@@ -38,7 +38,7 @@ TEST_F(AsciiGrid, nodes_are_the_middles_of_cells_and_the_first_row_is_the_southe
   EXPECT_DOUBLE_EQ(read(replaced(good, "xllcorner", "xllcenter")).west, 1000);
 }
 
-TEST_F(AsciiGrid, what_is_not_a_number_is_missing_whatever_the_header_says) {
+TEST_F(AsciiGrid, WhatIsNotANumberIsMissingWhateverTheHeaderSays) {
   const HeightField f = read(replaced(replaced(good, "value -9", "value nan"), "5 -9", "NaN -9"));
   EXPECT_TRUE(std::isnan(f.height(1, 0)));
   EXPECT_DOUBLE_EQ(f.height(2, 0), -9);
@@ -46,7 +46,7 @@ TEST_F(AsciiGrid, what_is_not_a_number_is_missing_whatever_the_header_says) {
     EXPECT_TRUE(std::isnan(read(replaced(good, "4 5", std::string(word) + " 5")).height(0, 0)));
 }
 
-TEST_F(AsciiGrid, missing_values_are_compared_in_single_precision_as_gdal_does) {
+TEST_F(AsciiGrid, MissingValuesAreComparedInSinglePrecisionAsGdalDoes) {
   for (const auto& [header, word] : std::vector<std::pair<std::string, std::string>>{
            {"-3.4028234663852886e+38", "-3.40282346638529e+38"},
            {"-3.4028234663852886e+38", "-3.402823e+38"},
@@ -60,11 +60,11 @@ TEST_F(AsciiGrid, missing_values_are_compared_in_single_precision_as_gdal_does) 
   }
 }
 
-TEST_F(AsciiGrid, square_cells_may_be_given_along_both_axes) {
+TEST_F(AsciiGrid, SquareCellsMayBeGivenAlongBothAxes) {
   EXPECT_DOUBLE_EQ(read(replaced(good, "cellsize 10", "dx 10\nDY 10.0")).cell, 10);
 }
 
-TEST_F(AsciiGrid, tells_what_it_assumed) {
+TEST_F(AsciiGrid, TellsWhatItAssumed) {
   write_plainly(path("a.asc"),
                 "ncols 2\nnrows 2\nxllcorner 0,5\nyllcorner 0\ncellsize 1\n"
                 "1,25 2\n3 -9999\n");
@@ -76,11 +76,11 @@ TEST_F(AsciiGrid, tells_what_it_assumed) {
   EXPECT_EQ(facts.undeclared_missing, 1u);
 }
 
-TEST_F(AsciiGrid, lines_may_break_anywhere) {
+TEST_F(AsciiGrid, LinesMayBreakAnywhere) {
   EXPECT_EQ(read(replaced(good, "1 2 3\n4", "1\n2 3 4")).heights.size(), 6u);
 }
 
-TEST_F(AsciiGrid, refuses_what_is_no_grid) {
+TEST_F(AsciiGrid, RefusesWhatIsNoGrid) {
   for (const auto& [old, by] : std::vector<std::pair<std::string, std::string>>{
            {"NCOLS 3", "ncols 1"},
            {"NCOLS 3", "ncols 1e300"},

@@ -2,17 +2,17 @@
 
 #include <gtest/gtest.h>
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 const BondLaw law{200, 50, 3, 2, 0.5};  // N/m, N/m, N, N, 1
 
-ContactMotion<double> motion(double gap, double parting, Triple<double> shear, double twist = 0) {
+ContactMotion<double> motion(double gap, double parting, SimdVec<double> shear, double twist = 0) {
   return {gap, parting, {0, 0, 1}, shear, twist};
 }
 
-TEST(BondLaw, loses_with_a_bond_what_it_stored_and_the_work_since) {
-  Triple<double> u{0.01, 0, 0};
+TEST(BondLaw, LosesWithABondWhatItStoredAndTheWorkSince) {
+  SimdVec<double> u{0.01, 0, 0};
   bool bonded = true;
   // From a gap of 0.01 to 0.02, where it pulls with 4 N and breaks.
   const auto f = law(motion(0.02, 0.01, {0, 0, 0}), u, bonded);
@@ -25,8 +25,8 @@ TEST(BondLaw, loses_with_a_bond_what_it_stored_and_the_work_since) {
   EXPECT_EQ(f.heat, 0);
 }
 
-TEST(BondLaw, slides_with_a_friction_that_warms) {
-  Triple<double> u{0, 0, 0};
+TEST(BondLaw, SlidesWithAFrictionThatWarms) {
+  SimdVec<double> u{0, 0, 0};
   bool bonded = false;
   double heat = 0;
   for (int i = 0; i < 100; ++i) {
@@ -40,8 +40,8 @@ TEST(BondLaw, slides_with_a_friction_that_warms) {
   EXPECT_NEAR(heat, 1 * (0.1 - 0.02), 1e-12);
 }
 
-TEST(BondLaw, lets_go_of_shear_where_spheres_part) {
-  Triple<double> u{0.01, 0, 0};
+TEST(BondLaw, LetsGoOfShearWhereSpheresPart) {
+  SimdVec<double> u{0.01, 0, 0};
   bool bonded = false;
   const auto f = law(motion(0.001, 0.002, {0, 0, 0}), u, bonded);
   EXPECT_FALSE(f.touching);
@@ -50,8 +50,8 @@ TEST(BondLaw, lets_go_of_shear_where_spheres_part) {
   EXPECT_NEAR(f.heat, 0.5 * 50 * 1e-4, 1e-15);
 }
 
-TEST(BondLaw, turns_shear_with_the_contact) {
-  Triple<double> u{0.01, 0, 0};
+TEST(BondLaw, TurnsShearWithTheContact) {
+  SimdVec<double> u{0.01, 0, 0};
   bool bonded = true;
   law(motion(0, 0, {0, 0, 0}, 0.1), u, bonded);
   EXPECT_NEAR(u.y / u.x, 0.1, 1e-12);
@@ -65,14 +65,14 @@ TEST(BondLaw, turns_shear_with_the_contact) {
   EXPECT_NEAR(u.z, -0.01 * std::sin(0.2), 1e-15);
 }
 
-TEST(BondLaw, without_strength_bears_no_tension) {
+TEST(BondLaw, WithoutStrengthBearsNoTension) {
   BondLaw weak = law;
   weak.tension_limit = weak.shear_limit = 0;
-  Triple<double> u{0, 0, 0};
+  SimdVec<double> u{0, 0, 0};
   bool bonded = true;
   EXPECT_FALSE(weak(motion(0, 0, {0, 0, 0}), u, bonded).tension_break) << "nothing pulls";
   EXPECT_TRUE(weak(motion(1e-12, 0, {0, 0, 0}), u, bonded).tension_break);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

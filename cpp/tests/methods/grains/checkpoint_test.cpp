@@ -5,12 +5,12 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 class GrainsCheckpoint : public TemporaryFolder {
  protected:
-  void save(const GrainsMethod& grains) const {
+  void save(const Solver& grains) const {
     BinaryWriter out;
     grains.save(out);
     out.save(path("c.bin"));
@@ -18,8 +18,8 @@ class GrainsCheckpoint : public TemporaryFolder {
   BinaryReader saved() const { return BinaryReader::load(path("c.bin")); }
 };
 
-GrainsOptions story(GrainSides sides) {
-  GrainsOptions o = grains_of(random_snow(15, 5));
+Options story(Sides sides) {
+  Options o = grains_of(random_snow(15, 5));
   o.settings.density_scaling = 1e3;
   o.settings.damping = 0.2;
   o.settings.sides = sides;
@@ -31,20 +31,20 @@ GrainsOptions story(GrainSides sides) {
   return o;
 }
 
-TEST_F(GrainsCheckpoint, resumes_to_the_same_bits) {
-  for (const GrainSides sides : {GrainSides::walls, GrainSides::periodic})
+TEST_F(GrainsCheckpoint, ResumesToTheSameBits) {
+  for (const Sides sides : {Sides::walls, Sides::periodic})
     for (const double strength : {1e6, 3e8}) {
-      GrainsOptions o = story(sides);
+      Options o = story(sides);
       o.settings.tensile_strength = o.settings.shear_strength = strength;  // also far bonds
       const auto whole = filled(o);
       for (int part = 0; part < 4; ++part) {
         take_steps(*whole, 57);
         save(*whole);
-        const auto resumed = make_grains(o);
+        const auto resumed = make_solver(o);
         resumed->load(saved());
         EXPECT_EQ(resumed->measures().contacts, whole->measures().contacts);
         take_steps(*resumed, 120);
-        const auto same = make_grains(o);
+        const auto same = make_solver(o);
         same->load(saved());
         take_steps(*same, 120);
         take_steps(*whole, 120);
@@ -59,9 +59,9 @@ TEST_F(GrainsCheckpoint, resumes_to_the_same_bits) {
     }
 }
 
-TEST_F(GrainsCheckpoint, resumes_to_the_same_bits_in_every_kind_of_stage) {
-  GrainsOptions o = story_of_all_kinds();
-  for (const GrainSides sides : {GrainSides::walls, GrainSides::periodic}) {
+TEST_F(GrainsCheckpoint, ResumesToTheSameBitsInEveryKindOfStage) {
+  Options o = story_of_all_kinds();
+  for (const Sides sides : {Sides::walls, Sides::periodic}) {
     o.settings.sides = sides;
     const auto whole = filled(o);
     std::vector<bool> seen(o.loading.size());
@@ -71,7 +71,7 @@ TEST_F(GrainsCheckpoint, resumes_to_the_same_bits_in_every_kind_of_stage) {
       const int stage = whole->stage();
       seen[std::size_t(stage)] = true;
       save(*whole);
-      const auto resumed = make_grains(o);
+      const auto resumed = make_solver(o);
       resumed->load(saved());
       for (int i = 0; i < 2000 && whole->stage() == stage; ++i) whole->step();
       for (int i = 0; i < 2000 && resumed->stage() == stage; ++i) resumed->step();
@@ -86,9 +86,9 @@ TEST_F(GrainsCheckpoint, resumes_to_the_same_bits_in_every_kind_of_stage) {
   }
 }
 
-TEST_F(GrainsCheckpoint, without_grains_is_restored) {
-  const GrainsOptions o = story(GrainSides::walls);
-  save(*make_grains(o));
+TEST_F(GrainsCheckpoint, WithoutGrainsIsRestored) {
+  const Options o = story(Sides::walls);
+  save(*make_solver(o));
   const auto other = filled(o);
   other->load(saved());
   EXPECT_EQ(other->size(), 0u);
@@ -96,9 +96,9 @@ TEST_F(GrainsCheckpoint, without_grains_is_restored) {
   take_steps(*other, 3);
 }
 
-TEST_F(GrainsCheckpoint, of_another_sample_is_refused_and_changes_nothing) {
-  save(*filled(story(GrainSides::walls)));
-  GrainsOptions o = story(GrainSides::walls);
+TEST_F(GrainsCheckpoint, OfAnotherSampleIsRefusedAndChangesNothing) {
+  save(*filled(story(Sides::walls)));
+  Options o = story(Sides::walls);
   o.sample = make_sample(random_snow(12, 4));
   const auto other = filled(o);
   const ParticleState before = other->state();
@@ -129,8 +129,8 @@ void forge(const BinaryReader& in, const std::string& section, std::size_t at, T
   out.save(to);
 }
 
-TEST_F(GrainsCheckpoint, that_is_forged_is_refused) {
-  const GrainsOptions o = story(GrainSides::walls);
+TEST_F(GrainsCheckpoint, ThatIsForgedIsRefused) {
+  const Options o = story(Sides::walls);
   const auto grains = filled(o);
   take_steps(*grains, 50);
   save(*grains);
@@ -138,7 +138,7 @@ TEST_F(GrainsCheckpoint, that_is_forged_is_refused) {
   const double nan = std::nan("");
   const auto refused = [&](const std::string& section, std::size_t at, auto value) {
     forge(sound, section, at, value, path("forged.bin"));
-    const auto other = make_grains(o);
+    const auto other = make_solver(o);
     EXPECT_THROW(other->load(BinaryReader::load(path("forged.bin"))), InputError)
         << section << " " << at;
     EXPECT_EQ(other->size(), 0u);
@@ -163,4 +163,4 @@ TEST_F(GrainsCheckpoint, that_is_forged_is_refused) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -5,7 +5,7 @@
 #include "methods/grains/grains_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// Two blocks of n^3 voxels, one upon the other, with air around.
@@ -17,9 +17,9 @@ LabelImage two_blocks(std::size_t n) {
   });
 }
 
-TEST(GrainClumps, are_the_shells_of_blocks_with_the_mass_of_all_voxels) {
+TEST(GrainClumps, AreTheShellsOfBlocksWithTheMassOfAllVoxels) {
   for (const std::size_t n : {1, 2, 3, 6}) {
-    const GrainSample sample = make_sample(two_blocks(n));
+    const Sample sample = make_sample(two_blocks(n));
     ASSERT_EQ(sample.clumps.size(), 2u);
     const std::size_t inner = n > 2 ? (n - 2) * (n - 2) * (n - 2) : 0;
     const double side = double(n) * test_voxel, volume = side * side * side;
@@ -38,8 +38,8 @@ TEST(GrainClumps, are_the_shells_of_blocks_with_the_mass_of_all_voxels) {
   }
 }
 
-TEST(GrainClumps, of_a_rod_have_the_inertia_of_a_box) {
-  const GrainSample sample =
+TEST(GrainClumps, OfARodHaveTheInertiaOfABox) {
+  const Sample sample =
       make_sample(image_of(8, 2, 3, [](std::size_t, std::size_t, std::size_t) { return 1; }));
   const double a = 8 * test_voxel, b = 2 * test_voxel, c = 3 * test_voxel, m = a * b * c;
   const Mat3 box =
@@ -49,9 +49,9 @@ TEST(GrainClumps, of_a_rod_have_the_inertia_of_a_box) {
   EXPECT_EQ(sample.box, Vec3(a, b, c));
 }
 
-TEST(GrainClumps, are_measured_before_they_are_made) {
+TEST(GrainClumps, AreMeasuredBeforeTheyAreMade) {
   const LabelImage image = random_snow(16, 5);
-  const GrainSample sample = make_sample(image);
+  const Sample sample = make_sample(image);
   const SampleSize size = measure_sample(image);
   EXPECT_EQ(size.grains, sample.clumps.size());
   EXPECT_EQ(size.spheres, sample.spheres.size());
@@ -59,7 +59,7 @@ TEST(GrainClumps, are_measured_before_they_are_made) {
   EXPECT_GE(size.bytes, filled(grains_of(image))->bytes());
 }
 
-TEST(GrainClumps, refuse_images_that_are_not_sound) {
+TEST(GrainClumps, RefuseImagesThatAreNotSound) {
   const auto uniform = [](int label) {
     return image_of(2, 2, 2, [label](std::size_t, std::size_t, std::size_t) { return label; });
   };
@@ -76,4 +76,4 @@ TEST(GrainClumps, refuse_images_that_are_not_sound) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -5,34 +5,34 @@
 #include "methods/fault_story.hpp"
 #include "methods/grains/grains_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
-std::unique_ptr<GrainsMethod> weak_grains() {
-  GrainsOptions o = grains_of(random_snow(9, 4));
+std::unique_ptr<Solver> weak_grains() {
+  Options o = grains_of(random_snow(9, 4));
   o.settings.density_scaling = 1e4;
   o.settings.tensile_strength = 1e5;
   o.energy = true;
   o.cone = {1e-4, 30};
   o.loading = {{LoadingKind::compress, 10, 0.1, 0}, {LoadingKind::penetrate, 10, 0.2, 0}};
-  return make_grains(o);
+  return make_solver(o);
 }
 
-struct GrainsStory : FaultStory<GrainsMethod> {
+struct GrainsStory : FaultStory<Solver> {
   explicit GrainsStory(std::filesystem::path file) : FaultStory(weak_grains(), std::move(file)) {
-    call([](GrainsMethod& m) { m.add(m.seed()); });
+    call([](Solver& m) { m.add(m.seed()); });
     take_steps(30);
     save();
-    call([](GrainsMethod& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(1, 0, 0))); });
+    call([](Solver& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(1, 0, 0))); });
     take_steps(60);
     load();
     take_steps(20);
-    call([](GrainsMethod& m) { m.replace(m.seed()); });
+    call([](Solver& m) { m.replace(m.seed()); });
     take_steps(10);
   }
 };
 
-void expect_same_grains(const GrainsMethod& now, const GrainsMethod& wanted) {
+void expect_same_grains(const Solver& now, const Solver& wanted) {
   const ParticleState a = now.state(), b = wanted.state();
   ASSERT_EQ(a.ids, b.ids);
   EXPECT_TRUE(a.positions == b.positions);
@@ -47,13 +47,12 @@ void expect_same_grains(const GrainsMethod& now, const GrainsMethod& wanted) {
 
 class GrainsFaults : public TemporaryFolder {};
 
-TEST_F(GrainsFaults, leave_no_trace) {
+TEST_F(GrainsFaults, LeaveNoTrace) {
   GrainsStory whole(path("whole")), faulty(path("faulty"));
   std::int64_t most_broken = 0;
-  const int faults =
-      fail_every_allocation(whole, faulty, expect_same_grains, [&](const GrainsMethod& m) {
-        most_broken = std::max(most_broken, m.measures().broken_in_tension);
-      });
+  const int faults = fail_every_allocation(whole, faulty, expect_same_grains, [&](const Solver& m) {
+    most_broken = std::max(most_broken, m.measures().broken_in_tension);
+  });
   if (HasFailure()) return;
   EXPECT_GT(most_broken, 0);
   EXPECT_GT(whole.method->counters().sorts, 0);
@@ -62,4 +61,4 @@ TEST_F(GrainsFaults, leave_no_trace) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

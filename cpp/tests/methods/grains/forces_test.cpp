@@ -5,26 +5,24 @@
 
 #include "methods/grains/grains_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 constexpr double diameter = test_voxel, face = diameter * diameter;
 
 /// Two blocks of n x n x 2 voxels, one upon the other, in a wide box.
-GrainsOptions bonded_blocks(std::size_t n) {
+Options bonded_blocks(std::size_t n) {
   return grains_of(image_of(n + 4, n + 4, 8, [n](std::size_t i, std::size_t j, std::size_t k) {
     if (i < 2 || j < 2 || i >= n + 2 || j >= n + 2 || k < 2 || k >= 6) return 0;
     return k < 4 ? 1 : 2;
   }));
 }
 
-double normal_stiffness(const GrainsOptions& o) {
-  return o.settings.elastic_modulus * 0.5 * diameter;
-}
+double normal_stiffness(const Options& o) { return o.settings.elastic_modulus * 0.5 * diameter; }
 
-TEST(GrainForces, of_a_stretched_bond_break_at_the_strength_times_its_area) {
+TEST(GrainForces, OfAStretchedBondBreakAtTheStrengthTimesItsArea) {
   for (const std::size_t n : {1, 3, 5}) {
-    const GrainsOptions o = bonded_blocks(n);
+    const Options o = bonded_blocks(n);
     const double limit = o.settings.tensile_strength * face / normal_stiffness(o);
     const double load = double(n * n) * face * o.settings.tensile_strength;
     PosedGrains grains(o);
@@ -44,8 +42,8 @@ TEST(GrainForces, of_a_stretched_bond_break_at_the_strength_times_its_area) {
   }
 }
 
-TEST(GrainForces, of_a_compressed_contact_grow_with_the_overlap) {
-  const GrainsOptions o = bonded_blocks(3);
+TEST(GrainForces, OfACompressedContactGrowWithTheOverlap) {
+  const Options o = bonded_blocks(3);
   PosedGrains grains(o);
   grains.state.bodies[1].position.z() -= 0.01 * diameter;
   grains.evaluate();
@@ -80,10 +78,10 @@ struct BentBond {
   }
 };
 
-TEST(GrainForces, of_a_bent_bond_begin_to_break_at_the_moment_of_its_outer_pairs) {
+TEST(GrainForces, OfABentBondBeginToBreakAtTheMomentOfItsOuterPairs) {
   for (const std::size_t n : {2, 4, 7})
     for (const double strength : {1e6, 1e3}) {
-      GrainsOptions o = bonded_blocks(n);
+      Options o = bonded_blocks(n);
       o.settings.tensile_strength = strength;
       const double limit = strength * face / normal_stiffness(o);
       for (const double share : {1 - 1e-7, 1 + 1e-7}) {
@@ -112,9 +110,9 @@ TEST(GrainForces, of_a_bent_bond_begin_to_break_at_the_moment_of_its_outer_pairs
     }
 }
 
-TEST(GrainForces, of_a_sheared_bond_break_at_the_strength_times_its_area) {
+TEST(GrainForces, OfAShearedBondBreakAtTheStrengthTimesItsArea) {
   for (const std::size_t n : {1, 4}) {
-    GrainsOptions o = bonded_blocks(n);
+    Options o = bonded_blocks(n);
     o.settings.shear_strength = 3e5;
     const double limit =
         o.settings.shear_strength * face / (o.settings.stiffness_ratio * normal_stiffness(o));
@@ -132,8 +130,8 @@ TEST(GrainForces, of_a_sheared_bond_break_at_the_strength_times_its_area) {
   }
 }
 
-TEST(GrainForces, of_shear_under_pressure_are_raised_by_friction_and_fall_to_it) {
-  GrainsOptions o = bonded_blocks(3);
+TEST(GrainForces, OfShearUnderPressureAreRaisedByFrictionAndFallToIt) {
+  Options o = bonded_blocks(3);
   o.settings.friction = 0.4;
   const double overlap = 1e-3 * diameter, push = normal_stiffness(o) * overlap;
   const double shear_limit = o.settings.shear_strength * face + 0.4 * push;
@@ -150,7 +148,7 @@ TEST(GrainForces, of_shear_under_pressure_are_raised_by_friction_and_fall_to_it)
   EXPECT_NEAR(grains.state.bodies[0].force.x() / (9 * 0.4 * push), 1, 1e-10);
 }
 
-TEST(GrainForces, obey_newtons_third_law_and_balance_their_moments) {
+TEST(GrainForces, ObeyNewtonsThirdLawAndBalanceTheirMoments) {
   PosedGrains grains(bonded_blocks(3));
   GrainBody &a = grains.state.bodies[0], &b = grains.state.bodies[1];
   b.position += Vec3(2e-8, -3e-8, 1e-8);
@@ -163,8 +161,8 @@ TEST(GrainForces, obey_newtons_third_law_and_balance_their_moments) {
   EXPECT_LT(moment.norm(), 1e-12 * a.torque.norm());
 }
 
-TEST(GrainForces, of_shear_turn_with_the_pair) {
-  const GrainsOptions o = bonded_blocks(2);
+TEST(GrainForces, OfShearTurnWithThePair) {
+  const Options o = bonded_blocks(2);
   PosedGrains grains(o);
   grains.state.bodies[1].velocity.x() = 1e-9;
   grains.evaluate(1.0);
@@ -186,8 +184,8 @@ TEST(GrainForces, of_shear_turn_with_the_pair) {
   EXPECT_NEAR(grains.state.bodies[0].force.x() / before, 0, 1e-3);
 }
 
-TEST(GrainForces, of_plates_and_walls_are_those_of_spheres_of_the_same_size) {
-  GrainsOptions o = grains_of(image_of(3, 3, 3, [](auto, auto, auto) { return 1; }));
+TEST(GrainForces, OfPlatesAndWallsAreThoseOfSpheresOfTheSameSize) {
+  Options o = grains_of(image_of(3, 3, 3, [](auto, auto, auto) { return 1; }));
   PosedGrains grains(o);
   grains.evaluate();
   EXPECT_LT(grains.state.bodies[0].force.norm(), 1e-12);  // it fits exactly
@@ -202,4 +200,4 @@ TEST(GrainForces, of_plates_and_walls_are_those_of_spheres_of_the_same_size) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -11,7 +11,7 @@
 #include "snowshed/methods/grains/listing.hpp"
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 
 inline constexpr double test_voxel = 5e-5;  // m
 
@@ -58,8 +58,8 @@ inline LabelImage random_snow(std::size_t n, double grain, double pores = 0.35) 
   });
 }
 
-inline GrainsOptions grains_of(const LabelImage& image) {
-  GrainsOptions o;
+inline Options grains_of(const LabelImage& image) {
+  Options o;
   o.sample = make_sample(image);
   o.settings.threads = 1;
   o.settings.damping = 0;
@@ -67,8 +67,8 @@ inline GrainsOptions grains_of(const LabelImage& image) {
 }
 
 /// One stage of each kind after another, each some tens of steps long.
-inline GrainsOptions story_of_all_kinds() {
-  GrainsOptions o = grains_of(random_snow(26, 6));
+inline Options story_of_all_kinds() {
+  Options o = grains_of(random_snow(26, 6));
   o.settings.density_scaling = 1e3;
   o.settings.damping = 0.2;
   o.settings.bonded_plates = true;
@@ -81,8 +81,8 @@ inline GrainsOptions story_of_all_kinds() {
   return o;
 }
 
-inline std::unique_ptr<GrainsMethod> filled(const GrainsOptions& options) {
-  auto grains = make_grains(options);
+inline std::unique_ptr<Solver> filled(const Options& options) {
+  auto grains = make_solver(options);
   grains->add(grains->seed());
   return grains;
 }
@@ -105,7 +105,7 @@ inline std::map<std::string, double> energies_of(const Method& method) {
 
 /// Grains at rest whose poses and velocities a test sets before it asks for the forces.
 struct PosedGrains {
-  explicit PosedGrains(const GrainsOptions& options) : model(options) {
+  explicit PosedGrains(const Options& options) : model(options) {
     state.boundary = state.listed_boundary = initial_boundary(model.loaded());
     for (const GrainConstants& grain : model.grains) {
       state.bodies.emplace_back();
@@ -123,9 +123,9 @@ struct PosedGrains {
   }
   void evaluate(double dt = 0) { evaluate_forces(model, state, work, dt); }
 
-  GrainsModel model;
-  GrainsState state;
-  GrainsWork work;
+  Model model;
+  State state;
+  Work work;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -9,7 +9,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/grains/clumps.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// Blocks of 3^3 voxels a voxel apart, numbered from 1 on as `number` says.
@@ -41,7 +41,7 @@ TEST(LabelPieces, OfWrappedNumbersAreCountedAndSplit) {
   EXPECT_NE(label_note(found, true).find("each piece is a grain"), std::string::npos);
   EXPECT_EQ(make_sample(image).clumps.size(), 5u);
   split_pieces(image);
-  const GrainSample split = make_sample(image);
+  const Sample split = make_sample(image);
   EXPECT_EQ(split.clumps.size(), 27u);
   for (const Clump& c : split.clumps) EXPECT_NEAR(c.volume, 27 * std::pow(test_voxel, 3), 1e-20);
   EXPECT_EQ(label_note(count_pieces(image), true), "");
@@ -78,9 +78,9 @@ TEST(GrainDiameter, IsThatOfSnow) {
   for (const double wrong : {0.5, 1e-6, 0.0})
     EXPECT_NE(message_of<InputError>([&] { check_grain_diameter(wrong); }).find("wrongly scaled"),
               std::string::npos);
-  const GrainSample sample = make_sample(blocks(2, [](int block) { return block + 1; }));
+  const Sample sample = make_sample(blocks(2, [](int block) { return block + 1; }));
   EXPECT_NEAR(median_diameter(sample), 3 * test_voxel * std::cbrt(6 / 3.14159265358979), 1e-9);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

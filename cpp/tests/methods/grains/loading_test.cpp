@@ -4,12 +4,12 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// A bar that fills the box, n x n voxels wide, of two grains bonded in the middle.
-GrainsOptions bar(std::size_t n, std::size_t height) {
-  GrainsOptions o =
+Options bar(std::size_t n, std::size_t height) {
+  Options o =
       grains_of(image_of(n, n, height, [=](auto, auto, auto k) { return k < height / 2 ? 1 : 2; }));
   o.settings.bonded_plates = true;
   o.settings.damping = 0.5;
@@ -17,8 +17,8 @@ GrainsOptions bar(std::size_t n, std::size_t height) {
   return o;
 }
 
-TEST(GrainLoading, a_bar_breaks_in_tension_at_its_strength) {
-  GrainsOptions o = bar(4, 6);
+TEST(GrainLoading, ABarBreaksInTensionAtItsStrength) {
+  Options o = bar(4, 6);
   o.loading = {{LoadingKind::stretch, 0.005, 0.01, 0}};
   const auto grains = filled(o);
   double peak = 0;
@@ -31,12 +31,12 @@ TEST(GrainLoading, a_bar_breaks_in_tension_at_its_strength) {
   EXPECT_NEAR(grains->measures().top_stress, 0, 0.05 * peak);
 }
 
-TEST(GrainLoading, a_layer_breaks_in_shear_at_its_strength) {
-  GrainsOptions o = bar(6, 2);
+TEST(GrainLoading, ALayerBreaksInShearAtItsStrength) {
+  Options o = bar(6, 2);
   o.settings.tensile_strength = 1e9;
   o.settings.friction = 0;
   o.loading = {{LoadingKind::shear, 0.005, 0.03, 0}};
-  o.settings.sides = GrainSides::walls;
+  o.settings.sides = Sides::walls;
   const auto grains = filled(o);
   double peak = 0;
   while (!*grains->at_rest()) {
@@ -48,8 +48,8 @@ TEST(GrainLoading, a_layer_breaks_in_shear_at_its_strength) {
   EXPECT_EQ(grains->measures().broken_in_tension, 0);
 }
 
-TEST(GrainLoading, snow_comes_back_as_long_as_no_bond_breaks) {
-  GrainsOptions o = grains_of(random_snow(18, 5));
+TEST(GrainLoading, SnowComesBackAsLongAsNoBondBreaks) {
+  Options o = grains_of(random_snow(18, 5));
   o.settings.damping = 0.2;
   o.energy = true;
   o.loading = {{LoadingKind::compress, 0.02, 3e-4, 0},
@@ -74,8 +74,8 @@ TEST(GrainLoading, snow_comes_back_as_long_as_no_bond_breaks) {
   EXPECT_LT(e.at("friction_j") + e.at("damping_j"), 1e-7);
 }
 
-TEST(GrainLoading, snow_breaks_in_compression_and_its_energy_closes) {
-  GrainsOptions o = grains_of(random_snow(18, 5));
+TEST(GrainLoading, SnowBreaksInCompressionAndItsEnergyCloses) {
+  Options o = grains_of(random_snow(18, 5));
   o.settings.density_scaling = 100;
   o.settings.damping = 0.2;
   o.energy = true;
@@ -95,8 +95,8 @@ TEST(GrainLoading, snow_breaks_in_compression_and_its_energy_closes) {
   EXPECT_LT(std::abs(e.at("residual_j")) / e.at("boundary_work_j"), 0.01);
 }
 
-TEST(GrainLoading, a_stress_ends_a_stage) {
-  GrainsOptions o = grains_of(random_snow(15, 5));
+TEST(GrainLoading, AStressEndsAStage) {
+  Options o = grains_of(random_snow(15, 5));
   o.settings.damping = 0.2;
   o.loading = {{LoadingKind::compress, 0.05, 0.2, 5e4}, {LoadingKind::unload, 0.05, 0.2, 2e4}};
   const auto grains = filled(o);
@@ -106,9 +106,9 @@ TEST(GrainLoading, a_stress_ends_a_stage) {
   EXPECT_NEAR(grains->measures().top_stress, 2e4, 1e4);
 }
 
-TEST(GrainLoading, shear_keeps_the_normal_stress_that_is_asked_for) {
-  GrainsOptions o = grains_of(random_snow(15, 5, 0.0));
-  o.settings.sides = GrainSides::periodic;
+TEST(GrainLoading, ShearKeepsTheNormalStressThatIsAskedFor) {
+  Options o = grains_of(random_snow(15, 5, 0.0));
+  o.settings.sides = Sides::periodic;
   o.settings.damping = 0.4;
   o.settings.bonded_plates = true;
   o.settings.tensile_strength = o.settings.shear_strength = 1e8;  // so that it shears as a solid
@@ -129,10 +129,10 @@ TEST(GrainLoading, shear_keeps_the_normal_stress_that_is_asked_for) {
   EXPECT_LT(std::abs(e.at("residual_j")) / std::abs(e.at("boundary_work_j")), 0.01);
 }
 
-TEST(GrainLoading, a_period_that_shrinks_presses_like_walls) {
-  for (const GrainSides sides : {GrainSides::walls, GrainSides::periodic}) {
+TEST(GrainLoading, APeriodThatShrinksPressesLikeWalls) {
+  for (const Sides sides : {Sides::walls, Sides::periodic}) {
     // A full block of grains: an elastic solid.
-    GrainsOptions o = grains_of(image_of(
+    Options o = grains_of(image_of(
         8, 8, 8, [](auto i, auto j, auto k) { return 1 + i / 4 + 2 * (j / 4) + 4 * (k / 4); }));
     o.settings.sides = sides;
     o.settings.damping = 0.3;
@@ -144,7 +144,7 @@ TEST(GrainLoading, a_period_that_shrinks_presses_like_walls) {
     EXPECT_GT(m.top_stress, 0);
     // As many springs in a row in all directions, but for the seam: walls and plates press on
     // both ends, the period closes with one spring.
-    const double springs = sides == GrainSides::walls ? 3 : 2;
+    const double springs = sides == Sides::walls ? 3 : 2;
     const double side_stress = o.settings.elastic_modulus * 0.5 * test_voxel *
                                (8 * test_voxel * 2e-4 / springs) / (test_voxel * test_voxel);
     EXPECT_NEAR(m.side_stress / side_stress, 1, 0.05);
@@ -154,8 +154,8 @@ TEST(GrainLoading, a_period_that_shrinks_presses_like_walls) {
   }
 }
 
-TEST(GrainLoading, a_cone_meets_resistance) {
-  GrainsOptions o = grains_of(random_snow(18, 5, 0.0));
+TEST(GrainLoading, AConeMeetsResistance) {
+  Options o = grains_of(random_snow(18, 5, 0.0));
   o.settings.density_scaling = 100;
   o.settings.damping = 0.2;
   o.energy = true;
@@ -174,11 +174,11 @@ TEST(GrainLoading, a_cone_meets_resistance) {
   EXPECT_LT(std::abs(e.at("residual_j")) / e.at("boundary_work_j"), 0.01);
 }
 
-TEST(GrainLoading, stages_that_cannot_be_are_refused) {
-  GrainsOptions o = grains_of(random_snow(12, 5));
+TEST(GrainLoading, StagesThatCannotBeAreRefused) {
+  Options o = grains_of(random_snow(12, 5));
   const auto refused = [&](std::vector<LoadingStage> stages) {
     o.loading = std::move(stages);
-    EXPECT_THROW(make_grains(o), InputError);
+    EXPECT_THROW(make_solver(o), InputError);
   };
   refused({{LoadingKind::compress, 0, 0.1, 0}});
   refused({{LoadingKind::compress, 1, 1.0, 0}});
@@ -188,4 +188,4 @@ TEST(GrainLoading, stages_that_cannot_be_are_refused) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -5,7 +5,7 @@
 #include "methods/grains/grains_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// A sample whose grains are strewn about and turned, some beyond the box.
@@ -26,9 +26,9 @@ struct Strewn {
       poses.push_back(pose);
     }
   }
-  static GrainsOptions options(bool periodic) {
-    GrainsOptions o = grains_of(random_snow(12, 4));
-    if (periodic) o.settings.sides = GrainSides::periodic;
+  static Options options(bool periodic) {
+    Options o = grains_of(random_snow(12, 4));
+    if (periodic) o.settings.sides = Sides::periodic;
     return o;
   }
   PairSearch search(int threads = 1) const {
@@ -60,12 +60,12 @@ struct Strewn {
     return found;
   }
 
-  GrainsModel model;
+  Model model;
   std::vector<GrainPose> poses;
-  GrainsBoundary boundary;
+  Boundary boundary;
 };
 
-TEST(GrainPairs, are_all_that_are_near) {
+TEST(GrainPairs, AreAllThatAreNear) {
   for (const bool periodic : {false, true}) {
     const Strewn strewn(periodic);
     std::vector<PairKey> found = find_pairs(strewn.search(), strewn.poses, strewn.boundary);
@@ -80,7 +80,7 @@ TEST(GrainPairs, are_all_that_are_near) {
   }
 }
 
-TEST(GrainPairs, with_plates_and_walls_are_all_that_are_near) {
+TEST(GrainPairs, WithPlatesAndWallsAreAllThatAreNear) {
   const Strewn strewn(false);
   std::size_t expected = 0;
   const double r = strewn.model.radius;
@@ -104,7 +104,7 @@ TEST(GrainPairs, with_plates_and_walls_are_all_that_are_near) {
             expected);
 }
 
-TEST(GrainPairs, keep_their_past_and_their_bonds_from_list_to_list) {
+TEST(GrainPairs, KeepTheirPastAndTheirBondsFromListToList) {
   const Strewn strewn(true);
   const auto found = find_pairs(strewn.search(), strewn.poses, strewn.boundary);
   std::vector<PairHistory> past;
@@ -133,18 +133,18 @@ TEST(GrainPairs, keep_their_past_and_their_bonds_from_list_to_list) {
   EXPECT_EQ(make_list(strewn.search(), found, past).all().size(), found.size());
 }
 
-TEST(GrainPairs, that_are_too_many_are_an_error) {
+TEST(GrainPairs, ThatAreTooManyAreAnError) {
   const Strewn strewn(false);
   PairSearch search = strewn.search();
   search.most_pairs = 10;
   EXPECT_THROW(find_pairs(search, strewn.poses, strewn.boundary), SimulationError);
 }
 
-TEST(GrainPairs, of_a_period_as_short_as_a_sphere_are_an_error) {
+TEST(GrainPairs, OfAPeriodAsShortAsASphereAreAnError) {
   Strewn strewn(true);
   strewn.boundary.side[1] = 4 * strewn.model.radius;
   EXPECT_THROW(find_pairs(strewn.search(), strewn.poses, strewn.boundary), SimulationError);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

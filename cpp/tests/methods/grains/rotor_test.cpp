@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 const Vec3 moments(1.0, 2.3, 3.1);
@@ -19,7 +19,7 @@ Orientation spun(double dt, int steps) {
   return q;
 }
 
-TEST(Rotor, keeps_the_energy_of_an_asymmetric_body_over_1e5_steps) {
+TEST(Rotor, KeepsTheEnergyOfAnAsymmetricBodyOver1e5Steps) {
   Orientation q = spun(0, 1);
   const double before = energy_of(q);
   double worst = 0;
@@ -31,20 +31,20 @@ TEST(Rotor, keeps_the_energy_of_an_asymmetric_body_over_1e5_steps) {
   EXPECT_NEAR(q.norm(), 1, 1e-14);
 }
 
-TEST(Rotor, is_of_second_order) {
+TEST(Rotor, IsOfSecondOrder) {
   const Orientation exact = spun(1.0 / 8192, 16384);
   const double coarse = exact.angularDistance(spun(1.0 / 32, 64));
   const double fine = exact.angularDistance(spun(1.0 / 64, 128));
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.05);
 }
 
-TEST(Rotor, goes_back_the_way_it_came) {
+TEST(Rotor, GoesBackTheWayItCame) {
   Orientation q = spun(0.05, 100);
   for (int i = 0; i < 100; ++i) rotate_freely(q, momentum, moments, -0.05);
   EXPECT_LT(q.angularDistance(spun(0, 1)), 1e-13);
 }
 
-TEST(Rotor, of_a_ball_turns_about_its_momentum) {
+TEST(Rotor, OfABallTurnsAboutItsMomentum) {
   Orientation q(1, 0, 0, 0);
   // One axis at a time is exact where the momentum lies along it.
   for (int i = 0; i < 10; ++i) rotate_freely(q, Vec3(0, 0, 2), Vec3(4, 4, 4), 0.1);
@@ -52,4 +52,4 @@ TEST(Rotor, of_a_ball_turns_about_its_momentum) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

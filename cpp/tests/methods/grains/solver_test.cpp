@@ -5,7 +5,7 @@
 #include "methods/grains/grains_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
 /// One voxel, or a block, in the middle of a wide box.
@@ -17,8 +17,8 @@ LabelImage lonely(std::size_t nx, std::size_t ny, std::size_t nz, std::size_t bo
   });
 }
 
-TEST(Grains, fly_freely_with_constant_energy_and_velocity) {
-  GrainsOptions o = grains_of(lonely(5, 2, 3));
+TEST(Grains, FlyFreelyWithConstantEnergyAndVelocity) {
+  Options o = grains_of(lonely(5, 2, 3));
   o.energy = true;
   PosedGrains model(o);
   const auto grains = filled(o);
@@ -30,8 +30,8 @@ TEST(Grains, fly_freely_with_constant_energy_and_velocity) {
   EXPECT_TRUE(way.isApprox(grains->time() * Vec3(1e-3, 2e-3, -1e-3), 1e-7));
 }
 
-TEST(Grains, fall_as_newton_says) {
-  GrainsOptions o = grains_of(lonely(2, 2, 2));
+TEST(Grains, FallAsNewtonSays) {
+  Options o = grains_of(lonely(2, 2, 2));
   o.gravity = 9.81;
   o.settings.density_scaling = 1e4;  // of inertia: then weight moves it ten thousand times slower
   const auto grains = filled(o);
@@ -44,8 +44,8 @@ TEST(Grains, fall_as_newton_says) {
   EXPECT_NEAR(damped->state().velocities[0].z() / (-0.7 * 9.81 * damped->time()), 1, 2e-3);
 }
 
-TEST(Grains, that_collide_keep_momentum_and_energy) {
-  GrainsOptions o = grains_of(image_of(24, 24, 24, [](auto i, auto j, auto k) {
+TEST(Grains, ThatCollideKeepMomentumAndEnergy) {
+  Options o = grains_of(image_of(24, 24, 24, [](auto i, auto j, auto k) {
     const bool first = i >= 6 && i < 9 && j >= 8 && j < 11 && k >= 8 && k < 12;
     const bool second = i >= 11 && i < 14 && j >= 10 && j < 14 && k >= 9 && k < 11;
     return first ? 1 : second ? 2 : 0;
@@ -74,7 +74,7 @@ TEST(Grains, that_collide_keep_momentum_and_energy) {
 
 /// Angular momentum about the centre, kg m2/s: the orientation is that of the spheres now against
 /// those of the sample, and the inertia that of the voxels.
-Vec3 spin_momentum_of(const GrainsMethod& grains, const GrainsOptions& o, std::size_t grain) {
+Vec3 spin_momentum_of(const Solver& grains, const Options& o, std::size_t grain) {
   const std::vector<Vec3> now = grains.sphere_positions();
   const Clump& clump = o.sample.clumps[grain];
   const Vec3 centre = grains.state().positions[grain];
@@ -91,8 +91,8 @@ Vec3 spin_momentum_of(const GrainsMethod& grains, const GrainsOptions& o, std::s
          (rotation * (clump.inertia * (rotation.transpose() * Vec3(w[0], w[1], w[2]))));
 }
 
-TEST(Grains, that_spin_keep_energy_and_angular_momentum_over_1e5_steps) {
-  GrainsOptions o = grains_of(image_of(60, 60, 60, [](auto i, auto j, auto k) {
+TEST(Grains, ThatSpinKeepEnergyAndAngularMomentumOver1e5Steps) {
+  Options o = grains_of(image_of(60, 60, 60, [](auto i, auto j, auto k) {
     const bool first = i >= 24 && i < 28 && j >= 28 && j < 31 && k >= 27 && k < 29;
     const bool second = i >= 29 && i < 31 && j >= 30 && j < 35 && k >= 28 && k < 31;
     return first ? 1 : second ? 2 : 0;
@@ -129,7 +129,7 @@ TEST(Grains, that_spin_keep_energy_and_angular_momentum_over_1e5_steps) {
 struct Slider {
   Slider(std::size_t nx, std::size_t ny, std::size_t nz, double friction, double speed)
       : v0(speed), mu(friction) {
-    GrainsOptions o = grains_of(image_of(20, 20, 20, [=](auto i, auto j, auto k) {
+    Options o = grains_of(image_of(20, 20, 20, [=](auto i, auto j, auto k) {
       return i >= 5 && i < 5 + nx && j >= 10 && j < 10 + ny && k >= 20 - nz ? 1 : 0;
     }));
     o.settings.friction = friction;
@@ -141,7 +141,7 @@ struct Slider {
   }
   Vec3 velocity() const { return grains->state().velocities[0]; }
   double v0, mu, g = 1e4;
-  std::unique_ptr<GrainsMethod> grains;
+  std::unique_ptr<Solver> grains;
 };
 
 /// What presses is the weight, less what lifts the grain: its impulse is m (g t - v_z).
@@ -150,7 +150,7 @@ void expect_coulomb(const Slider& s) {
   EXPECT_NEAR((s.v0 - s.velocity().x()) / lost, 1, 1e-3);
 }
 
-TEST(Grains, slide_on_a_plane_as_coulomb_says) {
+TEST(Grains, SlideOnAPlaneAsCoulombSays) {
   Slider voxel(1, 1, 1, 0.2, 0.1), block(6, 4, 2, 0.2, 0.1);
   const double until_it_rolls = voxel.v0 / (2.5 * voxel.mu * voxel.g);
   while (voxel.grains->time() < 0.8 * until_it_rolls) voxel.grains->step();
@@ -160,7 +160,7 @@ TEST(Grains, slide_on_a_plane_as_coulomb_says) {
   expect_coulomb(block);
 }
 
-TEST(Grains, roll_on_after_sliding_with_three_fifths_of_their_speed) {
+TEST(Grains, RollOnAfterSlidingWithThreeFifthsOfTheirSpeed) {
   // Voxels in a row along y, with I = m (2 r)^2 / 6 about it: the momentum about the line of
   // contact gives v = v0 / (1 + 2/3).
   for (const std::size_t length : {1, 4}) {
@@ -175,11 +175,11 @@ TEST(Grains, roll_on_after_sliding_with_three_fifths_of_their_speed) {
   }
 }
 
-TEST(Grains, do_the_same_on_any_number_of_threads_whatever_the_stage) {
-  for (const GrainSides sides : {GrainSides::walls, GrainSides::periodic}) {
-    GrainsOptions o = story_of_all_kinds();
+TEST(Grains, DoTheSameOnAnyNumberOfThreadsWhateverTheStage) {
+  for (const Sides sides : {Sides::walls, Sides::periodic}) {
+    Options o = story_of_all_kinds();
     o.settings.sides = sides;
-    std::vector<std::unique_ptr<GrainsMethod>> all;
+    std::vector<std::unique_ptr<Solver>> all;
     for (const int threads : {1, 2, 3}) {
       o.settings.threads = threads;
       all.push_back(filled(o));
@@ -201,8 +201,8 @@ TEST(Grains, do_the_same_on_any_number_of_threads_whatever_the_stage) {
   }
 }
 
-TEST(Grains, do_the_same_on_any_number_of_threads) {
-  GrainsOptions o = grains_of(random_snow(26, 6));
+TEST(Grains, DoTheSameOnAnyNumberOfThreads) {
+  Options o = grains_of(random_snow(26, 6));
   o.settings.density_scaling = 1e3;
   o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
   o.energy = true;
@@ -222,9 +222,9 @@ TEST(Grains, do_the_same_on_any_number_of_threads) {
   }
 }
 
-TEST(Grains, are_those_of_the_sample_and_no_others) {
-  const GrainsOptions o = grains_of(random_snow(12, 5));
-  const auto grains = make_grains(o);
+TEST(Grains, AreThoseOfTheSampleAndNoOthers) {
+  const Options o = grains_of(random_snow(12, 5));
+  const auto grains = make_solver(o);
   EXPECT_THROW(grains->step(), SimulationError);
   std::vector<ParticleBatch> batches = grains->seed();
   batches[0].masses[0] *= 2;
@@ -240,8 +240,8 @@ TEST(Grains, are_those_of_the_sample_and_no_others) {
   EXPECT_THROW(grains->add_velocity({}), InputError);
 }
 
-TEST(Grains, that_are_replaced_begin_anew_with_other_numbers) {
-  GrainsOptions o = grains_of(random_snow(12, 5));
+TEST(Grains, ThatAreReplacedBeginAnewWithOtherNumbers) {
+  Options o = grains_of(random_snow(12, 5));
   o.settings.density_scaling = 1e3;
   o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
   const auto grains = filled(o);
@@ -256,7 +256,7 @@ TEST(Grains, that_are_replaced_begin_anew_with_other_numbers) {
   EXPECT_EQ(grains->measures().axial_strain, 0);
 }
 
-TEST(Grains, show_their_fields) {
+TEST(Grains, ShowTheirFields) {
   const auto grains = filled(grains_of(random_snow(12, 5)));
   for (const FieldInfo& info : grains->fields())
     EXPECT_EQ(grains->field(info.name).count, grains->size()) << info.name;
@@ -266,7 +266,7 @@ TEST(Grains, show_their_fields) {
   EXPECT_THROW(grains->field("thickness"), InputError);
 }
 
-TEST(Grains, stay_finite_whatever_the_settings) {
+TEST(Grains, StayFiniteWhateverTheSettings) {
   const LabelImage snow = random_snow(12, 4);
   const LabelImage voxel = lonely(1, 1, 1, 4);
   const double infinite = std::numeric_limits<double>::infinity();
@@ -275,7 +275,7 @@ TEST(Grains, stay_finite_whatever_the_settings) {
       for (const double friction : {0.0, 5.0})
         for (const double strength : {0.0, infinite})
           for (const double scaling : {1.0, 1e6}) {
-            GrainsOptions o = grains_of(*image);
+            Options o = grains_of(*image);
             o.settings.elastic_modulus = modulus;
             o.settings.friction = friction;
             o.settings.tensile_strength = o.settings.shear_strength = strength;
@@ -296,4 +296,4 @@ TEST(Grains, stay_finite_whatever_the_settings) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

@@ -4,11 +4,11 @@
 
 #include "methods/grains/grains_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::grains {
 namespace {
 
-TEST(GrainTimeStep, is_that_of_the_rotation_of_a_voxel_on_a_block) {
-  GrainsOptions o = grains_of(image_of(12, 12, 12, [](auto i, auto j, auto k) {
+TEST(GrainTimeStep, IsThatOfTheRotationOfAVoxelOnABlock) {
+  Options o = grains_of(image_of(12, 12, 12, [](auto i, auto j, auto k) {
     const auto middle = [](auto x) { return x >= 4 && x < 7; };
     if (i == 5 && j == 5 && k == 7) return 2;
     return middle(i) && middle(j) && middle(k) ? 1 : 0;
@@ -21,8 +21,8 @@ TEST(GrainTimeStep, is_that_of_the_rotation_of_a_voxel_on_a_block) {
   EXPECT_NEAR(filled(o)->time_step() / (3 * std::sqrt(mass / (1.5 * k))), 1, 1e-9);
 }
 
-TEST(GrainTimeStep, is_stable_with_the_largest_factor) {
-  GrainsOptions o = grains_of(random_snow(15, 5, 0.0));
+TEST(GrainTimeStep, IsStableWithTheLargestFactor) {
+  Options o = grains_of(random_snow(15, 5, 0.0));
   o.settings.courant_factor = 1;
   o.settings.tensile_strength = o.settings.shear_strength = 1e12;
   o.energy = true;
@@ -41,4 +41,4 @@ TEST(GrainTimeStep, is_stable_with_the_largest_factor) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::grains

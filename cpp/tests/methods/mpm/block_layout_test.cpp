@@ -7,7 +7,7 @@
 
 #include "snowshed/core/random.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 TEST(BlockKey, OrdersAndRestoresCoordinates) {
@@ -75,4 +75,4 @@ TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

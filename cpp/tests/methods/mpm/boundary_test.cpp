@@ -6,7 +6,7 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/combine.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 // --- Coulomb friction -------------------------------------------------------------------------
@@ -22,8 +22,8 @@ struct Slide {
 };
 
 /// A slab 5 cm thick that is let go on a ramp of 40 degrees.
-std::unique_ptr<MpmMethod> slab_on_ramp(const Slide& slide) {
-  const MpmOptions o = options_for({2, Precision::float32, slide.transfer});
+std::unique_ptr<Solver> slab_on_ramp(const Slide& slide) {
+  const Options o = options_for({2, Precision::float32, slide.transfer});
   auto solver = make_solver(
       o, {fixed(make_plane(Vec3::Zero(), ramp_normal), slide.condition, slide.friction)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(slide.length, 0, 0.05), 0.005);
@@ -118,7 +118,7 @@ void expect_coulomb(const Chunk& c, double bar) {
   constexpr double dx = 0.01;
   const double a = radians(c.tilt);
   const Vec3 normal(std::sin(a), 0, std::cos(a)), slope(std::cos(a), 0, -std::sin(a));
-  MpmOptions o = options_for({2, Precision::float32}, dx);
+  Options o = options_for({2, Precision::float32}, dx);
   o.energy = true;
   const auto solver =
       make_solver(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::separate, c.friction)});
@@ -327,4 +327,4 @@ TEST(Contact, StoredImpulsesSurviveRelocation) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -5,14 +5,14 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/geometry/bounds.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 constexpr double cell = 0.01;
 
 /// A block of elastic snow, 4 cells high, that rests on level ground.
-std::unique_ptr<MpmMethod> block_on(const ContactLaw& law, double gravity, const Vec3& velocity) {
-  MpmOptions o = options_for({2, Precision::float32}, cell);
+std::unique_ptr<Solver> block_on(const ContactLaw& law, double gravity, const Vec3& velocity) {
+  Options o = options_for({2, Precision::float32}, cell);
   o.gravity = gravity;
   o.snows[0].model = SnowModel::elastic;
   auto solver =
@@ -77,7 +77,7 @@ TEST(Conditions, SnowThatSlipHoldsUpFeelsNoFriction) {
 /// edge, so that its weight turns it over the edge where nothing holds its rear. Returns how far
 /// its middle has sunk after a third of a second, m.
 double sunk_over_the_edge(Condition condition) {
-  MpmOptions o = options_for({2, Precision::float32}, cell);
+  Options o = options_for({2, Precision::float32}, cell);
   o.snows[0].model = SnowModel::elastic;
   const Shape shelf = make_box(Vec3(-0.5, 0, -0.05), Vec3(1, 1e9, 0.1));
   const auto solver = make_solver(o, {fixed(shelf, condition, 0.8)});
@@ -111,4 +111,4 @@ TEST(Conditions, WithSlipSnowLeavesAPanelOverItsEdge) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -5,11 +5,11 @@
 
 #include "methods/mpm/solver_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 TEST(Damping, OfAShareInEachStepIsARateByTheStep) {
-  MpmSettings s;
+  Settings s;
   s.flip_ratio = 0.99;
   EXPECT_EQ(s.flip_share(1e-4), 0.99);
   EXPECT_DOUBLE_EQ(*s.mean_damping_rate(1000, 0.1), -std::log(0.99) / 1e-4);
@@ -21,7 +21,7 @@ TEST(Damping, OfAShareInEachStepIsARateByTheStep) {
 }
 
 TEST(Damping, OfARateIsTheSameOverStepsOfAnyLength) {
-  MpmSettings s;
+  Settings s;
   s.damping_rate = 50;
   EXPECT_DOUBLE_EQ(s.flip_share(1e-4) * s.flip_share(3e-4), std::exp(-50 * 4e-4));
   EXPECT_EQ(*s.mean_damping_rate(7, 0.1), 50.0);
@@ -31,9 +31,9 @@ TEST(Damping, OfARateIsTheSameOverStepsOfAnyLength) {
 
 /// The part of its spin that a disc of elastic snow, two cells in radius, has left after a while:
 /// the grid does not resolve all of so small a spin, and PIC damps what it does not resolve.
-double spin_left(const MpmSettings& numerics) {
+double spin_left(const Settings& numerics) {
   constexpr double radius = 0.02, spin = 20, duration = 0.02;
-  MpmOptions o = options_for({2, Precision::float64});
+  Options o = options_for({2, Precision::float64});
   o.settings.flip_ratio = numerics.flip_ratio;
   o.settings.damping_rate = numerics.damping_rate;
   o.settings.courant_factor = numerics.courant_factor;
@@ -52,8 +52,8 @@ double spin_left(const MpmSettings& numerics) {
   return angular_momentum(solver->state()) / before;
 }
 
-MpmSettings with(double flip_ratio, std::optional<double> damping_rate, double courant_factor) {
-  MpmSettings s;
+Settings with(double flip_ratio, std::optional<double> damping_rate, double courant_factor) {
+  Settings s;
   s.flip_ratio = flip_ratio;
   s.damping_rate = damping_rate;
   s.courant_factor = courant_factor;
@@ -78,4 +78,4 @@ TEST(Damping, OfASpinDependsOnTheStepOnlyWhereGivenPerStep) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -6,11 +6,11 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 TEST(Method, AddedVelocitiesCountInTheEnergyBalance) {
-  MpmOptions options = options_for({3, Precision::float64});
+  Options options = options_for({3, Precision::float64});
   options.energy = true;
   options.gravity = 0;
   const auto solver = make_solver(options, {});
@@ -27,7 +27,7 @@ TEST(Method, AddedVelocitiesCountInTheEnergyBalance) {
 }
 
 TEST(Method, SettlingLowersAndCompacts) {
-  MpmOptions options = options_for({3, Precision::float64});
+  Options options = options_for({3, Precision::float64});
   options.energy = true;
   const auto solver = make_solver(options, {});
   solver->add(filled_box(3, Vec3(0, 0, 1), Vec3(0.1, 0.04, 1.3), 0.01));
@@ -83,4 +83,4 @@ TEST(Method, ReportsItsParticles) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -4,7 +4,7 @@
 
 #include "methods/mpm/solver_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// What has changed hands: the weight's work, or the energy that was there.
@@ -22,7 +22,7 @@ void expect_dissipation(const EnergyBalance& before, const EnergyBalance& now, d
 }
 
 TEST(Energy, FreeFallOnlyTurnsHeightIntoSpeed) {
-  MpmOptions o = options_for({2, Precision::float64});
+  Options o = options_for({2, Precision::float64});
   o.energy = true;
   const auto solver = make_solver(o, {});
   ParticleBatch batch = filled_box(2, Vec3(0, 0, 1), Vec3(0.05, 0, 1.05), 0.005);
@@ -47,7 +47,7 @@ TEST(Energy, BooksOfASlidingSlabClose) {
   const double tilt = radians(40);
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
   for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
-    MpmOptions o = options_for({2, Precision::float32, transfer});
+    Options o = options_for({2, Precision::float32, transfer});
     o.energy = true;
     const auto solver =
         make_solver(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::separate, 0.3)});
@@ -77,7 +77,7 @@ TEST(Energy, BooksOfASlidingSlabClose) {
 TEST(Energy, BooksOfACollapsingColumnClose) {
   for (const Way& way : {Way{2, Precision::float32}, Way{2, Precision::float64, Transfer::apic},
                          Way{3, Precision::float32}}) {
-    MpmOptions o = options_for(way);
+    Options o = options_for(way);
     o.energy = true;
     o.snows[0].preconsolidation_pressure = 200;  // too weak to stand
     o.snows[0].cohesion = 0;
@@ -102,7 +102,7 @@ TEST(Energy, BooksOfACollapsingColumnClose) {
 }
 
 TEST(Energy, BooksGoOnWhenSnowIsAddedOrRemoved) {
-  MpmOptions o = options_for({2, Precision::float64});
+  Options o = options_for({2, Precision::float64});
   o.energy = true;
   const auto solver = make_solver(o, {});
   solver->add(filled_box(2, Vec3(0, 0, 1), Vec3(0.05, 0, 1.05), 0.005));
@@ -119,4 +119,4 @@ TEST(Energy, BooksGoOnWhenSnowIsAddedOrRemoved) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

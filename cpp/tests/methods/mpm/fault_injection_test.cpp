@@ -10,7 +10,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 constexpr double dx = 0.02;
@@ -23,7 +23,7 @@ struct Seen {
   std::int64_t slept_updates;
   EnergyBalance energy;
 
-  explicit Seen(const MpmMethod& solver)
+  explicit Seen(const Solver& solver)
       : particles(solver.state()),
         time(solver.time()),
         counters(solver.counters()),
@@ -63,8 +63,8 @@ struct Case {
   bool moving;     // whether an obstacle moves, which takes memory in each step
 };
 
-std::unique_ptr<MpmMethod> rough_floor(const Case& c) {
-  MpmOptions o = options_for({2, Precision::float32}, dx);
+std::unique_ptr<Solver> rough_floor(const Case& c) {
+  Options o = options_for({2, Precision::float32}, dx);
   o.snows[0].youngs_modulus = 1e5;
   o.settings.threads = c.threads;
   o.settings.sleep_speed = 0.1;
@@ -83,23 +83,23 @@ std::unique_ptr<MpmMethod> rough_floor(const Case& c) {
 }
 
 /// Snow that lies on a rough floor, is hit by more, settles, is kicked, replaced and restored.
-struct Story : FaultStory<MpmMethod> {
+struct Story : FaultStory<Solver> {
   Story(const Case& c, std::filesystem::path file) : FaultStory(rough_floor(c), std::move(file)) {
     const ParticleBatch wall = filled_box(2, Vec3(0, 0, 0), Vec3(0.24, 0, 0.08), c.spacing);
     ParticleBatch lump = filled_box(2, Vec3(0.3, 0, 0.005), Vec3(0.4, 0, 0.05), c.spacing);
     lump.velocity = Vec3(-3, 0, -1);
-    call([=](MpmMethod& m) { m.add({wall}); });
+    call([=](Solver& m) { m.add({wall}); });
     take_steps(c.steps);
-    call([=](MpmMethod& m) { m.add({lump, lump_above(lump)}); });
+    call([=](Solver& m) { m.add({lump, lump_above(lump)}); });
     take_steps(10);
     save();
-    call([](MpmMethod& m) {
+    call([](Solver& m) {
       m.settle(std::vector<double>(m.size(), 1e-3), std::vector<double>(m.size(), -0.01));
     });
     take_steps(3);
-    call([](MpmMethod& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(-0.2, 0, 0))); });
+    call([](Solver& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(-0.2, 0, 0))); });
     take_steps(3);
-    call([=](MpmMethod& m) { m.replace({lump, wall}); });
+    call([=](Solver& m) { m.replace({lump, wall}); });
     take_steps(3);
     load();
     take_steps(10);
@@ -123,8 +123,8 @@ int AllocationFaults::try_all(const Case& c) {
   Story whole(c, path("whole")), faulty(c, path("faulty"));
   const int faults = fail_every_allocation(
       whole, faulty,
-      [](const MpmMethod& now, const MpmMethod& wanted) { expect_same(Seen(now), Seen(wanted)); },
-      [](const MpmMethod&) {});
+      [](const Solver& now, const Solver& wanted) { expect_same(Seen(now), Seen(wanted)); },
+      [](const Solver&) {});
   if (HasFailure()) return faults;
   const Seen now(*faulty.method), end(*whole.method);
   EXPECT_EQ(end.slept_updates > 0, c.steps > 64);
@@ -215,7 +215,7 @@ TEST(Failure, ToFindATimeStepLeavesTheSnowAsItWas) {
 
 /// Snow so soft that it cannot take the blow.
 TEST(Failure, ThatIsSeenAfterwardsEndsTheRun) {
-  MpmOptions o = options_for({2, Precision::float32});
+  Options o = options_for({2, Precision::float32});
   o.snows[0].model = SnowModel::elastic;
   o.snows[0].youngs_modulus = 10;
   const auto solver =
@@ -243,4 +243,4 @@ TEST(Failure, ThatIsSeenAfterwardsEndsTheRun) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -5,7 +5,7 @@
 #include "snowshed/material/cam_clay.hpp"
 #include "snowshed/methods/quantities.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 class Fields : public testing::TestWithParam<Way> {
@@ -26,7 +26,7 @@ class Fields : public testing::TestWithParam<Way> {
     run_steps(*solver_, 80);
   }
 
-  std::unique_ptr<MpmMethod> solver_;
+  std::unique_ptr<Solver> solver_;
 };
 
 /// Every field in the order of ids has the bits of the state, which is in that order.
@@ -104,4 +104,4 @@ INSTANTIATE_TEST_SUITE_P(Ways, Fields, testing::ValuesIn(all_ways()),
                          [](const auto& info) { return info.param.name(); });
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

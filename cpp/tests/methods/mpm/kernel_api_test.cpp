@@ -14,7 +14,7 @@
 #include "snowshed/methods/mpm/material_constants.hpp"
 #include "snowshed/methods/mpm/particles.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// Of up to four obstacles.
@@ -188,4 +188,4 @@ TEST(KernelChoiceDeathTest, KnowsTheNamesOfItsVariants) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

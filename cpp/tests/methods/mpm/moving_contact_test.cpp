@@ -4,7 +4,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 constexpr double cell = 0.01;
@@ -56,4 +56,4 @@ TEST(MovingContact, ASlipperyPlateLiftsSnow) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -8,7 +8,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 constexpr double cell_size = 0.01;
@@ -141,4 +141,4 @@ TEST(ParticleSortFloat, ACellJustBelowZeroStaysInsideItsBlock) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

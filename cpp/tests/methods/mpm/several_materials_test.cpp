@@ -7,7 +7,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 Snow soft_snow() {
@@ -19,9 +19,9 @@ Snow soft_snow() {
 
 /// Snow thrown onto a slippery slope, in two halves of the materials 0 and `upper`, with the energy
 /// balance.
-std::unique_ptr<MpmMethod> thrown_halves(const Way& way, std::vector<Snow> snows, int upper,
-                                         int threads = 1, bool energy_balance = true) {
-  MpmOptions o = options_for(way);
+std::unique_ptr<Solver> thrown_halves(const Way& way, std::vector<Snow> snows, int upper,
+                                      int threads = 1, bool energy_balance = true) {
+  Options o = options_for(way);
   o.snows = std::move(snows);
   o.settings.threads = threads;
   o.energy = energy_balance;
@@ -103,7 +103,7 @@ TEST(MaterialPerParticle, ElasticSnowBesideSnowThatYieldsStaysElastic) {
 }
 
 TEST(MaterialPerParticle, TheStiffestThereIsLimitsTheStep) {
-  MpmOptions o = options_for({2, Precision::float64});
+  Options o = options_for({2, Precision::float64});
   o.gravity = 0;
   o.snows = {soft_snow(), Snow()};
   const auto limit = [&](const Snow& s) {
@@ -124,7 +124,7 @@ TEST(MaterialPerParticle, TheStiffestThereIsLimitsTheStep) {
 }
 
 TEST(MaterialPerParticle, TheStiffestLimitsTheStepWhereverItStandsInTheList) {
-  MpmOptions o = options_for({2, Precision::float64});
+  Options o = options_for({2, Precision::float64});
   o.gravity = 0;
   double step[2];
   for (const int stiffest : {0, 1}) {
@@ -149,7 +149,7 @@ TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
   // g rho_2 (H - z)/s_2 above. Set free it vibrates about this state; its average over many of the
   // longest periods is the static state.
   constexpr double half = 0.1, dx = 0.0025, width = 4 * dx, bin = 0.01, g = 9.81;
-  MpmOptions o = options_for({2, Precision::float64}, dx);
+  Options o = options_for({2, Precision::float64}, dx);
   o.snows.assign(2, Snow());
   for (Snow& snow : o.snows) snow.model = SnowModel::elastic;
   o.snows[0].density = 300;
@@ -200,7 +200,7 @@ TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
 
 TEST(MaterialPerParticle, EnergyBooksClose) {
   for (const Way& way : {Way{2, Precision::float32}, Way{2, Precision::float64, Transfer::apic}}) {
-    MpmOptions o = options_for(way);
+    Options o = options_for(way);
     o.energy = true;
     o.snows = {Snow(), soft_snow()};
     for (Snow& snow : o.snows) snow.preconsolidation_pressure = 200;  // too weak to stand
@@ -251,4 +251,4 @@ TEST(MaterialPerParticle, GiveTheSameBitsOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mpm/sleep.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 constexpr double speed_limit = 0.02, time_to_sleep = 0.04, step = 1e-4;
@@ -97,4 +97,4 @@ TEST_F(TwoBlocks, WakeByForcesThatActForAsLongAsItTakesToFallAsleep) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

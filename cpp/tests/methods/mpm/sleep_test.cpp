@@ -6,15 +6,15 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 constexpr double sleep_speed = 0.02;
 
 const Way two_d{2, Precision::float32}, three_d{3, Precision::float32};
 
-MpmOptions sleepy(const Way& way, double speed = sleep_speed, bool energy_balance = false) {
-  MpmOptions o = options_for(way);
+Options sleepy(const Way& way, double speed = sleep_speed, bool energy_balance = false) {
+  Options o = options_for(way);
   o.snows[0].model = SnowModel::cam_clay;
   o.settings.sleep_speed = speed;
   o.energy = energy_balance;
@@ -37,9 +37,9 @@ ParticleBatch falling_lump(const Way& way, double time) {
   return batch;
 }
 
-std::unique_ptr<MpmMethod> wall_under_lump(const Way& way, double speed, int threads = 1,
-                                           bool energy_balance = false) {
-  MpmOptions o = sleepy(way, speed, energy_balance);
+std::unique_ptr<Solver> wall_under_lump(const Way& way, double speed, int threads = 1,
+                                        bool energy_balance = false) {
+  Options o = sleepy(way, speed, energy_balance);
   o.settings.threads = threads;
   auto solver = make_solver(o, {floor()});
   solver->add(wall_of_snow(way));
@@ -82,7 +82,7 @@ TEST(Sleep, IsOffAtSpeedZero) {
 /// In the twentieth of a second that it takes to become faster than the limit, it must not be
 /// taken for resting: its mean velocity grows.
 TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
-  MpmOptions o = sleepy(two_d);
+  Options o = sleepy(two_d);
   o.gravity = 0.4;
   const auto solver = make_solver(o, {});
   solver->add(wall_of_snow(two_d));
@@ -116,7 +116,7 @@ TEST(Sleep, ASlabThatSetsOffSlowlyGoesOn) {
 /// Snow that drifts without weight has one speed, and nothing wakes it.
 TEST(Sleep, BeginsAtTheStatedSpeedAndAfterTheStatedTime) {
   for (const double part : {0.9, 1.1}) {
-    MpmOptions o = sleepy(two_d);
+    Options o = sleepy(two_d);
     o.gravity = 0;
     const auto solver = make_solver(o, {});
     ParticleBatch drifting = wall_of_snow(two_d);
@@ -159,7 +159,7 @@ TEST(Sleep, PressureWakes) {
 
 /// A grain that is put into a block of sleeping snow, without touching it, flies on.
 TEST(Sleep, ArrivalsWake) {
-  MpmOptions o = sleepy(two_d);
+  Options o = sleepy(two_d);
   o.gravity = 0;
   const auto solver = make_solver(o, {});
   solver->add(filled_box(2, Vec3(0.01, 0, 0.01), Vec3(0.03, 0, 0.08), 0.005));
@@ -178,7 +178,7 @@ TEST(Sleep, ArrivalsWake) {
 TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
   // Speed is the same before and after the top of a throw, and when a blow takes one component
   // while gravity adds another.
-  MpmOptions o = sleepy(two_d, 0.2);
+  Options o = sleepy(two_d, 0.2);
   for (const Vec3& thrown : {Vec3(0, 0, 0.05), Vec3(0.1, 0, 0.05), Vec3(-0.15, 0, 0.02)}) {
     const auto solver = make_solver(o, {});
     ParticleBatch lump = filled_box(2, Vec3(0, 0, 0), Vec3(0.1, 0.1, 0.1), 0.005);
@@ -282,7 +282,7 @@ std::vector<float> sleeping_cells(const BinaryReader& in) {
 /// Snow that glides on without weight is quiet, and some of it is always about to leave its block.
 TEST_F(SleepFiles, SnowThatSleepsLiesWithinItsBlock) {
   for (const double speed : {0.5, 0.8, 1.1, 1.4}) {
-    MpmOptions o = sleepy(two_d, 2.0);
+    Options o = sleepy(two_d, 2.0);
     o.gravity = 0;
     o.settings.sleep_time = 0.005;
     const auto solver = make_solver(o, {});
@@ -306,4 +306,4 @@ TEST_F(SleepFiles, SnowThatSleepsLiesWithinItsBlock) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

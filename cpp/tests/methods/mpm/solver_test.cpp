@@ -8,7 +8,7 @@
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 class InEveryWay : public testing::TestWithParam<Way> {};
@@ -35,7 +35,7 @@ double sum_of_speeds(const ParticleState& s) {
 
 TEST_P(InEveryWay, FreeFlightKeepsMassAndMomentum) {
   const Way way = GetParam();
-  MpmOptions o = options_for(way);
+  Options o = options_for(way);
   o.gravity = 0;
   const auto solver = make_solver(o, {});
   add_swarm(*solver, way, 80, 0.025, 1.0);
@@ -110,7 +110,7 @@ class SolverFiles : public TemporaryFolder {
 TEST_F(SolverFiles, ApicKeepsAngularMomentum) {
   for (const Way& way : all_ways()) {
     if (way.transfer != Transfer::apic || way.precision != Precision::float64) continue;
-    MpmOptions o = options_for(way);
+    Options o = options_for(way);
     o.gravity = 0;
     const auto solver = make_solver(o, {});
     add_swarm(*solver, way, 80, 0.025, 1.0);
@@ -128,7 +128,7 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
   constexpr double radius = 0.05, spin = 20, duration = 0.04;
   for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
     const Way way{2, Precision::float64, transfer};
-    MpmOptions o = options_for(way);
+    Options o = options_for(way);
     o.gravity = 0;
     o.settings.flip_ratio = 1;  // each percent of PIC damps a spin of so few cells visibly
     o.snows[0].model = SnowModel::elastic;
@@ -155,7 +155,7 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
 TEST(Method, AnElasticBarVibratesAtItsNaturalFrequency) {
   // Free at both ends, nu = 0: f = c/(2 L) with c = sqrt(E/rho), no lateral motion.
   constexpr double length = 0.6, amplitude = 0.05;
-  MpmOptions o = options_for({2, Precision::float64});
+  Options o = options_for({2, Precision::float64});
   o.gravity = 0;
   o.snows[0].model = SnowModel::elastic;
   o.snows[0].poissons_ratio = 0;
@@ -201,7 +201,7 @@ TEST(Method, AColumnCarriesItsWeight) {
   // rho g (H z - z^2/2)/s. Set free it vibrates about this state; its average over four of the
   // longest periods, 4 H/c, is the static state.
   constexpr double height = 0.2, width = 0.04, spacing = 0.005;
-  MpmOptions o = options_for({2, Precision::float64});
+  Options o = options_for({2, Precision::float64});
   o.snows[0].model = SnowModel::elastic;
   o.snows[0].youngs_modulus = 1e5;
   const double nu = o.snows[0].poissons_ratio, mu = 1e5 / (2 * (1 + nu));
@@ -242,8 +242,8 @@ TEST(Method, AColumnCarriesItsWeight) {
 // --- the same bits ----------------------------------------------------------------------------
 
 /// Snow thrown onto a slippery slope: contact, plasticity, blocks that come and go.
-std::unique_ptr<MpmMethod> thrown_snow(Way way, int threads, double size, bool energy_balance) {
-  MpmOptions o = options_for(way);
+std::unique_ptr<Solver> thrown_snow(Way way, int threads, double size, bool energy_balance) {
+  Options o = options_for(way);
   o.settings.threads = threads;
   o.energy = energy_balance;
   auto solver = make_solver(
@@ -308,7 +308,7 @@ INSTANTIATE_TEST_SUITE_P(Method, SameBits, testing::Bool(), [](const auto& info)
 
 TEST(Method, AViolentImpactStaysFinite) {
   for (Transfer transfer : {Transfer::flip, Transfer::apic}) {
-    MpmOptions o = options_for({2, Precision::float32, transfer});
+    Options o = options_for({2, Precision::float32, transfer});
     o.snows[0].youngs_modulus = 1e4;
     const auto solver =
         make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
@@ -327,7 +327,7 @@ TEST(Method, AViolentImpactStaysFinite) {
 
 TEST(Method, RejectsStepsThatStrainTooMuch) {
   for (double limit : {0.2, 0.002}) {
-    MpmOptions o = options_for({2, Precision::float64});
+    Options o = options_for({2, Precision::float64});
     o.settings.strain_limit = limit;
     const auto solver =
         make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
@@ -355,7 +355,7 @@ TEST(Method, FastSnowMovesLessThanHalfACellInEveryStep) {
 }
 
 TEST(Method, GivesUpWithAClearErrorWhereNoStepIsSmallEnough) {
-  MpmOptions o = options_for({2, Precision::float64});
+  Options o = options_for({2, Precision::float64});
   o.settings.strain_limit = 1e-12;
   const auto solver =
       make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
@@ -393,4 +393,4 @@ TEST(Method, ParticlesOnAndNextToNodesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

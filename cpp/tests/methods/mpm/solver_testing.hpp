@@ -12,7 +12,7 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 
 /// One way of running the solver, for parameterised tests.
 struct Way {
@@ -41,8 +41,8 @@ inline std::vector<Way> all_ways() {
   return ways;
 }
 
-inline MpmOptions options_for(const Way& way, double dx = 0.01) {
-  MpmOptions o;
+inline Options options_for(const Way& way, double dx = 0.01) {
+  Options o;
   o.dimension = way.dimension;
   o.settings.dx = dx;
   o.settings.precision = way.precision;
@@ -53,9 +53,9 @@ inline MpmOptions options_for(const Way& way, double dx = 0.01) {
   return o;
 }
 
-inline std::unique_ptr<MpmMethod> make_solver(MpmOptions o, std::vector<Obstacle> obstacles) {
+inline std::unique_ptr<Solver> make_solver(Options o, std::vector<Obstacle> obstacles) {
   o.obstacles = std::move(obstacles);
-  return make_mpm(std::move(o));
+  return make_solver(std::move(o));
 }
 
 inline Obstacle fixed(Shape shape, Condition condition, double friction = 0.0) {
@@ -159,4 +159,4 @@ inline Vec3 momentum(const ParticleState& s) {
   return total_mass(s) * weighted_mean(s, s.velocities);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -5,7 +5,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/methods/mpm/kernels/bspline.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 TEST(TimeStep, ScalesAsACourantCondition) {
@@ -55,7 +55,7 @@ TEST(TimeStep, FastSnowMovesLessThanHalfACell) {
 /// Largest pressure of a lone elastic particle after some hundred steps from nothing but
 /// round-off. A lone particle has the highest frequency that a grid can give snow.
 double pressure_from_round_off(Transfer transfer, Basis basis, double fraction, double factor) {
-  MpmOptions o = options_for({2, Precision::float64, transfer, basis});
+  Options o = options_for({2, Precision::float64, transfer, basis});
   o.gravity = 0;
   o.snows[0].model = SnowModel::elastic;
   o.settings.courant_factor = factor;
@@ -93,4 +93,4 @@ TEST(TimeStep, TheLimitIsNotFarTooSafe) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

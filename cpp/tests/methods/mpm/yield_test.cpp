@@ -7,7 +7,7 @@
 #include "material/rate_integration.hpp"
 #include "methods/mpm/solver_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 /// Snow whose law the tests know as closed form: no lateral strain under uniaxial stress.
@@ -41,7 +41,7 @@ constexpr double column_length = 0.2;
 /// How far the lower half of a column has come down that hangs from a sticky ceiling. Its weight
 /// grows slowly until it strains the ceiling with a part of the column's strength, and then stays.
 double fall_of_column(int dimension, double part_of_strength) {
-  MpmOptions o = options_for({dimension, Precision::float32});
+  Options o = options_for({dimension, Precision::float32});
   Snow& snow = o.snows[0] = test_snow();
   const double stress = part_of_strength * tensile_strength(snow, dimension);
   o.gravity = stress / (snow.density * column_length);
@@ -116,8 +116,8 @@ Stress stress_at_middle(const Method& solver, const Snow& snow, int dimension) {
 
 /// A block about the origin in which the velocity is `gradient` times the position. Waves from its
 /// faces reach the middle only after what the tests look at.
-std::unique_ptr<MpmMethod> straining_block(const Snow& snow, int dimension, const Mat3& gradient) {
-  MpmOptions o = options_for({dimension, Precision::float64});
+std::unique_ptr<Solver> straining_block(const Snow& snow, int dimension, const Mat3& gradient) {
+  Options o = options_for({dimension, Precision::float64});
   o.gravity = 0;
   o.settings.dx = 0.02;
   o.settings.courant_factor = 0.1;
@@ -182,4 +182,4 @@ TEST(HangingColumn, SnowPulledAlikeInAllDirectionsPartsAtBetaTimesP0) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -5,14 +5,14 @@
 #include "methods/fault_story.hpp"
 #include "methods/mps/mps_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
-MpsOptions eroding_tank(int dimension, MpsWalls walls) {
-  MpsOptions o = tank(dimension, 0.2, 0.025);
+Options eroding_tank(int dimension, Walls walls) {
+  Options o = tank(dimension, 0.2, 0.025);
   o.settings.walls = walls;
   o.settings.density = 200;
-  o.settings.rheology = MpsRheology::bingham_dilatant;
+  o.settings.rheology = ShearLaw::bingham_dilatant;
   o.settings.cohesion = 20;
   o.settings.yield_iterations = 3;
   o.settings.erosion = true;
@@ -21,25 +21,25 @@ MpsOptions eroding_tank(int dimension, MpsWalls walls) {
   return o;
 }
 
-struct MpsStory : FaultStory<MpsMethod> {
-  MpsStory(const MpsOptions& o, std::filesystem::path file)
-      : FaultStory(make_mps(o), std::move(file)) {
+struct MpsStory : FaultStory<Solver> {
+  MpsStory(const Options& o, std::filesystem::path file)
+      : FaultStory(make_solver(o), std::move(file)) {
     const ParticleBatch low = block_of(o, Vec3::Zero(), {0.2, 0.1, 0.05});
     ParticleBatch column = block_of(o, {0, 0, 0.05}, {0.1, 0.1, 0.15});
     column.velocity = {1, 0, -0.5};
-    call([low, column](MpsMethod& m) { m.add({low, column}); });
+    call([low, column](Solver& m) { m.add({low, column}); });
     take_steps(4);
     save();
-    call([](MpsMethod& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(0.1, 0, 0))); });
+    call([](Solver& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(0.1, 0, 0))); });
     take_steps(3);
     load();
     take_steps(2);
-    call([column](MpsMethod& m) { m.replace({column}); });
+    call([column](Solver& m) { m.replace({column}); });
     take_steps(2);
   }
 };
 
-void expect_same_snow(const MpsMethod& now, const MpsMethod& wanted) {
+void expect_same_snow(const Solver& now, const Solver& wanted) {
   const ParticleState a = now.state(), b = wanted.state();
   ASSERT_EQ(a.ids, b.ids);
   EXPECT_TRUE(a.positions == b.positions);
@@ -52,24 +52,24 @@ void expect_same_snow(const MpsMethod& now, const MpsMethod& wanted) {
   EXPECT_EQ(now.report().mean_pressure_iterations, wanted.report().mean_pressure_iterations);
 }
 
-class MpsFaults : public TemporaryFolder, public testing::WithParamInterface<MpsWalls> {};
+class MpsFaults : public TemporaryFolder, public testing::WithParamInterface<Walls> {};
 
-TEST_P(MpsFaults, leave_no_trace) {
+TEST_P(MpsFaults, LeaveNoTrace) {
   int faults = 0;
   for (const int dimension : {2, 3}) {
-    const MpsOptions o = eroding_tank(dimension, GetParam());
+    const Options o = eroding_tank(dimension, GetParam());
     MpsStory whole(o, path("whole")), faulty(o, path("faulty"));
-    faults += fail_every_allocation(whole, faulty, expect_same_snow, [](const MpsMethod&) {});
+    faults += fail_every_allocation(whole, faulty, expect_same_snow, [](const Solver&) {});
     if (HasFailure()) return;
   }
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 500);
 }
 
-INSTANTIATE_TEST_SUITE_P(, MpsFaults, testing::Values(MpsWalls::mirrors, MpsWalls::particles),
+INSTANTIATE_TEST_SUITE_P(, MpsFaults, testing::Values(Walls::mirrors, Walls::particles),
                          [](const auto& chosen) {
-                           return chosen.param == MpsWalls::mirrors ? "mirrors" : "particles";
+                           return chosen.param == Walls::mirrors ? "mirrors" : "particles";
                          });
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mps

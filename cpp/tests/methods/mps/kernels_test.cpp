@@ -11,7 +11,7 @@
 #include "snowshed/methods/mps/moments.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// A random cloud, denser and sparser than a lattice, so that rows of many lengths come up.
@@ -39,7 +39,7 @@ struct Cloud {
     const AlignedVector<VecD<D>> unsorted = position;
     for (std::size_t k = 0; k < count; ++k) position[k] = unsorted[cells.order()[k]];
     cells.update(position, radius, period);
-    lists.update(position, cells, radius, period, mps_kernels<D>().search, 1);
+    lists.update(position, cells, radius, period, chosen_kernels<D>().search, 1);
     lists.find_mirrors(1);
     for (int d = 0; d < D; ++d) offset[std::size_t(d)] = lists.offset(d);
     rows = {lists.first(), lists.index()};
@@ -47,8 +47,8 @@ struct Cloud {
     slope.resize(lists.pairs());
     sum.resize(count);
     filling.resize(count);
-    mps_kernels<D>().weigh(rows, offset.data(), float(radius), weight.data(), slope.data(),
-                           sum.data(), filling.data(), 0, std::ptrdiff_t(count));
+    chosen_kernels<D>().weigh(rows, offset.data(), float(radius), weight.data(), slope.data(),
+                              sum.data(), filling.data(), 0, std::ptrdiff_t(count));
   }
   std::ptrdiff_t size() const { return std::ptrdiff_t(position.size()); }
   VecD<D> way(std::size_t i, std::size_t j) const {
@@ -65,11 +65,11 @@ struct Cloud {
 };
 
 template <class T>
-class MpsKernelsOf : public ::testing::Test {};
+class KernelsOf : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(MpsKernelsOf, Dimensions);
+TYPED_TEST_SUITE(KernelsOf, Dimensions);
 
-TYPED_TEST(MpsKernelsOf, FindTheNeighboursThatAllPairsHave) {
+TYPED_TEST(KernelsOf, FindTheNeighboursThatAllPairsHave) {
   constexpr int D = TypeParam::value;
   for (const double period : {0.0, 8.0}) {
     const Cloud<D> cloud(150, period);
@@ -87,7 +87,7 @@ TYPED_TEST(MpsKernelsOf, FindTheNeighboursThatAllPairsHave) {
   }
 }
 
-TYPED_TEST(MpsKernelsOf, WeighPairsByTheirDirection) {
+TYPED_TEST(KernelsOf, WeighPairsByTheirDirection) {
   constexpr int D = TypeParam::value;
   constexpr std::size_t half = RowMoments<D>::half;
   const Cloud<D> cloud(150);
@@ -96,8 +96,8 @@ TYPED_TEST(MpsKernelsOf, WeighPairsByTheirDirection) {
     for (std::size_t k = 0; k < half; ++k)
       spread[i][k] = 0.4f + 0.01f * float((7 * i + 13 * k) % 60);
   AlignedVector<float> even(cloud.lists.pairs());
-  mps_kernels<D>().even_weights(cloud.rows, cloud.offset.data(), cloud.weight.data(),
-                                spread.data()->data(), even.data(), 0, cloud.size());
+  chosen_kernels<D>().even_weights(cloud.rows, cloud.offset.data(), cloud.weight.data(),
+                                   spread.data()->data(), even.data(), 0, cloud.size());
   std::array<int, 3> within{};  // factors at the lower limit, between, at the upper one
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     const VecD<D> way = cloud.way(i, j).normalized();
@@ -111,12 +111,12 @@ TYPED_TEST(MpsKernelsOf, WeighPairsByTheirDirection) {
   EXPECT_GT(within[1], 10);
 }
 
-TYPED_TEST(MpsKernelsOf, WeighPairsAndSumThem) {
+TYPED_TEST(KernelsOf, WeighPairsAndSumThem) {
   constexpr int D = TypeParam::value;
   const Cloud<D> cloud(150);
   AlignedVector<RowMoments<D>> moments(150);
-  mps_kernels<D>().sum_moments(cloud.rows, cloud.offset.data(), cloud.weight.data(),
-                               cloud.slope.data(), moments.data(), 0, cloud.size());
+  chosen_kernels<D>().sum_moments(cloud.rows, cloud.offset.data(), cloud.weight.data(),
+                                  cloud.slope.data(), moments.data(), 0, cloud.size());
   std::vector<double> sum(150), filling(150), last(150), side(150);
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     const VecD<D> r = cloud.position[j] - cloud.position[i];
@@ -135,7 +135,7 @@ TYPED_TEST(MpsKernelsOf, WeighPairsAndSumThem) {
   }
 }
 
-TYPED_TEST(MpsKernelsOf, MultiplyRows) {
+TYPED_TEST(KernelsOf, MultiplyRows) {
   constexpr int D = TypeParam::value;
   using Matrix = Eigen::Matrix<double, D, D>;
   const Cloud<D> cloud(150);
@@ -145,11 +145,11 @@ TYPED_TEST(MpsKernelsOf, MultiplyRows) {
   diagonal[5] = 0;
   block[5].setZero();
   for (std::size_t i = 0; i < 150; ++i) p[i] = cloud.velocity[i][0];
-  mps_kernels<D>().apply(cloud.rows, cloud.weight.data(), diagonal.data(), p.data(), q.data(), 0,
-                         cloud.size());
-  mps_kernels<D>().apply_to_velocities(cloud.rows, cloud.weight.data(), block.data()->data(),
-                                       cloud.velocity.data()->data(), moved.data()->data(), 0,
-                                       cloud.size());
+  chosen_kernels<D>().apply(cloud.rows, cloud.weight.data(), diagonal.data(), p.data(), q.data(), 0,
+                            cloud.size());
+  chosen_kernels<D>().apply_to_velocities(cloud.rows, cloud.weight.data(), block.data()->data(),
+                                          cloud.velocity.data()->data(), moved.data()->data(), 0,
+                                          cloud.size());
   AlignedVector<double> expected(150);
   AlignedVector<VecD<D>> expected_moved(150);
   for (std::size_t i = 0; i < 150; ++i) {
@@ -167,7 +167,7 @@ TYPED_TEST(MpsKernelsOf, MultiplyRows) {
   }
 }
 
-TYPED_TEST(MpsKernelsOf, SumWaysAndApproaches) {
+TYPED_TEST(KernelsOf, SumWaysAndApproaches) {
   constexpr int D = TypeParam::value;
   const Cloud<D> cloud(150);
   constexpr double limit = 1.3;
@@ -179,13 +179,14 @@ TYPED_TEST(MpsKernelsOf, SumWaysAndApproaches) {
   }
   AlignedVector<VecD<D>> ways(150), weighted(150), approaches(150);
   const auto sum_ways = [&](const double* values, AlignedVector<VecD<D>>& sums) {
-    mps_kernels<D>().sum_ways(cloud.rows, cloud.offset.data(), cloud.slope.data(), values,
-                              base.data(), sums.data()->data(), 0, cloud.size());
+    chosen_kernels<D>().sum_ways(cloud.rows, cloud.offset.data(), cloud.slope.data(), values,
+                                 base.data(), sums.data()->data(), 0, cloud.size());
   };
   sum_ways(nullptr, ways);
   sum_ways(value.data(), weighted);
-  mps_kernels<D>().sum_approaches(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
-                                  share.data(), limit, approaches.data()->data(), 0, cloud.size());
+  chosen_kernels<D>().sum_approaches(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
+                                     share.data(), limit, approaches.data()->data(), 0,
+                                     cloud.size());
   AlignedVector<VecD<D>> expected(150, VecD<D>::Zero()), expected_weighted = expected,
                                                          expected_approaches = expected;
   AlignedVector<double> sizes(150, 0.0);
@@ -211,7 +212,7 @@ TYPED_TEST(MpsKernelsOf, SumWaysAndApproaches) {
 }
 
 /// The velocity of a linear field has the same shear rate midway of all pairs.
-TYPED_TEST(MpsKernelsOf, FindTheShearRateOfALinearField) {
+TYPED_TEST(KernelsOf, FindTheShearRateOfALinearField) {
   constexpr int D = TypeParam::value;
   using Matrix = Eigen::Matrix<double, D, D>;
   Cloud<D> cloud(150);
@@ -220,9 +221,9 @@ TYPED_TEST(MpsKernelsOf, FindTheShearRateOfALinearField) {
     for (int b = 0; b < D; ++b) field(a, b) = 1.0 + a - 2.5 * b + a * b;
   for (std::size_t i = 0; i < 150; ++i) cloud.velocity[i] = field * cloud.position[i];
   AlignedVector<Matrix> gradient(150);
-  mps_kernels<D>().sum_gradients(cloud.rows, cloud.offset.data(), cloud.slope.data(),
-                                 cloud.velocity.data()->data(), gradient.data()->data(), 0,
-                                 cloud.size());
+  chosen_kernels<D>().sum_gradients(cloud.rows, cloud.offset.data(), cloud.slope.data(),
+                                    cloud.velocity.data()->data(), gradient.data()->data(), 0,
+                                    cloud.size());
   AlignedVector<Matrix> expected(150, Matrix(Matrix::Zero()));
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     expected[i] += double(cloud.slope[e]) * (cloud.velocity[j] - cloud.velocity[i]) *
@@ -232,8 +233,8 @@ TYPED_TEST(MpsKernelsOf, FindTheShearRateOfALinearField) {
     EXPECT_LT((gradient[i] - expected[i]).norm(), 1e-5 * (1 + expected[i].norm()));
   gradient.assign(150, field);
   AlignedVector<float> rate(cloud.lists.pairs());
-  mps_kernels<D>().pair_rates(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
-                              gradient.data()->data(), rate.data(), 0, cloud.size());
+  chosen_kernels<D>().pair_rates(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
+                                 gradient.data()->data(), rate.data(), 0, cloud.size());
   const double known = (field + field.transpose()).norm() / std::sqrt(2.0);
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     if (j > i) {
@@ -244,4 +245,4 @@ TYPED_TEST(MpsKernelsOf, FindTheShearRateOfALinearField) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mps

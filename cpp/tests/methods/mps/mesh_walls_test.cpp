@@ -8,7 +8,7 @@
 #include "snowshed/geometry/mesh_level_set.hpp"
 #include "snowshed/geometry/mesh_shells.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 using geometry_testing::sphere_mesh;
@@ -55,15 +55,15 @@ Obstacle of_mesh(const char* name, TriangleMesh mesh) {
 }
 
 /// A tank with bumpy ground.
-MpsOptions bumpy_tank(double width) {
-  MpsOptions o = tank(3, width, 0.02);
-  o.settings.walls = MpsWalls::particles;
+Options bumpy_tank(double width) {
+  Options o = tank(3, width, 0.02);
+  o.settings.walls = Walls::particles;
   o.obstacles.front() = of_mesh("ground", bumpy_ground(width));
   return o;
 }
 
 /// A block of which no particle is nearer to the obstacles than half a spacing.
-ParticleBatch block_outside(const MpsOptions& o, const Vec3& low, const Vec3& high) {
+ParticleBatch block_outside(const Options& o, const Vec3& low, const Vec3& high) {
   ParticleBatch batch = block_of(o, low, high);
   const auto inside = [&](const Vec3& x) {
     return std::any_of(o.obstacles.begin(), o.obstacles.end(), [&](const Obstacle& one) {
@@ -76,7 +76,7 @@ ParticleBatch block_outside(const MpsOptions& o, const Vec3& low, const Vec3& hi
 }
 
 /// The least distance of a particle from an obstacle, m.
-double least_distance(const Method& method, const MpsOptions& o) {
+double least_distance(const Method& method, const Options& o) {
   double least = HUGE_VAL;
   for (const Vec3& x : method.state().positions)
     for (const Obstacle& one : o.obstacles) least = std::min(least, one.shape->distance(x));
@@ -86,9 +86,9 @@ double least_distance(const Method& method, const MpsOptions& o) {
 // Its volume, over the ground's mean height of zero, says how high it stands.
 TEST(MpsMeshWalls, HoldWaterAtRestOnBumpyGround) {
   constexpr double edge = 0.2;
-  MpsOptions o = bumpy_tank(edge);
+  Options o = bumpy_tank(edge);
   o.settings.viscosity = 1;
-  const auto mps = make_mps(o);
+  const auto mps = make_solver(o);
   mps->add(block_outside(o, {0, 0, -0.02}, {edge, edge, 0.16}));
   const std::size_t count = mps->size();
   while (mps->time() < 0.5) mps->step();
@@ -102,14 +102,14 @@ TEST(MpsMeshWalls, HoldWaterAtRestOnBumpyGround) {
 }
 
 TEST(MpsMeshWalls, LetNoSnowThrough) {
-  MpsOptions o = bumpy_tank(0.4);
-  o.settings.rheology = MpsRheology::bingham_dilatant;
+  Options o = bumpy_tank(0.4);
+  o.settings.rheology = ShearLaw::bingham_dilatant;
   o.settings.density = 200;
   o.settings.viscosity = 0.012;
   TriangleMesh ball = sphere_mesh(0.06, 6);
   for (Vec3& x : ball.vertices) x += Vec3(0.22, 0.2, 0.05);
   o.obstacles.push_back(of_mesh("ball", ball));
-  const auto mps = make_mps(o);
+  const auto mps = make_solver(o);
   ParticleBatch snow = block_outside(o, {0, 0.1, 0}, {0.14, 0.3, 0.2});
   snow.velocity = {2, 0, 0};
   mps->add({snow});
@@ -123,4 +123,4 @@ TEST(MpsMeshWalls, LetNoSnowThrough) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -7,10 +7,10 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/methods/mps/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 
 /// A particle at the middle of every cell of a box, in 2D of its face.
-inline ParticleBatch block_of(const MpsOptions& o, const Vec3& low, const Vec3& high) {
+inline ParticleBatch block_of(const Options& o, const Vec3& low, const Vec3& high) {
   const double l0 = o.settings.spacing;
   ParticleBatch batch;
   batch.mass = o.settings.density * std::pow(l0, o.dimension);
@@ -29,13 +29,13 @@ inline Obstacle wall(const Vec3& point, const Vec3& normal) {
 }
 
 /// A tank, open above, of a viscous fluid.
-inline MpsOptions tank(int dimension, double width, double spacing) {
-  MpsOptions o;
+inline Options tank(int dimension, double width, double spacing) {
+  Options o;
   o.dimension = dimension;
   o.gravity = {0, 0, -9.81};
   o.settings.spacing = spacing;
   o.settings.density = 1000;
-  o.settings.rheology = MpsRheology::newtonian;
+  o.settings.rheology = ShearLaw::newtonian;
   o.settings.viscosity = 1;
   o.obstacles = {wall(Vec3::Zero(), Vec3::UnitZ()), wall(Vec3::Zero(), Vec3::UnitX()),
                  wall({width, 0, 0}, -Vec3::UnitX())};
@@ -47,12 +47,12 @@ inline MpsOptions tank(int dimension, double width, double spacing) {
 }
 
 /// Between two plates, without gravity but a force along x; all repeats after `length`.
-inline MpsOptions channel(double length, double half_gap, int across, double force) {
-  MpsOptions o;
+inline Options channel(double length, double half_gap, int across, double force) {
+  Options o;
   o.dimension = 2;
   o.settings.spacing = 2 * half_gap / across;
   o.settings.density = 1000;
-  o.settings.rheology = MpsRheology::bingham;
+  o.settings.rheology = ShearLaw::bingham;
   o.settings.viscosity = 1;
   o.settings.friction_angle = 0;
   o.gravity = {force / o.settings.density, 0, 0};
@@ -62,8 +62,8 @@ inline MpsOptions channel(double length, double half_gap, int across, double for
 }
 
 /// A body from the origin to a corner, at rest.
-inline std::unique_ptr<MpsMethod> body_of(const MpsOptions& o, const Vec3& corner) {
-  std::unique_ptr<MpsMethod> mps = make_mps(o);
+inline std::unique_ptr<Solver> body_of(const Options& o, const Vec3& corner) {
+  std::unique_ptr<Solver> mps = make_solver(o);
   mps->add(block_of(o, Vec3::Zero(), corner));
   return mps;
 }
@@ -72,4 +72,4 @@ inline void flow_until(Method& method, double time) {
   while (method.time() < time) method.step();
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::mps

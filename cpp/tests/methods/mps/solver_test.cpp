@@ -11,7 +11,7 @@
 #include "snowshed/methods/mps/kernel_function.hpp"
 #include "snowshed/methods/mps/rheology.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 // Of the regular lattice, by hand and by others.
@@ -46,7 +46,7 @@ TEST(MpsKernel, FillingIsThatOfTheRoomHoweverParticlesLie) {
 }
 
 TEST(MpsRheology, IsContinuousWhereItBecomesDilatant) {
-  MpsSettings s;
+  Settings s;
   s.cohesion = 100;
   const Rheology law = Rheology::from(s);
   const double yield = law.yield_stress(50), rate = s.dilatant_rate;
@@ -60,7 +60,7 @@ TEST(MpsRheology, IsContinuousWhereItBecomesDilatant) {
 
 /// The slope of the pressure over height, between two spacings from the bottom and the top, over
 /// the specific weight.
-double pressure_slope(const Method& method, const MpsOptions& o, double height) {
+double pressure_slope(const Method& method, const Options& o, double height) {
   const ParticleState s = method.state();
   const double margin = 2 * o.settings.spacing;
   double n = 0, z = 0, p = 0, zz = 0, zp = 0;
@@ -77,7 +77,7 @@ double pressure_slope(const Method& method, const MpsOptions& o, double height) 
 }
 
 TEST(MpsSolver, FirstStepOfAColumnIsHydrostatic) {
-  MpsOptions o = tank(2, 0.2, 0.01);
+  Options o = tank(2, 0.2, 0.01);
   o.settings.pressure_tolerance = 1e-6;
   o.settings.viscosity = 1e-6;
   const auto mps = body_of(o, {0.2, 0, 0.2});
@@ -90,7 +90,7 @@ TEST(MpsSolver, FirstStepOfAColumnIsHydrostatic) {
 TEST(MpsSolver, ColumnsOfWaterStayAtRest) {
   for (const int dimension : {2, 3}) {
     const double width = dimension == 2 ? 0.2 : 0.1, spacing = dimension == 2 ? 0.01 : 0.02;
-    MpsOptions o = tank(dimension, width, spacing);
+    Options o = tank(dimension, width, spacing);
     o.settings.viscosity = 1e-3;
     const auto mps = body_of(o, {width, width, 0.2});
     flow_until(*mps, 1);
@@ -109,7 +109,7 @@ double highest(const Method& method) {
 
 // What particles at the surface leave behind below it would make the water rise, and then boil.
 TEST(MpsSolver, AColumnOfWaterDoesNotRise) {
-  MpsOptions o = tank(2, 0.2, 0.01);
+  Options o = tank(2, 0.2, 0.01);
   o.settings.viscosity = 1e-3;
   const auto mps = body_of(o, {0.2, 0, 0.2});
   flow_until(*mps, 10);
@@ -121,8 +121,8 @@ TEST(MpsSolver, AColumnOfWaterDoesNotRise) {
 // Inner walls beside disorder would be taken for a surface, and the pressure would fall by 12 % for
 // a step.
 TEST(MpsSolver, TheFloorOfWallParticlesBearsTheWaterInEveryStep) {
-  MpsOptions o = tank(2, 0.2, 0.01);
-  o.settings.walls = MpsWalls::particles;
+  Options o = tank(2, 0.2, 0.01);
+  o.settings.walls = Walls::particles;
   o.settings.viscosity = 1e-3;
   const auto mps = body_of(o, {0.2, 0, 0.2});
   while (mps->time() < 10) {
@@ -134,8 +134,8 @@ TEST(MpsSolver, TheFloorOfWallParticlesBearsTheWaterInEveryStep) {
 
 // Where pressure and viscosity are coupled only as they flow: errors of the pressure do not grow.
 TEST(MpsSolver, AStiffColumnIsHydrostatic) {
-  for (const MpsWalls walls : {MpsWalls::mirrors, MpsWalls::particles}) {
-    MpsOptions o = tank(2, 0.2, 0.01);
+  for (const Walls walls : {Walls::mirrors, Walls::particles}) {
+    Options o = tank(2, 0.2, 0.01);
     o.settings.walls = walls;
     o.settings.viscosity = 1e4;
     const auto mps = body_of(o, {0.2, 0, 0.2});
@@ -149,8 +149,8 @@ TEST(MpsSolver, AStiffColumnIsHydrostatic) {
 // The same with walls of particles, which conduct pressure: also in the corners.
 TEST(MpsSolver, ColumnsBetweenWallParticlesStayAtRest) {
   for (const int dimension : {2, 3}) {
-    MpsOptions o = tank(dimension, 0.1, dimension == 2 ? 0.01 : 0.02);
-    o.settings.walls = MpsWalls::particles;
+    Options o = tank(dimension, 0.1, dimension == 2 ? 0.01 : 0.02);
+    o.settings.walls = Walls::particles;
     o.settings.viscosity = 1e-3;
     const auto mps = body_of(o, {0.1, 0.1, 0.2});
     mps->step();
@@ -164,8 +164,8 @@ TEST(MpsSolver, ColumnsBetweenWallParticlesStayAtRest) {
 
 // Viscosity that acted before the pressure would hang stiff snow on sticky walls.
 TEST(MpsSolver, StiffSnowPressesOnTheFloor) {
-  MpsOptions o = tank(3, 0.1, 0.02);
-  o.settings.rheology = MpsRheology::bingham;
+  Options o = tank(3, 0.1, 0.02);
+  o.settings.rheology = ShearLaw::bingham;
   o.settings.cohesion = 100;
   const auto mps = body_of(o, {0.1, 0.1, 0.2});
   flow_until(*mps, 0.1);
@@ -176,9 +176,9 @@ TEST(MpsSolver, StiffSnowPressesOnTheFloor) {
 TEST(MpsSolver, AllPreconditionersFindTheSamePressure) {
   std::vector<double> pressures[3];
   for (const int k : {0, 1, 2}) {
-    MpsOptions o = tank(2, 0.2, 0.01);
+    Options o = tank(2, 0.2, 0.01);
     o.settings.pressure_tolerance = 1e-9;
-    o.settings.preconditioner = MpsPreconditioner(k);
+    o.settings.preconditioner = Preconditioner(k);
     const auto mps = body_of(o, {0.1, 0, 0.2});
     mps->step();
     pressures[k] = mps->state().pressures;
@@ -191,7 +191,7 @@ TEST(MpsSolver, AllPreconditionersFindTheSamePressure) {
 }
 
 TEST(MpsSolver, NothingFallsThroughWalls) {
-  MpsOptions o = tank(2, 0.4, 0.01);
+  Options o = tank(2, 0.4, 0.01);
   o.settings.viscosity = 1e-3;
   const auto mps = body_of(o, {0.1, 0, 0.2});
   while (mps->time() < 0.4) mps->step();
@@ -203,7 +203,7 @@ TEST(MpsSolver, NothingFallsThroughWalls) {
 }
 
 TEST(MpsSolver, AnUnsolvedEquationLeavesTheStateAsItWas) {
-  MpsOptions o = tank(2, 0.2, 0.01);
+  Options o = tank(2, 0.2, 0.01);
   o.settings.max_iterations = 1;
   o.settings.pressure_tolerance = 1e-9;
   const auto mps = body_of(o, {0.2, 0, 0.2});
@@ -215,12 +215,12 @@ TEST(MpsSolver, AnUnsolvedEquationLeavesTheStateAsItWas) {
 using MpsCheckpoint = TemporaryFolder;
 
 TEST_F(MpsCheckpoint, SameBitsOnAnyThreadsAndAfterResuming) {
-  const auto run = [this](int threads, bool resume, MpsWalls walls, MpsCoupling coupling) {
-    MpsOptions o = tank(2, 1.0, 0.02);
+  const auto run = [this](int threads, bool resume, Walls walls, Coupling coupling) {
+    Options o = tank(2, 1.0, 0.02);
     o.settings.walls = walls;
     o.settings.coupling = coupling;
     o.settings.threads = threads;
-    o.settings.rheology = MpsRheology::bingham_dilatant;
+    o.settings.rheology = ShearLaw::bingham_dilatant;
     o.settings.yield_iterations = 2;  // enough for the same bits
     auto mps = body_of(o, {1.0, 0, 1.0});
     for (int k = 0; k < 6; ++k) {
@@ -228,27 +228,27 @@ TEST_F(MpsCheckpoint, SameBitsOnAnyThreadsAndAfterResuming) {
         BinaryWriter out;
         mps->save(out);
         out.save(path("state"));
-        mps = make_mps(o);
+        mps = make_solver(o);
         mps->load(BinaryReader::load(path("state")));
       }
       mps->step();
     }
     return mps->state().positions;
   };
-  const auto expect_the_same = [&](MpsWalls walls, MpsCoupling coupling) {
+  const auto expect_the_same = [&](Walls walls, Coupling coupling) {
     const std::vector<Vec3> once = run(1, false, walls, coupling);
     EXPECT_EQ(once, run(3, false, walls, coupling));
     EXPECT_EQ(once, run(1, true, walls, coupling));
   };
-  expect_the_same(MpsWalls::mirrors, MpsCoupling::stiff);
-  expect_the_same(MpsWalls::mirrors, MpsCoupling::always);
-  expect_the_same(MpsWalls::particles, MpsCoupling::stiff);
+  expect_the_same(Walls::mirrors, Coupling::stiff);
+  expect_the_same(Walls::mirrors, Coupling::always);
+  expect_the_same(Walls::particles, Coupling::stiff);
 }
 
 /// A slab on an endless incline, with Saito's snow.
-MpsOptions incline(double degrees, double cohesion, double spacing) {
+Options incline(double degrees, double cohesion, double spacing) {
   const double slope = degrees * 3.14159265358979 / 180;
-  MpsOptions o = channel(15 * spacing, 0.5, 10, 0);
+  Options o = channel(15 * spacing, 0.5, 10, 0);
   o.obstacles.pop_back();
   o.settings.spacing = spacing;
   o.settings.density = 200;
@@ -260,7 +260,7 @@ MpsOptions incline(double degrees, double cohesion, double spacing) {
 }
 
 /// g (sin a - cos a tan phi), Coulomb's friction of the weight.
-double frictional_acceleration(const MpsOptions& o) {
+double frictional_acceleration(const Options& o) {
   return o.gravity.x() + o.gravity.z() * std::tan(24 * 3.14159265358979 / 180);
 }
 
@@ -271,9 +271,9 @@ double mean_speed(const Method& method) {
 }
 
 TEST(MpsSolver, SlabOnAnInclineAcceleratesByCoulombsFriction) {
-  for (const MpsWalls walls : {MpsWalls::mirrors, MpsWalls::particles})
+  for (const Walls walls : {Walls::mirrors, Walls::particles})
     for (const double degrees : {35.0, 45.0}) {
-      MpsOptions o = incline(degrees, 0, 0.01);
+      Options o = incline(degrees, 0, 0.01);
       o.settings.walls = walls;
       const auto mps = body_of(o, {o.period, 0, 0.1});
       flow_until(*mps, 0.3);
@@ -283,12 +283,12 @@ TEST(MpsSolver, SlabOnAnInclineAcceleratesByCoulombsFriction) {
 }
 
 // It stops if it is thinner than c/(rho g (sin a - cos a tan phi)), and else accelerates.
-class MpsSlab : public testing::TestWithParam<MpsWalls> {};
+class MpsSlab : public testing::TestWithParam<Walls> {};
 TEST_P(MpsSlab, WithCohesionStopsOrSlides) {
   for (const double thickness : {0.2, 0.3}) {
-    MpsOptions o = incline(35, 100, 0.02);
+    Options o = incline(35, 100, 0.02);
     o.settings.walls = GetParam();
-    const auto mps = make_mps(o);
+    const auto mps = make_solver(o);
     ParticleBatch slab = block_of(o, Vec3::Zero(), {o.period, 0, thickness});
     const double acceleration = frictional_acceleration(o) - 100 / (200 * thickness);
     if (acceleration < 0) slab.velocity = {0.1, 0, 0};
@@ -301,12 +301,12 @@ TEST_P(MpsSlab, WithCohesionStopsOrSlides) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Walls, MpsSlab, testing::Values(MpsWalls::mirrors, MpsWalls::particles));
+INSTANTIATE_TEST_SUITE_P(Walls, MpsSlab, testing::Values(Walls::mirrors, Walls::particles));
 
 // Nothing presses: the right-hand side of the pressure equation is rounding errors.
 TEST(MpsSolver, FlowsBetweenWallParticlesWithoutASurface) {
-  MpsOptions o = channel(0.2, 0.1, 10, 100);
-  o.settings.walls = MpsWalls::particles;
+  Options o = channel(0.2, 0.1, 10, 100);
+  o.settings.walls = Walls::particles;
   o.settings.cohesion = 5;
   const auto mps = body_of(o, {0.2, 0, 0.2});
   EXPECT_NO_THROW(flow_until(*mps, 0.1));
@@ -319,7 +319,7 @@ struct FlowErrors {
 };
 FlowErrors bingham_poiseuille(int across, double length) {
   const double half_gap = 0.1, force = 100, yield = 5;
-  MpsOptions o = channel(length, half_gap, across, force);
+  Options o = channel(length, half_gap, across, force);
   o.settings.cohesion = yield;
   o.settings.density = 100;
   o.gravity = {force / o.settings.density, 0, 0};
@@ -351,8 +351,8 @@ TEST(MpsSolver, BinghamPoiseuilleFlowConverges) {
 
 // A thin Bingham fluid comes to rest with h(x) = sqrt(2 tau0 (xf - x)/(rho g)), Liu and Mei (1989).
 TEST(MpsSolver, BinghamSlumpComesToRest) {
-  MpsOptions o = tank(2, 10, 0.02);
-  o.settings.rheology = MpsRheology::bingham;
+  Options o = tank(2, 10, 0.02);
+  o.settings.rheology = ShearLaw::bingham;
   o.settings.cohesion = 100;
   o.settings.friction_angle = 0;
   o.settings.viscosity = 5;
@@ -376,7 +376,7 @@ TEST(MpsSolver, BinghamSlumpComesToRest) {
 // energy.
 TEST(MpsSolver, DamBreakKeepsItsEnergy) {
   const double width = 0.05715;
-  MpsOptions o = tank(2, 6 * width, width / 20);  // half as wide particles lose half as much
+  Options o = tank(2, 6 * width, width / 20);  // half as wide particles lose half as much
   o.settings.viscosity = 1e-3;
   const auto mps = body_of(o, {width, 0, 2 * width});
   const auto energy = [&] {
@@ -392,4 +392,4 @@ TEST(MpsSolver, DamBreakKeepsItsEnergy) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -7,7 +7,7 @@
 
 #include "mps_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 /// The mean of the number density over that of a lattice, less one, of what is not at the surface:
@@ -26,8 +26,8 @@ double mean_excess(const Method& method, double surface_ratio) {
 
 // Viscosity acts after the pressure: alone it would leave a velocity that compresses the fluid.
 TEST(MpsVolume, AStiffSlumpKeepsItsVolume) {
-  for (const MpsWalls walls : {MpsWalls::mirrors, MpsWalls::particles}) {
-    MpsOptions o = tank(2, 10, 0.02);
+  for (const Walls walls : {Walls::mirrors, Walls::particles}) {
+    Options o = tank(2, 10, 0.02);
     o.settings.walls = walls;
     o.settings.viscosity = 1e4;
     const auto mps = body_of(o, {0.3, 0, 0.2});
@@ -75,10 +75,10 @@ double mean_room(const Method& method, double spacing) {
 // Particles that have left the lattice have more neighbours near than those of a lattice in as much
 // room: with their number density for volume, the heap took up 1.8 % more while it flowed.
 TEST(MpsVolume, ABinghamHeapKeepsItsVolume) {
-  for (const MpsWalls walls : {MpsWalls::mirrors, MpsWalls::particles}) {
-    MpsOptions o = tank(2, 10, 0.01);
+  for (const Walls walls : {Walls::mirrors, Walls::particles}) {
+    Options o = tank(2, 10, 0.01);
     o.settings.walls = walls;
-    o.settings.rheology = MpsRheology::bingham;
+    o.settings.rheology = ShearLaw::bingham;
     o.settings.cohesion = 100;
     o.settings.friction_angle = 0;
     o.settings.viscosity = 5;
@@ -93,4 +93,4 @@ TEST(MpsVolume, ABinghamHeapKeepsItsVolume) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -9,19 +9,19 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed {
+namespace snowshed::mps {
 namespace {
 
 template <int D>
-MpsParticles<D> at_rest(const std::vector<Vec3>& positions) {
-  MpsParticles<D> p;
+Particles<D> at_rest(const std::vector<Vec3>& positions) {
+  Particles<D> p;
   p.resize(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     p.position[i] = section<D>(positions[i]);
     p.velocity[i].setZero();
     p.push[i].setZero();
     p.shear[i].setZero();
-    p.kind[i] = MpsKind::moving;
+    p.kind[i] = Kind::moving;
     p.event[i] = 0;
   }
   return p;
@@ -29,15 +29,15 @@ MpsParticles<D> at_rest(const std::vector<Vec3>& positions) {
 
 /// The smallest and the largest number density over that of a lattice, of snow and inner walls.
 template <int D>
-std::pair<double, double> densities(const MpsOptions& o, MpsParticles<D> p) {
-  const MpsModel<D> model(o);
-  MpsWork<D> work;
+std::pair<double, double> densities(const Options& o, Particles<D> p) {
+  const Model<D> model(o);
+  Work<D> work;
   work.walls = WallParticles<D>(model.options.obstacles, o.settings.spacing, model.reach());
   work.walls.append_near(0, o.period, model.particle_mass(), p);
   find_neighbours(model, p, 0.0, work);
   double low = HUGE_VAL, high = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.kind[i] == MpsKind::dummy_wall) continue;
+    if (p.kind[i] == Kind::dummy_wall) continue;
     low = std::min(low, work.near.density[i] / model.kernel.number_density);
     high = std::max(high, work.near.density[i] / model.kernel.number_density);
   }
@@ -47,8 +47,8 @@ std::pair<double, double> densities(const MpsOptions& o, MpsParticles<D> p) {
 // A lattice of snow in a corner goes on in the walls: nothing is missing and nothing twice.
 TEST(MpsWallParticles, ContinueTheLatticeOfTheSnow) {
   for (const int dimension : {2, 3}) {
-    MpsOptions o = tank(dimension, 0.08, 0.01);
-    o.settings.walls = MpsWalls::particles;
+    Options o = tank(dimension, 0.08, 0.01);
+    o.settings.walls = Walls::particles;
     o.obstacles.push_back(wall({0, 0, 0.08}, -Vec3::UnitZ()));  // full
     const ParticleBatch batch = block_of(o, Vec3::Zero(), {0.08, 0.08, 0.08});
     const auto [low, high] = dimension == 2 ? densities<2>(o, at_rest<2>(batch.positions))
@@ -60,20 +60,20 @@ TEST(MpsWallParticles, ContinueTheLatticeOfTheSnow) {
 
 // The lattice of a plane follows it.
 TEST(MpsWallParticles, CoverAnInclineEvenly) {
-  MpsOptions o = tank(2, 1, 0.01);
-  o.settings.walls = MpsWalls::particles;
+  Options o = tank(2, 1, 0.01);
+  o.settings.walls = Walls::particles;
   const Vec3 normal = Vec3(0.6, 0, 0.8), along(0.8, 0, -0.6);
   o.obstacles = {wall(Vec3::Zero(), normal)};
   std::vector<Vec3> row;
   for (int i = -10; i < 10; ++i) row.push_back((i + 0.5) * 0.01 * along + 0.005 * normal);
-  MpsParticles<2> p = at_rest<2>(row);
+  Particles<2> p = at_rest<2>(row);
   WallParticles<2> walls(o.obstacles, 0.01, 0.021);
   walls.append_near(0, 0, 1, p);
   int touched = 0;
   for (std::size_t i = row.size(); i < p.size(); ++i) {
     const double depth = -embed(p.position[i]).dot(normal) / 0.01;
     EXPECT_NEAR(depth - std::floor(depth), 0.5, 1e-9);
-    EXPECT_EQ(p.kind[i] == MpsKind::inner_wall, depth < 1);
+    EXPECT_EQ(p.kind[i] == Kind::inner_wall, depth < 1);
     touched += std::abs(embed(p.position[i]).dot(along)) < 0.1 && depth < 1;
   }
   EXPECT_EQ(touched, 20);
@@ -82,14 +82,14 @@ TEST(MpsWallParticles, CoverAnInclineEvenly) {
 // On curved walls, where points of a lattice are moved onto layers and would crowd there.
 TEST(MpsWallParticles, OfABallStandApartInTheMiddleOfLayers) {
   constexpr double spacing = 0.01, radius = 0.06;
-  MpsOptions o = tank(3, 1, spacing);
+  Options o = tank(3, 1, spacing);
   o.obstacles = {
       {"ball", make_sphere(Vec3::Zero(), radius), {Condition::sticky, 0.0}, std::nullopt}};
   ParticleBatch around = block_of(o, Vec3::Constant(-0.08), Vec3::Constant(0.08));
   std::vector<Vec3> snow;
   for (const Vec3& x : around.positions)
     if (x.norm() > radius + 0.5 * spacing) snow.push_back(x);
-  MpsParticles<3> p = at_rest<3>(snow);
+  Particles<3> p = at_rest<3>(snow);
   WallParticles<3> walls(o.obstacles, spacing, 2.1 * spacing);
   walls.append_near(0, 0, 1, p);
   double least = HUGE_VAL;
@@ -100,25 +100,25 @@ TEST(MpsWallParticles, OfABallStandApartInTheMiddleOfLayers) {
       least = std::min(least, (p.position[i] - p.position[j]).norm());
   }
   const double area = 4 * 3.14159265358979 * (radius - 0.5 * spacing) * (radius - 0.5 * spacing);
-  const auto inner = std::count(p.kind.begin(), p.kind.end(), MpsKind::inner_wall);
+  const auto inner = std::count(p.kind.begin(), p.kind.end(), Kind::inner_wall);
   EXPECT_GT(least, 0.7 * spacing);
   EXPECT_NEAR(double(inner) * spacing * spacing, area, 0.1 * area);
 }
 
 // What is thinner than a particle has a single layer, through which no pressure goes.
 TEST(MpsWallParticles, OfAThinBoardStandInItsMiddle) {
-  MpsOptions o = tank(2, 1, 0.01);
+  Options o = tank(2, 1, 0.01);
   o.obstacles = {{"board",
                   make_box(Vec3(0.05, 0, 0.05), Vec3(0.002, 2, 0.1)),
                   {Condition::sticky, 0.0},
                   std::nullopt}};
-  MpsParticles<2> p = at_rest<2>({{0.03, 0, 0.05}, {0.07, 0, 0.05}});
+  Particles<2> p = at_rest<2>({{0.03, 0, 0.05}, {0.07, 0, 0.05}});
   WallParticles<2> walls(o.obstacles, 0.01, 0.021);
   walls.append_near(0, 0, 1, p);
   ASSERT_GT(p.size(), 6u);
   for (std::size_t i = 2; i < p.size(); ++i) {
     EXPECT_NEAR(p.position[i][0], 0.05, 1e-9);
-    EXPECT_EQ(p.kind[i], MpsKind::dummy_wall);
+    EXPECT_EQ(p.kind[i], Kind::dummy_wall);
   }
   remove_walls(p);
   EXPECT_EQ(p.size(), 2u);
@@ -129,18 +129,18 @@ TEST(MpsWallParticles, OfAThinWallOfACombinedSolidStandWhereItIs) {
   const double spacing = 0.01, wall = 0.004;
   const Shape bin = subtract(make_box(Vec3(0, 0, 0.2), Vec3(0.6, 10, 0.4)),
                              {make_box(Vec3(0, 0, 0.2 + wall), Vec3(0.6 - 2 * wall, 11, 0.4))});
-  MpsOptions o = tank(2, 1, spacing);
-  o.settings.walls = MpsWalls::particles;
+  Options o = tank(2, 1, spacing);
+  o.settings.walls = Walls::particles;
   o.obstacles = {{"bin", bin, {Condition::sticky, 0.0}, std::nullopt}};
-  const MpsModel<2> model(o);
+  const Model<2> model(o);
   EXPECT_NEAR(model.options.obstacles.front().shape->distance({0, 0, wall / 2 + spacing}), 0,
               2e-3 * spacing);
-  MpsParticles<2> p = at_rest<2>({{0, 0, 0.03}, {0.27, 0, 0.2}});
+  Particles<2> p = at_rest<2>({{0, 0, 0.03}, {0.27, 0, 0.2}});
   WallParticles<2> walls(model.options.obstacles, spacing, 2.1 * spacing);
   walls.append_near(0, 0, 1, p);
   int below = 0, beside = 0;
   for (std::size_t i = 2; i < p.size(); ++i) {
-    EXPECT_EQ(p.kind[i], MpsKind::dummy_wall);
+    EXPECT_EQ(p.kind[i], Kind::dummy_wall);
     below += std::abs(p.position[i][1] - wall / 2 + spacing / 2) < 0.01 * spacing;
     beside += std::abs(p.position[i][0] - 0.3 + wall / 2 + spacing / 2) < 0.01 * spacing;
   }
@@ -149,4 +149,4 @@ TEST(MpsWallParticles, OfAThinWallOfACombinedSolidStandWhereItIs) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mps

@@ -4,12 +4,12 @@
 
 #include "methods/slide/slide_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 /// Points of a triangular lattice of side 1, `columns` in each of `rows`.
-SlideParticles lattice(int columns, int rows, double fall = 0) {
-  SlideParticles p;
+Particles lattice(int columns, int rows, double fall = 0) {
+  Particles p;
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const std::size_t n = p.size();
@@ -21,7 +21,7 @@ SlideParticles lattice(int columns, int rows, double fall = 0) {
   return p;
 }
 
-TEST(SlideBonds, a_lattice_is_bonded_along_its_edges) {
+TEST(SlideBonds, ALatticeIsBondedAlongItsEdges) {
   const int columns = 7, rows = 5;
   const Bonds bonds = bonds_between(lattice(columns, rows), 0, 1.0, nullptr);
   // Along the rows, and two upward from each point but at the ends of the rows.
@@ -29,25 +29,25 @@ TEST(SlideBonds, a_lattice_is_bonded_along_its_edges) {
   for (const double length : bonds.rest_length) EXPECT_NEAR(length, 1, 1e-12);
 }
 
-TEST(SlideBonds, rest_length_is_the_distance_in_space) {
+TEST(SlideBonds, RestLengthIsTheDistanceInSpace) {
   const Bonds bonds = bonds_between(lattice(3, 2, 1.0), 0, 1.0, nullptr);
   double longest = 0;
   for (const double length : bonds.rest_length) longest = std::max(longest, length);
   EXPECT_NEAR(longest, std::sqrt(2.0), 1e-12);
 }
 
-TEST(SlideBonds, gaps_of_the_area_are_not_bridged) {
-  const SlideParticles p = lattice(7, 5);
-  SlideArea slotted = rectangle(-1, -1, 8, 8);
+TEST(SlideBonds, GapsOfTheAreaAreNotBridged) {
+  const Particles p = lattice(7, 5);
+  Area slotted = rectangle(-1, -1, 8, 8);
   slotted.polygon.holes = {{{2.7, -0.5}, {2.8, -0.5}, {2.8, 7}, {2.7, 7}}};  // a narrow slot
-  const std::vector<SlideArea> areas{slotted};
+  const std::vector<Area> areas{slotted};
   const Bonds bonds = bonds_between(p, 0, 1.0, &areas);
   EXPECT_LT(bonds.size(), bonds_between(p, 0, 1.0, nullptr).size());
   for (std::size_t b = 0; b < bonds.size(); ++b)
     EXPECT_EQ(p.x[bonds.first[b]] < 2.75, p.x[bonds.second[b]] < 2.75);
 }
 
-TEST(SlideBonds, of_particles_that_are_gone_are_gone) {
+TEST(SlideBonds, OfParticlesThatAreGoneAreGone) {
   Bonds bonds;
   bonds.add(0, 1, 1.0);
   bonds.add(1, 2, 2.0);
@@ -61,15 +61,15 @@ TEST(SlideBonds, of_particles_that_are_gone_are_gone) {
 /// Four particles in two triangles on level ground, without friction or pressure, pulled apart.
 struct Strip {
   explicit Strip(double speed, double modulus = 50000) {
-    SlideOptions o = slide_on(terrain_of(40, 40, 2, [](double, double) { return 0.0; }),
-                              rectangle(10, 10, 60, 60));
+    Options o = slide_on(terrain_of(40, 40, 2, [](double, double) { return 0.0; }),
+                         rectangle(10, 10, 60, 60));
     o.gravity = 0;
     o.settings.friction = 0;
-    o.settings.friction_law = SlideFriction::coulomb;
+    o.settings.friction_law = FrictionLaw::coulomb;
     o.settings.artificial_viscosity = 0;
     o.settings.time_step = 1e-4;
     o.settings.bond_modulus = modulus;
-    slide = make_slide(o);
+    slide = make_solver(o);
     const double h = std::sqrt(3.0) / 2;
     ParticleBatch all;
     all.mass = 300;
@@ -77,10 +77,10 @@ struct Strip {
     slide->add(all);
     slide->add_velocity({{-speed, 0, 0}, {speed, 0, 0}, {-speed, 0, 0}, {speed, 0, 0}});
   }
-  std::unique_ptr<SlideMethod> slide;
+  std::unique_ptr<Solver> slide;
 };
 
-TEST(SlideBonds, a_strip_breaks_at_the_failure_strain) {
+TEST(SlideBonds, AStripBreaksAtTheFailureStrain) {
   Strip strip(1.0, 1.0);  // bonds too soft to slow it down
   ASSERT_EQ(strip.slide->bonds().size(), 5u);
   // The bonds along the pull lengthen by 2 v t: they are strained by 0.2 after 0.1 s.
@@ -88,7 +88,7 @@ TEST(SlideBonds, a_strip_breaks_at_the_failure_strain) {
   EXPECT_NEAR(strip.slide->time(), 0.1, 0.002);
 }
 
-TEST(SlideBonds, a_strained_bond_pulls_with_its_modulus_times_contact_area_times_strain) {
+TEST(SlideBonds, AStrainedBondPullsWithItsModulusTimesContactAreaTimesStrain) {
   Strip strip(0.1);
   step(*strip.slide, 1);
   const ParticleState before = strip.slide->state();
@@ -109,13 +109,13 @@ TEST(SlideBonds, a_strained_bond_pulls_with_its_modulus_times_contact_area_times
 /// A slab half on rough ground and half on a steeper slope, that the roll between them pulls apart.
 struct Roll {
   explicit Roll(double modulus, double max_strain) {
-    SlideOptions o = slide_on(terrain_of(80, 30, 2,
-                                         [](double x, double) {
-                                           const double bend = std::max(x - 50, 0.0);
-                                           return 200 - 0.5 * x - 0.6 * bend;
-                                         }),
-                              rectangle(30.3, 18.3, 70.3, 42.3));
-    o.settings.friction_law = SlideFriction::coulomb;
+    Options o = slide_on(terrain_of(80, 30, 2,
+                                    [](double x, double) {
+                                      const double bend = std::max(x - 50, 0.0);
+                                      return 200 - 0.5 * x - 0.6 * bend;
+                                    }),
+                         rectangle(30.3, 18.3, 70.3, 42.3));
+    o.settings.friction_law = FrictionLaw::coulomb;
     o.settings.friction = 0.45;
     o.settings.artificial_viscosity = 0;
     o.settings.bond_modulus = modulus;
@@ -133,10 +133,10 @@ struct Roll {
     return std::sqrt(square) / mean;
   }
   double broken() const { return 1 - double(slide->bonds().size()) / double(slide->bonds_made()); }
-  std::unique_ptr<SlideMethod> slide;
+  std::unique_ptr<Solver> slide;
 };
 
-TEST(SlideBonds, a_slab_with_strong_bonds_moves_as_one_and_with_weak_ones_tears) {
+TEST(SlideBonds, ASlabWithStrongBondsMovesAsOneAndWithWeakOnesTears) {
   const Roll strong(5e6, 0.5), weak(5e4, 0.05);
   EXPECT_LT(strong.spread(), 0.05);
   EXPECT_GT(weak.spread(), 0.3);
@@ -145,4 +145,4 @@ TEST(SlideBonds, a_slab_with_strong_bonds_moves_as_one_and_with_weak_ones_tears)
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::slide

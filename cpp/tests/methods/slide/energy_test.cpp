@@ -9,7 +9,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 /// A slope of 36 degrees that runs out onto level ground.
@@ -20,8 +20,8 @@ HeightField run_out() {
   });
 }
 
-SlideOptions audited(HeightField terrain, SlideArea release) {
-  SlideOptions o = slide_on(std::move(terrain), std::move(release));
+Options audited(HeightField terrain, Area release) {
+  Options o = slide_on(std::move(terrain), std::move(release));
   o.energy = true;
   return o;
 }
@@ -38,8 +38,8 @@ double gap(const std::map<std::string, double>& e, double potential_before) {
   return std::abs(e.at("residual_j")) / (potential_before - e.at("potential_j"));
 }
 
-TEST(SlideEnergy, of_a_slide_with_all_that_takes_energy_closes) {
-  SlideOptions o = audited(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
+TEST(SlideEnergy, OfASlideWithAllThatTakesEnergyCloses) {
+  Options o = audited(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
   o.areas.entrainment = {rectangle(60, 20, 90, 80, 0.2)};
   o.areas.resistance = {rectangle(90, 20, 120, 80)};
   o.settings.resistance = 0.05;
@@ -55,9 +55,9 @@ TEST(SlideEnergy, of_a_slide_with_all_that_takes_energy_closes) {
     EXPECT_GT(e.at(part), 0) << part;
 }
 
-TEST(SlideEnergy, of_friction_is_what_a_block_loses) {
-  SlideOptions o = audited(inclined(35, 120, 40), rectangle(20.3, 18.3, 60.3, 58.3));
-  o.settings.friction_law = SlideFriction::coulomb;
+TEST(SlideEnergy, OfFrictionIsWhatABlockLoses) {
+  Options o = audited(inclined(35, 120, 40), rectangle(20.3, 18.3, 60.3, 58.3));
+  o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.friction = 0.4;
   const auto slide = released(o);
   const double mass = total_mass(*slide);
@@ -68,11 +68,11 @@ TEST(SlideEnergy, of_friction_is_what_a_block_loses) {
   EXPECT_NEAR(energies(*slide).at("coulomb_j") / work, 1, 0.02);
 }
 
-TEST(SlideEnergy, of_snow_that_spreads_on_level_ground_comes_from_its_thickness) {
-  SlideOptions o = audited(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
-                           rectangle(40.3, 42.3, 70.3, 72.3));
+TEST(SlideEnergy, OfSnowThatSpreadsOnLevelGroundComesFromItsThickness) {
+  Options o = audited(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
+                      rectangle(40.3, 42.3, 70.3, 72.3));
   o.settings.friction = 0;
-  o.settings.friction_law = SlideFriction::coulomb;
+  o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.bonds = false;
   o.settings.artificial_viscosity = 0;
   o.settings.layer_thickness = 0.05;
@@ -84,7 +84,7 @@ TEST(SlideEnergy, of_snow_that_spreads_on_level_ground_comes_from_its_thickness)
   EXPECT_LT(gap(e, before), 0.01);
 }
 
-TEST(SlideEnergy, of_snow_that_leaves_the_terrain_is_counted) {
+TEST(SlideEnergy, OfSnowThatLeavesTheTerrainIsCounted) {
   const auto slide = released(audited(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3)));
   const double before = energies(*slide).at("potential_j");
   while (slide->size() > 0 && slide->time() < 60) slide->step();
@@ -95,22 +95,22 @@ TEST(SlideEnergy, of_snow_that_leaves_the_terrain_is_counted) {
 
 class SlideEnergyCheckpoint : public TemporaryFolder {};
 
-TEST_F(SlideEnergyCheckpoint, goes_on_where_it_was) {
-  const SlideOptions o = audited(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
+TEST_F(SlideEnergyCheckpoint, GoesOnWhereItWas) {
+  const Options o = audited(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
   const auto slide = released(o);
   step(*slide, 100);
   BinaryWriter out;
   slide->save(out);
   out.save(path("c.bin"), [](const std::filesystem::path&) {});
-  const auto resumed = make_slide(o);
+  const auto resumed = make_solver(o);
   resumed->load(BinaryReader::load(path("c.bin")));
   step(*slide, 50);
   step(*resumed, 50);
   EXPECT_EQ(energies(*slide), energies(*resumed));
 }
 
-TEST(SlideEnergy, stiff_bonds_shorten_the_step_and_do_not_shake_the_slab) {
-  SlideOptions o = audited(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
+TEST(SlideEnergy, StiffBondsShortenTheStepAndDoNotShakeTheSlab) {
+  Options o = audited(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
   o.settings.bond_modulus = 5e7;
   const auto slide = released(o);
   const double before = energies(*slide).at("potential_j");
@@ -120,15 +120,15 @@ TEST(SlideEnergy, stiff_bonds_shorten_the_step_and_do_not_shake_the_slab) {
   EXPECT_LT(gap(energies(*slide), before), 0.01);
 }
 
-TEST(SlideEnergy, bonds_far_too_stiff_for_the_step_are_refused) {
-  SlideOptions o = slide_on(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
+TEST(SlideEnergy, BondsFarTooStiffForTheStepAreRefused) {
+  Options o = slide_on(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
   o.settings.bond_modulus = 1e12;
-  const auto slide = make_slide(o);
+  const auto slide = make_solver(o);
   EXPECT_THROW(slide->add(slide->seed()), InputError);
-  o.settings.mode = SlideMode::compatible;
-  const auto compatible = make_slide(o);
+  o.settings.mode = Mode::compatible;
+  const auto compatible = make_solver(o);
   EXPECT_NO_THROW(compatible->add(compatible->seed()));
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::slide

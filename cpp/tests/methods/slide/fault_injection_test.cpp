@@ -5,22 +5,22 @@
 #include "methods/fault_story.hpp"
 #include "methods/slide/slide_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
-std::unique_ptr<SlideMethod> eroding_slide() {
-  SlideOptions o = slide_on(inclined(38, 45, 25), rectangle(56.3, 18.3, 84.3, 32.3));
+std::unique_ptr<Solver> eroding_slide() {
+  Options o = slide_on(inclined(38, 45, 25), rectangle(56.3, 18.3, 84.3, 32.3));
   o.areas.entrainment = {rectangle(60, 6, 86, 42, 0.3)};
   o.areas.resistance = {rectangle(70, 10, 80, 20)};
-  return make_slide(o);
+  return make_solver(o);
 }
 
-struct SlideStory : FaultStory<SlideMethod> {
+struct SlideStory : FaultStory<Solver> {
   explicit SlideStory(std::filesystem::path file) : FaultStory(eroding_slide(), std::move(file)) {
-    call([](SlideMethod& m) { m.add(m.seed()); });
+    call([](Solver& m) { m.add(m.seed()); });
     take_steps(60);
     save();
-    call([](SlideMethod& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(12, 0, -9))); });
+    call([](Solver& m) { m.add_velocity(std::vector<Vec3>(m.size(), Vec3(12, 0, -9))); });
     take_steps(150);  // until snow has left the terrain
     load();
     take_steps(60);
@@ -28,7 +28,7 @@ struct SlideStory : FaultStory<SlideMethod> {
 };
 
 /// All that can be seen of a slide. Where the particles are stored may change.
-void expect_same_slide(const SlideMethod& now, const SlideMethod& wanted) {
+void expect_same_slide(const Solver& now, const Solver& wanted) {
   const ParticleState a = now.state(), b = wanted.state();
   ASSERT_EQ(a.ids, b.ids);
   EXPECT_TRUE(a.positions == b.positions);
@@ -44,12 +44,12 @@ void expect_same_slide(const SlideMethod& now, const SlideMethod& wanted) {
 
 class SlideFaults : public TemporaryFolder {};
 
-TEST_F(SlideFaults, leave_no_trace) {
+TEST_F(SlideFaults, LeaveNoTrace) {
   SlideStory whole(path("whole")), faulty(path("faulty"));
   double most_left = 0;
-  const int faults = fail_every_allocation(
-      whole, faulty, expect_same_slide,
-      [&](const SlideMethod& m) { most_left = std::max(most_left, m.mass_balance().left); });
+  const int faults = fail_every_allocation(whole, faulty, expect_same_slide, [&](const Solver& m) {
+    most_left = std::max(most_left, m.mass_balance().left);
+  });
   if (HasFailure()) return;
   EXPECT_GT(whole.method->mass_balance().entrained, 0);
   EXPECT_GT(most_left, 0);
@@ -58,4 +58,4 @@ TEST_F(SlideFaults, leave_no_trace) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::slide

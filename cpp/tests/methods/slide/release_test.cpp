@@ -7,7 +7,7 @@
 #include "methods/slide/slide_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 double mass_of(const std::vector<ParticleBatch>& batches) {
@@ -22,15 +22,14 @@ std::size_t count(const std::vector<ParticleBatch>& batches) {
   return n;
 }
 
-std::vector<ParticleBatch> seeded(SlideSettings settings, const SlideArea& area,
-                                  double degrees = 35) {
-  const bool compatible = settings.mode == SlideMode::compatible;
+std::vector<ParticleBatch> seeded(Settings settings, const Area& area, double degrees = 35) {
+  const bool compatible = settings.mode == Mode::compatible;
   const Terrain terrain(inclined(degrees),
                         compatible ? BorderSlope::level_in_the_south_west : BorderSlope::one_sided);
   return seed_release(settings, terrain, {area});
 }
 
-TEST(SlideRelease, mass_is_that_of_the_thickness_over_the_sloping_area) {
+TEST(SlideRelease, MassIsThatOfTheThicknessOverTheSlopingArea) {
   const double sloping = 30.0 * 24.0 / std::cos(radians(35));
   for (const double thickness : {0.01, 0.2, 0.5, 3.0}) {
     const auto batches = seeded({}, rectangle(20.3, 18.3, 50.3, 42.3, thickness));
@@ -38,16 +37,16 @@ TEST(SlideRelease, mass_is_that_of_the_thickness_over_the_sloping_area) {
   }
 }
 
-TEST(SlideRelease, compatible_mass_is_that_of_whole_particles_and_thin_layers_are_refused) {
-  SlideSettings s;
-  s.mode = SlideMode::compatible;
+TEST(SlideRelease, CompatibleMassIsThatOfWholeParticlesAndThinLayersAreRefused) {
+  Settings s;
+  s.mode = Mode::compatible;
   const double exact = 30.0 * 24.0 / std::cos(radians(35)) * 0.5 * 300;
   EXPECT_NEAR(mass_of(seeded(s, rectangle(20.3, 18.3, 50.3, 42.3))) / exact, 1, 0.1);
   EXPECT_THROW(seeded(s, rectangle(20.3, 18.3, 50.3, 42.3, 0.15)), InputError);
 }
 
-TEST(SlideRelease, particles_lie_on_the_ground_within_the_area) {
-  const SlideArea area = rectangle(20.3, 18.3, 50.3, 42.3);
+TEST(SlideRelease, ParticlesLieOnTheGroundWithinTheArea) {
+  const Area area = rectangle(20.3, 18.3, 50.3, 42.3);
   for (const ParticleBatch& batch : seeded({}, area))
     for (const Vec3& x : batch.positions) {
       EXPECT_TRUE(contains(area.polygon, {x.x(), x.y()}));
@@ -55,12 +54,12 @@ TEST(SlideRelease, particles_lie_on_the_ground_within_the_area) {
     }
 }
 
-TEST(SlideRelease, a_request_to_stop_is_heard_and_leaves_the_slide_as_it_was) {
-  for (const SlideMode mode : {SlideMode::improved, SlideMode::compatible}) {
-    SlideOptions options = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3));
+TEST(SlideRelease, ARequestToStopIsHeardAndLeavesTheSlideAsItWas) {
+  for (const Mode mode : {Mode::improved, Mode::compatible}) {
+    Options options = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3));
     options.settings.layer_thickness = 0.01;
     options.settings.mode = mode;
-    const auto slide = make_slide(options);
+    const auto slide = make_solver(options);
     const StopRequest always = [] { return true; };
     EXPECT_THROW(slide->seed(always), Stopped);
     const std::vector<ParticleBatch> snow = slide->seed();
@@ -71,39 +70,39 @@ TEST(SlideRelease, a_request_to_stop_is_heard_and_leaves_the_slide_as_it_was) {
   }
 }
 
-TEST(SlideRelease, more_particles_than_can_be_set_up_are_refused_before_any_is_made) {
-  SlideOptions options = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3));
+TEST(SlideRelease, MoreParticlesThanCanBeSetUpAreRefusedBeforeAnyIsMade) {
+  Options options = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3));
   options.settings.layer_thickness = 1e-12;
-  EXPECT_THROW(make_slide(options), InputError);
+  EXPECT_THROW(make_solver(options), InputError);
   options.settings.layer_thickness = 2e-4;  // some 450 000 particles
-  EXPECT_NO_THROW(make_slide(options));
+  EXPECT_NO_THROW(make_solver(options));
   Ring& outline = options.areas.release[0].polygon.outline;
   outline.clear();
   for (int i = 0; i < 20000; ++i) {
     const double turn = radians(360) * i / 20000;
     outline.push_back({40 + 15 * std::cos(turn), 30 + 15 * std::sin(turn)});
   }
-  EXPECT_THROW(make_slide(options), InputError);
+  EXPECT_THROW(make_solver(options), InputError);
   options.settings.layer_thickness = 0.25;
-  EXPECT_NO_THROW(make_slide(options));
+  EXPECT_NO_THROW(make_solver(options));
 }
 
-TEST(SlideRelease, finer_layers_make_more_particles) {
-  SlideSettings fine;
+TEST(SlideRelease, FinerLayersMakeMoreParticles) {
+  Settings fine;
   fine.layer_thickness = 0.05;
-  const SlideArea area = rectangle(20, 18, 50, 42);
+  const Area area = rectangle(20, 18, 50, 42);
   EXPECT_NEAR(double(count(seeded(fine, area))) / double(count(seeded({}, area))), 6, 0.3);
 }
 
-TEST(SlideRelease, an_area_that_is_smaller_than_a_particle_is_refused) {
+TEST(SlideRelease, AnAreaThatIsSmallerThanAParticleIsRefused) {
   // Its centre has a particle; of a ring's, which lies in the hole, there is none.
-  SlideArea ring = rectangle(20, 20, 20.2, 20.2);
+  Area ring = rectangle(20, 20, 20.2, 20.2);
   ring.polygon.holes = {{{20.01, 20.01}, {20.19, 20.01}, {20.19, 20.19}, {20.01, 20.19}}};
   EXPECT_THROW(seeded({}, ring), InputError);
 }
 
 /// A raster of thickness whose cells of 4 m begin at the origin.
-SlideArea mapped(SlideArea area, std::vector<double> heights, int columns = 4) {
+Area mapped(Area area, std::vector<double> heights, int columns = 4) {
   HeightField map;
   map.columns = columns;
   map.rows = int(heights.size()) / columns;
@@ -114,10 +113,9 @@ SlideArea mapped(SlideArea area, std::vector<double> heights, int columns = 4) {
   return area;
 }
 
-TEST(SlideRelease, a_raster_of_thickness_gives_each_cell_its_snow) {
+TEST(SlideRelease, ARasterOfThicknessGivesEachCellItsSnow) {
   // Two rows of four cells, of which the area covers a half of the western column.
-  const SlideArea area =
-      mapped(rectangle(22, 20, 36, 28), {0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4});
+  const Area area = mapped(rectangle(22, 20, 36, 28), {0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4});
   const double volume = 4 * (2 * 0.2 + 4 * (0.4 + 0.6 + 0.8) + 2 * 1.0 + 4 * (0.8 + 0.6 + 0.4));
   const auto batches = seeded({}, area);
   EXPECT_NEAR(mass_of(batches) / (volume / std::cos(radians(35)) * 300), 1, 1e-12);
@@ -130,23 +128,23 @@ TEST(SlideRelease, a_raster_of_thickness_gives_each_cell_its_snow) {
   EXPECT_NEAR(thick / thin, 2, 1e-9);
 }
 
-TEST(SlideRelease, a_raster_that_does_not_say_the_thickness_everywhere_is_refused) {
-  const SlideArea area = rectangle(22, 20, 36, 28);
+TEST(SlideRelease, ARasterThatDoesNotSayTheThicknessEverywhereIsRefused) {
+  const Area area = rectangle(22, 20, 36, 28);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {nan, 0.0, -0.5, 1e4})
     EXPECT_THROW(seeded({}, mapped(area, {1, 1, bad, 1, 1, 1, 1, 1})), InputError) << bad;
   EXPECT_THROW(seeded({}, mapped(area, {1, 1, 1, 1, 1, 1}, 3)), InputError);
 }
 
-TEST(SlideRelease, areas_may_touch_but_not_overlap) {
+TEST(SlideRelease, AreasMayTouchButNotOverlap) {
   const Terrain terrain(inclined(35));
-  const auto seed = [&](double west, SlideMode mode) {
-    SlideSettings settings;
+  const auto seed = [&](double west, Mode mode) {
+    Settings settings;
     settings.mode = mode;
     return seed_release(settings, terrain,
                         {rectangle(20, 18, 30, 42, 1.0), rectangle(west, 18, 44, 42, 1.0)});
   };
-  for (const SlideMode mode : {SlideMode::improved, SlideMode::compatible}) {
+  for (const Mode mode : {Mode::improved, Mode::compatible}) {
     EXPECT_NO_THROW(seed(30, mode));
     try {
       seed(27, mode);
@@ -159,4 +157,4 @@ TEST(SlideRelease, areas_may_touch_but_not_overlap) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -8,7 +8,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 
 /// A plane that falls toward the east.
 inline HeightField inclined(double degrees, int columns = 60, int rows = 30, double cell = 2) {
@@ -16,21 +16,21 @@ inline HeightField inclined(double degrees, int columns = 60, int rows = 30, dou
   return terrain_of(columns, rows, cell, [=](double x, double) { return 200 - slope * x; });
 }
 
-inline SlideArea rectangle(double west, double south, double east, double north,
-                           double thickness = 0.5) {
+inline Area rectangle(double west, double south, double east, double north,
+                      double thickness = 0.5) {
   return {"area", {{{west, south}, {east, south}, {east, north}, {west, north}}, {}}, thickness};
 }
 
-inline SlideOptions slide_on(HeightField terrain, SlideArea release) {
-  SlideOptions o;
+inline Options slide_on(HeightField terrain, Area release) {
+  Options o;
   o.terrain = std::move(terrain);
   o.areas.release = {std::move(release)};
   o.settings.threads = 1;
   return o;
 }
 
-inline std::unique_ptr<SlideMethod> released(const SlideOptions& options) {
-  auto slide = make_slide(options);
+inline std::unique_ptr<Solver> released(const Options& options) {
+  auto slide = make_solver(options);
   slide->add(slide->seed());
   return slide;
 }
@@ -57,4 +57,4 @@ inline Vec3 mean_slide_velocity(const Method& method) {
   return momentum / mass;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::slide

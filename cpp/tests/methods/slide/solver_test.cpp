@@ -7,19 +7,19 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed {
+namespace snowshed::slide {
 namespace {
 
 constexpr double gravity = 9.81;
 
-SlideOptions slab(double degrees, double friction, SlideFriction law = SlideFriction::coulomb) {
-  SlideOptions o = slide_on(inclined(degrees, 120, 40), rectangle(20.3, 18.3, 60.3, 58.3));
+Options slab(double degrees, double friction, FrictionLaw law = FrictionLaw::coulomb) {
+  Options o = slide_on(inclined(degrees, 120, 40), rectangle(20.3, 18.3, 60.3, 58.3));
   o.settings.friction_law = law;
   o.settings.friction = friction;
   return o;
 }
 
-TEST(Slide, a_block_with_coulomb_friction_accelerates_as_newton_says) {
+TEST(Slide, ABlockWithCoulombFrictionAcceleratesAsNewtonSays) {
   for (const double friction : {0.0, 0.2, 0.5}) {
     const auto slide = released(slab(35, friction));
     step(*slide, 200);
@@ -29,8 +29,8 @@ TEST(Slide, a_block_with_coulomb_friction_accelerates_as_newton_says) {
   }
 }
 
-TEST(Slide, a_block_with_voellmy_friction_follows_its_ordinary_differential_equation) {
-  SlideOptions fine = slab(35, 0.325, SlideFriction::voellmy);
+TEST(Slide, ABlockWithVoellmyFrictionFollowsItsOrdinaryDifferentialEquation) {
+  Options fine = slab(35, 0.325, FrictionLaw::voellmy);
   fine.areas.release = {rectangle(20.3, 18.3, 48.3, 46.3)};
   fine.settings.layer_thickness = 0.02;  // so many particles that the thickness is even
   fine.settings.bonds = false;           // or the thin rim would hold the middle back
@@ -52,13 +52,13 @@ TEST(Slide, a_block_with_voellmy_friction_follows_its_ordinary_differential_equa
   EXPECT_NEAR(speed / count / expected, 1, 0.005);
 }
 
-TEST(Slide, peak_speed_is_that_of_the_snow_and_fades_beyond_its_rim) {
-  SlideOptions o = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3, 1.0));
+TEST(Slide, PeakSpeedIsThatOfTheSnowAndFadesBeyondItsRim) {
+  Options o = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3, 1.0));
   o.settings.bonds = false;
   o.settings.layer_thickness = 0.1;
   o.settings.friction = 0;
   o.settings.artificial_viscosity = 0;
-  const auto slide = make_slide(o);
+  const auto slide = make_solver(o);
   std::vector<ParticleBatch> snow = slide->seed();
   const double speed = 100;  // m/s; pressure changes it by little within a step
   snow[0].velocity = speed * Vec3(std::cos(radians(35)), 0, -std::sin(radians(35)));
@@ -74,8 +74,8 @@ TEST(Slide, peak_speed_is_that_of_the_snow_and_fades_beyond_its_rim) {
   EXPECT_EQ(at(29), 0);
 }
 
-TEST(Slide, snow_below_the_angle_of_friction_stays_exactly_where_it_is) {
-  SlideOptions o = slab(20, 0.6);
+TEST(Slide, SnowBelowTheAngleOfFrictionStaysExactlyWhereItIs) {
+  Options o = slab(20, 0.6);
   o.settings.artificial_viscosity = 0;
   const auto slide = released(o);
   const ParticleState before = slide->state();
@@ -88,11 +88,11 @@ TEST(Slide, snow_below_the_angle_of_friction_stays_exactly_where_it_is) {
   EXPECT_GT(double(still) / double(before.positions.size()), 0.7);
 }
 
-TEST(Slide, pressure_moves_no_centre_of_mass) {
-  SlideOptions o = slide_on(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
-                            rectangle(40.3, 42.3, 70.3, 72.3));
+TEST(Slide, PressureMovesNoCentreOfMass) {
+  Options o = slide_on(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
+                       rectangle(40.3, 42.3, 70.3, 72.3));
   o.settings.friction = 0;
-  o.settings.friction_law = SlideFriction::coulomb;
+  o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.bonds = false;
   o.settings.artificial_viscosity = 0;
   const auto slide = released(o);
@@ -101,8 +101,8 @@ TEST(Slide, pressure_moves_no_centre_of_mass) {
   EXPECT_LT(mean_slide_velocity(*slide).norm(), 1e-9 * slide->motion(0).rms_speed);
 }
 
-TEST(Slide, mass_is_kept_and_what_leaves_the_terrain_is_counted) {
-  SlideOptions o = slide_on(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3));
+TEST(Slide, MassIsKeptAndWhatLeavesTheTerrainIsCounted) {
+  Options o = slide_on(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3));
   const auto slide = released(o);
   const double released_mass = total_mass(*slide);
   while (!*slide->at_rest() && slide->time() < 60) slide->step();
@@ -112,8 +112,8 @@ TEST(Slide, mass_is_kept_and_what_leaves_the_terrain_is_counted) {
   EXPECT_NEAR(m.released / released_mass, 1, 1e-12);
 }
 
-TEST(Slide, entrained_mass_is_what_the_particles_gain) {
-  SlideOptions o = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
+TEST(Slide, EntrainedMassIsWhatTheParticlesGain) {
+  Options o = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
   o.areas.entrainment = {rectangle(60, 6, 120, 52, 0.3)};
   const auto slide = released(o);
   const double released_mass = total_mass(*slide);
@@ -123,9 +123,9 @@ TEST(Slide, entrained_mass_is_what_the_particles_gain) {
   EXPECT_NEAR((total_mass(*slide) + m.left - m.entrained) / released_mass, 1, 1e-12);
 }
 
-TEST(Slide, forest_holds_snow_back) {
-  SlideOptions open = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
-  SlideOptions forest = open;
+TEST(Slide, ForestHoldsSnowBack) {
+  Options open = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
+  Options forest = open;
   forest.settings.resistance = 0.5;
   forest.areas.resistance = {rectangle(60, 6, 120, 52)};
   const auto a = released(open), b = released(forest);
@@ -140,8 +140,8 @@ bool are_equal(const Method& a, const Method& b) {
          s.ids == t.ids;
 }
 
-TEST(Slide, the_number_of_threads_changes_no_bit) {
-  SlideOptions o = slide_on(inclined(38, 100, 60), rectangle(20.3, 18.3, 80.3, 98.3));
+TEST(Slide, TheNumberOfThreadsChangesNoBit) {
+  Options o = slide_on(inclined(38, 100, 60), rectangle(20.3, 18.3, 80.3, 98.3));
   o.settings.layer_thickness = 0.1;
   const auto one = released(o);
   o.settings.threads = 3;
@@ -153,14 +153,14 @@ TEST(Slide, the_number_of_threads_changes_no_bit) {
 
 class SlideCheckpoint : public TemporaryFolder {};
 
-TEST_F(SlideCheckpoint, resumes_to_the_same_bits) {
-  const SlideOptions o = slide_on(inclined(38, 100, 40), rectangle(20.3, 18.3, 50.3, 58.3));
+TEST_F(SlideCheckpoint, ResumesToTheSameBits) {
+  const Options o = slide_on(inclined(38, 100, 40), rectangle(20.3, 18.3, 50.3, 58.3));
   const auto slide = released(o);
   step(*slide, 45);  // between two sorts
   BinaryWriter out;
   slide->save(out);
   out.save(path("c.bin"), [](const std::filesystem::path&) {});
-  const auto resumed = make_slide(o);
+  const auto resumed = make_solver(o);
   resumed->load(BinaryReader::load(path("c.bin")));
   step(*slide, 60);
   step(*resumed, 60);
@@ -169,7 +169,7 @@ TEST_F(SlideCheckpoint, resumes_to_the_same_bits) {
   EXPECT_EQ(slide->bonds().rest_length, resumed->bonds().rest_length);
 }
 
-TEST(Slide, extreme_ground_gives_no_number_that_is_none) {
+TEST(Slide, ExtremeGroundGivesNoNumberThatIsNone) {
   const auto cliff = [](double x, double) { return x < 60 ? 300.0 : 200.0; };
   const auto pit = [](double x, double y) {
     return std::hypot(x - 60, y - 40) < 8 ? 0.0 : 100 - 0.7 * x;
@@ -187,18 +187,18 @@ TEST(Slide, extreme_ground_gives_no_number_that_is_none) {
     }
 }
 
-TEST(Slide, areas_that_reach_beyond_the_terrain_are_refused) {
-  EXPECT_THROW(make_slide(slide_on(inclined(35), rectangle(20, 20, 500, 40))), InputError);
+TEST(Slide, AreasThatReachBeyondTheTerrainAreRefused) {
+  EXPECT_THROW(make_solver(slide_on(inclined(35), rectangle(20, 20, 500, 40))), InputError);
 }
 
-TEST(Slide, holes_of_the_terrain_are_refused_where_snow_is_released) {
+TEST(Slide, HolesOfTheTerrainAreRefusedWhereSnowIsReleased) {
   for (const int node : {10, 15, 20}) {  // at a corner of the area, within, and at another corner
     HeightField holed = inclined(35);
     holed.heights[holed.index(node, node)] = std::nan("");
-    EXPECT_THROW(make_slide(slide_on(holed, rectangle(20.3, 20.3, 39.7, 39.7))), InputError);
-    EXPECT_NO_THROW(make_slide(slide_on(holed, rectangle(60, 20, 80, 40))));
+    EXPECT_THROW(make_solver(slide_on(holed, rectangle(20.3, 20.3, 39.7, 39.7))), InputError);
+    EXPECT_NO_THROW(make_solver(slide_on(holed, rectangle(60, 20, 80, 40))));
   }
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::slide

@@ -5,24 +5,24 @@
 #include "snowshed/methods/grains/bond_law.hpp"
 #include "snowshed/methods/grains/kernel_api.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(grains)
 
-using QuadTriple = Triple<Quad>;
+using QuadVec = SimdVec<Quad>;
 
-SNOWSHED_INLINE QuadTriple broadcast_triple(const double* v) {
+SNOWSHED_INLINE QuadVec broadcast_vec(const double* v) {
   return {broadcast<Quad>(v[0]), broadcast<Quad>(v[1]), broadcast<Quad>(v[2])};
 }
-SNOWSHED_INLINE QuadTriple load_triple(const double* x, const double* y, const double* z,
-                                       std::size_t at) {
+SNOWSHED_INLINE QuadVec load_vec(const double* x, const double* y, const double* z,
+                                 std::size_t at) {
   return {load_row(x + at), load_row(y + at), load_row(z + at)};
 }
 /// A point of a body's frame as seen from its centre, in space.
-SNOWSHED_INLINE QuadTriple rotated(const double* r, const QuadTriple& p) {
+SNOWSHED_INLINE QuadVec rotated(const double* r, const QuadVec& p) {
   return {r[0] * p.x + r[1] * p.y + r[2] * p.z, r[3] * p.x + r[4] * p.y + r[5] * p.z,
           r[6] * p.x + r[7] * p.y + r[8] * p.z};
 }
 SNOWSHED_INLINE double sum_of(const Quad& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
-SNOWSHED_INLINE void store_sums(double* to, const QuadTriple& v) {
+SNOWSHED_INLINE void store_sums(double* to, const QuadVec& v) {
   to[0] = sum_of(v.x);
   to[1] = sum_of(v.y);
   to[2] = sum_of(v.z);
@@ -45,7 +45,7 @@ struct PairedBodies {
   const BodyFrame &a, &b;
   double apart[3], parting[3];  // m, m/s, of their centres, or the second's image
 
-  SNOWSHED_INLINE PairedBodies(const GrainsView& s, const PairGroup& g)
+  SNOWSHED_INLINE PairedBodies(const View& s, const PairGroup& g)
       : a(s.bodies[g.first]), b(s.bodies[g.second]) {
     for (int i = 0; i < 3; ++i) {
       apart[i] = b.position[i] - a.position[i];
@@ -58,40 +58,40 @@ struct PairedBodies {
   }
 };
 
-SNOWSHED_INLINE void group_forces(const GrainsView& s, std::size_t group) {
+SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
   const PairGroup& g = s.groups[group];
   const PairedBodies pair(s, g);
   const BondLaw law{s.normal_stiffness, s.shear_stiffness, s.tension_limit, s.shear_limit,
                     s.friction};
-  const QuadTriple apart = broadcast_triple(pair.apart), parting = broadcast_triple(pair.parting);
-  const QuadTriple spin_a = broadcast_triple(pair.a.spin), spin_b = broadcast_triple(pair.b.spin);
+  const QuadVec apart = broadcast_vec(pair.apart), parting = broadcast_vec(pair.parting);
+  const QuadVec spin_a = broadcast_vec(pair.a.spin), spin_b = broadcast_vec(pair.b.spin);
   const Quad dt = broadcast<Quad>(s.time_step);
-  QuadTriple force{}, torque_a{}, torque_b{};
+  QuadVec force{}, torque_a{}, torque_b{};
   Quad heat{}, broken{};
   QuadMask touching{}, tension{}, shear{};
   for (std::size_t p = g.begin; p < g.end; p += pairs_at_once) {
-    const QuadTriple from_a = rotated(pair.a.rotation, load_triple(s.ax, s.ay, s.az, p));
-    const QuadTriple from_b = rotated(pair.b.rotation, load_triple(s.bx, s.by, s.bz, p));
-    const QuadTriple way = apart + from_b - from_a;
-    const Quad square = dot(way, way);
+    const QuadVec from_a = rotated(pair.a.rotation, load_vec(s.ax, s.ay, s.az, p));
+    const QuadVec from_b = rotated(pair.b.rotation, load_vec(s.bx, s.by, s.bz, p));
+    const QuadVec apart_now = apart + from_b - from_a;
+    const Quad square = dot(apart_now, apart_now);
     QuadMask bonded = load_mask(s.bonded + p);
     const QuadMask near = square < s.diameter * s.diameter;
-    QuadTriple u = load_triple(s.ux, s.uy, s.uz, p);
+    QuadVec u = load_vec(s.ux, s.uy, s.uz, p);
     const QuadMask sheared = dot(u, u) > 0.0;
     if (!any(QuadMask(near | bonded | sheared))) continue;
 
     const Quad distance = sqrt(max(square, broadcast<Quad>(1e-60)));
-    const QuadTriple normal = scaled(Quad(1.0 / distance), way);
-    const QuadTriple arm_a = from_a + scaled(Quad(0.5 * distance), normal);
-    const QuadTriple arm_b = arm_a - apart;
-    const QuadTriple velocity = parting + cross(spin_b, arm_b) - cross(spin_a, arm_a);
+    const QuadVec normal = Quad(1.0 / distance) * apart_now;
+    const QuadVec arm_a = from_a + Quad(0.5 * distance) * normal;
+    const QuadVec arm_b = arm_a - apart;
+    const QuadVec velocity = parting + cross(spin_b, arm_b) - cross(spin_a, arm_a);
     const Quad along = dot(velocity, normal);
     const ContactMotion<Quad> motion{Quad(distance - s.diameter), Quad(dt * along), normal,
-                                     scaled(dt, velocity - scaled(along, normal)),
+                                     dt * (velocity - along * normal),
                                      Quad(0.5 * dt * dot(normal, spin_a + spin_b))};
     const ContactForce<Quad, QuadMask> f = law(motion, u, bonded);
 
-    const QuadTriple on_a = f.drag - scaled(f.push, normal);
+    const QuadVec on_a = f.drag - f.push * normal;
     force = force + on_a;
     torque_a = torque_a + cross(arm_a, on_a);
     torque_b = torque_b - cross(arm_b, on_a);
@@ -116,4 +116,4 @@ SNOWSHED_INLINE void group_forces(const GrainsView& s, std::size_t group) {
   r.shear_breaks = count_of(shear);
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -5,7 +5,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 /// Where the nodes of a chunk's particles lie in the tile.
 template <class T, int D, Basis basis>
@@ -53,4 +53,4 @@ struct LaneWeights {
   SNOWSHED_INLINE T operator()(int d, int k, int lane) const { return weight[d][k][lane]; }
 };
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -1,5 +1,5 @@
 #include "snowshed/methods/mpm/kernels/table.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 Kernels<float> float_2d(const KernelChoice& choice) { return table<float, 2>(choice); }
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

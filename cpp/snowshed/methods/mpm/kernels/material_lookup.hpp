@@ -6,7 +6,7 @@
 #include "snowshed/material/elastic.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 template <template <class> class Law, class C>
 struct ChunkMaterial {
@@ -71,4 +71,4 @@ struct MaterialPerParticle {
   const MaterialConstants<T>* snows;
 };
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -5,7 +5,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 template <class T>
 struct NodeTypes;
@@ -135,4 +135,4 @@ SNOWSHED_INLINE Node<T> scaled(T weight, const Node<T>& node) {
   return r;
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -6,7 +6,7 @@
 #include "snowshed/methods/mpm/kernels/node.hpp"
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 template <class T, int D, Basis basis, bool flip, bool energy>
 struct NodeKernels {
@@ -200,7 +200,7 @@ struct NodeKernels {
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const T* sum, Half& node, NodeStats& stats) {
     const T mass = sum[0];
-    T before[D], free[D], stored_impulses[D], after[D];
+    T before[D], free[D], pushed[D], after[D];
     T normal_speed = 0;
     for (int d = 0; d < D; ++d) {
       before[d] = sum[1 + d] / mass;
@@ -226,15 +226,15 @@ struct NodeKernels {
     T slip[D], slip_squared = 0;
     const T along = normal_speed + push / mass;  // normal speed that remains
     for (int d = 0; d < D; ++d) {
-      stored_impulses[d] = free[d] + push / mass * c.normal[d];
-      slip[d] = stored_impulses[d] - c.velocity[d] - along * c.normal[d];
+      pushed[d] = free[d] + push / mass * c.normal[d];
+      slip[d] = pushed[d] - c.velocity[d] - along * c.normal[d];
       slip_squared += slip[d] * slip[d];
     }
     const T slip_impulse = mass * std::sqrt(slip_squared);
     const T friction =
         T(law.friction) * step.pushing[c.obstacle] * (drained > T(0) ? drained : T(0));
     const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
-    for (int d = 0; d < D; ++d) node[d] = after[d] = stored_impulses[d] - lost * slip[d];
+    for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - lost * slip[d];
     if constexpr (energy) {
       const Parts was(before, c.normal), would(free, c.normal), is(after, c.normal);
       stats.impact += taken(!lets_go, mass, was.normal, would.normal, is.normal);
@@ -245,4 +245,4 @@ struct NodeKernels {
   }
 };
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

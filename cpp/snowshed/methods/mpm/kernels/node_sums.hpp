@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mpm/kernels/node.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 /// The same address, kept in a register: nodes are then addressed by constants from it.
 template <class P>
@@ -114,4 +114,4 @@ SNOWSHED_INLINE void scatter_nodes(const typename Rule::Scattering& weights, int
   }
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -10,7 +10,7 @@
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 #include "snowshed/methods/mpm/kernels/transfer_rules.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
 struct ParticleKernels {
@@ -380,4 +380,4 @@ struct ParticleKernels {
   }
 };
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -4,7 +4,7 @@
 #include "snowshed/methods/mpm/kernels/node_kernels.hpp"
 #include "snowshed/methods/mpm/kernels/particle_kernels.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
 Kernels<T> kernels_for() {
@@ -40,4 +40,4 @@ Kernels<float> float_3d(const KernelChoice&);
 Kernels<double> double_2d(const KernelChoice&);
 Kernels<double> double_3d(const KernelChoice&);
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

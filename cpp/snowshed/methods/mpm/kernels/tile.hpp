@@ -8,7 +8,7 @@
 #include "snowshed/core/variant.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 /// Along one direction: the nodes [begin, end) of the block at `offset` (-1, 0, 1) that the tile
 /// covers; node n is the tile's node n + shift.
@@ -97,4 +97,4 @@ class TileSums {
   int cleared_;
 };
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

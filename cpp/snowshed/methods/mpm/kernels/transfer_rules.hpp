@@ -10,7 +10,7 @@
 #include "snowshed/methods/mpm/kernels/chunk.hpp"
 #include "snowshed/methods/mpm/kernels/node_sums.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
 /// Values of half a node.
 inline constexpr int half_node = node_values / 2;
@@ -230,4 +230,4 @@ template <class T, int D, Transfer transfer, Basis basis>
 using TransferRule =
     std::conditional_t<transfer == Transfer::flip, FlipRule<T, D, basis>, ApicRule<T, D, basis>>;
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

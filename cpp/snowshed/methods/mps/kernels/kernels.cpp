@@ -4,7 +4,7 @@
 #include "snowshed/methods/mps/kernels/search.hpp"
 #include "snowshed/methods/mps/kernels/weights.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 namespace {
 
 template <int D>
@@ -77,7 +77,7 @@ struct Rows {
       find_pair_rates<D>(rows, offset, velocity, gradient, rate, std::size_t(i));
   }
 
-  static constexpr MpsKernels<D> table{
+  static constexpr Kernels<D> table{
       &search,   &weigh,          &sum_moments,         &even_weights,
       &apply,    &residual,       &apply_to_velocities, &sum_gradients,
       &sum_ways, &sum_approaches, &pair_rates};
@@ -85,9 +85,9 @@ struct Rows {
 
 }  // namespace
 
-extern const MpsKernels<2> mps_kernel_table_2d;
-extern const MpsKernels<3> mps_kernel_table_3d;
-const MpsKernels<2> mps_kernel_table_2d = Rows<2>::table;
-const MpsKernels<3> mps_kernel_table_3d = Rows<3>::table;
+extern const Kernels<2> kernel_table_2d;
+extern const Kernels<3> kernel_table_3d;
+const Kernels<2> kernel_table_2d = Rows<2>::table;
+const Kernels<3> kernel_table_3d = Rows<3>::table;
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/mps/kernels/row_packs.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
 /// The sum of weight x over the neighbours of a row. Rows are short and unknowns far apart: to
 /// gather lanes costs more than some sums side by side, none of which waits for the one before.
@@ -48,4 +48,4 @@ SNOWSHED_INLINE void apply_row_to_velocities(const PairRows& rows, const float* 
   for (int d = 0; d < D; ++d) q[row * D + d] = sum[0][d] + sum[1][d];
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

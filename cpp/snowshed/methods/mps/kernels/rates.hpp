@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/mps/kernels/row_packs.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
 /// The ways of some pairs and how velocities change along them.
 template <int D>
@@ -128,4 +128,4 @@ SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* o
   });
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

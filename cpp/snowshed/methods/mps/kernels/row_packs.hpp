@@ -4,7 +4,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/methods/mps/kernel_api.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
 /// Indices for the lanes of V.
 template <class V>
@@ -86,4 +86,4 @@ SNOWSHED_INLINE Scalar<V> sum_lanes(const V& v) {
                        [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return a + b; });
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -4,7 +4,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/particles/neighbour_search.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
 /// Which lanes of a mask of doubles are set, the first one lowest.
 SNOWSHED_INLINE unsigned lane_bits(const SimdMask<double>& mask) {
@@ -62,4 +62,4 @@ SNOWSHED_INLINE std::size_t find_near(const SearchedPoints<D>& points, std::uint
   return n;
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/mps/kernels/row_packs.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
 template <int D>
 SNOWSHED_INLINE void weigh_row(const PairRows& rows, const float* const* offset, float reach,
@@ -91,4 +91,4 @@ SNOWSHED_INLINE void find_even_weights(const PairRows& rows, const float* const*
   });
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

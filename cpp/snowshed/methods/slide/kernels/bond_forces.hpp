@@ -3,10 +3,10 @@
 
 #include "snowshed/methods/slide/kernels/places.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 /// The force of a bond is its modulus times its strain times its contact area, h L / sqrt 3.
-SNOWSHED_INLINE PackMask stretch_lanes(const SlideView& s, const Lanes& l) {
+SNOWSHED_INLINE PackMask stretch_lanes(const View& s, const Lanes& l) {
   const PackRecord r = taken_apart([&](int i) SNOWSHED_INLINE_LAMBDA {
     const std::ptrdiff_t b = l.first + (i < l.count ? i : 0);
     const Quad first = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_first[b]));
@@ -25,7 +25,7 @@ SNOWSHED_INLINE PackMask stretch_lanes(const SlideView& s, const Lanes& l) {
 }
 
 /// The force by all bonds of a particle, N.
-SNOWSHED_INLINE Quad pull_on(const SlideView& s, std::ptrdiff_t i) {
+SNOWSHED_INLINE Quad pull_on(const View& s, std::ptrdiff_t i) {
   static constexpr double signs[2] = {1, -1};
   Quad sum{};
   if (!s.bond_begin) return sum;
@@ -36,4 +36,4 @@ SNOWSHED_INLINE Quad pull_on(const SlideView& s, std::ptrdiff_t i) {
   return sum;
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

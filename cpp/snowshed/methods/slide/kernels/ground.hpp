@@ -3,10 +3,10 @@
 
 #include "snowshed/methods/slide/kernels/places.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 /// Draws a velocity toward that of the snow around, implicitly (artificial viscosity of SamosAT).
-SNOWSHED_INLINE PackVec mixed(const SlideView& s, const PackVec& u, const PackVec& around,
+SNOWSHED_INLINE PackVec mixed(const View& s, const PackVec& u, const PackVec& around,
                               const PackVec& normal, const Pack& mass, const Pack& thickness) {
   const PackVec v = around - dot(around, normal) * normal, apart = v - u;
   const Pack side_per_mass = 2.0 * length_from(Pack(thickness / (s.density * mass)));
@@ -22,9 +22,9 @@ struct PackAhead {
   PackGround ground;
 };
 
-SNOWSHED_INLINE void mix(const SlideView& s, const Lanes& l, PackAhead& ahead) {
+SNOWSHED_INLINE void mix(const View& s, const Lanes& l, PackAhead& ahead) {
   const Pack thickness = l.load(s.thickness);
-  const Pack h = max(thickness, broadcast<Pack>(least_slide_thickness));
+  const Pack h = max(thickness, broadcast<Pack>(least_thickness));
   const PackRecord flow = flow_at(s, stored_place(s, l));
   const PackVec u = mixed(s, l.load(s.ux, s.uy, s.uz), {flow.b, flow.c, flow.d},
                           l.load(s.nx, s.ny, s.nz), l.load(s.mass), h);
@@ -36,7 +36,7 @@ SNOWSHED_INLINE void mix(const SlideView& s, const Lanes& l, PackAhead& ahead) {
 }
 
 /// Weight and friction, with the mean of the ground's normals at both ends of the way.
-SNOWSHED_INLINE void load_ground(const SlideView& s, const Lanes& l, const PackAhead& ahead) {
+SNOWSHED_INLINE void load_ground(const View& s, const Lanes& l, const PackAhead& ahead) {
   const PackVec here = l.load(s.nx, s.ny, s.nz);
   const PackMask stays = ahead.on_ground.on_ground.inside & ahead.ground.known;
   const PackVec end = select(stays, ahead.ground.normal, here), sum = here + end;
@@ -45,7 +45,7 @@ SNOWSHED_INLINE void load_ground(const SlideView& s, const Lanes& l, const PackA
   const Pack along_normal = -s.gravity * mean.z;
   // Snow that leaves the ground is not held back by it.
   const Pack pressing = max(Pack{}, Pack(-(along_normal + curvature)));  // m/s2
-  const Pack h = max(l.load(s.thickness), broadcast<Pack>(least_slide_thickness));
+  const Pack h = max(l.load(s.thickness), broadcast<Pack>(least_thickness));
   const Pack drag = select(pressing > 0.0, Pack(s.friction_drag / (s.density * h)), Pack{});
 
   PackVec acceleration = Pack(-along_normal) * mean;
@@ -55,7 +55,7 @@ SNOWSHED_INLINE void load_ground(const SlideView& s, const Lanes& l, const PackA
   l.store(s.drag, drag);
 }
 
-SNOWSHED_INLINE void ground_batch(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end,
+SNOWSHED_INLINE void ground_batch(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end,
                                   int packs) {
   PackAhead ahead[packs_in_batch];
   for (int k = 0; k < packs; ++k) mix(s, lanes_of(begin, end, k), ahead[k]);
@@ -67,4 +67,4 @@ SNOWSHED_INLINE void ground_batch(const SlideView& s, std::ptrdiff_t begin, std:
   for (int k = 0; k < packs; ++k) load_ground(s, lanes_of(begin, end, k), ahead[k]);
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -7,35 +7,35 @@
 #include "snowshed/methods/slide/kernels/node_sums.hpp"
 #include "snowshed/methods/slide/kernels/surface_pressure.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 namespace {
 
-void locate(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+void locate(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_lanes(begin, end, [&](const Lanes& l) {
     const PackPlace place = place_of(s, l.load(s.x), l.load(s.y));
     store_place(s, l, place, ground_at(s, place).normal);
   });
 }
 
-void ground(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+void ground(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_batch(begin, end, [&](std::ptrdiff_t first, std::ptrdiff_t last, int packs) {
     ground_batch(s, first, last, packs);
   });
 }
 
-void weigh_pressure(const SlideView& s, int row) { weigh_row(s, row); }
+void weigh_pressure(const View& s, int row) { weigh_row(s, row); }
 
-void surface_pressure(const SlideView& s, int row) { surface_pressure_row(s, row); }
+void surface_pressure(const View& s, int row) { surface_pressure_row(s, row); }
 
-void map_pressure(const SlideView& s, int row) { map_pressure_row(s, row); }
+void map_pressure(const View& s, int row) { map_pressure_row(s, row); }
 
-bool stretch_bonds(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+bool stretch_bonds(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   PackMask broken{};
   for_each_lanes(begin, end, [&](const Lanes& l) { broken |= stretch_lanes(s, l); });
   return any_lane(broken);
 }
 
-double advance(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+double advance(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   double kinetic = 0;
   for_each_batch(begin, end, [&](std::ptrdiff_t first, std::ptrdiff_t last, int packs) {
     kinetic += move_batch(s, first, last, packs);
@@ -43,11 +43,11 @@ double advance(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   return kinetic;
 }
 
-void sum_row_on_nodes(const SlideView& s, int row) { sum_on_nodes(s, row); }
+void sum_row_on_nodes(const View& s, int row) { sum_on_nodes(s, row); }
 
-void raise_mean_speed_of_row(const SlideView& s, int row) { raise_mean_speed(s, row); }
+void raise_mean_speed_of_row(const View& s, int row) { raise_mean_speed(s, row); }
 
-void thickness(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
+void thickness(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_lanes(begin, end,
                  [&](const Lanes& l) { l.store(s.thickness, flow_at(s, stored_place(s, l)).a); });
 }
@@ -65,10 +65,10 @@ void bounds(const std::int32_t* values, std::ptrdiff_t count, std::int32_t& low,
 
 }  // namespace
 
-extern const SlideKernels slide_kernel_table;
-const SlideKernels slide_kernel_table{
+extern const Kernels kernel_table;
+const Kernels kernel_table{
     &locate,        &ground,  &weigh_pressure,   &surface_pressure,        &map_pressure,
     &stretch_bonds, &advance, &sum_row_on_nodes, &raise_mean_speed_of_row, &thickness,
     &bounds};
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -3,10 +3,10 @@
 
 #include "snowshed/methods/slide/kernels/neighbours.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 template <int count>
-SNOWSHED_INLINE void map_pressure_on(const SlideView& s, double factor, std::uint32_t first,
+SNOWSHED_INLINE void map_pressure_on(const View& s, double factor, std::uint32_t first,
                                      const Neighbourhood& around) {
   using V = SimdPack<double>;
   V gx[2]{}, gy[2]{};
@@ -28,7 +28,7 @@ SNOWSHED_INLINE void map_pressure_on(const SlideView& s, double factor, std::uin
   }
 }
 
-SNOWSHED_INLINE void map_pressure_row(const SlideView& s, int row) {
+SNOWSHED_INLINE void map_pressure_row(const View& s, int row) {
   const double factor = spiky_constant(s.cell) * s.gravity / s.density;
   for_each_neighbourhood(
       s, row, [&](std::uint32_t e, auto count, const Neighbourhood& around) SNOWSHED_INLINE_LAMBDA {
@@ -36,4 +36,4 @@ SNOWSHED_INLINE void map_pressure_row(const SlideView& s, int row) {
       });
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

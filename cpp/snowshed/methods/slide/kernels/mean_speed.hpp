@@ -13,7 +13,7 @@
 
 #include "snowshed/methods/slide/kernels/node_sums.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 /// The mean over five values with binomial weights.
 SNOWSHED_INLINE Quad binomial_mean(const Quad& a, const Quad& b, const Quad& c, const Quad& d,
@@ -22,7 +22,7 @@ SNOWSHED_INLINE Quad binomial_mean(const Quad& a, const Quad& b, const Quad& c, 
 }
 
 /// Raises the peak speed along a row of nodes, which may lie up to two rows beyond the rectangle.
-SNOWSHED_INLINE void raise_mean_speed(const SlideView& s, int row) {
+SNOWSHED_INLINE void raise_mean_speed(const View& s, int row) {
   const int terrain_row = s.flow_row + row;
   if (terrain_row < 0 || terrain_row >= s.rows) return;
   const auto sums_at = [&](int column, int j) SNOWSHED_INLINE_LAMBDA {
@@ -53,4 +53,4 @@ SNOWSHED_INLINE void raise_mean_speed(const SlideView& s, int row) {
   }
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

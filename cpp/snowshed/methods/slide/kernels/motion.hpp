@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/kernels/bond_forces.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 inline constexpr double least_slide_speed = 1e-6;  // m/s
 inline constexpr double at_rest = 2e-15;           // m/s, above what a root makes of zero
@@ -16,7 +16,7 @@ struct PackSlowed {
 
 /// Coulomb friction as a set-valued law: it stops snow, and holds it where what drives it is less.
 /// The part that grows with the square of the speed is implicit: s' + drag dt s'^2 = s.
-SNOWSHED_INLINE PackSlowed slowed(const SlideView& s, const PackVec& u, const Pack& yield,
+SNOWSHED_INLINE PackSlowed slowed(const View& s, const PackVec& u, const Pack& yield,
                                   const Pack& drag) {
   const Pack dt = broadcast<Pack>(s.time_step);
   const Pack square = max(dot(u, u), broadcast<Pack>(least_square));
@@ -27,15 +27,15 @@ SNOWSHED_INLINE PackSlowed slowed(const SlideView& s, const PackVec& u, const Pa
 }
 
 /// As AvaFrame does it by default: a rate that divides by the speed of before.
-SNOWSHED_INLINE PackSlowed slowed_implicitly(const SlideView& s, const PackVec& u,
-                                             const Pack& stress, const Pack& speed) {
+SNOWSHED_INLINE PackSlowed slowed_implicitly(const View& s, const PackVec& u, const Pack& stress,
+                                             const Pack& speed) {
   const Pack dt = broadcast<Pack>(s.time_step);
   const Pack rate = stress / max(speed, broadcast<Pack>(least_slide_speed));
   return {Pack(1.0 / (1.0 + dt * rate)) * u, dt};
 }
 
-SNOWSHED_INLINE PackSlowed slowed_explicitly(const SlideView& s, const PackVec& u,
-                                             const Pack& stress, const Pack& before) {
+SNOWSHED_INLINE PackSlowed slowed_explicitly(const View& s, const PackVec& u, const Pack& stress,
+                                             const Pack& before) {
   const Pack dt = broadcast<Pack>(s.time_step);
   const Pack square = max(dot(u, u), broadcast<Pack>(least_square));
   const Pack per_speed = inverse_sqrt(square), speed = square * per_speed;
@@ -45,7 +45,7 @@ SNOWSHED_INLINE PackSlowed slowed_explicitly(const SlideView& s, const PackVec& 
   return {left * u, select(moves, dt, select(before > at_rest, until_rest, Pack{}))};
 }
 
-SNOWSHED_INLINE PackSlowed slowed_by(const SlideView& s, const Lanes& l, const PackVec& u) {
+SNOWSHED_INLINE PackSlowed slowed_by(const View& s, const Lanes& l, const PackVec& u) {
   const Pack yield = l.load(s.yield), drag = l.load(s.drag), speed = l.load(s.speed);
   if (s.scheme == FrictionScheme::set_valued) return slowed(s, u, yield, drag);
   const Pack stress = yield + drag * speed * speed;  // m/s2
@@ -69,7 +69,7 @@ struct PackMotion {
 };
 
 /// The acceleration by all but friction, which is kept.
-SNOWSHED_INLINE PackVec acceleration(const SlideView& s, const Lanes& l) {
+SNOWSHED_INLINE PackVec acceleration(const View& s, const Lanes& l) {
   const PackRecord force = taken_apart([&](int k) SNOWSHED_INLINE_LAMBDA {
     const std::ptrdiff_t i = l.first + (k < l.count ? k : 0);
     return Quad(load_row(s.pushed + 4 * i) + pull_on(s, i));
@@ -80,7 +80,7 @@ SNOWSHED_INLINE PackVec acceleration(const SlideView& s, const Lanes& l) {
   return a;
 }
 
-SNOWSHED_INLINE void accelerate(const SlideView& s, const Lanes& l, PackMotion& motion) {
+SNOWSHED_INLINE void accelerate(const View& s, const Lanes& l, PackMotion& motion) {
   const Pack dt = broadcast<Pack>(s.time_step);
   const PackVec before = l.load(s.ux, s.uy, s.uz);
   const PackSlowed slow = slowed_by(s, l, before + dt * acceleration(s, l));
@@ -91,7 +91,7 @@ SNOWSHED_INLINE void accelerate(const SlideView& s, const Lanes& l, PackMotion& 
 }
 
 /// Puts particles where they came to; returns their kinetic energy, J.
-SNOWSHED_INLINE Pack arrive(const SlideView& s, const Lanes& l, const PackMotion& motion) {
+SNOWSHED_INLINE Pack arrive(const View& s, const Lanes& l, const PackMotion& motion) {
   const PackReprojection& r = motion.on_ground;
   const PackGround ground = ground_at(s, r.on_ground);
   const PackMask stays = r.on_ground.inside & ground.known;
@@ -105,7 +105,7 @@ SNOWSHED_INLINE Pack arrive(const SlideView& s, const Lanes& l, const PackMotion
 }
 
 /// Moves the particles of a batch; returns their kinetic energy, J.
-SNOWSHED_INLINE double move_batch(const SlideView& s, std::ptrdiff_t begin, std::ptrdiff_t end,
+SNOWSHED_INLINE double move_batch(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end,
                                   int packs) {
   PackMotion motion[packs_in_batch];
   for (int k = 0; k < packs; ++k) accelerate(s, lanes_of(begin, end, k), motion[k]);
@@ -118,4 +118,4 @@ SNOWSHED_INLINE double move_batch(const SlideView& s, std::ptrdiff_t begin, std:
   return sum_of_lanes(kinetic);
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

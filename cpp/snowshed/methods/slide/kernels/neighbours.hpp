@@ -6,7 +6,7 @@
 
 #include "snowshed/methods/slide/kernels/places.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 /// The number of each lane.
 template <class V>
@@ -29,7 +29,7 @@ template <class V>
 struct Neighbours {
   V x, y, z;
 
-  SNOWSHED_INLINE Neighbours(const SlideView& s, std::uint32_t e)
+  SNOWSHED_INLINE Neighbours(const View& s, std::uint32_t e)
       : x(load_beyond<V>(s.sorted_x + e)),
         y(load_beyond<V>(s.sorted_y + e)),
         z(load_beyond<V>(s.sorted_z + e)) {}
@@ -39,7 +39,7 @@ template <class V>
 struct Way {
   V x, y, z;
 
-  SNOWSHED_INLINE Way(const SlideView& s, std::uint32_t from, const Neighbours<V>& to)
+  SNOWSHED_INLINE Way(const View& s, std::uint32_t from, const Neighbours<V>& to)
       : x(to.x - s.sorted_x[from]), y(to.y - s.sorted_y[from]), z(to.z - s.sorted_z[from]) {}
   SNOWSHED_INLINE V square() const { return x * x + y * y + z * z; }
 };
@@ -94,7 +94,7 @@ using Neighbourhood = EntryRun[3];
 using One = std::integral_constant<int, 1>;
 using Two = std::integral_constant<int, 2>;
 template <class Visit>
-SNOWSHED_INLINE void for_each_neighbourhood(const SlideView& s, int row, const Visit& visit) {
+SNOWSHED_INLINE void for_each_neighbourhood(const View& s, int row, const Visit& visit) {
   for (int column = 1; column + 1 < s.cell_columns; ++column) {
     const std::uint32_t* begin = s.cell_begin + std::ptrdiff_t(row) * s.cell_columns + column;
     std::uint32_t e = begin[0];
@@ -118,4 +118,4 @@ SNOWSHED_INLINE void for_each_neighbour(const Neighbourhood& around, const Add& 
     for (std::uint32_t e = around[k].begin; e < around[k].end; e += width) add(e, around[k].end);
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

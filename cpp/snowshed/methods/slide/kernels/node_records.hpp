@@ -4,7 +4,7 @@
 
 #include "snowshed/core/simd_quad.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 /// A pack holds one value of four particles, or of eight where a register has room for them: at
 /// least as many as the values of a record, which are taken apart into packs.
@@ -85,7 +85,7 @@ SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
 #endif
 }
 
-SNOWSHED_INLINE Pack load_pack(const double* p) { return load_pack<Pack>(p, pack_lanes); }
+SNOWSHED_INLINE Pack load_whole_pack(const double* p) { return load_pack<Pack>(p, pack_lanes); }
 
 /// What is read of the records of the four nodes around a place.
 enum class NodeRecord {
@@ -126,9 +126,9 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
   for (int i = 0; i < 8; ++i) {
     const double* south = nodes + 4 * std::ptrdiff_t(first[i]);
     const PackMask lane = PackMask{0, 0, 0, 0, 8, 8, 8, 8} + i;
-    parts[i] = node_record<record>(load_pack(south), load_pack(south + 4 * std::ptrdiff_t(columns)),
-                                   four_of(weights.of[0], weights.of[1], lane),
-                                   four_of(weights.of[2], weights.of[3], lane));
+    parts[i] = node_record<record>(
+        load_whole_pack(south), load_whole_pack(south + 4 * std::ptrdiff_t(columns)),
+        four_of(weights.of[0], weights.of[1], lane), four_of(weights.of[2], weights.of[3], lane));
   }
   const auto whole = [&](int i) SNOWSHED_INLINE_LAMBDA {  // lanes i and i + 4, west and east added
     const Pack &a = parts[i], &b = parts[i + 4];
@@ -163,4 +163,4 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
 }
 #endif
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

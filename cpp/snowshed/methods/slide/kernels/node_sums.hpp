@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/slide/kernels/places.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 /// The two nodes on one side of a cell.
 struct NodePair {
@@ -13,8 +13,8 @@ struct NodePair {
 
 /// What the particles of a cell hand on to the nodes to the west and to the east; adds to them, and
 /// copies what their neighbours will read.
-SNOWSHED_INLINE void hand_on(const SlideView& s, std::uint32_t begin, std::uint32_t end,
-                             NodePair& west, NodePair& east) {
+SNOWSHED_INLINE void hand_on(const View& s, std::uint32_t begin, std::uint32_t end, NodePair& west,
+                             NodePair& east) {
   for (std::uint32_t e = begin; e < end; ++e) {
     const std::uint32_t i = s.sorted_particle[e];
     const double mass = s.mass[i];
@@ -33,12 +33,12 @@ SNOWSHED_INLINE void hand_on(const SlideView& s, std::uint32_t begin, std::uint3
 }
 
 /// Raises the peak speed at a node of the terrain to the root of a square.
-SNOWSHED_INLINE void raise_speed(const SlideView& s, std::ptrdiff_t node, double square) {
+SNOWSHED_INLINE void raise_speed(const View& s, std::ptrdiff_t node, double square) {
   if (square > s.peak_speed[node] * s.peak_speed[node]) s.peak_speed[node] = std::sqrt(square);
 }
 
 /// Turns the sums of a row of nodes into thickness and velocity, and raises the peaks.
-SNOWSHED_INLINE void finish_nodes(const SlideView& s, int row) {
+SNOWSHED_INLINE void finish_nodes(const View& s, int row) {
   double* record = s.nodes + 4 * std::ptrdiff_t(row) * s.flow_columns;
   const std::ptrdiff_t first =
       std::ptrdiff_t(s.flow_row + row) * s.columns + s.flow_column;  // in the terrain
@@ -63,7 +63,7 @@ SNOWSHED_INLINE void finish_nodes(const SlideView& s, int row) {
 
 /// Hands on what a row of cells holds to the rows of nodes south and north of it. Every other row
 /// comes first, and begins the sums of all nodes; the rows between add to them and finish them.
-SNOWSHED_INLINE void sum_on_nodes(const SlideView& s, int row) {
+SNOWSHED_INLINE void sum_on_nodes(const View& s, int row) {
   const bool begins = row % 2 == 0, has_north = row + 1 < s.cell_rows;
   double* south = s.nodes + 4 * std::ptrdiff_t(row) * s.flow_columns;
   double* north = south + 4 * std::ptrdiff_t(s.flow_columns);
@@ -83,4 +83,4 @@ SNOWSHED_INLINE void sum_on_nodes(const SlideView& s, int row) {
   if (has_north) finish_nodes(s, row + 1);
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

@@ -1,29 +1,13 @@
 // Some particles at a time, a pack of them: where they lie on the ground, and what lies there.
 #pragma once
 
+#include "snowshed/core/simd_vec.hpp"
 #include "snowshed/methods/slide/kernel_api.hpp"
 #include "snowshed/methods/slide/kernels/node_records.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
-struct PackVec {
-  Pack x, y, z;
-};
-SNOWSHED_INLINE PackVec operator+(const PackVec& a, const PackVec& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-SNOWSHED_INLINE PackVec operator-(const PackVec& a, const PackVec& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-SNOWSHED_INLINE PackVec operator*(const Pack& s, const PackVec& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-SNOWSHED_INLINE Pack dot(const PackVec& a, const PackVec& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-SNOWSHED_INLINE PackVec select(const PackMask& mask, const PackVec& a, const PackVec& b) {
-  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
-}
+using PackVec = SimdVec<Pack>;
 
 /// Below it a square counts as zero where a root is taken.
 inline constexpr double least_square = 1e-30;
@@ -103,12 +87,12 @@ struct PackPlace {
   PackMask inside;
 };
 
-SNOWSHED_INLINE PackPlace stored_place(const SlideView& s, const Lanes& l) {
+SNOWSHED_INLINE PackPlace stored_place(const View& s, const Lanes& l) {
   return {l.load(s.column), l.load(s.row), l.load(s.east), l.load(s.north), all_lanes};
 }
 
 /// See `Terrain::place`.
-SNOWSHED_INLINE PackPlace place_of(const SlideView& s, const Pack& x, const Pack& y) {
+SNOWSHED_INLINE PackPlace place_of(const View& s, const Pack& x, const Pack& y) {
   PackPlace p;
   Pack i = x * s.per_cell, j = y * s.per_cell;
   p.inside = (i >= 0.0) & (j >= 0.0) & (i < double(s.columns - 1)) & (j < double(s.rows - 1));
@@ -129,7 +113,7 @@ SNOWSHED_INLINE PackRecord records_at(const double* nodes, int columns, const Pa
                             {{west * south, p.east * south, west * p.north, p.east * p.north}});
 }
 
-SNOWSHED_INLINE PackRecord flow_at(const SlideView& s, PackPlace p) {
+SNOWSHED_INLINE PackRecord flow_at(const View& s, PackPlace p) {
   p.column -= s.flow_column;
   p.row -= s.flow_row;
   return records_at<NodeRecord::mean>(s.flow, s.flow_columns, p);
@@ -147,12 +131,12 @@ struct PackGround {
   PackVec normal;
   PackMask known;
 };
-SNOWSHED_INLINE PackGround ground_at(const SlideView& s, const PackPlace& p) {
+SNOWSHED_INLINE PackGround ground_at(const View& s, const PackPlace& p) {
   const PackRecord r = records_at<NodeRecord::mean_and_known>(s.ground, s.columns, p);
   return {r.a, upward(r.b, r.c), r.d == r.d};
 }
 /// The same with the normal in the middle of the cell.
-SNOWSHED_INLINE PackGround cell_ground(const SlideView& s, const PackPlace& p) {
+SNOWSHED_INLINE PackGround cell_ground(const View& s, const PackPlace& p) {
   const PackRecord r = records_at<NodeRecord::mean_and_middle>(s.ground, s.columns, p);
   return {r.a, upward(r.b, r.c), all_lanes};
 }
@@ -163,7 +147,7 @@ struct PackReprojection {
   Pack x, y;
   PackPlace on_ground;
 };
-SNOWSHED_INLINE PackReprojection reproject(const SlideView& s, Pack x, Pack y, Pack z,
+SNOWSHED_INLINE PackReprojection reproject(const View& s, Pack x, Pack y, Pack z,
                                            const PackMask& moves) {
   PackPlace place = place_of(s, x, y);
   const PackIndex column = place.column, row = place.row;
@@ -182,7 +166,7 @@ SNOWSHED_INLINE PackReprojection reproject(const SlideView& s, Pack x, Pack y, P
 }
 
 /// Keeps places of particles and the normals of the ground there.
-SNOWSHED_INLINE void store_place(const SlideView& s, const Lanes& l, const PackPlace& place,
+SNOWSHED_INLINE void store_place(const View& s, const Lanes& l, const PackPlace& place,
                                  const PackVec& normal) {
   l.store(s.column, place.column);
   l.store(s.row, place.row);
@@ -191,4 +175,4 @@ SNOWSHED_INLINE void store_place(const SlideView& s, const Lanes& l, const PackP
   l.store(s.nx, s.ny, s.nz, normal);
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

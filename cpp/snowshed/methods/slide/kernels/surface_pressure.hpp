@@ -12,7 +12,7 @@
 #include "snowshed/core/simd_math.hpp"
 #include "snowshed/methods/slide/kernels/neighbours.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_METHOD_VARIANT_BEGIN(slide)
 
 /// See `few_neighbours` in kernel_api.hpp.
 template <class V>
@@ -24,7 +24,7 @@ SNOWSHED_INLINE V raised_pressure(const V& seen) {
 
 /// Finds how many particles each of some particles sees, by mass, within its kernel.
 template <int count>
-SNOWSHED_INLINE void count_neighbours_of(const SlideView& s, std::uint32_t first,
+SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
                                          const Neighbourhood& around) {
   using V = SimdPack<double>;
   V sum[2]{};
@@ -43,7 +43,7 @@ SNOWSHED_INLINE void count_neighbours_of(const SlideView& s, std::uint32_t first
 }
 
 /// Finds what the pressure of the particles of a row is multiplied by.
-SNOWSHED_INLINE void weigh_row(const SlideView& s, int row) {
+SNOWSHED_INLINE void weigh_row(const View& s, int row) {
   for_each_neighbourhood(s, row,
                          [&](std::uint32_t e, auto count, const Neighbourhood& around)
                              SNOWSHED_INLINE_LAMBDA { count_neighbours_of<count>(s, e, around); });
@@ -62,7 +62,7 @@ SNOWSHED_INLINE void weigh_row(const SlideView& s, int row) {
 }
 
 template <int count>
-SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, double factor, std::uint32_t first,
+SNOWSHED_INLINE void surface_pressure_on(const View& s, double factor, std::uint32_t first,
                                          const Neighbourhood& around) {
   using V = SimdPack<double>;
   V sx[2]{}, sy[2]{}, sz[2]{};
@@ -89,7 +89,7 @@ SNOWSHED_INLINE void surface_pressure_on(const SlideView& s, double factor, std:
   }
 }
 
-SNOWSHED_INLINE void surface_pressure_row(const SlideView& s, int row) {
+SNOWSHED_INLINE void surface_pressure_row(const View& s, int row) {
   const double factor = 0.5 * spiky_constant(s.cell) * s.gravity / s.density;
   for_each_neighbourhood(
       s, row, [&](std::uint32_t e, auto count, const Neighbourhood& around) SNOWSHED_INLINE_LAMBDA {
@@ -97,4 +97,4 @@ SNOWSHED_INLINE void surface_pressure_row(const SlideView& s, int row) {
       });
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_METHOD_VARIANT_END

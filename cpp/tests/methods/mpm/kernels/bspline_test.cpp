@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 template <Basis B, class S>
@@ -124,4 +124,4 @@ TYPED_TEST(BSplineWeights, PassSmoothlyFromCellToCell) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

@@ -6,7 +6,7 @@
 #include "snowshed/core/random.hpp"
 #include "snowshed/methods/mpm/kernels/transfer_rules.hpp"
 
-namespace snowshed {
+namespace snowshed::mpm {
 namespace {
 
 template <class T, int dimension, Transfer transfer, Basis b>
@@ -174,4 +174,4 @@ TYPED_TEST(NodeSumsOfChunk, AreNotTakenOutsideTheTile) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::mpm

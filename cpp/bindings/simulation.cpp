@@ -1,3 +1,5 @@
+#include "snowshed/run/simulation.hpp"
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -6,13 +8,10 @@
 #include "bindings.hpp"
 #include "method_bindings.hpp"
 #include "snowshed/core/errors.hpp"
-#include "snowshed/geometry/cliffs.hpp"
-#include "snowshed/geometry/readers/ascii_grid.hpp"
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/methods/quantities.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/run_record.hpp"
-#include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
@@ -73,25 +72,6 @@ py::dict energy(const Simulation& sim) {
 py::dict energy_history(const Simulation& sim) {
   const EnergyHistory& history = sim.energy_history();
   return columns_of(history.columns(), history.values());
-}
-
-py::tuple ascii_grid(const std::filesystem::path& path) {
-  AsciiGridFacts facts;
-  const HeightField f = read_ascii_grid(path, &facts);
-  return py::make_tuple(map_of(f.heights, f.rows, f.columns), f.west, f.south, f.cell,
-                        facts.undeclared_missing, facts.decimal_commas);
-}
-
-std::string cliff(const py::array_t<double, py::array::c_style | py::array::forcecast>& heights,
-                  double west, double south, double cell, double max_slope) {
-  HeightField f;
-  f.rows = int(heights.shape(0));
-  f.columns = int(heights.shape(1));
-  f.west = west;
-  f.south = south;
-  f.cell = cell;
-  f.heights.assign(heights.data(), heights.data() + heights.size());
-  return impossible_cliff(f, max_slope);
 }
 
 py::object frame(const Simulation& sim) {
@@ -307,11 +287,6 @@ void bind_facts(SimulationClass& c) {
 void bind_simulation(py::module_& m) {
   using namespace py::literals;
   m.def("quantities", &quantity_list, "(name, unit, meaning) of what particles may have.");
-  m.def("read_ascii_grid", &ascii_grid, "path"_a,
-        "(heights, west, south, cell, values of -9999 that the header does not declare, numbers "
-        "with decimal commas) of an ESRI ASCII grid, the southernmost row first.");
-  m.def("impossible_cliff", &cliff, "heights"_a, "west"_a, "south"_a, "cell"_a, "max_slope"_a,
-        "Tells of neighbouring nodes that differ in height as no ground does; empty without any.");
   SimulationClass c(m);
   (*c).def(py::init([](const std::string& json, const std::filesystem::path& base_dir) {
              return std::make_unique<SimulationHandle>(

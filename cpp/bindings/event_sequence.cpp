@@ -1,3 +1,5 @@
+#include "snowshed/run/event_sequence.hpp"
+
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -5,7 +7,6 @@
 
 #include "bindings.hpp"
 #include "simulation_handle.hpp"
-#include "snowshed/run/event_sequence.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace py = pybind11;

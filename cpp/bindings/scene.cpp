@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bindings.hpp"
-#include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/run/cost_report.hpp"
 #include "snowshed/scene/earlier_version.hpp"
 #include "snowshed/scene/json_text.hpp"
@@ -88,8 +87,6 @@ void bind_scene(py::module_& m) {
       "snow_preset", [](const std::string& name) { return write_snow(preset_snow(name)); },
       "name"_a);
   m.def("plan", &plan_dict, "scene_json"_a, "base_dir"_a = ".");
-  m.def("slow_kernels_note", &slow_kernels_note,
-        "A sentence on what kernels without AVX2 cost, where these are used; else empty.");
   m.def(
       "expected_work",
       [](const std::string& text, const std::filesystem::path& base_dir) {

@@ -5,8 +5,6 @@
 
 #include "array_copies.hpp"
 #include "bindings.hpp"
-#include "snowshed/core/memory.hpp"
-#include "snowshed/geometry/readers/mesh_io.hpp"
 #include "snowshed/io/checksum.hpp"
 #include "snowshed/io/film_file.hpp"
 
@@ -54,15 +52,6 @@ std::string film_checksum(const FilmReader& reader, std::size_t frames) {
   return hexadecimal(reader.checksum(frames));
 }
 
-py::tuple mesh_arrays(const std::filesystem::path& path, double scale) {
-  const TriangleMesh mesh = read_mesh(path, scale);
-  py::array_t<std::int64_t> triangles({py::ssize_t(mesh.triangles.size()), py::ssize_t(3)});
-  auto out = triangles.mutable_unchecked<2>();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) out(py::ssize_t(t), py::ssize_t(k)) = mesh.triangles[t][k];
-  return py::make_tuple(rows(mesh.vertices), triangles);
-}
-
 }  // namespace
 
 void bind_film(py::module_& m) {
@@ -86,10 +75,6 @@ void bind_film(py::module_& m) {
           list.append(py::make_tuple(f.time, f.event, f.particles));
         return list;
       });
-  m.def("available_memory_bytes", &available_memory_bytes,
-        "Memory that can be had now without swapping.");
-  m.def("read_mesh", &mesh_arrays, "path"_a, "scale"_a = 1.0,
-        "Vertices (n, 3), m, and triangles (m, 3) of an STL, OBJ or PLY file.");
 }
 
 }  // namespace snowshed

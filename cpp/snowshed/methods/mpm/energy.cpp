@@ -1,0 +1,45 @@
+// The balance of energy in a step.
+#include <cmath>
+
+#include "snowshed/core/parallel.hpp"
+#include "snowshed/material/sym_tensor.hpp"
+#include "snowshed/methods/mpm/solver_impl.hpp"
+
+namespace snowshed::mpm {
+
+template <class T, int D>
+void SolverImpl<T, D>::update_energy_balance() noexcept {
+  Progress& p = state_.progress;
+  double kinetic = 0, elastic = 0, plastic = 0;
+  for (const BlockStats& s : work_.grid.block_stats) {  // of sleeping blocks as they fell asleep
+    kinetic += s.kinetic;
+    elastic += s.elastic;
+    plastic += s.plastic;
+  }
+  double before = 0, after = 0, work = 0, power = 0;
+  for (const BlockStats& s : work_.grid.block_stats) power += s.stress_power;
+  for (const NodeStats& s : work_.grid.node_stats) {
+    before += s.kinetic_before;
+    after += s.kinetic_after;
+    work += s.stress_work;
+    p.energy.friction += s.friction;
+    p.energy.sticking += s.sticking;
+    p.energy.impact += s.impact;
+  }
+  // What particles to grid and grid to particles took.
+  p.energy.transfer += (p.energy.kinetic - before) + (after - kinetic);
+  // Velocities are those of half a step ago; taken at the time of the positions, the transfer
+  // between two steps acts on velocities that have half of the coming step's force in them.
+  p.energy.transfer -= 0.5 * (work - p.stress_power * p.dt);
+  p.stress_power = power;
+  p.energy.plastic += plastic;
+  p.energy.kinetic = kinetic;
+  p.energy.elastic = elastic;
+}
+
+template void SolverImpl<float, 2>::update_energy_balance() noexcept;
+template void SolverImpl<float, 3>::update_energy_balance() noexcept;
+template void SolverImpl<double, 2>::update_energy_balance() noexcept;
+template void SolverImpl<double, 3>::update_energy_balance() noexcept;
+
+}  // namespace snowshed::mpm
