@@ -145,8 +145,8 @@ sanitize-address: $(VENV)/.dev-tools
 sanitize-thread: $(VENV)/.dev-tools
 	@sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "Fetching GoogleTest instead."
 	$(call build_sanitized,thread,LongSlab|Faults)
-	sh tools/sanitized_pytest.sh $(WATCHED)-thread $(VENV) tsan tests/run/test_executable.py \
-	  tests/run/test_simulation.py -k "test_executable or thread"
+	sh tools/sanitized_pytest.sh $(WATCHED)-thread $(VENV) tsan tests/running/test_executable.py \
+	  tests/running/test_simulation.py -k "test_executable or thread"
 
 fuzz: $(VENV)/.build-tools
 	cmake -S . -B $(FUZZED) -G Ninja -DSNOWSHED_SANITIZE=address -DSNOWSHED_BUILD_FUZZ=ON \

@@ -20,8 +20,8 @@ from typing import Any
 from keeping import keep_cases
 from tables import print_tables
 
-from snowshed.run.events import run_events
-from snowshed.run.machine import cpu_name
+from snowshed.base.machine import cpu_name
+from snowshed.running.events import run_events
 from snowshed.scene.scene import Scene
 
 Case = dict[str, Any]

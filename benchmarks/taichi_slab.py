@@ -22,7 +22,7 @@ from statistics import median
 import numpy as np
 
 from snowshed import Scene, _core
-from snowshed.run.machine import cpu_name
+from snowshed.base.machine import cpu_name
 
 try:
     import taichi as ti

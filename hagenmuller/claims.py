@@ -43,7 +43,7 @@ from hagenmuller.studies import (
 )
 from snowshed.analysis.grains.ratios import STRESSES, LogMean, paired_ratios
 from snowshed.analysis.grains.variants import BASE
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -19,7 +19,7 @@ from snowshed._core import InputError
 from snowshed.analysis.grains.ratios import STRESSES, compare_variants
 from snowshed.analysis.grains.sensitivity import FIGURE, evaluate_sensitivity
 from snowshed.analysis.grains.variants import BASE
-from snowshed.io.formatting import NOTHING
+from snowshed.base.formatting import NOTHING
 from snowshed.plot.html_page import Grid, Picture
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.grains.samples import LabelledSample
-from snowshed.methods.grains.image.gaussian_snow import gaussian_snow
-from snowshed.methods.grains.image.ice_image import IceImage
-from snowshed.methods.grains.image.segmentation import SegmentationSettings, segment
-from snowshed.methods.grains.image.sphere_snow import sphere_snow
+from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
+from snowshed.analysis.tomography.ice_image import IceImage
+from snowshed.analysis.tomography.segmentation import SegmentationSettings, segment
+from snowshed.analysis.tomography.sphere_snow import sphere_snow
 
 VOXEL, WAVELENGTH = 5e-5, 5e-4  # m
 COARSER = 2  # voxels along the edge of a sphere

@@ -8,10 +8,10 @@ from contextlib import AbstractContextManager
 from typing import Optional
 
 from reproduction.hypothesis_tests import CONTRADICTED, UNDECIDED, Judged
+from snowshed.base.formatting import about
+from snowshed.base.progress import Progress, Reporter
 from snowshed.cli import progress as bar
 from snowshed.cli.terminal import plain_table, wide_console
-from snowshed.io.formatting import about
-from snowshed.run.progress import Progress, Reporter
 
 WIDTH = 140  # columns, of what is not a terminal
 STYLES = {CONTRADICTED: "bold red", UNDECIDED: "dim"}

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from snowshed.io.formatting import NOTHING, number, percent
+from snowshed.base.formatting import NOTHING, number, percent
 
 CONFIRMED, CONTRADICTED, UNDECIDED = "confirmed", "contradicted", "undecided"
 #: A difference counts if it is more than so many standard deviations of its noise.

@@ -13,9 +13,9 @@ from reproduction.hypothesis_tests import SIGMAS, Judged
 from reproduction.section import Section
 from reproduction.stage import Stage
 from snowshed import _core
+from snowshed.base.machine import cpu_name
 from snowshed.io.atomic import write_text
 from snowshed.plot.html_page import template
-from snowshed.run.machine import cpu_name
 
 TEMPLATE = "reproduction.html.j2"
 

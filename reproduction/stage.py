@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Optional, Protocol
 
 from snowshed._core import InputError
-from snowshed.run.progress import Progress, Reporter
+from snowshed.base.progress import Progress, Reporter
 from snowshed.study import Study, cost_estimate
 from snowshed.study.session import Resources, resume
 from snowshed.study.store import Store, StoredRun

@@ -16,8 +16,8 @@ from typing import Optional
 import numpy as np
 
 from saito.size import Size
-from snowshed.io.arrays import Floats
-from snowshed.methods.mps import MpsSettings
+from snowshed.base.arrays import Floats
+from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Events, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape

@@ -9,7 +9,7 @@ import numpy as np
 
 from saito.cases import Case
 from saito.runs import Snow
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 MOVING = 0
 #: The front is where so much of the moving snow has passed; single grains run ahead of it.

@@ -16,9 +16,9 @@ from reproduction.stage import StageReporter, State
 
 from saito.cases import Case
 from snowshed._core import SimulationError
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 from snowshed.io.atomic import replacing, write_text
-from snowshed.run.simulation import Simulation
+from snowshed.running.simulation import Simulation
 from snowshed.scene.scene import SceneLike
 
 CHECKPOINT, FAILURE = "checkpoint.bin", "failed.txt"

@@ -25,9 +25,9 @@ from snowshed.analysis.regression.summary import (
     THESIS_QUARTILES,
     thesis_relative_error,
 )
+from snowshed.base.formatting import percent
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
-from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from thesis.claims.regression import Regressed

@@ -11,8 +11,8 @@ from reproduction.stage import StageReporter, State, StudyStage
 from snowshed._core import InputError
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.rows import StackRows, read_rows
-from snowshed.run.pool import available_cores
-from snowshed.run.progress import Progress, Reporter
+from snowshed.base.pool.pool import available_cores
+from snowshed.base.progress import Progress, Reporter
 from thesis.folder import ReproductionFolder
 from thesis.size import Size
 from thesis.studies import PANELS

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from reproduction.hypothesis_tests import widening
 
-from snowshed.io.arrays import Floats
-from snowshed.io.formatting import NOTHING
+from snowshed.base.arrays import Floats
+from snowshed.base.formatting import NOTHING
 from snowshed.plot.html_page import Grid
 from snowshed.plot.labels import label
 from snowshed.study.table import value_at

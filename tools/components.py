@@ -21,7 +21,7 @@ from pathlib import Path
 from tools.component_docs import attributes_section
 
 from snowshed import Scene
-from snowshed.io.record import Record
+from snowshed.base.record import Record
 from snowshed.methods.registry import METHODS
 from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
 

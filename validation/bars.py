@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import inf, isnan, nan
 from typing import TYPE_CHECKING, Optional
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.analysis.verification.solutions import records, rows_of, solutions
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.solutions import records, rows_of, solutions
 from validation.case import Case, Quantity, Wanted
 from validation.convergence import convergences
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Optional
 
-from snowshed.analysis.verification.measurements import Measured, Settings, Value
-from snowshed.io.formatting import number, percent
+from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.base.formatting import number, percent
 
 #: Settings that are asked for; None: not given.
 Wanted = Mapping[str, Optional[Value]]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.analysis.verification.solutions import (
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.solutions import (
     Solution,
     assured_errors,
     key_of,
@@ -17,7 +17,7 @@ from snowshed.analysis.verification.solutions import (
     rows_of,
     solutions,
 )
-from snowshed.io.arrays import Booleans
+from snowshed.base.arrays import Booleans
 from validation.case import Case, Quantity
 from validation.schemes import problem_of
 

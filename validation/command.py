@@ -12,7 +12,7 @@ import click
 from snowshed.cli.exit_codes import Stopped
 
 if TYPE_CHECKING:
-    from snowshed.analysis.verification.measurements import Measurement
+    from snowshed.analysis.accuracy.measurements import Measurement
     from validation.case import Case
     from validation.folder import SuiteFolder
     from validation.report import Stress
@@ -58,7 +58,7 @@ def validate(
     Example:
       python -m validation --quick -o verification
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.verification.recorded import load_recorded, record
+    from snowshed.analysis.accuracy.recorded import load_recorded, record
     from validation.folder import SuiteFolder
     from validation.report import Suite, problems, write_report
     from validation.suite import load_cases
@@ -93,7 +93,7 @@ def validate(
 def _measure(
     cases: Sequence[Case], results: SuiteFolder, *, full: bool, quiet: bool
 ) -> list[Measurement]:
-    from snowshed.analysis.verification.recorded import load_recorded
+    from snowshed.analysis.accuracy.recorded import load_recorded
     from validation.display import validation_bar
     from validation.runner import run_suite
 

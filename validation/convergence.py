@@ -8,9 +8,9 @@ from math import nan
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.analysis.verification.solutions import Solution, alike
-from snowshed.io.arrays import Floats
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.solutions import Solution, alike
+from snowshed.base.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Optional
 
+from snowshed.base.progress import Reporter
 from snowshed.cli.progress import progress_bar
 from snowshed.cli.terminal import plain_table, wide_console
-from snowshed.run.progress import Reporter
 from validation import sections
 from validation.bars import Bar as Demand
 from validation.case import Case

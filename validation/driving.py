@@ -6,10 +6,10 @@ import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.record import Record
-from snowshed.methods.mpm import MpmSettings
-from snowshed.run.self_test import drive
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.record import Record
+from snowshed.cli.self_test import drive
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.components import Seeding, Snow
 from snowshed.scene.scene import Scene
 from validation.case import Outcome

@@ -6,8 +6,8 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.io.arrays import Floats
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.base.arrays import Floats
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape

@@ -15,10 +15,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from snowshed.analysis.verification import setting_labels
-from snowshed.analysis.verification.measurements import Settings, Value
-from snowshed.analysis.verification.solutions import Solution, key_of
-from snowshed.io import formatting
+from snowshed.analysis.accuracy import setting_labels
+from snowshed.analysis.accuracy.measurements import Settings, Value
+from snowshed.analysis.accuracy.solutions import Solution, key_of
+from snowshed.base import formatting
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank
 from validation.case import Quantity
 from validation.cheapest import pareto_front

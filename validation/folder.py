@@ -19,7 +19,7 @@ from snowshed import _core
 from snowshed._core import InputError
 from snowshed.io.atomic import remove_leftovers, write_text
 from snowshed.io.json_file import check_values, read_object
-from snowshed.run.results import check_empty
+from snowshed.results.folder import check_empty
 from validation.measurement_file import MeasurementFile
 
 if TYPE_CHECKING:

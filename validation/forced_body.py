@@ -7,8 +7,8 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.io.arrays import Floats
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.base.arrays import Floats
 from snowshed.scene.shape import Shape
 from validation.driving import Drive
 from validation.elastic_bodies import elastic_scene, from_plane, in_plane

@@ -8,8 +8,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.io.arrays import Integers
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.base.arrays import Integers
 from snowshed.methods.grains import phases
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.settings import GrainsSettings

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 SECTORS = 24  # in which the front of a round deposit is looked for
 

@@ -19,11 +19,11 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.verification.measurements import Measured, Settings, Value
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.analysis.accuracy.measurements import Measured, Settings, Value
+from snowshed.base.arrays import Booleans, Floats
 from snowshed.io.atomic import write_text
-from snowshed.run.conversion import outline_difference
-from snowshed.run.results import measured_columns
+from snowshed.results.folder import measured_columns
+from snowshed.running.conversion import outline_difference
 from snowshed.scene.scene import Scene
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 from snowshed.snow.stack.quantities import MEASURES

@@ -20,7 +20,7 @@ from typing import Union
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 YOUNGS_MODULUS, DENSITY = 1e6, 210.0  # Pa, kg/m3
 #: Speed of waves in a rod, sqrt(E/rho0), m/s.

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from snowshed.analysis.verification.measurements import Measurement
+from snowshed.analysis.accuracy.measurements import Measurement
 from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import parse_object
 
@@ -25,7 +25,7 @@ class MeasurementFile:
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from snowshed.analysis.verification.measurements import Measured
+    >>> from snowshed.analysis.accuracy.measurements import Measured
     >>> with TemporaryDirectory() as folder:
     ...     file = MeasurementFile(Path(folder) / "m.jsonl")
     ...     file.append(Measurement("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)]))

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import SimulationError
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.run.machine import peak_memory_mb
-from snowshed.run.pool import Isolation, Pool
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.base.machine import peak_memory_mb
+from snowshed.base.pool.pool import Isolation, Pool
 from validation.case import Outcome
 
 Measure = Callable[[Settings], Outcome]

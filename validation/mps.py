@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.methods.mps import MpsSettings
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Events, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape

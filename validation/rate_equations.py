@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 #: Softening snow is followed until its strength has fallen to this part; stress and strength then
 #: vanish together, and their ratio would be lost in rounding.

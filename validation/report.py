@@ -19,10 +19,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed.analysis.verification import setting_labels
-from snowshed.analysis.verification.measurements import Measurement, to_table
-from snowshed.analysis.verification.solutions import rows_of, solutions
-from snowshed.io import formatting
+from snowshed.analysis.accuracy import setting_labels
+from snowshed.analysis.accuracy.measurements import Measurement, to_table
+from snowshed.analysis.accuracy.solutions import rows_of, solutions
+from snowshed.base import formatting
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.html_page import template, write_pictures

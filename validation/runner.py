@@ -13,10 +13,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Optional
 
 from snowshed import _core
-from snowshed.analysis.verification import setting_labels
-from snowshed.analysis.verification.measurements import Measured, Measurement, Settings, key_of
-from snowshed.run.machine import cpu_name
-from snowshed.run.progress import Progress, Reporter
+from snowshed.analysis.accuracy import setting_labels
+from snowshed.analysis.accuracy.measurements import Measured, Measurement, Settings, key_of
+from snowshed.base.machine import cpu_name
+from snowshed.base.progress import Progress, Reporter
 from validation.case import Case, Outcome
 from validation.measurement_file import MeasurementFile
 from validation.measuring import Answer, measured, measurers

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.analysis.verification.solutions import SAMPLING
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.analysis.accuracy.solutions import SAMPLING
 from snowshed.scene.accuracy_settings import ACCURACY
 from validation.case import Case
 

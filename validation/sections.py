@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from snowshed.analysis.verification import setting_labels
-from snowshed.analysis.verification.measurements import Measurement, Settings
-from snowshed.analysis.verification.solutions import Solution, key_of, rows_of, solutions
-from snowshed.io import formatting
+from snowshed.analysis.accuracy import setting_labels
+from snowshed.analysis.accuracy.measurements import Measurement, Settings
+from snowshed.analysis.accuracy.solutions import Solution, key_of, rows_of, solutions
+from snowshed.base import formatting
 from snowshed.plot.html_page import Grid, Picture
 from validation import figures
 from validation.bars import Bar

@@ -10,12 +10,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.io.arrays import Floats
-from snowshed.io.raster import Raster, write_ascii_grid
-from snowshed.methods.slide import SlideSettings
-from snowshed.methods.slide_maps import SlideMaps
-from snowshed.run.slides import slide_maps
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.base.arrays import Floats
+from snowshed.io.raster.raster import Raster, write_ascii_grid
+from snowshed.methods.slide.maps import SlideMaps, slide_maps
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.components import Area, Events, Terrain
 from snowshed.scene.scene import Scene
 from validation.driving import Drive

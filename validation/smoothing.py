@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from snowshed.analysis.verification.measurements import Settings
+from snowshed.analysis.accuracy.measurements import Settings
 
 
 @dataclass(frozen=True)

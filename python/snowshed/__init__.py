@@ -29,18 +29,18 @@ if _TYPE_CHECKING:
     from snowshed._core import InputError, SimulationError
     from snowshed._core import version as __version__
     from snowshed.analysis import photovoltaics as pv
-    from snowshed.analysis.dimension_ratio import dimension_ratio
-    from snowshed.io.notes import SnowshedNote
+    from snowshed.base.interrupt import Interrupted
+    from snowshed.base.notes import SnowshedNote
+    from snowshed.base.progress import Progress
     from snowshed.methods.grains.settings import GrainsSettings
-    from snowshed.methods.mpm import MpmSettings
-    from snowshed.methods.mps import MpsSettings
-    from snowshed.methods.slide import SlideSettings
-    from snowshed.run.events import run_events
-    from snowshed.run.interrupt import Interrupted
-    from snowshed.run.progress import Progress
-    from snowshed.run.results import read_events
-    from snowshed.run.results_reader import Results
-    from snowshed.run.simulation import Simulation
+    from snowshed.methods.mpm.settings import MpmSettings
+    from snowshed.methods.mps.settings import MpsSettings
+    from snowshed.methods.slide.settings import SlideSettings
+    from snowshed.results.dimension_ratio import dimension_ratio
+    from snowshed.results.folder import read_events
+    from snowshed.results.reader import Results
+    from snowshed.running.events import run_events
+    from snowshed.running.simulation import Simulation
     from snowshed.scene.components import (
         Area,
         Body,
@@ -117,35 +117,35 @@ _MODULES = {
     "GrainsSettings": "snowshed.methods.grains.settings",
     "Ground": "snowshed.scene.components",
     "InputError": "snowshed._core",
-    "Interrupted": "snowshed.run.interrupt",
+    "Interrupted": "snowshed.base.interrupt",
     "Layer": "snowshed.scene.components",
     "LoadingStage": "snowshed.scene.loading",
     "Motion": "snowshed.scene.components",
-    "MpmSettings": "snowshed.methods.mpm",
-    "MpsSettings": "snowshed.methods.mps",
+    "MpmSettings": "snowshed.methods.mpm.settings",
+    "MpsSettings": "snowshed.methods.mps.settings",
     "Obstacle": "snowshed.scene.components",
     "Output": "snowshed.scene.output",
     "Panel": "snowshed.scene.components",
-    "Progress": "snowshed.run.progress",
+    "Progress": "snowshed.base.progress",
     "ResolvedScene": "snowshed.scene.scene",
-    "Results": "snowshed.run.results_reader",
+    "Results": "snowshed.results.reader",
     "Sample": "snowshed.scene.loading",
     "Scene": "snowshed.scene.scene",
     "Seeding": "snowshed.scene.components",
     "Shape": "snowshed.scene.shape",
-    "Simulation": "snowshed.run.simulation",
+    "Simulation": "snowshed.running.simulation",
     "SimulationError": "snowshed._core",
     "Slab": "snowshed.scene.components",
-    "SlideSettings": "snowshed.methods.slide",
+    "SlideSettings": "snowshed.methods.slide.settings",
     "Snow": "snowshed.scene.components",
-    "SnowshedNote": "snowshed.io.notes",
+    "SnowshedNote": "snowshed.base.notes",
     "StackMeasure": "snowshed.snow.stack.measure",
     "Terrain": "snowshed.scene.components",
-    "dimension_ratio": "snowshed.analysis.dimension_ratio",
+    "dimension_ratio": "snowshed.results.dimension_ratio",
     "level": "snowshed.snow.stack.measure",
     "measure_stack": "snowshed.snow.stack.measure",
-    "read_events": "snowshed.run.results",
-    "run_events": "snowshed.run.events",
+    "read_events": "snowshed.results.folder",
+    "run_events": "snowshed.running.events",
 }
 #: Modules by a shorter name.
 _MODULE_NAMES = {"pv": "snowshed.analysis.photovoltaics"}
@@ -186,7 +186,7 @@ if not _TYPE_CHECKING:
         if name == "__version__":
             return _importlib.import_module("snowshed._core").version
         if name in _FORMER:
-            from snowshed.io.renamed import renamed
+            from snowshed.base.renamed import renamed
 
             former = {name: _imported(_FORMER[name])}
             return renamed(__name__, former, stacklevel=3)(name)

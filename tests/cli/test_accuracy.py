@@ -3,9 +3,9 @@ import json
 import pytest
 
 from snowshed import InputError, Scene
-from snowshed.analysis.verification import recorded
-from snowshed.analysis.verification.measurements import Measured, Measurement
-from snowshed.analysis.verification.recorded import load_recorded, record
+from snowshed.analysis.accuracy import recorded
+from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.recorded import load_recorded, record
 from snowshed.cli.accuracy import CASE, QUANTITIES, choose
 from snowshed.cli.main import main
 from snowshed.cli.scene_options import option_name

@@ -12,11 +12,11 @@ import pandas as pd
 import pytest
 from conftest import tiny_scene
 
+from snowshed.base.printable import HARMFUL, printable
 from snowshed.cli.main import main
 from snowshed.cli.start import main as start
 from snowshed.cli.terminal import PlainConsole, plain_table
 from snowshed.io.csv_table import csv_text
-from snowshed.io.printable import HARMFUL, printable
 
 HOSTILE = "\x1b[31mred\x9b\u202e[/a]"
 COMMAND = [sys.executable, "-m", "snowshed"]

@@ -24,7 +24,7 @@ def test_a_file_that_needs_too_much_is_named(tmp_path, monkeypatch, capsys):
 
 
 def test_a_run_that_needs_too_much_is_told_so(tmp_path, monkeypatch, capsys):
-    from snowshed.run import events
+    from snowshed.running import events
 
     def exhausted(*_, **__):
         raise MemoryError

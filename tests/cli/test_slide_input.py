@@ -8,7 +8,7 @@ import pytest
 from slide_files import box, plane, write_features, write_polygons, write_project
 
 from snowshed.cli.main import main
-from snowshed.io.raster import Raster, read_raster, write_ascii_grid
+from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
 
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")

@@ -12,7 +12,7 @@ import pytest
 from slide_files import box, write_polygons, write_project
 
 from snowshed.cli.main import main
-from snowshed.run import slides
+from snowshed.running import slides
 
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")
@@ -104,7 +104,7 @@ def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, caps
         raise InputError("no rasterio")
 
     project = write_project(tmp_path / "project", "tEnd = 0.05\n")
-    monkeypatch.setattr("snowshed.run.avaframe_outputs.write_avaframe_outputs", fail)
+    monkeypatch.setattr("snowshed.results.avaframe.write_avaframe_outputs", fail)
     assert slide(project, tmp_path / "out", "-q") == 3
     assert (
         "the slide has ended, its outputs are not written: no rasterio" in capsys.readouterr().err

@@ -9,7 +9,7 @@ from slide_files import box, plane, write_polygons
 
 from snowshed import Scene
 from snowshed.cli.main import main
-from snowshed.io.raster import Raster, write_ascii_grid
+from snowshed.io.raster.raster import Raster, write_ascii_grid
 
 pytest.importorskip("pyogrio")
 rasterio = pytest.importorskip("rasterio")

@@ -15,8 +15,9 @@ import pytest
 from conftest import tiny_mps, tiny_scene
 from faults.forks import Forks
 
+from snowshed.analysis.tomography.example import example_grains
 from snowshed.io.atomic import LEFTOVER
-from snowshed.scene.builders import example_grains, example_slide
+from snowshed.scene.builders import example_slide
 from snowshed.study.table import read_table
 
 SCRIPTS = Path(sysconfig.get_path("scripts"))

@@ -12,9 +12,9 @@ import threading
 import pytest
 
 from snowshed import InputError
+from snowshed.base.limits import LINE, MB, MEMBERS, TEXT
 from snowshed.io.csv_table import read_csv, read_text_table
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import LINE, MB, MEMBERS, TEXT
 from snowshed.io.packed import unpacked
 from snowshed.io.weather import read_station
 
@@ -162,7 +162,7 @@ def test_commands_refuse_a_silent_pipe(arguments, tmp_path):
 
 def test_ten_million_columns_fit_into_little_memory(tmp_path):
     (tmp_path / "wide.csv").write_bytes(b"date,snowfall_m,temperature_c" + b",x" * 10_000_000)
-    code = "import sys; from snowshed.run.season import read_season; read_season(sys.argv[1])"
+    code = "import sys; from snowshed.season import read_season; read_season(sys.argv[1])"
 
     def limit():
         resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))

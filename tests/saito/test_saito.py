@@ -19,7 +19,7 @@ from saito.runs import CaseStage, Snow
 from saito.size import FULL, QUICK
 
 from snowshed.cli.main import main
-from snowshed.run.simulation import Simulation
+from snowshed.running.simulation import Simulation
 
 MODULES = [one.name for one in pkgutil.walk_packages(saito.__path__, "saito.")]
 

@@ -8,7 +8,7 @@ import pytest
 from paths import ROOT
 from tools.components import components, written
 
-from snowshed.io.field_type import alternatives_of
+from snowshed.base.field_type import alternatives_of
 from snowshed.scene.schema import properties, resolve, scene_schema
 
 NODES = components()

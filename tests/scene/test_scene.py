@@ -14,8 +14,8 @@ from snowshed import (
     Snow,
     _core,
 )
-from snowshed.io.record import Record
-from snowshed.methods.mpm import MpmSettings
+from snowshed.base.record import Record
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.registry import METHODS
 from snowshed.scene.schema import (
     properties,

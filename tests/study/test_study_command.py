@@ -9,9 +9,9 @@ import study_helpers
 from study_helpers import outcome, tiny_study
 
 from snowshed import Scene
+from snowshed.base.progress import Progress
 from snowshed.cli.display.study import announcement
 from snowshed.cli.main import main
-from snowshed.run.progress import Progress
 from snowshed.study.store import Store
 
 scripted = study_helpers.scripted  # a fixture

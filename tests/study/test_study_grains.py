@@ -6,7 +6,7 @@ import pytest
 from grain_files import VOXEL, write_labels
 
 from snowshed import GrainsSettings, LoadingStage
-from snowshed.run.grains import run_grains
+from snowshed.running.grains import run_grains
 from snowshed.scene.builders import grains_scene
 from snowshed.study import Study, read_table
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from snowshed import InputError
-from snowshed.analysis.hazard_maps import hazard_maps, wilson_interval
-from snowshed.io.raster import read_raster
-from snowshed.methods.peak_maps import PeakMaps
-from snowshed.run.slides import run_slide
+from snowshed.analysis.hazard.maps import hazard_maps, wilson_interval
+from snowshed.io.raster.raster import read_raster
+from snowshed.methods.slide.peak_maps import PeakMaps
+from snowshed.running.slides import run_slide
 from snowshed.scene.builders import example_slide
 from snowshed.study import Study, read_table
 from snowshed.study.store import Store
@@ -69,7 +69,7 @@ def test_probabilities_and_percentiles_are_those_of_the_single_slides(study, com
 
 def test_bands_of_the_terrain_join_to_the_same_maps(computed, monkeypatch):
     whole = hazard_maps(computed)
-    monkeypatch.setattr("snowshed.analysis.hazard_maps.BAND_BYTES", 40_000)
+    monkeypatch.setattr("snowshed.analysis.hazard.maps.BAND_BYTES", 40_000)
     parts = hazard_maps(computed)
     for one, other in zip(whole.exceedances, parts.exceedances):
         assert (one.probability == other.probability).all()

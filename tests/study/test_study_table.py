@@ -12,7 +12,7 @@ from paths import ROOT
 from study_helpers import outcome, tiny_scene, tiny_study
 
 from snowshed import InputError, Shape
-from snowshed.run.results import EVENT_COLUMNS
+from snowshed.results.folder import EVENT_COLUMNS
 from snowshed.scene.components import Obstacle
 from snowshed.study import Factor, Study, export, read_table, to_dataset
 from snowshed.study.database import FILE, MEASURED_TYPES, TIMING

@@ -8,7 +8,7 @@ import pandas as pd
 from thesis.size import QUICK
 
 from snowshed.analysis.regression.folds import CrossValidation
-from snowshed.run.results import WORDS
+from snowshed.results.folder import WORDS
 from snowshed.snow.stack.trimming import TRIMMINGS
 from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.outcome import Outcome

@@ -8,7 +8,7 @@ import time
 from validation.case import Case, Outcome, Quantity
 from validation.command import validate
 
-from snowshed.analysis.verification.measurements import Measured
+from snowshed.analysis.accuracy.measurements import Measured
 from snowshed.cli.main import main
 
 MEGABYTES = 150

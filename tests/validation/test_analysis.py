@@ -12,8 +12,8 @@ from validation.cheapest import by_problem, cheapest, pareto_front
 from validation.convergence import convergences, observed_order, pairwise_orders
 from validation.schemes import varying
 
-from snowshed.analysis.verification.measurements import Measured, Measurement, to_table
-from snowshed.analysis.verification.solutions import (
+from snowshed.analysis.accuracy.measurements import Measured, Measurement, to_table
+from snowshed.analysis.accuracy.solutions import (
     Solution,
     assured_errors,
     quickest,

@@ -10,8 +10,8 @@ from validation import stress, suite
 from validation.folder import SuiteFolder
 
 from snowshed import InputError
-from snowshed.analysis.verification.measurements import Measured, Measurement
-from snowshed.analysis.verification.recorded import load_recorded
+from snowshed.analysis.accuracy.measurements import Measured, Measurement
+from snowshed.analysis.accuracy.recorded import load_recorded
 
 WHOLE = Measurement("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
 

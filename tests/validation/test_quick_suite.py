@@ -7,7 +7,7 @@ from validation.report import Suite, problems
 from validation.runner import run_suite
 from validation.suite import case_modules, cases_of
 
-from snowshed.analysis.verification.measurements import to_table
+from snowshed.analysis.accuracy.measurements import to_table
 
 
 @pytest.mark.parametrize("module", case_modules())

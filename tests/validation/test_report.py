@@ -16,8 +16,8 @@ from validation.report import Stress, Suite, write_report
 from validation.runner import run_suite
 from validation.stress import SummaryTable
 
-from snowshed.analysis.verification.measurements import to_table
-from snowshed.io import formatting
+from snowshed.analysis.accuracy.measurements import to_table
+from snowshed.base import formatting
 
 PNG = b"\x89PNG\r\n\x1a\n"
 

@@ -17,7 +17,7 @@ from validation.measurement_file import MeasurementFile
 from validation.runner import Estimate, run_suite, tasks_of
 
 from snowshed._core import InputError
-from snowshed.analysis.verification.measurements import Measured, Measurement, settings_of, to_table
+from snowshed.analysis.accuracy.measurements import Measured, Measurement, settings_of, to_table
 
 FAILURES = {
     "raises": "ValueError: no such snow (made_up.py:",

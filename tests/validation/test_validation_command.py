@@ -10,8 +10,8 @@ from processes import modules_after
 from validation import runner, suite
 from validation.case import Quantity
 
-from snowshed.analysis.verification.recorded import load_recorded
-from snowshed.run.progress import Progress
+from snowshed.analysis.accuracy.recorded import load_recorded
+from snowshed.base.progress import Progress
 
 HOLDING = (Quantity("height", "height, m", bar=0.2, bar_for={"transfer": "apic"}, order_in="dx"),)
 

@@ -13,7 +13,7 @@ from reproduction.hypothesis_tests import (
     Finding,
 )
 
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 from snowshed.plot.labels import settings
 from snowshed.scene.thesis_tables import CALIBRATED
 

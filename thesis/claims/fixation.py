@@ -22,7 +22,7 @@ from reproduction.hypothesis_tests import (
     small,
 )
 
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 from snowshed.plot.labels import label
 from thesis.claims.s_index import COHESION, HARDENING, MODULUS, PRESSURE, SLOPE
 

@@ -27,8 +27,8 @@ from reproduction.hypothesis_tests import (
     small,
 )
 
-from snowshed.io.arrays import Floats
-from snowshed.io.formatting import percent
+from snowshed.base.arrays import Floats
+from snowshed.base.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -24,7 +24,7 @@ from reproduction.hypothesis_tests import (
     widening,
 )
 
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -27,8 +27,8 @@ from snowshed.analysis.regression.summary import (
     THESIS_QUARTILES,
     THESIS_ROWS,
 )
-from snowshed.io.arrays import Floats
-from snowshed.io.formatting import percent
+from snowshed.base.arrays import Floats
+from snowshed.base.formatting import percent
 
 if TYPE_CHECKING:
     import pandas as pd

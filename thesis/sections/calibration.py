@@ -13,7 +13,7 @@ from snowshed.analysis.calibration.comparison import read_simulated
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, statistics
 from snowshed.analysis.calibration.report import Calibration, calibrate, write
-from snowshed.io.formatting import number, percent
+from snowshed.base.formatting import number, percent
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.plot.labels import label
 from snowshed.scene.thesis_tables import CALIBRATED

@@ -12,8 +12,8 @@ from reproduction.section import Section
 from snowshed.analysis.deviations import DEVIATIONS, FRAME_RATE
 from snowshed.analysis.regression.geometry import DAMPING_RATE
 from snowshed.analysis.regression.summary import QUARTILES, THESIS_QUARTILES, THESIS_ROWS
+from snowshed.base.formatting import NOTHING, percent
 from snowshed.io.csv_table import write_csv
-from snowshed.io.formatting import NOTHING, percent
 from snowshed.plot.html_page import Grid
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from thesis.reproduction import Reproduction

@@ -8,7 +8,7 @@ from reproduction.hypothesis_tests import Judged, judge
 from reproduction.section import Section
 
 from snowshed._core import InputError
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.table import read_table

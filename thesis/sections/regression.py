@@ -19,8 +19,8 @@ from snowshed.analysis.regression.summary import (
     quartiles,
     thesis_relative_error,
 )
+from snowshed.base.formatting import percent
 from snowshed.io.csv_table import read_csv
-from snowshed.io.formatting import percent
 from snowshed.plot.html_page import Grid, Picture
 from snowshed.snow.stack.quantities import MEASURES
 from thesis.claims.regression import (

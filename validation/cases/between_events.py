@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import Measured, Settings
 from validation.case import Case, Outcome, Quantity
 from validation.driving import absolute, relative
 from validation.lab_stack import (

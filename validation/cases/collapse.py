@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import Measured, Settings
 from snowshed.scene.components import Body, Events, Ground, Snow
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape

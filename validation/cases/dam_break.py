@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.arrays import Floats
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Floats
 from validation.case import Case, Outcome, Quantity
 from validation.driving import absolute
 from validation.slides import Plane, Site, maps_of, rectangle, slide_drive, strip_mean

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import Measured, Settings
 from snowshed.scene.loading import LoadingStage
 from validation.case import Case, Outcome, Quantity
 from validation.driving import relative

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.arrays import Integers
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Integers
 from snowshed.scene.loading import LoadingStage
 from validation.case import Case, Outcome, Quantity
 from validation.grains import GRAIN, grains_drive, snow_labels

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import Measured, Settings
 from snowshed.scene.loading import LoadingStage
 from validation.case import Case, Outcome, Quantity
 from validation.driving import relative

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.arrays import Floats
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Floats
 from validation.case import Case, Outcome, Quantity
 from validation.elastic_bodies import TRANSFERS
 from validation.forced_body import ForcedBody, root_mean_square

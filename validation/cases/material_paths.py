@@ -10,9 +10,9 @@ from typing import Callable, NamedTuple
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.arrays import Floats
-from snowshed.run.self_test.return_mapping import calibrated
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Floats
+from snowshed.cli.self_test.return_mapping import calibrated
 from validation.case import Case, Outcome, Quantity
 from validation.driving import relative
 from validation.rate_equations import RateEquations, evenly

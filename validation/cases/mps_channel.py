@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Settings
-from snowshed.io.arrays import Floats
-from snowshed.methods.mps import MpsSettings
+from snowshed.analysis.accuracy.measurements import Settings
+from snowshed.base.arrays import Floats
+from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
 from validation.case import Case, Outcome, Quantity

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.methods.mps import MpsSettings
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
 from validation.case import Case, Outcome, Quantity

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import Measured, Settings
 from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive, absolute, relative
 from validation.mps import GRAVITY, VARIANTS, WATER, block, floor_and_sides, mps_drive

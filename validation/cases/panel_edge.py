@@ -7,8 +7,8 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.arrays import Floats
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Floats
 from snowshed.scene.components import Condition, Panel, Slab
 from snowshed.scene.scene import Scene
 from validation.case import Case, Outcome, Quantity

@@ -9,8 +9,8 @@ from typing import Union
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.arrays import Floats
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Floats
 from snowshed.scene.components import Body, Condition, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape

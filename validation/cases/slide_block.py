@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Settings
+from snowshed.analysis.accuracy.measurements import Settings
 from validation.case import Case, Outcome, Quantity
 from validation.driving import absolute, relative
 from validation.slides import GRAVITY, Plane, Site, rectangle, slide_drive

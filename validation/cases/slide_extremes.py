@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import Measured, Settings
 from validation.case import Case, Outcome, Quantity
 from validation.slides import Height, Site, rectangle, slide_drive
 

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.arrays import Floats
-from snowshed.io.raster import Raster
-from snowshed.methods.slide_maps import SlideMaps
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Floats
+from snowshed.io.raster.raster import Raster
+from snowshed.methods.slide.maps import SlideMaps
 from snowshed.scene.components import Area
 from validation.case import Case, Outcome, Quantity
 from validation.driving import Drive

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
-from snowshed.io.arrays import Floats
+from snowshed.analysis.accuracy.measurements import Measured, Settings
+from snowshed.base.arrays import Floats
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.case import Case, Outcome, Quantity

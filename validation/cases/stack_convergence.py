@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.verification.measurements import Measured, Settings
+from snowshed.analysis.accuracy.measurements import Measured, Settings
 from validation.case import Case, Outcome, Quantity, Wanted
 from validation.driving import relative
 from validation.lab_stack import (

@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Callable
 from typing import NamedTuple
 
-from snowshed.run.pool import Ended, Isolation, Pool
+from snowshed.base.pool.pool import Ended, Isolation, Pool
 from validation.stress.solve import Record, solve
 from validation.stress.space import Point
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.extras import require
+from snowshed.base.extras import require
 from validation.stress.space import PARAMETERS, Point, Value, reference
 
 #: Random combinations of the full suite.

@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 import pandas as pd
 
-from snowshed.run.progress import Progress, Reporter
+from snowshed.base.progress import Progress, Reporter
 from validation.stress.computing import Run, record, stress_pool
 from validation.stress.design import Trial, trials
 from validation.stress.judge import judge

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.extras import require
+from snowshed.base.extras import require
 
 if TYPE_CHECKING:
     import pandas as pd

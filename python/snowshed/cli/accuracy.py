@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed._core import InputError
+from snowshed.base.formatting import percent
 from snowshed.cli.scene_options import option_name
-from snowshed.io.formatting import percent
-from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import current_path
 
 if TYPE_CHECKING:
-    from snowshed.analysis.verification.measurements import Measurement, Settings, Value
+    from snowshed.analysis.accuracy.measurements import Measurement, Settings, Value
 
 CASE = "stack_convergence"
 QUANTITIES = ("height", "length")
@@ -106,8 +106,8 @@ def choose(
     >>> choice.values["numerics.dx"] > 0
     True
     """
-    from snowshed.analysis.verification.recorded import load_recorded
-    from snowshed.analysis.verification.solutions import quickest
+    from snowshed.analysis.accuracy.recorded import load_recorded
+    from snowshed.analysis.accuracy.solutions import quickest
 
     data = scene.resolve().data
     thickness = _slab_thickness(data)
@@ -181,8 +181,8 @@ class RecordedStack:
 
 def recorded_stacks(measurements: Iterable[Measurement]) -> list[RecordedStack]:
     """Return the recorded stacks."""
-    from snowshed.analysis.verification.measurements import to_table
-    from snowshed.analysis.verification.solutions import assured_errors, key_of, rows_of, solutions
+    from snowshed.analysis.accuracy.measurements import to_table
+    from snowshed.analysis.accuracy.solutions import assured_errors, key_of, rows_of, solutions
 
     table = to_table(one for one in measurements if one.case == CASE and not one.failure)
 
@@ -245,7 +245,7 @@ def _distance(value: Value, mine: Value) -> float:
 
 def _reasons(stack: RecordedStack, wanted: float, data: Mapping[str, Any], name: str) -> list[str]:
     """Return the rest of the first sentence, which tells the setting `name`, and what follows."""
-    from snowshed.analysis.verification.setting_labels import settings
+    from snowshed.analysis.accuracy.setting_labels import settings
 
     scheme = {k: v for k, v in stack.settings.items() if k in ACCURACY and k != name}
     height, length = (percent(error, 2) for error in stack.errors)

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from rich.table import Table
 
-from snowshed.analysis.dimension_ratio import RULE_OF_THUMB
+from snowshed.base.formatting import duration
 from snowshed.cli.terminal import PlainConsole, plain_table, wide_console
-from snowshed.io.formatting import duration
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import settings_of
 from snowshed.plot.caption import contact_text, mean_damping_rate
+from snowshed.results.dimension_ratio import RULE_OF_THUMB
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -22,13 +22,13 @@ from typing import Optional, TextIO, Union
 import click
 
 import snowshed._core as _core
+from snowshed.base.messages import shortened
+from snowshed.base.notes import SnowshedNote
+from snowshed.base.printable import printable
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_GO_ON, INTERRUPTED, PIPE_CLOSED
 from snowshed.cli.memory_shortage import memory_message
 from snowshed.cli.output_pipe import drop_output, flush_output, output_is_closed
-from snowshed.io.messages import shortened
-from snowshed.io.notes import SnowshedNote
-from snowshed.io.printable import printable
 
 #: What is wrong with files as the user named them.
 OF_NAMES = (

@@ -9,7 +9,7 @@ from types import FrameType
 from typing import Optional
 
 #: Modules whose work grows with the number of particles.
-OF_PARTICLES = ("snowshed.run.", "snowshed.methods.", "snowshed.study.")
+OF_PARTICLES = ("snowshed.running.", "snowshed.methods.", "snowshed.study.")
 #: What readers call the file that they read, in the order in which they are asked.
 NAMES = ("path", "file", "source", "where", "raster", "mesh")
 

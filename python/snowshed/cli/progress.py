@@ -15,9 +15,9 @@ from rich.progress import (
 )
 from rich.progress import Progress as Bar
 
+from snowshed.base.formatting import duration
+from snowshed.base.progress import Progress, Reporter
 from snowshed.cli.terminal import PlainConsole
-from snowshed.io.formatting import duration
-from snowshed.run.progress import Progress, Reporter
 
 #: Time over which the speed is averaged that gives the time left, s.
 SPEED_PERIOD_S = 30.0

@@ -6,7 +6,7 @@ import warnings
 
 import click
 
-from snowshed.io.notes import SnowshedNote
+from snowshed.base.notes import SnowshedNote
 
 
 def _silence(context: click.Context, parameter: click.Parameter, quiet: bool) -> bool:

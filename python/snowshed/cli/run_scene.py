@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import snowshed._core as _core
+from snowshed.base.formatting import about
+from snowshed.base.interrupt import Interrupted
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.terminal import say
-from snowshed.io.formatting import about
 from snowshed.methods.registry import DEFAULT, NAME_KEY
-from snowshed.run.interrupt import Interrupted
 from snowshed.scene.scene import ResolvedScene
 
 LONG = 600.0  # s; longer runs are announced
@@ -36,7 +36,7 @@ def _tell_of_slow_kernels(ready: ResolvedScene) -> None:
 def _run_events(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
     from snowshed.cli import console
     from snowshed.cli.progress import progress_bar
-    from snowshed.run.events import run_events
+    from snowshed.running.events import run_events
 
     if not quiet:
         _tell_of_long_run(ready)
@@ -62,7 +62,7 @@ def _tell_of_long_run(ready: ResolvedScene) -> None:
 def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
     from snowshed.cli.display.slide import print_slide
     from snowshed.cli.progress import progress_bar
-    from snowshed.run.slides import run_slide
+    from snowshed.running.slides import run_slide
 
     with progress_bar(quiet=quiet) as progress:
         summary = run_slide(ready, folder, resume=resume, progress=progress)
@@ -73,7 +73,7 @@ def _run_slide(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) ->
 def _run_grains(ready: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
     from snowshed.cli.display.grains import print_grains
     from snowshed.cli.progress import progress_bar
-    from snowshed.run.grains import run_grains
+    from snowshed.running.grains import run_grains
 
     with progress_bar(quiet=quiet) as progress:
         summary = run_grains(ready, folder, resume=resume, progress=progress)

@@ -66,7 +66,7 @@ class SlideFiles:
             What is believed of terrain and snow: `max_slope`, `max_thickness` and
             `max_cells` of `slide_scene`.
         """
-        from snowshed.methods.slide import SlideSettings
+        from snowshed.methods.slide.settings import SlideSettings
         from snowshed.scene.builders.slides import example_slide, slide_scene
 
         if self.any() == example:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.interrupt import deferred_interrupts
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.same_command import same_command
 from snowshed.cli.slide_files import refuse_changed_areas, removing_copies, terrain_copy
 from snowshed.cli.terminal import say
-from snowshed.run.interrupt import deferred_interrupts
 from snowshed.scene.scene import ResolvedScene
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def run_project(
     Failed
         If results cannot be written after a simulation has ended.
     """
-    from snowshed.run.avaframe_outputs import simulation_name
+    from snowshed.results.avaframe import simulation_name
     from snowshed.scene.builders.avaframe import avaframe_simulations
 
     with removing_copies(folder):
@@ -114,7 +114,7 @@ def _write_outputs(
     steps: Sequence[int],
 ) -> None:
     """Write what AvaFrame has beside the results; what is wrong now is no fault of the input."""
-    from snowshed.run.avaframe_outputs import write_avaframe_outputs
+    from snowshed.results.avaframe import write_avaframe_outputs
     from snowshed.scene.builders.avaframe_files import copy_inputs
 
     try:
@@ -131,7 +131,7 @@ def _write_outputs(
 def write_particles(ready: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:
     """Write the particles after some steps to tables in a results folder."""
     from snowshed.io.csv_table import write_csv
-    from snowshed.run.slides import particles_at
+    from snowshed.running.slides import particles_at
 
     for step, table in particles_at(ready, steps).items():
         name = "particles_initial" if step == 0 else f"particles_step{step:05d}"

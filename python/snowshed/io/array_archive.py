@@ -28,7 +28,7 @@ def open_archive(content: bytes, largest: int = LARGEST) -> Iterator[Any]:
 
     Raises
     ------
-    snowshed.io.damage.DAMAGED
+    snowshed.base.damage.DAMAGED
         If it is no archive, is larger, or, while arrays are read, if they are damaged.
 
     Examples

@@ -17,14 +17,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
+from snowshed.base.limits import COLUMNS, LINE, MB, ROWS, TABLE, TEXT, WRITTEN_ROWS
+from snowshed.base.messages import quoted
+from snowshed.base.number_text import number_in
+from snowshed.base.paths import PathLike
+from snowshed.base.printable import csv_cell
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import COLUMNS, LINE, MB, ROWS, TABLE, TEXT, WRITTEN_ROWS
-from snowshed.io.messages import quoted
-from snowshed.io.number_text import number_in
 from snowshed.io.packed import unpacked
-from snowshed.io.paths import PathLike
-from snowshed.io.printable import csv_cell
 
 if TYPE_CHECKING:
     import pandas as pd

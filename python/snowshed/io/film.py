@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import snowshed._core as _core
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.messages import shortened
-from snowshed.io.paths import PathLike
-from snowshed.io.printable import printable
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.messages import shortened
+from snowshed.base.paths import PathLike
+from snowshed.base.printable import printable
 
 #: Name of the film in a results folder.
 FILM = "film.bin"

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from snowshed._core import InputError
-from snowshed.io.limits import MB, PIPE, PIPE_SILENCE, TEXT
+from snowshed.base.limits import MB, PIPE, PIPE_SILENCE, TEXT
 
 
 def read_regular(path: Path) -> bytes:

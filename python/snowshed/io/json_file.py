@@ -7,16 +7,12 @@ import sys
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Dict, List, Union
+from typing import Any
 
 from snowshed._core import InputError
+from snowshed.base.messages import shortened
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
-from snowshed.io.messages import shortened
-
-#: What `json.loads` returns.
-JsonValue = Union[None, bool, int, float, str, List["JsonValue"], Dict[str, "JsonValue"]]
-JsonObject = Dict[str, JsonValue]
 
 #: How the last value of an object begins that says its checksum, as the core writes it.
 SEAL = b',\n  "checksum": "'

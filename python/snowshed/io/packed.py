@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.limits import KB, MB, MEMBERS, TEXT, UNPACKING
+from snowshed.base.limits import KB, MB, MEMBERS, TEXT, UNPACKING
 
 GZIP, XZ = b"\x1f\x8b", b"\xfd7zXZ\x00"
 #: What is not unpacked, by its first bytes.

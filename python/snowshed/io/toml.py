@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from snowshed._core import InputError
-from snowshed.io.messages import shortened
+from snowshed.base.messages import shortened
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -10,13 +10,13 @@ from collections.abc import Mapping
 from typing import Literal, Optional
 
 from snowshed._core import InputError
-from snowshed.io.json_file import JsonValue
-from snowshed.io.messages import suggestion
+from snowshed.base.json_values import JsonValue
+from snowshed.base.messages import suggestion
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.mpm import MpmSettings
-from snowshed.methods.mps import MpsSettings
+from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.methods.mps.settings import MpsSettings
 from snowshed.methods.settings import MethodSettings
-from snowshed.methods.slide import SlideSettings
+from snowshed.methods.slide.settings import SlideSettings
 
 MethodName = Literal["mpm", "slide", "grains", "mps"]
 DEFAULT: MethodName = "mpm"

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, NOISE, STACK, STYLE, blank
 
 Band = tuple[float, float]

@@ -11,9 +11,9 @@ from typing import Any, Optional
 
 import numpy as np
 
+from snowshed.base.printable import printable
 from snowshed.io.atomic import write_text
 from snowshed.io.film import Film
-from snowshed.io.printable import printable
 from snowshed.plot.film_picture import still_picture, view_lift
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
 from snowshed.plot.html_page import Grid, template

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.io.film import Film, FilmFrame
 from snowshed.plot.figure_style import blank
 from snowshed.plot.film_summary import Colouring, FilmSummary

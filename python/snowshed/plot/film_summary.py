@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.io.film import Film, FilmFrame
 from snowshed.plot.solids import Box
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.base.arrays import Booleans, Floats
 from snowshed.methods.grains.contacts import GrainContacts
 from snowshed.plot.figure_style import BODY, FAINT, INK, STACK, STYLE, blank, describe
 

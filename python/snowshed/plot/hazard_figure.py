@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
-from snowshed.io.raster import Raster
+from snowshed.base.arrays import Floats
+from snowshed.io.raster.raster import Raster
 from snowshed.plot.figure_style import INK, STYLE, blank
 from snowshed.plot.terrain_map import (
     Extent,

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import Raster
+from snowshed.io.raster.raster import Raster
 from snowshed.plot.hazard_figure import part_shown, percentiles_figure, probability_figure
 from snowshed.plot.html_page import Grid, Picture, template
 from snowshed.plot.terrain_map import Outline

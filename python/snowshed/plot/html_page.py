@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
+from snowshed.base.printable import printable
 from snowshed.io.atomic import replacing
-from snowshed.io.printable import printable
 
 if TYPE_CHECKING:
     import jinja2

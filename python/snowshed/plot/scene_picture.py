@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from snowshed._core import Simulation
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import FAINT, INK, STACK, blank, describe, quiet

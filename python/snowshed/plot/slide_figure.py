@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.methods.slide_maps import SlideMaps
+from snowshed.methods.slide.maps import SlideMaps
 from snowshed.plot.figure_style import INK, STYLE, blank
 from snowshed.plot.terrain_map import (
     Outline,
@@ -39,7 +39,7 @@ def slide_figure(
     Parameters
     ----------
     maps
-        The maps (`snowshed.run.slides.slide_maps`).
+        The maps (`snowshed.methods.slide.maps.slide_maps`).
     outlines
         Corners of the release areas, in map coordinates, m.
     quantity

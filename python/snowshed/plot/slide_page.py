@@ -15,10 +15,10 @@ from matplotlib.colors import Normalize
 from matplotlib.image import imsave
 
 from snowshed.io.atomic import write_text
-from snowshed.io.raster import Raster
-from snowshed.methods.slide_frames import Frame
-from snowshed.methods.slide_maps import SlideMaps
-from snowshed.methods.slide_validity import ReleaseArea
+from snowshed.io.raster.raster import Raster
+from snowshed.methods.slide.frames import Frame
+from snowshed.methods.slide.maps import SlideMaps
+from snowshed.methods.slide.validity import ReleaseArea
 from snowshed.plot.figure_style import STYLE, blank
 from snowshed.plot.html_page import Grid, Picture, template
 from snowshed.plot.slide_figure import LEAST_SHOWN, PEAKS, slide_figure

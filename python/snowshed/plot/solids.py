@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.raster import Raster
+from snowshed.base.arrays import Floats, Integers
+from snowshed.io.raster.raster import Raster
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.surface_nets import surface_of
 from snowshed.scene.builders.slope import BOARD_CELLS

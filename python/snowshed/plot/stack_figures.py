@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 import snowshed._core as _core
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.base.arrays import Booleans, Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import mean_damping_rate, scene_caption
 from snowshed.plot.figure_style import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 
 EDGES = [
     (a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)

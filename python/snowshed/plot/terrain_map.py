@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.colors import LightSource
 
-from snowshed.io.arrays import Booleans, Floats
-from snowshed.io.raster import Raster
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.io.raster.raster import Raster
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

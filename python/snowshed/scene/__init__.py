@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from snowshed.io.renamed import renamed
+from snowshed.base.renamed import renamed
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.mpm import MpmSettings
-from snowshed.methods.mps import MpsSettings
-from snowshed.methods.slide import SlideSettings
+from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.methods.mps.settings import MpsSettings
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.components import (
     Area,
     Body,

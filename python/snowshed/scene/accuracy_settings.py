@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from snowshed.io.json_file import JsonValue
+from snowshed.base.json_values import JsonValue
 from snowshed.methods.registry import DEFAULT, METHODS, NAME_KEY, SETTINGS_KEY
 from snowshed.scene.schema import Parameter, scene_parameters
 

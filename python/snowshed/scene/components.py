@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import List, Literal, Optional, Union
 
 from snowshed._core import InputError, snow_preset
+from snowshed.base.paths import PathLike
+from snowshed.base.record import Alias, Record
 from snowshed.io.json_file import read_object
-from snowshed.io.paths import PathLike
-from snowshed.io.record import Alias, Record
 from snowshed.scene.shape import Shape, Vector
 
 SnowModel = Literal["cam_clay", "elastic"]

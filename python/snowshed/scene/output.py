@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Optional
 
-from snowshed.io.record import Record
+from snowshed.base.record import Record
 
 
 @dataclass

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from snowshed._core import load_scene, parse_scene
+from snowshed.base.json_values import JsonValue
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
-from snowshed.io.json_file import JsonValue
-from snowshed.io.paths import PathLike
 
 
 @dataclass(frozen=True)

@@ -17,17 +17,17 @@ from typing import Any, List, Optional, Union
 
 from snowshed._core import InputError
 from snowshed._core import preset as preset_text
+from snowshed.base.json_values import JsonObject, JsonValue
+from snowshed.base.paths import PathLike
+from snowshed.base.record import DEEPEST, Record, check_instead, check_once
 from snowshed.io.input_file import read_input
-from snowshed.io.json_file import JsonObject, JsonValue
 from snowshed.io.json_text import loads
-from snowshed.io.paths import PathLike
-from snowshed.io.record import DEEPEST, Record, check_instead, check_once
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.methods.mpm import MpmSettings
-from snowshed.methods.mps import MpsSettings
+from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.methods.mps.settings import MpsSettings
 from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, MethodName, settings_class
 from snowshed.methods.settings import MethodSettings
-from snowshed.methods.slide import SlideSettings
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.components import (
     Body,
     Domain,

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import List, Union
 
 from snowshed._core import InputError
-from snowshed.io.record import Record
+from snowshed.base.record import Record
 
 Holder = Union[Record, List[Record]]
 

@@ -10,7 +10,7 @@ from typing import Optional, cast
 
 from snowshed._core import scene_schema as schema_text
 from snowshed._core import update_version
-from snowshed.io.json_file import JsonObject, JsonValue
+from snowshed.base.json_values import JsonObject, JsonValue
 from snowshed.methods.registry import DEFAULT, METHODS, SETTINGS_KEY
 
 Node = Mapping[str, JsonValue]

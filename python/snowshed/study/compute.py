@@ -15,11 +15,11 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.notes import SnowshedNote
-from snowshed.run.interrupt import Interrupted
-from snowshed.run.method_runs import runs_of
-from snowshed.run.progress import Progress, Reporter
-from snowshed.run.results import RunFolder
+from snowshed.base.interrupt import Interrupted
+from snowshed.base.notes import SnowshedNote
+from snowshed.base.progress import Progress, Reporter
+from snowshed.results.folder import RunFolder
+from snowshed.running.method_runs import runs_of
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.aged_scene import taken_apart
 from snowshed.study.locks import holding

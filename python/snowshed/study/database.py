@@ -23,7 +23,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.run.method_runs import column_types, runs_of
+from snowshed.running.method_runs import column_types, runs_of
 from snowshed.study import checksums
 from snowshed.study.errors import StudyError
 from snowshed.study.locks import owner_lives

@@ -15,10 +15,10 @@ from typing import Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.notes import tell
-from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
-from snowshed.run.pool import available_cores
-from snowshed.run.progress import Progress, Reporter
+from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.base.notes import tell
+from snowshed.base.pool.pool import available_cores
+from snowshed.base.progress import Progress, Reporter
 from snowshed.scene.scene import PathLike
 from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted

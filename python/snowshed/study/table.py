@@ -6,10 +6,10 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
+from snowshed.base.messages import shortened
 from snowshed.io.json_file import is_number
-from snowshed.io.messages import shortened
-from snowshed.run.method_runs import COUNTS, runs_of
-from snowshed.run.results import WORDS
+from snowshed.results.folder import WORDS
+from snowshed.running.method_runs import COUNTS, runs_of
 from snowshed.scene.accuracy_settings import NUMBERS, accuracy_of
 from snowshed.scene.scene import PathLike
 from snowshed.scene.schema import current_path, with_current_names

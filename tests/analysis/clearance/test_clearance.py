@@ -17,11 +17,11 @@ from snowshed.analysis.clearance.answer import STUDY, forecast
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.statistics import burial_interval, levels_of, shares_of
 from snowshed.cli.main import main
-from snowshed.run.results import read_events
-from snowshed.run.season import SeasonSettings, run_season
-from snowshed.run.season.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
-from snowshed.run.season.results import SeasonFolder
-from snowshed.run.season.source import Source
+from snowshed.results.folder import read_events
+from snowshed.results.season_folder import SeasonFolder
+from snowshed.season import SeasonSettings, run_season
+from snowshed.season.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
+from snowshed.season.source import Source
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.table import read_table
 

@@ -6,7 +6,7 @@ from contextlib import closing
 import pytest
 from processes import kill_with_children, snowshed_command, wait_for
 
-from snowshed.run.season.generator import Climate, MonthClimate
+from snowshed.season.generator import Climate, MonthClimate
 from snowshed.study.database import FILE
 
 OFTEN = MonthClimate(0.08, 0.3, 1.5, 0.06, -4.0, 3.0)

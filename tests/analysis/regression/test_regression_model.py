@@ -30,7 +30,7 @@ from snowshed.analysis.regression.spread import (
     stack_spread,
     unseen_panels,
 )
-from snowshed.analysis.regression.threads import one_thread
+from snowshed.base.pool.threads import one_thread
 from snowshed.cli.display.regression import print_prediction
 from snowshed.snow.stack.quantities import MEASURES
 

@@ -8,7 +8,7 @@ import pytest
 from snowshed import Scene
 from snowshed.analysis.sensitivity import read_stored
 from snowshed.cli.main import main
-from snowshed.run.results import WORDS
+from snowshed.results.folder import WORDS
 from snowshed.study import Study
 from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.outcome import Outcome

@@ -12,8 +12,8 @@ from weather_files import EPW
 
 from snowshed import InputError
 from snowshed.io.weather import read_stations
-from snowshed.run.season import read_season
-from snowshed.run.season.weather import read_weather
+from snowshed.season import read_season
+from snowshed.season.weather import read_weather
 
 BEGIN = datetime(2022, 12, 1)
 SNOW = meteoswiss("rre150d0;hns000d0;hto000d0", ["5.0;12;30", "0.0;0;30", "0;0;30"] * 4,

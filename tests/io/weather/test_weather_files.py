@@ -10,9 +10,9 @@ from weather_files import FILES, METEOSWISS, NEW_SNOW, VARIANTS
 
 from snowshed import InputError
 from snowshed.io.weather import FORMATS, read_station
-from snowshed.run.season import read_season
-from snowshed.run.season.gauge import snow_fraction
-from snowshed.run.season.weather import read_weather
+from snowshed.season import read_season
+from snowshed.season.gauge import snow_fraction
+from snowshed.season.weather import read_weather
 from snowshed.snow.relations.new_snow import hedstrom_pomeroy_1998
 
 BY_RULE = 24.0 / hedstrom_pomeroy_1998(-7.0)  # m

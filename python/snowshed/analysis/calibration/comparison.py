@@ -10,10 +10,10 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement, to_table
-from snowshed.analysis.stack_table import StackTable
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.factors import SEED
+from snowshed.study.stack_table import StackTable
 
 if TYPE_CHECKING:
     import pandas as pd

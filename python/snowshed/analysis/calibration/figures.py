@@ -16,8 +16,8 @@ from snowshed.analysis.calibration.comparison import SET
 from snowshed.analysis.calibration.misfit import RANKED
 from snowshed.analysis.calibration.posterior import LEVELS, Posterior
 from snowshed.analysis.calibration.surrogate import EXTRA
-from snowshed.io.arrays import Booleans
-from snowshed.io.extras import require
+from snowshed.base.arrays import Booleans
+from snowshed.base.extras import require
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import label
 

@@ -9,7 +9,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import SET, Simulated
 from snowshed.analysis.sensitivity.fixed_parameter import rescaled
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd

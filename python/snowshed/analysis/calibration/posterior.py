@@ -28,8 +28,8 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.surrogate import EXTRA, Output, Surrogate
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.extras import require
 
 if TYPE_CHECKING:
     import pandas as pd

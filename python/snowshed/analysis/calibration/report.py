@@ -13,9 +13,9 @@ from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKED, rank, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
+from snowshed.base.extras import require
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
-from snowshed.io.extras import require
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 

@@ -16,8 +16,8 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import SET, Simulated
-from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats
+from snowshed.base.extras import require
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -19,11 +19,11 @@ from snowshed.analysis.clearance.design import Design, Ranges
 from snowshed.analysis.clearance.seasons import Case, Outcome, cases_of
 from snowshed.analysis.clearance.statistics import Level, Share, levels_of, shares_of
 from snowshed.analysis.clearance.winters import Winter
-from snowshed.io.arrays import Floats
-from snowshed.io.json_file import JsonValue
-from snowshed.run.progress import Reporter
-from snowshed.run.season.record import WinterList
-from snowshed.run.season.settings import SeasonSettings
+from snowshed.base.arrays import Floats
+from snowshed.base.json_values import JsonValue
+from snowshed.base.progress import Reporter
+from snowshed.season.record import WinterList
+from snowshed.season.settings import SeasonSettings
 from snowshed.study.session import compute_runs, expected_duration
 from snowshed.study.table import read_table
 
@@ -139,7 +139,7 @@ def required_height(found: Sequence[Outcome]) -> float:
 
     Examples
     --------
-    >>> from snowshed.run.season.clearance import Contact
+    >>> from snowshed.season.clearance import Contact
     >>> touched = Contact("2024-12-24", 1, "crest")
     >>> required_height([Outcome(1.0, -0.1, touched), Outcome(2.0, 0.9, None)])
     1.1

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.run.season.settings import SeasonSettings
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.season.settings import SeasonSettings
 
 FINEST, COARSEST, CELLS = 0.04, 0.1, 40  # m, m, cells along the slope
 

@@ -15,7 +15,7 @@ from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
 from snowshed.plot.html_page import Grid, Picture, template
-from snowshed.run.season.quality_table import ALIGN, HEAD, quality_rows, title
+from snowshed.season.quality_table import ALIGN, HEAD, quality_rows, title
 
 
 def write_report(
@@ -166,8 +166,8 @@ def _worst_picture(answer: Answer, view: Path) -> Optional[Picture]:
     """
     from tempfile import TemporaryDirectory
 
-    from snowshed.run.season.driver import run_season
-    from snowshed.run.view import write_view
+    from snowshed.results.view import write_view
+    from snowshed.season.driver import run_season
 
     case, found = answer.cases[answer.worst], answer.outcomes[answer.worst]
     if not case.slides:

@@ -15,12 +15,12 @@ import numpy as np
 
 from snowshed.analysis.clearance.design import Design, scene_of, season_settings
 from snowshed.analysis.clearance.winters import Winter
-from snowshed.run.season.accumulation import Day, accumulate, stack_ageing
-from snowshed.run.season.clearance import Contact, first_contact
-from snowshed.run.season.settings import SeasonSettings
-from snowshed.run.season.slabs import season_scene
-from snowshed.run.season.table import season_table
 from snowshed.scene.scene import ResolvedScene
+from snowshed.season.accumulation import Day, accumulate, stack_ageing
+from snowshed.season.clearance import Contact, first_contact
+from snowshed.season.settings import SeasonSettings
+from snowshed.season.slabs import season_scene
+from snowshed.season.table import season_table
 from snowshed.study.scene_hash import Run
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 PROBABILITIES = (0.5, 0.9, 0.98)
 RESAMPLES, SEED = 1000, 1

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from snowshed._core import InputError
-from snowshed.io.notes import tell
-from snowshed.run.season.quality import COVERAGE
-from snowshed.run.season.record import Record, WinterList, percent
-from snowshed.run.season.weather_row import Weather
+from snowshed.base.notes import tell
+from snowshed.season.quality import COVERAGE
+from snowshed.season.record import Record, WinterList, percent
+from snowshed.season.weather_row import Weather
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def winters_of(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Wi
 
     Examples
     --------
-    >>> from snowshed.run.season.generator import EXAMPLE_CLIMATE
+    >>> from snowshed.season.generator import EXAMPLE_CLIMATE
     >>> [winter.name for winter in winters_of(EXAMPLE_CLIMATE.winters(2, seed=1))]
     ['2001/02', '2002/03']
     """

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from snowshed.analysis.clearance.answer import Answer
 from snowshed.analysis.clearance.design import MEANING, Ranges
-from snowshed.run.season.record import percent
+from snowshed.season.record import percent
 
 OWNERS = 0.9  # the probability that the first sentence tells
 CHANCE = "chance: places of particles, and causes that act together"

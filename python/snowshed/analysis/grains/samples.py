@@ -10,15 +10,15 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.io.array_arguments import positive
-from snowshed.io.arrays import AnyIntegers, Labels
+from snowshed.analysis.tomography.downscaling import downscaled
+from snowshed.analysis.tomography.ice_image import IceImage
+from snowshed.base.array_arguments import positive
+from snowshed.base.arrays import AnyIntegers, Labels
+from snowshed.base.notes import tell
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
-from snowshed.io.notes import tell
-from snowshed.io.paths import PathLike
 from snowshed.io.voxels.array_files import open_npy
-from snowshed.methods.grains.image.downscaling import downscaled
-from snowshed.methods.grains.image.ice_image import IceImage
-from snowshed.methods.grains.image.sample_folder import LABELS, find_sample
+from snowshed.methods.grains.sample_folder import LABELS, find_sample
 
 #: Voxels along an edge without which a sample is none.
 LEAST_VOXELS = 6

@@ -11,7 +11,7 @@ from scipy import optimize, spatial
 
 from snowshed.analysis.regression.rows import INPUTS
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.labels import label, settings
 
 #: A value just beyond a range must not read like its end.

@@ -9,7 +9,7 @@ import numpy as np
 
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.kernels import kernel_matrix
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 
 @dataclass(frozen=True)

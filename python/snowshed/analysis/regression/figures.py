@@ -15,7 +15,7 @@ from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.model_file import Member
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot import figure_style
 from snowshed.plot.figure_style import FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import label

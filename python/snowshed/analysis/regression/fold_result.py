@@ -12,10 +12,10 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.kernels import Expansion
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.damage import DAMAGED
 from snowshed.io.array_archive import open_archive
-from snowshed.io.arrays import Floats, Integers
 from snowshed.io.atomic import replacing
-from snowshed.io.damage import DAMAGED
 from snowshed.io.input_file import read_regular
 
 NUMBERS = ("inner_score", "development_score", "validation_score", "fits", "elapsed_s")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.rows import StackRows
-from snowshed.io.arrays import Integers
+from snowshed.base.arrays import Integers
 
 Split = tuple[Integers, Integers]
 BY = ("rows", "panels")

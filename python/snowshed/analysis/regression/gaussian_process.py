@@ -14,7 +14,7 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Sum, WhiteKern
 
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kernels import Expansion
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 
 #: Bounds of the hyper-parameters.
 LENGTHS = (1e-2, 1e3)

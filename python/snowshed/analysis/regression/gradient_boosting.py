@@ -8,7 +8,7 @@ import numpy as np
 from sklearn.base import clone
 from sklearn.ensemble import GradientBoostingRegressor
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 
 class StagedGradientBoosting(GradientBoostingRegressor):

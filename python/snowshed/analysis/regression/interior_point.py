@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import lapack
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 MOST_STEPS = 80
 INTERIOR = 0.995  # part of the way to the boundary that a step takes

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 #: Kernel values below are zero: arithmetic with numbers near the smallest ones is slow.
 NOTHING = 1e-100

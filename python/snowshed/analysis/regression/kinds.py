@@ -8,8 +8,8 @@ from typing import Optional, Protocol
 from snowshed._core import InputError
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kernels import Expansion
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.extras import require
 
 Parameters = Mapping[str, float]
 

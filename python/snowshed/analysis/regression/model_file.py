@@ -18,10 +18,10 @@ from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, is_input
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD, Spread
+from snowshed.base.arrays import Floats
+from snowshed.base.damage import DAMAGED
 from snowshed.io.array_archive import open_archive
-from snowshed.io.arrays import Floats
 from snowshed.io.atomic import replacing
-from snowshed.io.damage import DAMAGED
 from snowshed.io.input_file import read_regular
 from snowshed.scene.accuracy_settings import FORMER_NAMES
 from snowshed.scene.scene import PathLike

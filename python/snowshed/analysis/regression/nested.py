@@ -16,12 +16,12 @@ from snowshed.analysis.regression.kinds import Kind
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.task import Task, compute
-from snowshed.analysis.regression.threads import one_thread
+from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.base.pool.pool import Ended, Pool
+from snowshed.base.pool.threads import one_thread
+from snowshed.base.progress import Progress, Reporter
 from snowshed.io.atomic import LEFTOVER, remove_leftovers, write_text
 from snowshed.io.json_file import read_object
-from snowshed.run.interrupt import InterruptRequest, deferred_interrupts
-from snowshed.run.pool import Ended, Pool
-from snowshed.run.progress import Progress, Reporter
 from snowshed.study.locks import holding, is_held
 
 IDENTITY = "regression.json"

@@ -13,7 +13,7 @@ from sklearn.utils.validation import check_is_fitted
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.score import median_absolute_error
 from snowshed.analysis.regression.support_vectors import NotConvergedError
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 
 Value = Union[int, float]
 Grid = Mapping[str, Sequence[Value]]

@@ -17,12 +17,12 @@ from snowshed.analysis.regression.model_file import STORED_KINDS, Member, StackM
 from snowshed.analysis.regression.nested import Results, cross_validate
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.spread import stack_spread, unseen_panels
-from snowshed.analysis.regression.threads import one_thread
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
+from snowshed.base.pool.pool import available_cores
+from snowshed.base.pool.threads import one_thread
+from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
-from snowshed.run.pool import available_cores
-from snowshed.run.progress import Reporter
 from snowshed.scene.scene import PathLike
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from snowshed.analysis.regression.model_file import StackModel, load_model
 from snowshed.analysis.regression.questions import Numbers, Questions
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL, SPREAD
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.labels import settings
 from snowshed.scene.scene import PathLike
 

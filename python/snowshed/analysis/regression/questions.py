@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.rows import INPUTS
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 
 if TYPE_CHECKING:
     import pandas as pd

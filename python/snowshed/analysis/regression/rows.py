@@ -11,11 +11,11 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.stack_table import StackTable
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
 from snowshed.scene.scene import PathLike
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.study.factors import SEED
+from snowshed.study.stack_table import StackTable
 
 #: The inputs of section 5.2.2 with the tilt of section 5.1.3; columns of a study's table.
 INPUTS = ("event", "panel.height", "panel.length", "panel.tilt")

@@ -16,7 +16,7 @@ from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kinds import Kind, Parameters
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 #: Part of the cases that lie within the spread, and within the interval.
 SPREAD, INTERVAL = 0.68, 0.90

@@ -12,7 +12,7 @@ from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.nested import Results
 from snowshed.analysis.regression.rows import TARGETS, StackRows
 from snowshed.analysis.regression.scaling import Scaling
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,7 +11,7 @@ from sklearn.svm import SVR
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.interior_point import SupportVectors, solve
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 #: Changes of multipliers that libsvm is allowed; beyond, the interior point method is faster.
 LIBSVM_ITERATIONS = 2500

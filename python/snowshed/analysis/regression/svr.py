@@ -12,7 +12,7 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 from snowshed._core import InputError
 from snowshed.analysis.regression.kernels import Expansion, kernel_matrix
 from snowshed.analysis.regression.support_vectors import NotConvergedError, fit_along_c, fit_one
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 KERNELS = ("linear", "rbf")
 

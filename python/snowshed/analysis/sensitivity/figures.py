@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 
 from snowshed.analysis.sensitivity.single_parameter import CONFIDENT
 from snowshed.analysis.sensitivity.stored import TARGETS
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank, headline
 from snowshed.plot.labels import label
 from snowshed.study.factors import SEED

@@ -10,7 +10,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.scene.thesis_tables import GROUPS
 
 if TYPE_CHECKING:

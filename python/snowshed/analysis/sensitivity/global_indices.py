@@ -16,8 +16,8 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.sampling import EXTRA, LEVELS, problem
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
-from snowshed.io.arrays import Booleans, Floats
-from snowshed.io.extras import require
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.extras import require
 from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:

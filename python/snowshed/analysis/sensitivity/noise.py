@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed.analysis.sensitivity.stored import TARGETS, StoredRuns
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd

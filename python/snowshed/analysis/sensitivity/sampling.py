@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats
+from snowshed.base.extras import require
 from snowshed.scene.thesis_tables import HARDENING, SENSITIVITY
 from snowshed.study.factors import SEED, Span
 

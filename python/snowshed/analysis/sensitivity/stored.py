@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.stack_table import StackTable
 from snowshed.scene.scene import PathLike
 from snowshed.study.factors import SEED
+from snowshed.study.stack_table import StackTable
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed._core import InputError
+from snowshed.base.formatting import about
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.quiet import quiet_option
 from snowshed.cli.terminal import say
 from snowshed.cli.weather_options import weather_options
-from snowshed.io.formatting import about
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance import Answer, Design, Ranges, Winter
-    from snowshed.run.season.record import Record, WinterList
+    from snowshed.season.record import Record, WinterList
 
 EXAMPLE = "example"  # in place of a file: made winters
 PATH = click.Path(path_type=Path)
@@ -143,9 +143,9 @@ def _answers(
 
 
 def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> Record:
-    from snowshed.run.season.generator import EXAMPLE_CLIMATE
-    from snowshed.run.season.record import Record
-    from snowshed.run.season.weather import read_record
+    from snowshed.season.generator import EXAMPLE_CLIMATE
+    from snowshed.season.record import Record
+    from snowshed.season.weather import read_record
 
     if [str(one) for one in weather] != [EXAMPLE]:
         return read_record(weather, snow_from, temperature)

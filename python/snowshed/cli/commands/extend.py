@@ -37,10 +37,10 @@ def extend(
       snowshed extend results --events 3 -o longer
       snowshed extend results --snow reference --thickness 0.03 -o other
     """  # noqa: D301 - click wants the control character
+    from snowshed.base.interrupt import Interrupted
     from snowshed.cli import console
     from snowshed.cli.progress import progress_bar
-    from snowshed.run.extension import extend_run
-    from snowshed.run.interrupt import Interrupted
+    from snowshed.running.extension import extend_run
     from snowshed.scene.components import Snow
 
     other = None if snow is None else Snow.named(snow)

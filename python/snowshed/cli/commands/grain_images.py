@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 import click
 
 from snowshed._core import InputError
+from snowshed.analysis.tomography.segmentation import SegmentationSettings
+from snowshed.base.messages import quoted
 from snowshed.cli.quiet import quiet_option
-from snowshed.io.messages import quoted
-from snowshed.methods.grains.image.segmentation import SegmentationSettings
 
 if TYPE_CHECKING:
-    from snowshed.methods.grains.image.threshold import Crop
+    from snowshed.analysis.tomography.threshold import Crop
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -115,11 +115,11 @@ def synthetic(
       snowshed grains synthetic --density 300 --specific-surface 15 -o snow
       snowshed grains synthetic --density 300 --spheres 5e-4 --neck 0.4 -o spheres
     """  # noqa: D301 - click wants the control character
+    from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
+    from snowshed.analysis.tomography.sample import check_new, write_grains, write_ice
+    from snowshed.analysis.tomography.segmentation import known_grains
+    from snowshed.analysis.tomography.sphere_snow import sphere_snow
     from snowshed.cli.display.grain_images import print_sample
-    from snowshed.methods.grains.image.gaussian_snow import gaussian_snow
-    from snowshed.methods.grains.image.segmentation import known_grains
-    from snowshed.methods.grains.image.sphere_snow import sphere_snow
-    from snowshed.run.grain_images import check_new, write_grains, write_ice
 
     check_new(folder)
     nx, ny, nz = shape
@@ -192,13 +192,13 @@ def segment_command(
       snowshed grains segment slices --voxel 1e-5 --downscale 2 -o sample
       snowshed grains segment snow.mhd --threshold 32000 --method curvature -o sample
     """  # noqa: D301 - click wants the control character
+    from snowshed.analysis.tomography.sample import check_new
+    from snowshed.analysis.tomography.segmented_file import plan_text, segment_image
+    from snowshed.analysis.tomography.threshold import ImageSettings
     from snowshed.cli.display.grain_images import print_image, print_sample
     from snowshed.cli.progress import progress_bar
     from snowshed.io.voxels.open_voxels import open_voxels
-    from snowshed.methods.grains.image.sample_folder import SNOW, find_sample
-    from snowshed.methods.grains.image.threshold import ImageSettings
-    from snowshed.run.grain_images import check_new
-    from snowshed.run.image_segmentation import plan_text, segment_image
+    from snowshed.methods.grains.sample_folder import SNOW, find_sample
 
     check_new(folder)
     names = {field.name for field in fields(SegmentationSettings)}

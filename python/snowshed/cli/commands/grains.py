@@ -13,9 +13,9 @@ from snowshed.cli.commands.grains_studies import material, sensitivity
 from snowshed.cli.commands.run import run_options
 from snowshed.cli.run_scene import run_scene
 from snowshed.cli.settings_options import settings_options
-from snowshed.methods.grains.image.sample_folder import LABELS
+from snowshed.methods.grains.sample_folder import LABELS
 from snowshed.methods.grains.settings import GrainsSettings
-from snowshed.scene.builders.grains import example_grains, grains_scene
+from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import Cone, LoadingKind, LoadingStage
 from snowshed.scene.output import Output
 from snowshed.scene.scene import ResolvedScene
@@ -138,6 +138,8 @@ def example(folder: Path, resume: bool, quiet: bool) -> None:
         return
     beside = folder.with_name(f"{folder.name}-sample")
     existed = beside.exists()
+    from snowshed.analysis.tomography.example import example_grains  # loads scipy's images
+
     scene = example_grains(beside)
     labels = beside / LABELS
     try:

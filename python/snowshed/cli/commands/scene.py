@@ -10,12 +10,12 @@ import click
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.notes import tell
 from snowshed.cli.accuracy import accuracy_option, check_alone, choose
 from snowshed.cli.quiet import quiet_option
 from snowshed.cli.scene_options import in_terms_of_options, scene_from_options, scene_options
 from snowshed.cli.terminal import say, write_out
-from snowshed.io.notes import tell
-from snowshed.run.scene_notes import notes_of_beginning
+from snowshed.running.scene_notes import notes_of_beginning
 from snowshed.scene.scene import ResolvedScene, Scene
 
 PATH = click.Path(path_type=Path)
@@ -77,8 +77,8 @@ def compare(one: Path, other: Path) -> None:
 
     Of a 3D and a 2D run the ratio stands beside the rule of thumb of the thesis.
     """
-    from snowshed.analysis.dimension_ratio import compare_folders, height_ratio, same_dimension
     from snowshed.cli import console
+    from snowshed.results.dimension_ratio import compare_folders, height_ratio, same_dimension
 
     if same_dimension(one, other):
         console.print_heights(height_ratio(one, other), one.name, other.name)

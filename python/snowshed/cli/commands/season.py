@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import click
 
 from snowshed._core import InputError
+from snowshed.base.interrupt import Interrupted
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.quiet import quiet_option
 from snowshed.cli.scene_options import (
@@ -18,13 +19,12 @@ from snowshed.cli.scene_options import (
     scene_options,
 )
 from snowshed.cli.weather_options import weather_options
-from snowshed.run.interrupt import Interrupted
-from snowshed.run.season.settings import SeasonSettings
 from snowshed.scene.scene import Scene
+from snowshed.season.settings import SeasonSettings
 
 if TYPE_CHECKING:
-    from snowshed.run.season.driver import SeasonResult
     from snowshed.scene.scene import ResolvedScene
+    from snowshed.season.driver import SeasonResult
 
 PATH = click.Path(path_type=Path)
 DEFAULTS = SeasonSettings()
@@ -213,7 +213,7 @@ def _run(
     quiet: bool,
 ) -> SeasonResult:
     from snowshed.cli.progress import progress_bar
-    from snowshed.run.season.driver import run_season
+    from snowshed.season.driver import run_season
 
     options = {**reading, "resume": resume}
     try:

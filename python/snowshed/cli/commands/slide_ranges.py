@@ -11,12 +11,12 @@ from typing import Any, Optional
 import click
 
 from snowshed._core import InputError
+from snowshed.base.messages import suggestion
 from snowshed.cli.commands.study import compute_study, print_plan
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.slide_files import removing_copies, terrain_copy
 from snowshed.cli.terminal import say
-from snowshed.io.messages import suggestion
-from snowshed.methods.slide import SlideSettings
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import scene_parameters
 from snowshed.study.definition import Study
@@ -100,7 +100,7 @@ def run_ranges(scene: Scene, folder: Path, options: RangeOptions, *, quiet: bool
 
     After an interruption the same command goes on.
     """
-    from snowshed.analysis.hazard_folder import write_hazard
+    from snowshed.analysis.hazard.folder import write_hazard
     from snowshed.cli.display.slide import print_hazard
 
     study = _study(scene, options)

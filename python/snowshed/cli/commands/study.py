@@ -10,12 +10,12 @@ from typing import Any, Optional, TypeVar
 import click
 
 from snowshed._core import InputError
+from snowshed.base.formatting import about
+from snowshed.base.progress import Reporter
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.quiet import quiet_notes_option, quiet_option
 from snowshed.cli.terminal import PlainConsole, say, write_out
 from snowshed.io.atomic import write_text
-from snowshed.io.formatting import about
-from snowshed.run.progress import Reporter
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.definition import Study
 from snowshed.study.errors import StudyInterrupted

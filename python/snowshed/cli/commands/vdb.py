@@ -29,7 +29,7 @@ def vdb(
 
     Each holds the stack as a level set, its density as a fog volume, and the particles as points.
     """
-    from snowshed.run.vdb_export import Exported, export_folder
+    from snowshed.results.vdb_export import Exported, export_folder
 
     def show(exported: Exported) -> None:
         content = exported.content

@@ -27,7 +27,7 @@ def verify(context: click.Context) -> int:
         )
     from snowshed.cli.display.verify import print_facts, print_results
     from snowshed.cli.progress import progress_bar
-    from snowshed.run.self_test import CHECKS, run_checks
+    from snowshed.cli.self_test import CHECKS, run_checks
 
     print_facts()
     with progress_bar(width=24, transient=True) as progress:

@@ -39,11 +39,11 @@ def view(
       snowshed view results --video film.mp4
     """  # noqa: D301 - click wants the control character
     if video is None:
-        from snowshed.run.view import write_view
+        from snowshed.results.view import write_view
 
         written = write_view(results, page)
     else:
-        from snowshed.run.video import write_video
+        from snowshed.results.video import write_video
 
         with progress_bar(quiet=quiet) as progress:
             written = write_video(

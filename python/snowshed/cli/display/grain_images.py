@@ -7,9 +7,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from snowshed.io.formatting import number, percent
-from snowshed.methods.grains.image.threshold import ReadImage
-from snowshed.run.grain_images import SampleNumbers
+from snowshed.analysis.tomography.sample import SampleNumbers
+from snowshed.analysis.tomography.threshold import ReadImage
+from snowshed.base.formatting import number, percent
 
 FEW_GRAINS = 1000
 

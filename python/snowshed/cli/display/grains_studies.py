@@ -10,8 +10,8 @@ import numpy as np
 from snowshed.analysis.grains.material.fit import FittedSnow, Range, exponents
 from snowshed.analysis.grains.ratios import STRESSES
 from snowshed.analysis.grains.variants import BASE
+from snowshed.base.formatting import NOTHING
 from snowshed.cli.terminal import plain_table, wide_console
-from snowshed.io.formatting import NOTHING
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,7 +8,7 @@ from typing import Any
 
 from snowshed.cli.display.winters import print_quality
 from snowshed.cli.terminal import plain_table, wide_console
-from snowshed.run.season.driver import SeasonResult, verdict
+from snowshed.season.driver import SeasonResult, verdict
 
 SEASON_TABLE = {
     "date": ("date", "{}"),

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from rich.table import Table
 
-from snowshed.analysis.hazard_maps import LEVELS, HazardMaps, uncertainty
+from snowshed.analysis.hazard.maps import LEVELS, HazardMaps, uncertainty
 from snowshed.cli.terminal import PlainConsole
-from snowshed.run.slides import SlideSummary
+from snowshed.methods.slide.summary import SlideSummary
 
 
 def print_slide(summary: SlideSummary, folder: Path) -> None:

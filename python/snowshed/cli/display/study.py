@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Sequence
 
 import snowshed._core as _core
+from snowshed.base.formatting import about
+from snowshed.base.progress import Progress
 from snowshed.cli.terminal import PlainConsole
-from snowshed.io.formatting import about
-from snowshed.run.progress import Progress
 from snowshed.study.owner import is_alive
 from snowshed.study.store import Store, StoredRun
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import snowshed._core as _core
+from snowshed.base.formatting import number
+from snowshed.base.machine import cpu_name
+from snowshed.cli.self_test import Result
 from snowshed.cli.terminal import plain_table, say, wide_console
-from snowshed.io.formatting import number
-from snowshed.run.machine import cpu_name
-from snowshed.run.self_test import Result
 from snowshed.scene.scene import Scene
 
 

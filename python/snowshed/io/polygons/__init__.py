@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
+from snowshed.base.messages import quoted
 from snowshed.io.polygons.geojson import read_geojson
 from snowshed.io.polygons.geopackage import SQLITE, read_geopackage
 from snowshed.io.polygons.layer import PolygonLayer

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats, Integers
-from snowshed.io.extras import require
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.extras import require
+from snowshed.base.limits import CORNERS, GEOJSON, POLYGONS
+from snowshed.base.messages import quoted, shortened
+from snowshed.io.coordinates.plain_systems import plain_system
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import CORNERS, GEOJSON, POLYGONS
-from snowshed.io.messages import quoted, shortened
-from snowshed.io.plain_systems import plain_system
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
 
 GEOMETRIES = (

@@ -14,10 +14,8 @@ from tempfile import TemporaryDirectory
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.io.atomic import replacing
-from snowshed.io.coordinate_systems import system_of
-from snowshed.io.extras import require
-from snowshed.io.limits import (
+from snowshed.base.extras import require
+from snowshed.base.limits import (
     CORNERS,
     GEOPACKAGE_COPY,
     GEOPACKAGE_VALUE,
@@ -26,9 +24,11 @@ from snowshed.io.limits import (
     POLYGONS,
     SQL_STEPS,
 )
-from snowshed.io.messages import quoted
-from snowshed.io.notes import tell
-from snowshed.io.plain_systems import plain_system
+from snowshed.base.messages import quoted
+from snowshed.base.notes import tell
+from snowshed.io.atomic import replacing
+from snowshed.io.coordinates.plain_systems import plain_system
+from snowshed.io.coordinates.systems import system_of
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
 from snowshed.io.polygons.wkb import count_corners
 

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.coordinate_systems import read_system
-from snowshed.io.extras import require
-from snowshed.io.gdal_fence import fenced_pyogrio
-from snowshed.io.limits import CORNERS, POLYGONS, RINGS
-from snowshed.io.messages import shortened
-from snowshed.io.notes import tell
+from snowshed.base.extras import require
+from snowshed.base.limits import CORNERS, POLYGONS, RINGS
+from snowshed.base.messages import shortened
+from snowshed.base.notes import tell
+from snowshed.io.coordinates.gdal_fence import fenced_pyogrio
+from snowshed.io.coordinates.systems import read_system
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
 
 #: The number of the format, and five that are not used.

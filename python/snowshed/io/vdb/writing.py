@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.io.vdb.program import run_writer
 

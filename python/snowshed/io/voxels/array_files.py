@@ -12,10 +12,10 @@ from numpy.lib import format as npy_format
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.damage import DAMAGED
+from snowshed.base.damage import DAMAGED
+from snowshed.base.messages import quoted
+from snowshed.base.notes import tell
 from snowshed.io.input_file import open_regular, stored_bytes
-from snowshed.io.messages import quoted
-from snowshed.io.notes import tell
 from snowshed.io.voxels.turned import Turn, turned
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_type, check_unpacked
 

@@ -13,7 +13,7 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.io.notes import tell
+from snowshed.base.notes import tell
 from snowshed.io.voxels.array_files import number_type, numbers_of
 from snowshed.io.voxels.metaimage_fields import Fields
 from snowshed.io.voxels.packed_numbers import packed_numbers

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.messages import quoted
 from snowshed.io.input_file import open_regular
-from snowshed.io.messages import quoted
 
 LONGEST_HEADER = 1 << 16
 LAST = "ElementDataFile"

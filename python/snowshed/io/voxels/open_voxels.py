@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.notes import recorded
-from snowshed.io.paths import PathLike
+from snowshed.base.notes import recorded
+from snowshed.base.paths import PathLike
 from snowshed.io.voxels.array_files import open_npy, open_raw
 from snowshed.io.voxels.metaimage import open_metaimage
 from snowshed.io.voxels.pictures import open_slices, open_stack

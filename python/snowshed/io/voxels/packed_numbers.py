@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.base.limits import MB
 from snowshed.io.input_file import open_regular
-from snowshed.io.limits import MB
 from snowshed.io.voxels.voxel_file import VoxelFile, check_unpacked
 
 PIECE = MB  # packed bytes that are read at once

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.notes import tell
+from snowshed.base.notes import tell
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_unpacked
 
 #: What the tag Orientation says: whether the stored picture is transposed, and then mirrored along

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.limits import PAGES
-from snowshed.io.notes import tell
+from snowshed.base.limits import PAGES
+from snowshed.base.notes import tell
 from snowshed.io.voxels.picture import Picture, stacked
 from snowshed.io.voxels.plain_pictures import open_picture
 from snowshed.io.voxels.tiff_description import Description, described

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.limits import MB, VOXELS_AS_TEXT
 from snowshed.io.input_file import open_regular
-from snowshed.io.limits import MB, VOXELS_AS_TEXT
 from snowshed.io.voxels.voxel_file import VoxelFile
 
 EXACT = 4  # bytes of the longest whole numbers that double holds exactly

@@ -15,7 +15,7 @@ from typing import Any, Optional
 from xml.etree import ElementTree
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
+from snowshed.base.messages import quoted
 
 #: Units of length by their names in ImageJ and OME, m.
 UNITS = {

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.damage import DAMAGED
-from snowshed.io.extras import require
-from snowshed.io.messages import shortened
+from snowshed.base.damage import DAMAGED
+from snowshed.base.extras import require
+from snowshed.base.messages import shortened
 
 NONE, JPEG, PACKED_BY_LZMA = 1, 7, 34925
 DEFLATE = (8, 32946)

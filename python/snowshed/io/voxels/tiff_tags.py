@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Optional, TypeVar
 
 from snowshed._core import InputError
-from snowshed.io.damage import DAMAGED
-from snowshed.io.extras import require
+from snowshed.base.damage import DAMAGED
+from snowshed.base.extras import require
+from snowshed.base.limits import PAGES, TAG
+from snowshed.base.messages import shortened
 from snowshed.io.input_file import open_regular
-from snowshed.io.limits import PAGES, TAG
-from snowshed.io.messages import shortened
 
 if TYPE_CHECKING:
     from tifffile import TiffFile, TiffPage

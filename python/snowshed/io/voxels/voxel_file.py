@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.io.formatting import number
-from snowshed.io.limits import MB, UNPACKED_FREELY, UNPACKED_RATIO, VOXELS_AT_ONCE
-from snowshed.io.messages import shortened
+from snowshed.base.formatting import number
+from snowshed.base.limits import MB, UNPACKED_FREELY, UNPACKED_RATIO, VOXELS_AT_ONCE
+from snowshed.base.messages import shortened
 
 MOST_VOXELS = 1 << 32
 MOST_ALONG = 1 << 16

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
+from snowshed.base.messages import quoted
 from snowshed.io.weather.daily import COLUMNS, COUNTS, MISSING, TOTALS, Days, with_totals
 from snowshed.io.weather.observation import Quantity, Station, cells_of, split_cells, time_of
 

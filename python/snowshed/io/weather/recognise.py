@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import InputError
+from snowshed.base.limits import KB, WEATHER_LINE, WEATHER_LINES
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import KB, WEATHER_LINE, WEATHER_LINES
 from snowshed.io.packed import unpacked
 from snowshed.io.weather import american, energy, ncei, smet, swiss
 from snowshed.io.weather.clock import on_one_clock

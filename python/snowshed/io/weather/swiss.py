@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from snowshed._core import InputError
-from snowshed.io.messages import quoted
+from snowshed.base.messages import quoted
 from snowshed.io.weather.columns import Cells, Column, Reading, observations
 from snowshed.io.weather.observation import Quantity, Station, cells_of, time_of
 

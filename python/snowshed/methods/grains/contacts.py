@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
+from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import parse_csv, read_csv
-from snowshed.io.paths import PathLike
 from snowshed.io.run_files import check_run_file
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 from snowshed.methods.grains.curve import LoadingCurve, stage_strain, stage_stress, untouched
 from snowshed.methods.grains.phases import LINEAR, MEANS, Phases, find_phases, mean_stress
 

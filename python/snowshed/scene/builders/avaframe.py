@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.io.limits import RASTER_CELLS, RESAMPLED_CELLS, SAVED_CELLS
-from snowshed.io.map_areas import read_areas
-from snowshed.io.messages import quoted
-from snowshed.io.paths import PathLike
-from snowshed.io.raster import GEOTIFF, read_raster, write_ascii_grid
-from snowshed.io.raster_resampling import resampled_raster
-from snowshed.methods.slide import SlideSettings
+from snowshed.base.limits import RASTER_CELLS, RESAMPLED_CELLS, SAVED_CELLS
+from snowshed.base.messages import quoted
+from snowshed.base.paths import PathLike
+from snowshed.io.raster.areas import read_areas
+from snowshed.io.raster.raster import GEOTIFF, read_raster, write_ascii_grid
+from snowshed.io.raster.resampling import resampled_raster
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.avaframe_files import InputFile, check_own_file, project_inputs
 from snowshed.scene.builders.avaframe_ini import SIM_TYPES, ProjectSettings, read_ini
 from snowshed.scene.builders.slides import slide_scene

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from snowshed._core import InputError
+from snowshed.base.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
+from snowshed.base.messages import quoted
+from snowshed.base.notes import tell
+from snowshed.base.printable import printable
 from snowshed.io.atomic import replacing
-from snowshed.io.limits import GB, PROJECT_BYTES, PROJECT_DEPTH, PROJECT_FILES
-from snowshed.io.messages import quoted
-from snowshed.io.notes import tell
-from snowshed.io.printable import printable
 
 #: Endings of files that projects are made of: rasters, polygons and lines, settings, tables.
 KNOWN = (

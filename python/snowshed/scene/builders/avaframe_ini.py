@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.limits import INI, SAVED_TIMES
+from snowshed.base.messages import quoted, shortened, suggestion
+from snowshed.base.printable import printable
 from snowshed.io.input_file import read_input
-from snowshed.io.limits import INI, SAVED_TIMES
-from snowshed.io.messages import quoted, shortened, suggestion
-from snowshed.io.printable import printable
 from snowshed.scene.builders.avaframe_keys import (
     FIXED,
     FRICTION,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from snowshed.io.paths import PathLike
-from snowshed.methods.mpm import MpmSettings
+from snowshed.base.paths import PathLike
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.slope import check_positive
 from snowshed.scene.components import Body, Ground, Obstacle
 from snowshed.scene.scene import Scene

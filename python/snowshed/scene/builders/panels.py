@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.slope import (
     BOARD_CELLS,

@@ -9,13 +9,13 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.limits import TERRAIN_CELLS
-from snowshed.io.map_areas import MapArea, read_areas
-from snowshed.io.notes import recorded
-from snowshed.io.paths import PathLike
-from snowshed.io.raster import Raster, is_single, read_raster, write_ascii_grid
-from snowshed.io.release_raster import areas_of_depth, snow_part
-from snowshed.methods.slide import SlideSettings
+from snowshed.base.limits import TERRAIN_CELLS
+from snowshed.base.notes import recorded
+from snowshed.base.paths import PathLike
+from snowshed.io.raster.areas import MapArea, read_areas
+from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid
+from snowshed.io.raster.release import areas_of_depth, snow_part
+from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.hillside import hillside
 from snowshed.scene.builders.terrain_checks import (
     MAX_SLOPE,

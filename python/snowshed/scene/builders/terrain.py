@@ -16,11 +16,11 @@ from typing import Optional, Union
 import numpy as np
 
 from snowshed._core import InputError, Simulation
-from snowshed.io.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers
+from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
-from snowshed.io.paths import PathLike
-from snowshed.io.raster import Raster
-from snowshed.methods.mpm import MpmSettings
+from snowshed.io.raster.raster import Raster
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.panel_edge import panel_edge
 from snowshed.scene.builders.slope import check_positive
 from snowshed.scene.builders.terrain_checks import MAX_SLOPE, check_terrain, read_terrain

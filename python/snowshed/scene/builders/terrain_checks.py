@@ -10,12 +10,12 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed._core import InputError, impossible_cliff
-from snowshed.io.coordinate_systems import are_same, is_in_feet
-from snowshed.io.extras import require
-from snowshed.io.limits import PACKED, PACKED_CELLS, RASTER_CELLS
-from snowshed.io.map_areas import MapArea
-from snowshed.io.paths import PathLike
-from snowshed.io.raster import Raster, read_raster
+from snowshed.base.extras import require
+from snowshed.base.limits import PACKED, PACKED_CELLS, RASTER_CELLS
+from snowshed.base.paths import PathLike
+from snowshed.io.coordinates.systems import are_same, is_in_feet
+from snowshed.io.raster.areas import MapArea
+from snowshed.io.raster.raster import Raster, read_raster
 
 LOWEST, HIGHEST = -430.0, 8850.0  # m, of the Earth's land
 SMALLEST_CELL, LARGEST_CELL = 0.05, 100.0  # m, of terrain that a slide can be seen on

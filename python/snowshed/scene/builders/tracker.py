@@ -6,7 +6,7 @@ import math
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.methods.mpm import MpmSettings
+from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.panels import snow_layer
 from snowshed.scene.builders.slope import BOARD_CELLS, Slope, check_positive
 from snowshed.scene.components import Events, Ground, Motion, Obstacle

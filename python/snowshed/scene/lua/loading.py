@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.paths import PathLike
 from snowshed.io.input_file import read_input
-from snowshed.io.paths import PathLike
 from snowshed.scene.lua.builder import Builder, LuaRun
 from snowshed.scene.lua.limits import Limits
 from snowshed.scene.lua.sandbox import Place, Script, run_sandboxed

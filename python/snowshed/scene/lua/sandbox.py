@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Optional, Union
 
 from snowshed._core import InputError
-from snowshed.io.extras import require
+from snowshed.base.extras import require
 from snowshed.scene.lua.limits import Limits
 
 PROGRAM = Path(__file__).with_name("child.py")

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.snow.relations.relation import ICE_DENSITY
 
 LONGEST_STEP = 3600.0  # s

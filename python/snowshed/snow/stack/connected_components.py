@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 
 
 def largest_body(positions: Floats, masses: Floats, dx: float) -> Booleans:

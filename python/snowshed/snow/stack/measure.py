@@ -26,8 +26,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
-from snowshed.io.array_arguments import column, finite, flags, points, positive
-from snowshed.io.arrays import Booleans, Floats
+from snowshed.base.array_arguments import column, finite, flags, points, positive
+from snowshed.base.arrays import Booleans, Floats
 from snowshed.snow.stack.connected_components import largest_body
 from snowshed.snow.stack.support import supports
 from snowshed.snow.stack.surface import outline_particles, surface_particles

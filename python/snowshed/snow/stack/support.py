@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.snow.stack.connected_components import connected_bodies
 
 AGROUND = 2.0  # cells between the ground and the lowest snow of a body that lies on it

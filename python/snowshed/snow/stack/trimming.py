@@ -22,7 +22,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers
 
 DROPPED_FRACTION = 0.03
 DIVISIONS = 30  # of radius and angle, as of the grid of the surface (A.4.3)

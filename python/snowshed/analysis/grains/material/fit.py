@@ -22,7 +22,7 @@ from snowshed.analysis.grains.material.tests import (
 )
 from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
 from snowshed.analysis.grains.ratios import LogMean
-from snowshed.io.formatting import percent
+from snowshed.base.formatting import percent
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.phases import LINEAR
 from snowshed.scene.components import Snow

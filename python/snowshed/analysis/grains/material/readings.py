@@ -14,7 +14,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.grains.material.law import Elasticity
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 from snowshed.methods.grains.curve import LoadingCurve, untouched
 from snowshed.methods.grains.phases import LEAST_ROWS, PEAK_BELOW
 

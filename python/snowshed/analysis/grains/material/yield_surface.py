@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.io.arrays import Floats
+from snowshed.base.arrays import Floats
 
 COHESIONS = np.linspace(0.0, 1.0, 201)  # that a scene takes (`snowshed.Snow`)
 

@@ -1,0 +1,67 @@
+"""Measurements that come with the package: what ``--accuracy`` chooses from.
+
+They were made by the full suite of the folder ``validation`` in the source of snowshed::
+
+    python -m validation --full --record python/snowshed/analysis/accuracy/recorded.json -o out
+
+Their durations also say how long a suite will take.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Optional
+
+from snowshed.analysis.accuracy.measurements import Measurement
+from snowshed.io.atomic import write_text
+from snowshed.io.json_file import check_values, read_object
+
+PACKAGED = Path(__file__).with_name("recorded.json")
+
+
+def load_recorded(path: Optional[Path] = None) -> list[Measurement]:
+    """Return recorded measurements, those of the package by default; none if there is no file.
+
+    Raises
+    ------
+    InputError
+        If the file holds anything else.
+
+    Examples
+    --------
+    >>> load_recorded(Path("nowhere.json"))
+    []
+    """
+    path = path or PACKAGED
+    if not path.exists():
+        return []
+    data = read_object(path)
+    check_values(data, {"measurements": list}, str(path))
+    return [
+        Measurement.from_json(one, f"{path}: /measurements/{i}")
+        for i, one in enumerate(data["measurements"])
+    ]
+
+
+def record(measurements: Iterable[Measurement], path: Path) -> None:
+    """Keep measurements in a file; earlier ones of the same cases give way, others stay.
+
+    Failed measurements are not kept.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "recorded.json"
+    ...     for case, dx in (("bar", 0.2), ("disc", 0.1), ("bar", 0.1)):
+    ...         record([Measurement(case, {"dx": dx}, [])], path)
+    ...     [one.key for one in load_recorded(path)]
+    ['disc {"dx": 0.1}', 'bar {"dx": 0.1}']
+    """
+    new = [one for one in measurements if not one.failure]
+    cases = {one.case for one in new}
+    kept = [one for one in load_recorded(path) if one.case not in cases]
+    lines = ",\n".join(json.dumps(one.to_json(), allow_nan=False) for one in kept + new)
+    write_text(path, f'{{"measurements": [\n{lines}\n]}}\n')

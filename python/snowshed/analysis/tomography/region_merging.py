@@ -1,0 +1,148 @@
+"""Merging labels that are one grain: by the depth of the neck between them, and by contiguity."""
+
+from __future__ import annotations
+
+import heapq
+
+import numpy as np
+
+from snowshed.analysis.tomography.adjacency import Adjacency
+from snowshed.base.arrays import Floats, Integers
+
+
+def merge_shallow(touching: Adjacency, peaks: Floats, depth: float) -> Integers:
+    """Return new labels, in which maxima of the distance less deep than `depth` are no grain.
+
+    The depth of a maximum is the way down from it to the saddle towards a higher one, its dynamics.
+    Basins merged so are those that the maxima of the h-maxima transform would have (Soille 2004,
+    Morphological Image Analysis, chapter 6).
+
+    Parameters
+    ----------
+    touching
+        Basins of all maxima.
+    peaks : (n + 1,)
+        Largest distance from the air in each basin.
+    depth
+        In the unit of the distance.
+
+    Returns
+    -------
+    (n + 1,)
+        The label from 1 that each gets.
+    """
+    root = np.arange(len(peaks))
+    height = peaks.copy()
+    for edge in np.argsort(-touching.saddles, kind="stable"):
+        one, other = (_root(root, label) for label in touching.pairs[edge])
+        if one != other and min(height[one], height[other]) - touching.saddles[edge] < depth:
+            root[max(one, other)] = min(one, other)
+            height[min(one, other)] = max(height[one], height[other])
+    return _consecutive(root)
+
+
+def merge_contiguous(
+    touching: Adjacency, voxels: Integers, contiguity: float, smallest: int = 0
+) -> Integers:
+    """Return new labels, in which what hangs together by more than a share of its surface is one.
+
+    The contiguity of two labels is the area of their contact over the whole surface of that which
+    has less. The most contiguous pair is merged first, and what changes is computed anew.
+    Afterwards a label of fewer voxels than `smallest` joins that with which it shares the largest
+    contact.
+
+    Parameters
+    ----------
+    touching
+        The labels.
+    voxels : (n + 1,)
+        Of each.
+    contiguity
+        The largest that two grains may have.
+    smallest
+        Voxels of the smallest grain.
+
+    Returns
+    -------
+    (n + 1,)
+        The label from 1 that each gets.
+    """
+    graph = _Graph(touching, voxels)
+    graph.merge_above(contiguity)
+    graph.merge_small(smallest)
+    return _consecutive(graph.root)
+
+
+class _Graph:
+    """Labels and their contacts, which are merged one by one."""
+
+    def __init__(self, touching: Adjacency, voxels: Integers) -> None:
+        self.root = np.arange(len(touching.air))
+        self.surface = touching.surfaces
+        self.voxels = voxels.copy()
+        self.areas: list[dict[int, float]] = [{} for _ in self.root]
+        for (one, other), area in zip(touching.pairs.tolist(), touching.areas.tolist()):
+            self.areas[one][other] = self.areas[other][one] = area
+
+    def merge_above(self, contiguity: float) -> None:
+        """Merge pairs of a larger contiguity, the largest first."""
+        queue = [
+            (-self._contiguity(one, other), one, other)
+            for one, touched in enumerate(self.areas)
+            for other in touched
+            if one < other
+        ]
+        heapq.heapify(queue)
+        while queue and -queue[0][0] > contiguity:
+            negative, one, other = heapq.heappop(queue)
+            if other not in self.areas[one] or -self._contiguity(one, other) != negative:
+                continue  # merged, or changed and queued anew
+            self._merge(one, other)
+            for third in self.areas[one]:
+                pair = (one, third) if one < third else (third, one)
+                heapq.heappush(queue, (-self._contiguity(*pair), *pair))
+
+    def merge_small(self, smallest: int) -> None:
+        """Merge labels of fewer voxels into that of their largest contact, the smallest first."""
+        queue = [(int(n), label) for label, n in enumerate(self.voxels) if label and n < smallest]
+        heapq.heapify(queue)
+        while queue:
+            count, label = heapq.heappop(queue)
+            if self.root[label] != label or count != self.voxels[label] or not self.areas[label]:
+                continue
+            other = max(self.areas[label], key=lambda one: (self.areas[label][one], -one))
+            kept = min(label, other)
+            self._merge(kept, max(label, other))
+            if self.voxels[kept] < smallest:
+                heapq.heappush(queue, (int(self.voxels[kept]), kept))
+
+    def _contiguity(self, one: int, other: int) -> float:
+        surface = min(self.surface[one], self.surface[other])
+        return float(self.areas[one][other] / surface) if surface > 0 else np.inf
+
+    def _merge(self, kept: int, gone: int) -> None:
+        """Merge a label into one with a smaller number."""
+        area = self.areas[kept].pop(gone)
+        self.areas[gone].pop(kept)
+        for third, shared in self.areas[gone].items():
+            total = self.areas[kept].get(third, 0.0) + shared
+            self.areas[third].pop(gone)
+            self.areas[kept][third] = self.areas[third][kept] = total
+        self.areas[gone] = {}
+        self.surface[kept] += self.surface[gone] - 2 * area
+        self.voxels[kept] += self.voxels[gone]
+        self.root[gone] = kept
+
+
+def _root(root: Integers, label: int) -> int:
+    """Return the label into which one was merged, and make the way there short."""
+    while root[label] != label:
+        root[label] = root[root[label]]
+        label = int(root[label])
+    return label
+
+
+def _consecutive(root: Integers) -> Integers:
+    """Return labels from 1 without gaps, in the order of their roots."""
+    ends = np.array([_root(root, label) for label in range(len(root))])
+    return np.unique(ends, return_inverse=True)[1].astype(np.int64)

@@ -1,0 +1,1 @@
+"""What every room uses: records, arrays, texts, notes, the pool of processes."""

@@ -1,0 +1,9 @@
+"""The types of JSON data."""
+
+from __future__ import annotations
+
+from typing import Dict, List, Union
+
+#: What `json.loads` returns.
+JsonValue = Union[None, bool, int, float, str, List["JsonValue"], Dict[str, "JsonValue"]]
+JsonObject = Dict[str, JsonValue]

@@ -1,0 +1,20 @@
+"""Keeping linear algebra on one thread."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import scipy.linalg  # noqa: F401 - see below
+
+from snowshed.base.extras import require
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Keep libraries from using more than one thread: for small matrices they only get slower."""
+    threadpoolctl = require("threadpoolctl", "regression", "regression")
+    # Each brings threads of its own, and only those of loaded libraries can be limited.
+    require("sklearn.svm", "regression", "regression")
+    with threadpoolctl.threadpool_limits(1):
+        yield

@@ -1,0 +1,138 @@
+"""Which field of a file of polygons holds the thickness of the snow, and in what unit."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from snowshed._core import InputError
+from snowshed.base.messages import quoted
+from snowshed.base.notes import tell
+from snowshed.base.number_text import number_in
+
+#: Names of the field; AvaFrame's first.
+NAMES = ("thickness", "d0")
+#: The same with a unit: thickness_cm, d0 (mm), "Thickness [m]".
+WITH_UNIT = re.compile(r"(thickness|d0)[\s_.\-]*[(\[]?\s*([a-z]+\d?)\s*[)\]]?", re.IGNORECASE)
+METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}
+#: Words in names of fields that may be meant as a thickness.
+ALIKE = ("thick", "depth", "height", "d0", "hoehe", "höhe", "dicke", "mächtig", "epaisseur")
+BLANK = ("", "none", "nan", "null")
+
+
+@dataclass(frozen=True)
+class ThicknessField:
+    """A field that holds the thickness of snow.
+
+    Attributes
+    ----------
+    name
+        Of the field, as the file has it.
+    metres
+        Of one unit.
+    """
+
+    name: str
+    metres: float
+
+    def value(self, record: Mapping[str, Any], where: str) -> Optional[float]:
+        """Return the thickness that a feature gives, m; None where it gives none.
+
+        Raises
+        ------
+        InputError
+            If it is no number above 0.
+        """
+        value = record.get(self.name)
+        if value is None or str(value).strip().lower() in BLANK:
+            return None
+        number = float(value) if isinstance(value, float) else number_in(str(value))
+        if math.isnan(number):
+            raise InputError(f"{where}: {self.name} {quoted(str(value))} is not a number")
+        if not number > 0:
+            unit = (
+                "m"
+                if self.metres == 1.0
+                else next(u for u, m in METRES.items() if m == self.metres)
+            )
+            raise InputError(f"{where}: {self.name} is {number:g} {unit}; give one above 0")
+        return number * self.metres
+
+
+def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
+    """Return the fields of a file that hold a thickness, the first before the others.
+
+    What is not plain from the names is told: another unit, and fields that are not read.
+
+    Raises
+    ------
+    InputError
+        If a field's name has a unit that is not known.
+
+    Examples
+    --------
+    >>> thickness_fields(["fid", "Thickness"], "a.shp")
+    [ThicknessField(name='Thickness', metres=1.0)]
+    """
+    found = [ThicknessField(field, 1.0) for name in NAMES for field in fields if _is(field, name)]
+    for field in fields:
+        unit = WITH_UNIT.fullmatch(field.strip())
+        if unit is None or any(_is(field, name) for name in NAMES):
+            continue
+        if unit[2].lower() not in METRES:
+            if unit[2].lower() in (
+                "ft",
+                "feet",
+                "in",
+                "inch",
+                "inches",
+                "kpa",
+                "kgm2",
+                "we",
+                "swe",
+            ):
+                raise InputError(
+                    f"{file}: its field {quoted(field)} has the unit {quoted(unit[2])}; allowed: "
+                    f"{', '.join(METRES)}"
+                )
+            continue
+        found.append(ThicknessField(field, METRES[unit[2].lower()]))
+    if found and found[0].name != NAMES[0]:
+        in_unit = next(unit for unit, metres in METRES.items() if metres == found[0].metres)
+        tell(f"{file}: the thickness is that of its field {quoted(found[0].name)}, in {in_unit}")
+    if not found:
+        alike = [field for field in fields if any(word in field.lower() for word in ALIKE)]
+        if alike:
+            tell(
+                f"{file}: no field is called thickness or d0; not read as a thickness: "
+                f"{', '.join(quoted(field) for field in alike[:5])}"
+            )
+    return found
+
+
+def thickness_of(
+    fields: Sequence[ThicknessField], record: Mapping[str, Any], where: str
+) -> Optional[float]:
+    """Return the thickness of a feature, m; None where no field gives it.
+
+    Raises
+    ------
+    InputError
+        If two fields contradict each other.
+    """
+    given = [(field.name, field.value(record, where)) for field in fields]
+    known = [(name, value) for name, value in given if value is not None]
+    for name, value in known[1:]:
+        if not math.isclose(value, known[0][1], rel_tol=1e-6):
+            raise InputError(
+                f"{where}: {known[0][0]} says {known[0][1]:g} m and {name} {value:g} m; keep one "
+                "of the fields"
+            )
+    return known[0][1] if known else None
+
+
+def _is(field: str, name: str) -> bool:
+    return field.strip().lower() == name

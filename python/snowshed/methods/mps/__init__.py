@@ -1,0 +1,1 @@
+"""The moving particle semi-implicit method."""

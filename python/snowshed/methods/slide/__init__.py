@@ -1,0 +1,1 @@
+"""The snow slide on terrain."""

@@ -1,0 +1,92 @@
+"""The core's sequence of events in a results folder: opened, and run to its end.
+
+What readers of the results should know of a run is said here, as a note (`snowshed.base.notes`), and
+written into run.json: whoever runs a scene, hears the same.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import snowshed._core as _core
+from snowshed.base.interrupt import Interrupted
+from snowshed.base.notes import tell
+from snowshed.base.paths import utf8_path
+from snowshed.io.run_files import file_mark
+from snowshed.running.scene_notes import notes_before
+from snowshed.scene.scene import PathLike, ResolvedScene
+
+USER = 4  # the caller of a run, seen from where its notes are said
+REPORT_INTERVAL = 0.5  # s of wall time between progress reports
+
+
+def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _core.EventSequence:
+    """Return the sequence of a scene's events in a folder that is new, empty or to be resumed.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, the folder is not empty, or there is nothing to resume.
+    """
+    open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
+    return open_folder(scene.json, scene.base_dir, utf8_path(folder))
+
+
+def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> None:
+    """Let run.json, when it is written next, say the checksums of files in the results folder."""
+    marks = {name: file_mark(Path(folder) / name) for name in names}
+    sequence.files = {**sequence.files, **marks}
+
+
+def say_note(sequence: _core.EventSequence, note: str, stacklevel: int = USER) -> None:
+    """Say a note on a run and keep it for run.json, which has it once."""
+    sequence.add_note(note)
+    tell(note, stacklevel)
+
+
+@contextmanager
+def telling(core: _core.Simulation) -> Iterator[None]:
+    """Say what a simulation notes within the block."""
+    said = len(core.notes)
+    yield
+    for note in core.notes[said:]:
+        tell(note, USER)
+
+
+class NotePasser:
+    """The part of an observer that passes on what the core notes, which run.json has already."""
+
+    def noted(self, note: str) -> None:
+        """Say a note."""
+        tell(note, USER)
+
+
+def run_sequence(
+    sequence: _core.EventSequence,
+    observer: _core.EventObserver,
+    folder: PathLike,
+) -> None:
+    """Run the events that are left; a failure is written down in the folder.
+
+    The observer is told of the progress about twice a second. What is odd about the scene is said
+    first.
+
+    Raises
+    ------
+    SimulationError, InputError
+        If the simulation cannot go on.
+    Interrupted
+        If the observer asked for a stop; a checkpoint holds the state to resume from.
+    """
+    for note in notes_before(json.loads(sequence.simulation.scene)):
+        say_note(sequence, note)
+    try:
+        finished = sequence.run(observer, REPORT_INTERVAL)
+    except (_core.SimulationError, _core.InputError) as error:
+        sequence.record_failure(str(error))
+        raise
+    if not finished:
+        raise Interrupted(Path(folder))

@@ -1,0 +1,33 @@
+"""The terrain of a slide as its solver sees it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import snowshed._core as _core
+from snowshed.io.raster.raster import Raster
+from snowshed.scene.components import Outline
+from snowshed.scene.scene import SceneLike, resolve_scene
+
+
+def slide_terrain(scene: SceneLike) -> Raster:
+    """Return the elevations at the nodes of a slide's grid.
+
+    Raises
+    ------
+    InputError
+        If the scene is wrong, or its method is another.
+    OSError
+        If the terrain cannot be read.
+    """
+    ready = resolve_scene(scene)
+    found = _core.Simulation(ready.json, ready.base_dir).slide_maps()
+    crs = str(json.loads(ready.json)["terrain"]["crs"])
+    return Raster(found["terrain"], found["west"], found["south"], found["cell"], crs=crs)
+
+
+def release_outlines(scene: Mapping[str, Any]) -> list[Outline]:
+    """Return the corners of the release areas of a complete scene's data, map coordinates, m."""
+    return [area["outline"] for area in scene["terrain"]["release"]]

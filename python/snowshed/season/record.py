@@ -1,0 +1,155 @@
+"""The weather that a file tells: its rows, what was assumed in reading it, and its winters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Optional
+
+from snowshed.season.quality import COVERAGE, WinterQuality, qualities_of, spans
+from snowshed.season.source import Source
+from snowshed.season.weather_row import Weather
+from snowshed.season.winter_years import Calendar, SnowSeason, calendar_of
+
+
+@dataclass(frozen=True)
+class Record:
+    """The weather of a season or of many winters.
+
+    Attributes
+    ----------
+    rows
+        In order.
+    notes
+        What was assumed in reading them, a sentence each.
+    latitude
+        Degrees; None: not known, so that temperatures tell which half of the year is winter.
+    sums
+        What the columns of the file amount to, m, by the year in which a winter begins.
+    """
+
+    rows: Sequence[Weather]
+    notes: Sequence[str] = ()
+    latitude: Optional[float] = None
+    sums: Mapping[int, Mapping[Source, float]] = field(default_factory=dict)
+
+    @cached_property
+    def calendar(self) -> Calendar:
+        """Where its winters begin, and their names."""
+        return calendar_of(self.rows, self.latitude)
+
+    def winters(self, coverage: float = COVERAGE) -> WinterList:
+        """Return what each of its winters is worth.
+
+        Parameters
+        ----------
+        coverage
+            Share of the days of the snow season on which snow must have been observed.
+
+        Raises
+        ------
+        InputError
+            If it is no share.
+
+        Examples
+        --------
+        >>> from snowshed.season.generator import EXAMPLE_CLIMATE
+        >>> rows = EXAMPLE_CLIMATE.winters(3, seed=1)
+        >>> winters = Record(rows[:500]).winters()
+        >>> winters.words, winters.left_out_words
+        ('2 of 3 winters', '2003/04 (79 %)')
+        """
+        found, season = qualities_of(self.rows, self.calendar, coverage, self.sums)
+        return WinterList(found, season, coverage)
+
+
+@dataclass(frozen=True)
+class WinterList:
+    """The winters of a file, good and bad.
+
+    Attributes
+    ----------
+    winters
+        All of them, in order.
+    season
+        The months in which snow must have been observed.
+    coverage
+        On which share of their days.
+    """
+
+    winters: Sequence[WinterQuality]
+    season: SnowSeason
+    coverage: float
+
+    @property
+    def counted(self) -> list[WinterQuality]:
+        """The winters that count."""
+        return [winter for winter in self.winters if winter.counts]
+
+    @property
+    def words(self) -> str:
+        """How many of them count, such as "2 of 20 winters"."""
+        return f"{len(self.counted)} of {_number(len(self.winters))}"
+
+    @property
+    def left_out_words(self) -> str:
+        """The winters that do not count, by name, with the share of their days; may be empty."""
+        return spans([(winter.name, _shortfall(winter)) for winter in self.winters])
+
+    @property
+    def notes(self) -> list[str]:
+        """What to know of the winters that count, and of those that do not."""
+        told = []
+        if self.left_out_words:
+            told.append(
+                f"left out are the winters whose snow was observed on less than "
+                f"{percent(self.coverage)} of the days {self.season.words}: {self.left_out_words}"
+            )
+        if any(winter.listed for winter in self.winters):
+            told.append(
+                "the file lists snowfalls; its days without a row count as days without snow"
+            )
+        return told
+
+    @property
+    def shortfalls(self) -> list[str]:
+        """What to know of the winters of a station whose snow was observed too seldom."""
+        return [
+            f"the snow of {winter.name} was observed on {winter.observed} of {winter.season} days "
+            f"{self.season.words} ({percent(winter.share)}); what fell on the others is not known"
+            for winter in self.winters
+            if winter.rows and not winter.counts and Source.GIVEN not in winter.sources
+        ]
+
+    def data(self) -> list[dict[str, object]]:
+        """Return the winters as JSON data."""
+        return [
+            {
+                "winter": winter.name,
+                "days_of_snow_season": winter.season,
+                "observed_days": winter.observed,
+                "new_snow_m": round(winter.snowfall, 4),
+                "days_by_source": {one.words: days for one, days in winter.sources.items()},
+                "filled_snow_m": round(winter.filled_snow, 4),
+                "sums_m": {one.words: round(total, 4) for one, total in winter.sums.items()},
+                "counts": winter.counts,
+            }
+            for winter in self.winters
+        ]
+
+
+def _number(winters: int) -> str:
+    return "1 winter" if winters == 1 else f"{winters} winters"
+
+
+def _shortfall(winter: WinterQuality) -> Optional[str]:
+    """Return why a winter does not count; None: it does."""
+    if winter.counts:
+        return None
+    return percent(winter.share) if winter.rows else "no rows"
+
+
+def percent(share: float) -> str:
+    """Return a share in whole percent, never rounded up to what it does not reach."""
+    return f"{int(100.0 * share + 1e-9)} %"
