@@ -58,6 +58,7 @@ def grains_scene(
 
     Examples
     --------
+    >>> from snowshed.analysis.tomography.example import example_grains
     >>> from tempfile import TemporaryDirectory
     >>> with TemporaryDirectory() as folder:
     ...     file = example_grains(folder).sample.file
