@@ -191,7 +191,7 @@ def test_files_are_written_by_the_one_writer():
 
 
 def test_tables_pass_the_one_sanitizer():
-    folders = ("python", "validation", "reproduction", "thesis", "hagenmuller", "saito")
+    folders = ("python", "validation", "reproductions")
     wrong = [
         str(source.relative_to(ROOT))
         for source in tracked(*(f"{folder}/**/*.py" for folder in folders))

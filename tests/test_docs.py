@@ -7,10 +7,10 @@ import shlex
 import click
 import pytest
 from paths import ROOT
-from thesis.command import thesis
-from validation.command import validate
+from validation.framework.command import validate
 
 from snowshed import Scene
+from snowshed.cli.commands.reproduce import reproduce
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import cli
 
@@ -20,7 +20,7 @@ PROGRAMS = {
     "snowshed": cli,
     ".venv/bin/snowshed": cli,
     "python -m validation": validate,
-    "python -m thesis": thesis,
+    "python -m reproductions": reproduce,
 }
 #: Pages that list all options of a command.
 PAGE_OF = {

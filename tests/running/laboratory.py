@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from validation.lab_stack import run_lab
+from validation.laboratory.lab_stack import run_lab
 
 from snowshed import _core
 

@@ -1,11 +1,11 @@
 """The quick suite: every case over its quick matrix, and every bar on what was measured."""
 
 import pytest
-from validation.bars import compare
-from validation.measurement_file import MeasurementFile
-from validation.report import Suite, problems
-from validation.runner import run_suite
-from validation.suite import case_modules, cases_of
+from validation.framework.bars import compare
+from validation.framework.cases import case_modules, cases_of
+from validation.framework.measure import measure_cases
+from validation.framework.measurement_file import MeasurementFile
+from validation.framework.report import Validation, problems
 
 from snowshed.analysis.accuracy.measurements import to_table
 
@@ -13,7 +13,7 @@ from snowshed.analysis.accuracy.measurements import to_table
 @pytest.mark.parametrize("module", case_modules())
 def test_bars_hold(module, tmp_path):
     cases = cases_of(module)
-    measurements = run_suite(cases, MeasurementFile(tmp_path / "measurements.jsonl"))
+    measurements = measure_cases(cases, MeasurementFile(tmp_path / "measurements.jsonl"))
     assert {one.case for one in measurements} == {case.name for case in cases}
     found = compare(to_table(measurements), cases)
-    assert not problems(Suite(cases, measurements, full=False), found)
+    assert not problems(Validation(cases, measurements, full=False), found)
