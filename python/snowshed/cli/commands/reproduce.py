@@ -1,4 +1,4 @@
-"""The command ``snowshed reproduce``: publications whose reproduction comes with the source."""
+"""The command ``snowshed reproduce``; the reproductions come with the source."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import click
 
 from snowshed.cli.deferred import Deferred
 
-#: Folder of the source, if the package is used in place.
+#: Folder of the source, if the package is imported from there.
 SOURCE = Path(__file__).parents[4]
 
 
 class FromSource(Deferred):
-    """A command that a package of the source defines, where the source is at hand."""
+    """A command that a package of the source defines."""
 
     def load(self) -> click.Command:
-        """Return the command itself.
+        """Import and return the command.
 
         Raises
         ------
         click.UsageError
-            If the source is not at hand.
+            If the source is not available.
         """
         package = str(self.name)
         if (SOURCE / package / "__init__.py").is_file() and str(SOURCE) not in sys.path:
@@ -52,7 +52,7 @@ def reproduce() -> None:
 
 for name, short_help in (
     ("thesis", "Chapters 3 to 5 of the thesis on snow that slides off panels."),
-    ("hagenmuller", "What a paper on discrete elements of snow says of its compression."),
-    ("saito", "What a paper on the moving particle method says of avalanches."),
+    ("hagenmuller", "Claims of a paper on discrete elements about the compression of snow."),
+    ("saito", "Claims of a paper on the moving particle method about avalanches."),
 ):
     reproduce.add_command(FromSource(name, f"{name}.command", short_help))
